@@ -100,12 +100,14 @@ def _cell_unit(known: Mapping[int, Key], epsg: int) -> tuple[float, tuple[str, .
         return size[0], ()
     if unit == 0 and epsg and epsg // 100 not in _IN_METRES:
         try:
+            from rasterio import Env
             from rasterio.crs import CRS
             from rasterio.errors import CRSError
         except ImportError:
             return 1.0, (f"its keys do not say the unit of EPSG:{epsg}; a metre is assumed",)
         try:
-            return float(CRS.from_epsg(epsg).linear_units_factor[1]), ()
+            with Env():  # which logs what GDAL prints else
+                return float(CRS.from_epsg(epsg).linear_units_factor[1]), ()
         except CRSError:
             return 1.0, (f"GDAL does not know EPSG:{epsg}; its unit is taken for a metre",)
     notes = () if unit in (0, *UNITS) else (f"its unit of length, EPSG {unit}, is taken for a metre",)

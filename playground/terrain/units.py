@@ -65,7 +65,7 @@ _NAMES = {
     1000.0: "km kilometre kilometer",
     0.0254: "in inch inches",
     _FOOT: "ft foot feet footintl feetintl ftintl internationalfoot internationalfeet footinternational "
-    "feetinternational",
+    "feetinternational ftinternational",
     _SURVEY_FOOT: "usft ftus ussurveyfoot ussurveyfeet ussurveyft usfoot usfeet footus feetus surveyfoot "
     "surveyfeet footussurvey feetussurvey sft",
     0.9144: "yd yard",

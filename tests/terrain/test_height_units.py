@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -194,11 +195,16 @@ def test_keys_that_contradict_each_other_are_reported(tmp_path):
     assert not assert_metres(keyed(tmp_path / "b.tif", UTM | {4096: 5103, 4099: 9003}), SURVEY_FOOT).notes
 
 
-def test_a_code_in_feet_scales_cells_without_a_unit(tmp_path):
+def test_a_code_in_feet_scales_cells_without_a_unit(tmp_path, monkeypatch):
     found = read_elevation(keyed(tmp_path / "a.tif", {1024: 1, 1025: 1, 3072: 2264}))
     assert found.spacing == pytest.approx((30 * SURVEY_FOOT,) * 2)
     found = read_elevation(raster(tmp_path / "b.tif", crs="EPSG:2222"))
     assert found.spacing == pytest.approx((30 * FOOT,) * 2)
+    found = read_elevation(keyed(tmp_path / "c.tif", {1024: 1, 1025: 1, 3072: 9999}))
+    assert "GDAL does not know EPSG:9999; its unit is taken for a metre" in found.notes
+    monkeypatch.setitem(sys.modules, "rasterio.crs", None)  # without the extra
+    found = read_elevation(keyed(tmp_path / "d.tif", {1024: 1, 1025: 1, 3072: 2264}))
+    assert "its keys do not say the unit of EPSG:2264; a metre is assumed" in found.notes
 
 
 @pytest.mark.parametrize(("crs", "factor"), [("EPSG:2264", SURVEY_FOOT), ("EPSG:2222", FOOT)])
