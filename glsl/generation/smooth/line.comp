@@ -18,8 +18,7 @@
                 agrees = "2e-6")
 
 uniform sampler2D height; //! input
-uniform int radius = 5;   //! slider(0, 512) Texels to each side that are averaged; 5 is a mean of
-                          //! 11
+uniform int radius = 5;   //! slider(0, 512) unit("texels") As in the technique
 uniform int axis = 0;     //! menu("x", "y") Along which axis
 
 ivec2 texel_at(int place, int beside) {

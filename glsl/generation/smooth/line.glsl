@@ -11,8 +11,8 @@
 #pragma kernel(output = "height:r32f")
 
 uniform sampler2D height; //! input
-uniform int radius = 5;   //! slider(0, 512) Texels to each side that are averaged; 5 is a mean of
-                          //! 11
+uniform int radius = 5;   //! slider(0, 512) unit("texels") To each side that are averaged; 5 is a
+                          //! mean of 11. With twice as many texels a side it is half as wide
 uniform int axis = 0;     //! menu("x", "y") Along which axis
 
 float kernel(ivec2 texel) {
