@@ -33,6 +33,7 @@ LIMIT_BYTES = 4 * 2**30
 _START = 60.0  # [s] that a worker may take to start Python and open a context
 _SUSPICIOUS = 0.3  # [s] after which a spare is started for a worker that has not answered
 _IMPATIENT = 0.5  # [s] after which a worker is killed for something newer
+_MAX_TRIES = 3  # of a request whose worker is killed before it has begun
 _HANDLER = "playground.engine.sandbox_handler"
 _SLOW_READ = 2**24  # [bytes/s] of a large data file: a quarter of what deflate takes
 _LARGE = 2**26  # [bytes] above which a data file is given that time besides
@@ -134,7 +135,7 @@ class Sandbox(Closing):
         self._current: Request | None = None  # what the worker is at, while that is the newest
         self._waiting: Request | None = None  # the newest, while the worker is still at an older one
         self._reading = 0.0  # [s] that its large data files may take besides
-        self._repeated = False  # what it is at was submitted to one before, which died of something else
+        self._tries = 0  # how many workers were sent what it is at; those before died of something else
 
     @property
     def busy(self) -> bool:
@@ -175,8 +176,8 @@ class Sandbox(Closing):
         self._waiting = self._current = None
         self._workers.close(patience=1.0)
 
-    def _send(self, request: Request, *, repeated: bool = False) -> None:
-        self._waiting, self._current, self._repeated = None, request, repeated
+    def _send(self, request: Request, *, tries: int = 1) -> None:
+        self._waiting, self._current, self._tries = None, request, tries
         self._reading = reading_seconds(request)
         self._workers.start().submit(request)
 
@@ -222,15 +223,15 @@ class Sandbox(Closing):
     def _crashed(self, worker: Worker, report: CrashReport) -> SandboxReport | None:
         """Replace a worker that died over a request, and report it."""
         spent, cause = worker.seconds, report.cause(" in the sandbox")
+        self._workers.end(kill=True)
+        if report.progress is None and self._current is not None and self._tries < _MAX_TRIES:
+            # It had not begun: something else killed it, perhaps while it was idle or starting.
+            self._send(self._current, tries=self._tries + 1)
+            return None
         if not report.was_ready:
-            self._workers.end(kill=True)
             message = f"the sandbox's process could not be started: it {cause}"
             return self._newest(SandboxReport(False, SandboxCrash(message), seconds=spent))
-        self._workers.replace()
-        if report.progress is None and self._current is not None and not self._repeated:
-            # It had not begun: something else killed it, perhaps while it was idle.
-            self._send(self._current, repeated=True)
-            return None
+        self._workers.start()
         what, file, _ = _doing(report.progress, "this")
         return self._newest(SandboxReport(False, SandboxCrash(f"{what} {cause}", file=file), seconds=spent))
 

@@ -209,6 +209,26 @@ def test_a_worker_that_dies_idle_costs_nobody_an_answer(sandbox, folder):
     assert report.ok, report.error
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("kills", "is_tried"), [(1, True), (2, True), (99, False)])
+def test_a_worker_killed_while_it_starts_is_tried_again(folder, kills, is_tried):
+    request, killed = TrySketch(folder.one(GOOD), (32, 32)), []
+
+    def kill() -> None:
+        worker = sandbox._workers.worker
+        if len(killed) < kills and worker is not None and not worker.is_ready and worker.pid not in killed:
+            killed.append(worker.pid)
+            os.kill(worker.pid, signal.SIGKILL)
+
+    with Sandbox() as sandbox:
+        sandbox.while_waiting = kill
+        report = sandbox.run(request)
+        assert report.ok is is_tried
+        if not is_tried:
+            assert len(killed) == 3, "an end is put to it"
+            assert "the sandbox's process could not be started" in str(report.error)
+
+
 MONSTERS = {
     "thirty macros, each twice the one before": "\n".join(
         ["#define M0 x"] + [f"#define M{i} M{i - 1} + M{i - 1}" for i in range(1, 31)]
