@@ -16,6 +16,7 @@ from playground.engine.kernels import Job
 from playground.engine.results import Result, Wired
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError, Number
+from playground.sketch.model import Kernel, Technique
 from playground.terrain.lod import CHOOSERS
 
 if TYPE_CHECKING:
@@ -72,6 +73,18 @@ def instances_of(job: Job, texels: Texels) -> int:
     if not 0 <= found <= MOST:
         raise step.spec.error(f"pass '{step.path}': instances = {found}; 0 to {MOST} were expected")
     return found
+
+
+def counts_instances(technique: Technique, name: str) -> bool:
+    """Return whether the first texel of an input of a technique says how often a draw in it is drawn."""
+    if isinstance(technique, Kernel):
+        named = (read.rpartition(".") for read in expressions.names_in(technique.instances or "0"))
+        return any(declared == name and component in _COMPONENTS for declared, _, component in named)
+    targets = (
+        target.partition(".") for each in technique.inputs if each.name == name for target in each.targets
+    )
+    inside = ((technique.find(head), rest) for head, _, rest in targets)
+    return any(spec is not None and counts_instances(spec.technique, rest) for spec, rest in inside)
 
 
 def _component(job: Job, name: str, texels: Texels) -> Number:

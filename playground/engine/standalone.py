@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from playground.engine.instances import counts_instances
 from playground.gpu.own_shaders import own_shader
 from playground.images.values import write_values
 from playground.paths import shown
@@ -44,6 +45,8 @@ def standalone_sketch(
     passes = [
         PassSpec(name, "a placeholder", _DRAWN)
         if name == over
+        else PassSpec(name, "a placeholder", _COUNT)
+        if counts_instances(technique, name)
         else PassSpec(name, "a placeholder", _TERRAIN, values=((SEED, seed),))
         for name in wanted
     ]
@@ -110,6 +113,12 @@ _DRAWN = Kernel(
     outputs=(Output("value", "rgba32f"),),
     registry="sheet",
     samples=1,
+)
+_COUNT = Kernel(
+    name="a placeholder",
+    kind="kernel",
+    source=text_of(own_shader("placeholder_count.glsl")),
+    outputs=(Output("value", "rgba32f"),),
 )
 _COPY = Kernel(
     name="a copy",

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from playground.engine.check import check_file
+from playground.engine.check import check_file, find_files
 from playground.engine.sandbox import Sandbox
 from playground.errors import Diagnostic, PlaygroundError
+from playground.paths import GLSL
 
 from ..loading import load
 
@@ -161,3 +162,34 @@ def test_a_library_file_may_declare_what_the_file_that_includes_it_defines(folde
     assert check_file(folder.write("march.glsl", LIBRARY + READS), sandbox).ok
     found = wrong(folder.write("slip.glsl", LIBRARY + READS.replace("height_at(", "hight_at(")), sandbox)
     assert (Path(found.file).name, found.line) == ("slip.glsl", 3), found
+
+
+COUNTED = """#pragma draw(mesh = "sheet", instances = "min(list.y // 2, 6)", output = "drawn:rgba32f")
+uniform sampler2D list;  //! input
+vec4 vertex(vec3 corner, out vec2 place) {
+    place = corner.xy;
+    return vec4(2.0 * corner.xy - 1.0, 0.0, 1.0);
+}
+vec4 fragment(vec2 place) { return texelFetch(list, ivec2(0), 0); }
+"""
+
+
+def test_an_input_that_counts_instances_is_a_whole_number(folder, sandbox):
+    draw = folder.write("draw.glsl", COUNTED)
+    assert check_file(draw, sandbox).errors == ()
+    inner = '[[pass]]\nname = "a"\nuse = "./draw"\n[inputs]\nnumbers = "a.list"\n[outputs]\ndrawn = "a"\n'
+    outer = inner.replace("./draw", "./inner").replace("a.list", "a.numbers").replace("numbers =", "rows =")
+    assert check_file(folder.write("inner.toml", inner), sandbox).errors == ()
+    assert check_file(folder.write("outer.toml", outer), sandbox).errors == ()
+    fraction = folder.write("draw.glsl", COUNTED.replace("min(list.y // 2, 6)", "list.y / 7"))
+    assert "a whole number was expected" in check_file(fraction, sandbox).errors[0].message
+
+
+FOLDERS = sorted(path.name for path in GLSL.iterdir() if path.is_dir())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", FOLDERS)
+def test_what_ships_is_checked_without_an_error(name, sandbox):
+    reports = [check_file(path, sandbox, root) for path, root in find_files([GLSL / name])]
+    assert [str(error) for report in reports for error in report.errors] == []
