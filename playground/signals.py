@@ -8,7 +8,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-_ASKING = ("SIGTERM", "SIGHUP")  # sent by a shutdown and a closed terminal; the second not on Windows
+# Sent by a shutdown, a closed terminal, Ctrl-\, the system at a limit on processor time, and batch systems
+# before they kill; on Windows, of these only the first, and Ctrl-Break.
+_ASKING = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGXCPU", "SIGUSR1", "SIGUSR2", "SIGBREAK")
 
 
 @contextmanager

@@ -16,6 +16,7 @@ from playground.partial import partial_file, remove_left_over
 
 ROOT = Path(__file__).resolve().parent.parent
 PLAIN = "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(0.5); }\n"
+SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT", "SIGXCPU", "SIGUSR1", "SIGUSR2")
 UNCHANGED = ".picture.png.0123456789ab.part"
 
 
@@ -79,7 +80,7 @@ def test_what_another_process_writes_is_left_alone_until_it_is_dead(tmp_path: Pa
 
 def receive_signals() -> None:
     """Let a process receive signals, also where the tests were started with them ignored, as by nohup."""
-    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+    for name in SIGNALS:
         signal.signal(getattr(signal, name), signal.SIG_DFL)
 
 
@@ -100,7 +101,7 @@ def begun(folder: Path) -> subprocess.Popen[bytes]:
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize("name", SIGNALS)
 def test_a_large_picture_that_is_ended_leaves_nothing(tmp_path: Path, name: str):
     process = begun(tmp_path)
     number = getattr(signal, name)
