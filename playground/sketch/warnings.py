@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 import tomllib
 from collections import defaultdict
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from collections.abc import Set as AbstractSet
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -141,7 +142,7 @@ def _evaluated(texts: Sequence[str]) -> int | None:
         return None
 
 
-def _is_whole(texts: Sequence[str], start: int, end: int, whole: Collection[str]) -> bool:
+def _is_whole(texts: Sequence[str], start: int, end: int, whole: AbstractSet[str]) -> bool:
     """Return whether a division stands where a whole number is meant."""
     before, depth, calls = start, 0, list[str]()
     while before > 0 and texts[before - 1] not in (";", "{", "}"):
@@ -174,7 +175,7 @@ def _is_whole(texts: Sequence[str], start: int, end: int, whole: Collection[str]
         right += 1
     others = (*range(left, start), *range(end, right))
     names = [texts[k] for k in others if re.match(r"[A-Za-z_]|\.\d|\d+\.", texts[k]) and texts[k - 1] != "."]
-    return bool(names) and whole.issuperset(names)
+    return bool(names) and whole >= set(names)
 
 
 def _returns_whole(texts: Sequence[str], at: int) -> bool:
