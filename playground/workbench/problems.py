@@ -186,7 +186,10 @@ class Warnings:
         """Look at one kernel that has not been looked at yet."""
         if self.waiting:
             text = self.waiting.pop()
-            self._found[text] = (*warnings_of_kernel(self._kernels[text]), *self._review(self._kernels[text]))
+            own = warnings_of_kernel(self._kernels[text])
+            places = {(d.file, d.line) for d in own}  # where a driver would say the same again
+            more = [d for d in self._review(self._kernels[text]) if (d.file, d.line) not in places]
+            self._found[text] = (*own, *more)
 
 
 def unreadable(sketch: Sketch | None) -> tuple[Diagnostic, ...]:

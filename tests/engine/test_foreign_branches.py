@@ -9,6 +9,7 @@ import pytest
 
 from playground.sketch.dialects import dialect_of
 from playground.sketch.load import load
+from playground.sketch.model import kernels_of
 
 SIZE = (32, 18)
 PICTURE = "vec4(p / iResolution.xy, 0.25, 1.0)"
@@ -153,7 +154,7 @@ BODIES = {
         "#define ON\n#ifdef ON\n#define R iChannelResolution[0].x\n#else\n#define R iTime\n#endif",
         "R * 0.0 + 0.25",
     ),
-    "a uniform": ("#define GIVEN uniform float iTime;\nGIVEN", "iTime + 0.25"),
+    "a uniform": ("#define GIVEN(t, n) uniform t n;\nGIVEN(float, iTimeDelta)", "iTimeDelta * 15.0"),
     "a block": ("uniform Block { float iTime; };", "iTime * 0.0 + 0.25"),
 }
 
@@ -220,3 +221,17 @@ def test_a_text_may_ask_what_its_tool_defines(drawn, name):
         choice = f"\n#if {condition}\n{{}}\n#else\n{{}}\n#endif\n"
         first, second = ("0.25", "0.75") if holds else ("0.75", "0.25")
         check(drawn(text.replace("0.25", choice.format(first, second)), file))
+
+
+def test_a_uniform_of_a_macro_is_a_parameter_and_of_a_comment_none(drawn, folder):
+    text = "#define KNOB(n, v) uniform float n = v;\nKNOB(level, 0.25)\n/* uniform float other; */\n"
+    check(drawn(f"{text}{IMAGE.replace('0.25', 'level')}"))
+    found = load(folder.path / "a.frag").graph.find("view").technique.parameters
+    assert [(p.name, p.default) for p in found] == [("level", 0.25)]
+
+
+def test_a_keyboard_that_a_comment_asks_for_is_not_there(drawn, folder):
+    for asks, there in (("/*\n#iKeyboard\n*/", False), ("#iKeyboard", True)):
+        check(drawn(f'#iChannel0 "self"\n{asks}\n{IMAGE}'))
+        kernels = kernels_of(load(folder.path / "a.frag").graph.find("view").technique)
+        assert any(bool(kernel.helpers) for _, kernel in kernels) == there

@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import groupby
 
 from playground.sketch.expanded import readings
 from playground.sketch.variables import Declarations
@@ -33,10 +34,6 @@ _MEMBER = re.compile(
 )
 _NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*(\[[^\]]*\])?")
 _DIRECTIVE = re.compile(r"^[ \t]*#.*$", re.MULTILINE)
-_QUALIFIER = re.compile(
-    r"^[ \t]*#[ \t]*define[ \t]+(\w+)(?:[ \t]+(in|uniform|lowp|mediump|highp))?[ \t]*$", re.MULTILINE
-)
-_QUALIFIED = re.compile(rf"{_BEGINS}(?:\w+[ \t]+)?(?:uniform|in)[ \t]+(\w+)[ \t]+\w+[ \t]+\w", re.MULTILINE)
 _BRACKETS = re.compile(r"\([^()]*\)")
 _VECTOR = re.compile(r"vec([234])|float")
 _KINDS = {
@@ -61,7 +58,7 @@ class Declared:
 @lru_cache(maxsize=32)  # passes of one file share a text
 def uniforms(code: str) -> Mapping[str, Declared]:
     """Return the uniforms that a text declares, by name; of one in two branches, the first."""
-    code = _DIRECTIVE.sub("", _with_qualifiers(code))
+    code = _expanded(code)
     found: dict[str, Declared] = {}
     for match in _UNIFORM.finditer(code):
         of_type = match.group(2).strip()  # the array of "float[3] a"
@@ -100,7 +97,7 @@ def declared_names(code: str) -> Mapping[str, frozenset[str]]:
 @lru_cache(maxsize=32)
 def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
     """Return what the vertex shader gives a fragment shader: declarations, and statements that set them."""
-    code = _DIRECTIVE.sub("", _with_qualifiers(code))
+    code = _expanded(code)
     found: dict[str, tuple[str, str]] = {}
     for block in _BLOCK.finditer(code):
         members = " ".join(block.group(2).split())
@@ -122,16 +119,15 @@ def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
     return tuple(found.values())
 
 
-def _with_qualifiers(code: str) -> str:
-    """Replace macros that stand for a qualifier, as texts for several versions of GLSL have them.
-
-    One of no value counts where it stands as one: texts for OpenGL ES define precisions so elsewhere.
-    """
-    there = set(_QUALIFIED.findall(code))
-    macros = {name: value for name, value in _QUALIFIER.findall(code) if value or name in there}
-    if not macros:
-        return code
-    return re.sub(rf"\b(?:{'|'.join(macros)})\b", lambda found: macros[found.group()], code)
+def _expanded(code: str) -> str:
+    """Return a text, as many lines, without its directives and with the macros expanded."""
+    lines = _DIRECTIVE.sub("", code).split("\n")
+    for tokens in readings(code):
+        for line, some in groupby(tokens, key=lambda token: token.line):
+            texts = [token.text for token in some]
+            if "".join(texts) != "".join(lines[line].split()):
+                lines[line] = " ".join(texts)
+    return "\n".join(lines)
 
 
 def _names(text: str) -> Iterator[tuple[str, str, int, str]]:

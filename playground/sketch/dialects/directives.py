@@ -1,6 +1,7 @@
 """Read the lines that the VS Code extension Shader Toy knows: ``#iChannel0``, ``#iUniform``, ``#iKeyboard``.
 
-A driver is given a uniform in the place of ``#iUniform`` and nothing in that of the others.
+A driver is given a uniform in the place of ``#iUniform`` and nothing in that of the others; that the
+keyboard is asked for stays as a pragma, which ``rewritten`` takes away.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ MOST_CHANNELS = 10
 
 _STRICT = "StrictCompatibility"  # mainImage is what runs: so it is here wherever a text has one
 _DIRECTIVE = re.compile(rf"\s*#\s*(i[A-Z]\w*|{_STRICT})\b(.*)", re.DOTALL)
-_KEYBOARD = re.compile(rf"\s*#\s*{KEYBOARD}\b")
+_ASKS_FOR_KEYS = f"#pragma {KEYBOARD}"
 _CHANNEL = re.compile(r'\s*#\s*iChannel(\d)\s*(?:::\s*(\w+)\s*)?(["\'])(.*?)\3')
 _UNIFORM = re.compile(
     r"\s*(\w+)\s+([A-Za-z_]\w*)\s*(?:=\s*(.+?)\s*)?(?:\bin\s*\{\s*([^,{}]+),\s*([^,{}]+)\})?"
@@ -94,7 +95,7 @@ def read_directives(source: SourceText) -> Read:
         elif match.group(1) == "iUniform":
             lines.append(_uniform(line, match.group(2)))
         elif match.group(1) == KEYBOARD:
-            lines.append(replace(line, code=""))
+            lines.append(replace(line, code=_ASKS_FOR_KEYS))
         else:
             name = match.group(1)
             if name != _STRICT:
@@ -105,7 +106,7 @@ def read_directives(source: SourceText) -> Read:
 
 def has_keyboard(source: SourceText) -> bool:
     """Return whether a text, with what is included and common, asks for the keyboard."""
-    return any(_KEYBOARD.match(line.text) for line in source.lines)
+    return any(line.code == _ASKS_FOR_KEYS for line in source.lines)
 
 
 def _channel(line: Line, channels: dict[int, Channel]) -> None:

@@ -14,11 +14,12 @@ from pathlib import Path
 from playground.errors import SketchError
 from playground.paths import shown
 from playground.sketch.allowed_files import is_inside
-from playground.sketch.dialects.conditions import WEBGL_2, live_code
+from playground.sketch.dialects.conditions import WEBGL_2, live_code, live_source
 from playground.sketch.dialects.directives import read_directives
 from playground.sketch.dialects.reading import Files
 from playground.sketch.dialects.sampler_types import names_reached, sampler_types
 from playground.sketch.dialects.shader import Channel, Shader, stand_in
+from playground.sketch.dialects.shadertoy import MACROS
 from playground.sketch.dialects.toy_passes import (
     BUFFER,
     CUBE,
@@ -89,7 +90,7 @@ def shaders(files: Files) -> Sequence[Shader]:
     there = {label: found for label in _LABELS if (found := _file(files, folder, label))}
     if _file(files, folder, _SOUND):
         files.note(f"{_SOUND} is sound, which is not drawn")
-    sources = {path: files.source(path) for path in there.values()}
+    sources = {path: live_source(files.source(path), MACROS) for path in there.values()}
     common = _file(files, folder, _COMMON)
     if any(str(common) in source.files for source in sources.values()):
         common = None  # a pass includes it by itself
