@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 from playground.sketch.dialects.conditions import Conditions
 
@@ -37,8 +38,7 @@ class Call:
     is_whole: bool = True  # it is on one line
 
 
-@dataclass(frozen=True, slots=True)
-class Token:
+class Token(NamedTuple):
     """One token; its columns are those of its call where it comes from a macro."""
 
     text: str
@@ -55,7 +55,7 @@ class _Macro:
     body: tuple[str, ...]
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=4)  # tokens are many
 def readings(code: str, version: int = 0) -> tuple[tuple[Token, ...], ...]:
     """Return the tokens of a text whose comments are blanked, once or for two readings.
 
