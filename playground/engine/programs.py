@@ -147,7 +147,10 @@ class Programs:
             as_written = with_choices(plain, own)
             if _texts(as_written) == _texts(wrapped):
                 raise
-            return compile_wrapped(self.ctx, as_written)
+            program = compile_wrapped(self.ctx, as_written)
+            if plain.kernel.kind == "plain_fragment":
+                _log.warning("%s: variables without a value are undefined here", shown(plain.kernel.path))
+            return program
 
     def own(self, fragment: str) -> Program:
         """Return the program of a fragment shader of the engine's own."""

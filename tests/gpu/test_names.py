@@ -162,6 +162,13 @@ def test_what_a_driver_warns_of_is_reported_in_the_kernel_s_lines(
     assert ctx.error == "GL_NO_ERROR"
 
 
+def test_a_driver_s_warning_of_no_value_is_none_where_it_is_zero(
+    ctx: moderngl.Context, tmp_path: Path
+) -> None:
+    kernel = foreign(tmp_path, TOY.format("vec4(0.0); float a; c.x = a"))
+    assert warnings_of(ctx, wrap(kernel, FRAGMENT, 450)) == ()
+
+
 # ── one error a name, and nothing that follows from it ───────────────────────
 
 
