@@ -19,6 +19,7 @@ from playground.sketch.variables import BUILT_IN, Declarations, Function, Type, 
 _MAX_WRITTEN = 64  # elements of an array that are written out; more are set by a loop
 _MAX_WRITTEN_AT_ALL = 4096  # where no loop can stand
 _OUTSIDE = frozenset("const in inout uniform varying attribute buffer shared".split())
+_SCALARS = {"float": "0.0", "int": "0", "uint": "0u", "bool": "false"}
 _INDEX = "k_z"
 
 
@@ -115,7 +116,7 @@ class _Zeros:
             brackets = "".join(f"[{''.join(size)}]" for size in inner.sizes)
             return f"{type_.name}[{count}]{brackets}({', '.join([value] * count)})" if value else ""
         if BUILT_IN.fullmatch(type_.name):
-            return f"{type_.name}(0)"
+            return _SCALARS.get(type_.name, f"{type_.name}(0)")
         values = [self._value(member, most) for _, member in type_.members]
         return f"{type_.name}({', '.join(values)})" if type_.name and values and all(values) else ""
 

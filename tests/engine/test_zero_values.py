@@ -220,6 +220,14 @@ def test_zeros_change_no_line_and_no_text_that_has_them(folder):
     assert text in stage.text and "float a = s.x, b[2] = float[2](1.0, a);" in stage.text
 
 
+def test_a_text_that_zeros_would_break_is_drawn_as_it_is(any_engine, folder, caplog):
+    before = "#define vec2 highp vec2\nfloat f(vec2 s) { vec2 a; a = s; return a.x; }\n#undef vec2"
+    text = of_case(before, "", "f(s)")
+    found = any_engine.render(load(folder.write("a.frag", text)), size=SIZE).array
+    assert found[0, -1, 0] > 240
+    assert "a.frag: variables without a value are undefined here" in caplog.text
+
+
 def test_macros_without_end_are_left_to_the_driver(folder):
     doubles = "\n".join(f"#define M{n + 1} M{n} M{n}" for n in range(40))
     text = f"#define M0 +1.0\n{doubles}\n{of_case('', 'float a;', 'a')}"
