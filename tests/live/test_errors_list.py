@@ -188,7 +188,7 @@ def desk(any_engine: Engine, folder: Path) -> Iterator[Desk]:
 
 
 def broken(desk: Desk, folder: Path) -> PlaygroundError:
-    (folder / "wave.glsl").write_text(WAVE.replace("sin", "sine"), encoding="utf-8")
+    (folder / "wave.glsl").write_text(WAVE.replace("sin(p.x)", "sine(p.x) * cose(p.y)"), encoding="utf-8")
     desk.session.drafts.reload()
     desk.run_frames(4)
     assert desk.session.error is not None
