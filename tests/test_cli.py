@@ -498,11 +498,18 @@ def test_check_finds_what_is_wrong_and_where(run: Run, slope: Path, tmp_path: Pa
     assert all(set(e) == {"file", "line", "column", "message"} for r in reports.values() for e in r["errors"])
     assert all(r["errors"] or r["ok"] for r in reports.values())
 
-    done = run("check", "slope/slope.glsl", "slope/broken.glsl")
+    done = run("check", *(f"slope/{name}.glsl" for name in ("slope", "broken", "bad_library", "uses")))
     assert done.returncode == 1
     assert re.search(r"^ok +slope/slope\.glsl$", done.stdout, re.MULTILINE)
     assert re.search(r"^FAILED +slope/broken\.glsl\n +slope/broken\.glsl:4:", done.stdout, re.MULTILINE)
-    assert done.stdout.endswith("2 files checked, 1 failed\n")
+    places = re.findall(r"slope/bad_library\.glsl:1:.*", done.stdout)
+    assert places and len(set(places)) == len(places), "each is printed once"
+    assert re.search(
+        r"^FAILED +slope/uses\.glsl\n +\d errors? of slope/bad_library\.glsl, printed above$",
+        done.stdout,
+        re.MULTILINE,
+    )
+    assert done.stdout.endswith("4 files checked, 3 failed\n")
 
 
 @pytest.mark.slow

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from playground.commands import options
-from playground.commands.arguments import FAILED, Renderer, help_text
-from playground.commands.options import flag
+from playground.commands.arguments import FAILED, Renderer, help_text, read_option, within
+from playground.commands.options import flag, value
 from playground.commands.standard_input import kept_path
 from playground.errors import Diagnostic, counted
 from playground.terminal import painted, print_json, progress
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 HELP = help_text(
     "Check shaders and sketches.\n\n"
     "Compiles every kernel by both drivers, loads every sketch, draws a small frame of each. A folder is"
-    " searched for .glsl, .comp, .frag and .toml. What hangs or crashes the driver is stopped and"
-    " reported, and so are NaN and infinity: any in a sketch; in a technique, which is drawn on"
+    " searched for .glsl, .comp, .frag and .toml. What takes longer than --limit or crashes the driver is"
+    " stopped and reported, and so are NaN and infinity: any in a sketch; in a technique, which is drawn on"
     " stand-ins, a texture of nothing else. Where there are no compute shaders, they are skipped. Exit"
     " status 1 when anything fails. As PATH, - checks a shader's text from standard input, which is kept as"
     " a new file in this folder.",
@@ -39,6 +39,9 @@ def check(
     ctx: typer.Context,
     paths: Annotated[list[Path], typer.Argument(help="Files, and folders to search.", metavar="PATH...")],
     as_json: Annotated[bool, flag("--json", "Print one JSON object a file, a line each.")] = False,
+    limit: Annotated[
+        str, value("--limit SECONDS", "Processor time that each pass may take, 10 s by default.")
+    ] = "",
     plain: options.Plain = False,
     dialect: options.Dialect = "",
     software: options.Software = False,
@@ -46,15 +49,19 @@ def check(
 ) -> None:
     """Check shaders and sketches."""
     from playground.engine.check import check_file, find_files
-    from playground.engine.sandbox import Sandbox
+    from playground.engine.sandbox import LIMIT_SECONDS, Sandbox
     from playground.sketch.dialects import check_name
 
     renderer: Renderer = ctx.obj.or_else(software, device)
+    seconds = read_option("--limit", limit, within(0.1, 86_400.0), "seconds, 0.1 to 86400, as 60")
     files = find_files([kept_path(path, "check") for path in paths])
     failed, skipped = 0, False
+    printed: set[Diagnostic] = set()  # errors: those of a kernel are errors of the sketch that uses it, too
     reported: set[Diagnostic] = set()  # a warning of a kernel is one of the sketch that uses it, too
     with (
-        Sandbox(software=renderer.software, device=renderer.device) as sandbox,
+        Sandbox(
+            limit_seconds=seconds or LIMIT_SECONDS, software=renderer.software, device=renderer.device
+        ) as sandbox,
         progress("checking", len(files)) as advance,
     ):
         for path, root in files:
@@ -66,7 +73,7 @@ def check(
             if as_json:
                 print_json(report.as_json(), indent=None)
             else:
-                _print_report(report)
+                _print_report(report, printed)
             advance()
     if not as_json:
         warned = f", {counted(len(reported), 'warning')}" if reported else ""
@@ -76,13 +83,20 @@ def check(
         raise typer.Exit(FAILED)
 
 
-def _print_report(report: FileReport) -> None:
+def _print_report(report: FileReport, printed: set[Diagnostic]) -> None:
+    """Print a report; of errors that are ``printed`` already, a line that names their files."""
     mark = painted("ok", "32", sys.stdout) if report.ok else painted("FAILED", "1;31", sys.stdout)
     skipped = f"  (skipped: {', '.join(report.skipped)})" if report.skipped else ""
     print(f"{mark}{' ' * (6 if report.ok else 2)}{report.path}{skipped}")
-    for diagnostic in (*report.errors, *report.warnings):
+    alike = {error: replace(error, chain=()) for error in report.errors}  # however it is included
+    again = [error for error in report.errors if alike[error] in printed]
+    if again:
+        files = ", ".join(dict.fromkeys(diagnostic.file for diagnostic in again))
+        print(f"        {counted(len(again), 'error')} of {files}, printed above")
+    for diagnostic in (*(one for one in report.errors if one not in again), *report.warnings):
         text = str(diagnostic) if diagnostic.severity == "error" else f"{diagnostic.severity}: {diagnostic}"
         print("\n".join(f"        {line}" for line in text.split("\n")))
+    printed |= set(alike.values())
     for sentence in report.notes:
         print(f"        note: {sentence}")
     sys.stdout.flush()  # a pipe's reader sees each file as it is done

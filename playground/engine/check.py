@@ -24,7 +24,14 @@ from playground.engine.plan_warnings import kernel_warnings, source_warnings
 from playground.engine.planner import Planner
 from playground.engine.sandbox import Request, Sandbox, SandboxReport, TryLibrary, TrySketch
 from playground.engine.standalone import free_name, standalone_sketch, with_pictures
-from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
+from playground.errors import (
+    DataError,
+    Diagnostic,
+    PlaygroundError,
+    SandboxTimeout,
+    SketchError,
+    nearest,
+)
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import GLSL, SKETCHES, shown
 from playground.regular_file import irregularity
@@ -266,13 +273,16 @@ class _Check:
         self.seconds += report.seconds
         self.skipped |= dict.fromkeys(report.skipped)
         if report.error is not None:
-            self.failed(report.error)
+            self.failed(report.error, f"; --limit {2 * self.sandbox.limit_seconds:g} gives it more time")
         elif not report.ok:
             self.failed(PlaygroundError("the sandbox failed and gave no reason"))
 
-    def failed(self, error: PlaygroundError) -> None:
+    def failed(self, error: PlaygroundError, more_time: str = "") -> None:
+        """Add an error; ``more_time`` is what a sentence about the limit ends in."""
         for diagnostic in error.diagnostics:
             if diagnostic.severity == "error":
+                if isinstance(error, SandboxTimeout):
+                    diagnostic = replace(diagnostic, message=f"{diagnostic.message}{more_time}")
                 placed = diagnostic if diagnostic.file else replace(diagnostic, file=shown(self.path))
                 self.errors[placed] = None
 

@@ -4,7 +4,7 @@ The worker keeps its own headless context warm, draws one small frame, and is ki
 takes too long or too much memory. Parent and worker share the driver's shader cache, so what
 the worker compiled compiles at once for the parent.
 
-The limit on time is for each pass, in all its steps: whichever exceeds it is named. A sketch of
+The limit is on processor time, for each pass, in all its steps: whichever exceeds it is named. A sketch of
 many slow passes is tried to its end, and one with large data files has the time to read them besides.
 
 A worker that died is replaced at once, and one that takes suspiciously long has a spare,
@@ -215,8 +215,8 @@ class Sandbox(Closing):
         by = f" by the {driver} driver" if driver else ""
         self._workers.replace()
         message = (
-            f"{what} took longer than {limit:g} s{by} in the sandbox and was stopped;"
-            " is there an endless loop?"
+            f"{what} took longer than {limit:g} s{by} in the sandbox, in processor time, and was stopped:"
+            " it is slow, or a loop does not end"
         )
         return self._newest(SandboxReport(False, SandboxTimeout(message, file=file), seconds=limit))
 

@@ -1,7 +1,7 @@
 """Measure how long each activity of a worker has taken, in all its steps: a limit is meant for one of them.
 
-A process reports what it is about to do; what it did before has ended then. What it waited for a
-processor does not count, but for a share (see ``cpu_wait``).
+A process reports what it is about to do; what it did before has ended then. Processor time counts, and of
+what it waited for a processor a share (see ``cpu_wait``).
 """
 
 from __future__ import annotations
@@ -10,10 +10,10 @@ import time
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 
-from playground.process.cpu_wait import Waits, worked
+from playground.process.cpu_wait import Times, worked
 
-_SHORT = 0.05  # [s] an activity so short has its waits counted in: to read them takes a millisecond
-_FRESH = 0.25  # [s] for which waits that were read may be taken for those at an activity's beginning
+_SHORT = 0.05  # [s] an activity so short is measured by the clock: to read the times takes a millisecond
+_FRESH = 0.25  # [s] for which times that were read may be taken for those at an activity's beginning
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +22,7 @@ class _Current:
 
     what: Hashable
     began: float  # as time.monotonic
-    waits: Waits  # when it began, or shortly before
+    times: Times  # when it began, or shortly before
     earlier: float  # [s] that it took in its steps before
     before: float  # [s] of all that was done before this step
 
@@ -33,9 +33,9 @@ class ActivityClock:
     A reader reads ``_current`` once, which holds all that it needs and is replaced whole.
     """
 
-    def __init__(self, waits: Callable[[], Waits]) -> None:
-        self._waits_now = waits
-        self._waits: Waits = {}
+    def __init__(self, times: Callable[[], Times]) -> None:
+        self._times_now = times
+        self._times: Times = {}
         self._read_at = -_FRESH
         self._spent: dict[Hashable, float] = {}  # [s] of each activity, the current one left out
         self._current: _Current | None = None
@@ -53,13 +53,13 @@ class ActivityClock:
             self._spent[self._current.what] = self._current.earlier + passed
         now = time.monotonic()
         if now - self._read_at > _FRESH:
-            self._waits, self._read_at = self._waits_now(), now
-        self._current = _Current(what, now, self._waits, self._spent.get(what, 0.0), before)
+            self._times, self._read_at = self._times_now(), now
+        self._current = _Current(what, now, self._times, self._spent.get(what, 0.0), before)
 
     def _passed(self, current: _Current) -> float:
         """Return how long the step at work has taken so far [s]."""
         passed = time.monotonic() - current.began
-        return worked(passed, current.waits, self._waits_now()) if passed >= _SHORT else passed
+        return worked(passed, current.times, self._times_now()) if passed >= _SHORT else passed
 
     @property
     def seconds(self) -> float:

@@ -1,9 +1,8 @@
-"""Measure how long a process has waited for a processor that others had.
+"""Measure the processor time of a process: what its machine does besides does not count.
 
-A limit of time is meant for what a process does, not for what its machine does besides: on a
-machine with ten things to do, a draw of a second takes five. Linux counts, for each thread,
-the time that it was ready to run and did not (``/proc/PID/task/*/schedstat``: nanoseconds run,
-nanoseconds waited, times). Other systems do not, so there all time that passes counts.
+On a machine with ten things to do, a draw of a second takes five. Linux counts, for each thread, the time
+that it ran and the time that it was ready to run and did not (``/proc/PID/task/*/schedstat``: nanoseconds
+run, nanoseconds waited, times). Other systems do not, so there all time that passes counts.
 """
 
 from __future__ import annotations
@@ -13,40 +12,38 @@ from pathlib import Path
 
 _SLOWEST = 8.0  # times longer that something may take on a busy machine
 
-Waits = dict[str, int]
-"""Nanoseconds that each thread of a process has waited for a processor since it began."""
+Times = dict[str, tuple[int, int]]
+"""Nanoseconds that each thread of a process has run, and has waited for a processor, since it began."""
 
 
-def waits_of(pid: int) -> Waits:
-    """Return how long each thread of a process has waited so far; nothing where the system does not count."""
-    found: Waits = {}
+def times_of(pid: int) -> Times:
+    """Return the times of each thread so far; nothing where the system does not count."""
+    found: Times = {}
     try:
         tasks = list(Path(f"/proc/{pid}/task").iterdir())
     except OSError:
         return found
     for task in tasks:
         try:
-            found[task.name] = int((task / "schedstat").read_text("ascii").split()[1])
-        except (OSError, IndexError, ValueError):
+            ran, waited, *_ = map(int, (task / "schedstat").read_text("ascii").split())
+        except (OSError, ValueError):
             continue  # it has ended meanwhile, or this system does not count
+        found[task.name] = ran, waited
     return found
 
 
-def waited_since(before: Waits, now: Waits) -> float:
-    """Return the seconds that the thread which has waited longest has done so since ``before``.
+def worked(passed: float, before: Times, now: Times) -> float:
+    """Return the seconds of those that passed in which a process worked.
 
-    Of threads that work side by side, as a renderer's, the slowest says when all are done.
+    Of threads that work side by side, as a renderer's, the busiest one's time counts. Where no thread ran
+    or waited for a processor, a graphics card or a disk may have worked for it, so that counts, too. So does
+    a share of all that passed: what never ends must be stopped on the busiest machine.
     """
-    return max((wait - before.get(thread, 0) for thread, wait in now.items()), default=0) * 1e-9
-
-
-def worked(passed: float, before: Waits, now: Waits) -> float:
-    """Return the seconds of those that passed in which a process did not wait for a processor.
-
-    A share of them counts however long it waited: its own threads wait for each other too, and
-    what never ends must be stopped on the busiest machine.
-    """
-    return max(passed - waited_since(before, now), passed / _SLOWEST)
+    none = (0, 0)
+    spent = [[a - b for a, b in zip(now[one], before.get(one, none), strict=True)] for one in now]
+    busiest = max((ran for ran, _ in spent), default=0) * 1e-9
+    idle = passed - sum(ran + waited for ran, waited in spent) * 1e-9
+    return min(max(busiest + max(idle, 0.0), passed / _SLOWEST), passed)
 
 
 def longest(work: float) -> float:

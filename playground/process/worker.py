@@ -22,7 +22,7 @@ from typing import IO, Self
 
 from playground.process import frames
 from playground.process.activity_clock import ActivityClock
-from playground.process.cpu_wait import longest, waits_of
+from playground.process.cpu_wait import longest, times_of
 from playground.process.crash_report import CrashReport
 from playground.process.kernel_pickle import Encoder
 from playground.process.messages import CANCEL, Answer, Progress, Ready, Setup
@@ -113,7 +113,7 @@ class Worker(Closing):
         finally:
             if life >= 0:
                 os.close(life)
-        self._clock = ActivityClock(lambda: waits_of(self.pid))
+        self._clock = ActivityClock(lambda: times_of(self.pid))
         self._clock.begin("start")
         alarm = longest(launch.limit_seconds) + _GRACE if launch.limit_seconds else 0.0
         setup = Setup(launch.options, launch.memory_bytes, alarm, life)
@@ -144,7 +144,7 @@ class Worker(Closing):
     def seconds(self) -> float:
         """How long it has worked on its request, from when it was ready for it [s].
 
-        What it waited for a processor does not count, but for a share.
+        Processor time: what it waited for a processor does not count, but for a share.
         """
         return self._clock.total if self.is_ready else 0.0
 

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from playground import cli
 from playground.engine.accepted_sizes import smallest_terrain
 from playground.engine.sandbox import Sandbox, SandboxReport, TryLibrary, TrySketch, reading_seconds
 from playground.errors import SandboxCrash, SandboxTimeout, ShaderError
@@ -272,10 +273,21 @@ def test_what_takes_too_long_is_stopped(sandbox, folder, monkeypatch):
         patch.setattr(sandbox, "limit_seconds", 0.7)
         report = sandbox.run(TrySketch(folder.one(SLOW)))
     assert isinstance(report.error, SandboxTimeout)
-    assert "pass 'a' took longer than 0.7 s" in str(report.error)
+    assert "pass 'a' took longer than 0.7 s in the sandbox, in processor time" in str(report.error)
+    assert "it is slow, or a loop does not end" in str(report.error)
     assert report.error.diagnostics[0].file.endswith("one.glsl")
     assert is_gone(pid)
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+
+
+@pytest.mark.slow
+def test_check_takes_a_limit_and_names_it_where_it_is_passed(folder, capsys):
+    path = folder.write("slow.glsl", SLOW)
+    assert cli.main(["check", "--limit", "0.1", str(path)]) == 1
+    found = capsys.readouterr().out
+    assert "took longer than 0.1 s" in found and "--limit 0.2 gives it more time" in found
+    assert "endless" not in found
+    assert cli.main(["check", "--limit", "300", str(folder.write("good.glsl", GOOD))]) == 0
 
 
 @pytest.mark.slow
@@ -396,6 +408,7 @@ def run_script(folder: Path, text: str) -> subprocess.Popen[str]:
 
 SCRIPT = """
 from dataclasses import replace
+from playground import cli
 from playground.engine.sandbox import Sandbox, TrySketch
 from playground.process import worker
 from playground.sketch.load import load

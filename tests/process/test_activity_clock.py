@@ -13,16 +13,17 @@ class Time:
 
     def __init__(self) -> None:
         self.now = 1000.0
-        self.waited = 0.0
+        self.ran = self.waited = 0.0
 
     def monotonic(self) -> float:
         return self.now
 
-    def waits(self) -> dict[str, int]:
-        return {"1": round(self.waited * 1e9)}
+    def times(self) -> dict[str, tuple[int, int]]:
+        return {"1": (round(self.ran * 1e9), round(self.waited * 1e9))}
 
     def passes(self, seconds: float, waited: float = 0.0) -> None:
         self.now += seconds
+        self.ran += seconds - waited
         self.waited += waited
 
 
@@ -34,7 +35,7 @@ def time(monkeypatch: pytest.MonkeyPatch) -> Time:
 
 
 def test_each_pass_has_its_own_time(time: Time):
-    clock = ActivityClock(time.waits)
+    clock = ActivityClock(time.times)
     assert clock.seconds == 0.0
     for path in ("height", "horizon", "light"):
         clock.begin(path)
@@ -46,7 +47,7 @@ def test_each_pass_has_its_own_time(time: Time):
 
 
 def test_the_steps_of_a_loop_add_up(time: Time):
-    clock = ActivityClock(time.waits)
+    clock = ActivityClock(time.times)
     for _ in range(300):
         for path, seconds in (("rain", 0.01), ("flow", 0.04)):
             clock.begin(path)
@@ -62,7 +63,7 @@ def test_the_steps_of_a_loop_add_up(time: Time):
 
 
 def test_what_a_pass_waited_for_a_processor_is_left_out_but_for_a_share(time: Time):
-    clock = ActivityClock(time.waits)
+    clock = ActivityClock(time.times)
     clock.begin("a")
     time.passes(40.0, waited=39.0)
     assert clock.seconds == pytest.approx(40.0 / 8), "and no more: what never ends must be stopped"
@@ -75,16 +76,16 @@ def test_a_reader_amid_the_end_of_an_activity_counts_nothing_twice(time: Time):
     """Another thread may read the clock anywhere in ``begin``: here, where that reads what was waited."""
     totals: list[float] = []
 
-    def waits() -> dict[str, int]:
+    def times() -> dict[str, tuple[int, int]]:
         nonlocal reads
         reads, amid = False, reads
         if amid:
             totals.append(clock.total)
         reads = amid
-        return time.waits()
+        return time.times()
 
     reads = False
-    clock = ActivityClock(waits)
+    clock = ActivityClock(times)
     clock.begin("start")
     time.passes(8.0)
     reads = True

@@ -1,4 +1,4 @@
-"""Time that a process waits for a processor is distinguished from time that it works."""
+"""Processor time is distinguished from time that a process waits for a processor."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.process.cpu_wait import waited_since, waits_of
+from playground.process.cpu_wait import times_of, worked
 
 BUSY = "import os, time\nos.sched_setaffinity(0, {cpu})\nprint(flush=True)\nwhile True: pass"
 needs_counts = pytest.mark.skipif(
@@ -18,23 +18,33 @@ needs_counts = pytest.mark.skipif(
 )
 
 
-def test_the_thread_that_waited_longest_counts_and_new_threads_from_their_beginning():
-    before = {"1": 5_000_000_000, "2": 1_000_000_000}
-    now = {"1": 5_500_000_000, "2": 3_000_000_000, "3": 700_000_000}
-    assert waited_since(before, now) == pytest.approx(2.0)
-    assert waited_since({}, {}) == 0.0
+def test_the_busiest_thread_counts_and_what_no_thread_waited_for():
+    second = 1_000_000_000
+    before = {"1": (5 * second, second), "2": (second, 0)}
+    # Two threads share a processor with others for 10 s; a new one has run for a second.
+    now = {"1": (8 * second, 8 * second), "2": (3 * second, 8 * second), "3": (second, 9 * second)}
+    assert worked(10.0, before, now) == pytest.approx(3.0)
+    # Main thread for 4 s, then a renderer's for 4 s, while others have the processor for 8 s.
+    now = {"1": (9 * second, 5 * second), "2": (5 * second, 4 * second)}
+    assert worked(16.0, before, now) == pytest.approx(4.0)
+    # A graphics card works for it: no thread runs or waits.
+    assert worked(10.0, before, before) == pytest.approx(10.0)
+    assert worked(10.0, before, {"1": (6 * second, second), "2": (second, 0)}) == pytest.approx(10.0)
+    # Nothing is counted here.
+    assert worked(10.0, {}, {}) == 10.0
+    assert worked(80.0, {}, {"1": (0, 80 * second)}) == pytest.approx(10.0), "a share of all that passed"
 
 
-def test_a_process_that_is_gone_waits_for_nothing():
+def test_a_process_that_is_gone_has_no_times():
     done = subprocess.Popen([sys.executable, "-c", ""])
     done.wait()
-    assert waits_of(done.pid) == {}
+    assert times_of(done.pid) == {}
 
 
 @pytest.mark.slow
 @needs_counts
-def test_processes_that_share_one_processor_wait_for_each_other():
-    """Three on one: each waits about two thirds of the time, so together twice as long as passes."""
+def test_processes_that_share_one_processor_work_in_turn():
+    """Three on one: each works for about a third of the time, so together for all that passes."""
     cpu = min(os.sched_getaffinity(0))
     text = BUSY.format(cpu=f"{{{cpu}}}")
     busy = [subprocess.Popen([sys.executable, "-c", text], stdout=subprocess.PIPE) for _ in range(3)]
@@ -42,13 +52,13 @@ def test_processes_that_share_one_processor_wait_for_each_other():
         for process in busy:
             assert process.stdout is not None
             process.stdout.readline()
-        before = [waits_of(process.pid) for process in busy]
-        end = time.monotonic() + 60.0
-        waited = 0.0
-        while waited < 2.0 and time.monotonic() < end:
-            time.sleep(0.1)
-            waited = sum(waited_since(b, waits_of(p.pid)) for b, p in zip(before, busy, strict=True))
-        assert waited >= 2.0
+        before, start = [times_of(process.pid) for process in busy], time.monotonic()
+        time.sleep(3.0)
+        passed = time.monotonic() - start
+        now = [times_of(process.pid) for process in busy]
+        found = [worked(passed, b, n) for b, n in zip(before, now, strict=True)]
+        assert sum(found) <= passed * 1.3 + 0.1, "other processes may have had the rest"
+        assert max(found) < 0.7 * passed
     finally:
         for process in busy:
             process.kill()

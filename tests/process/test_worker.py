@@ -294,7 +294,7 @@ def test_what_it_waits_for_a_processor_does_not_count_but_for_a_share(
 ):
     """Its time begins when it is ready, and so do its waits."""
     waited = {"1": 0}
-    monkeypatch.setattr(worker_module, "waits_of", lambda _: dict(waited))
+    monkeypatch.setattr(worker_module, "times_of", lambda _: {name: (0, ns) for name, ns in waited.items()})
     with Worker(Launch(handler=handler, options="waits")) as worker:
         worker.submit(("loop",))
         time.sleep(0.3)
