@@ -86,8 +86,8 @@ def read_image(path: str | Path) -> Image:
         depth, _ = _png_header(handle)
         pixels: NDArray[np.uint8] | NDArray[np.float32]
         if is_deep_tiff(handle):
-            samples = tiff_samples(handle, path)
-            pixels, has_alpha = _four_channels(samples), samples.shape[-1] in (2, 4)
+            deep = tiff_samples(handle, path)
+            pixels, has_alpha = _four_channels(deep), deep.shape[-1] in (2, 4)
         elif depth == 16 or is_array(handle):
             samples = array_samples(handle, path) if is_array(handle) else _png_samples(handle, path)
             most = np.float32(65535.0 if samples.dtype == np.uint16 else 1.0)

@@ -57,6 +57,8 @@ def tiff_samples(handle: BinaryIO, path: Path) -> NDArray[np.float32]:
 
     Whole numbers are of 1 at their most, floats as they are.
     """
+    import tifffile
+
     with _first_page(handle) as page:
         axes, shape, dtype = page.axes, page.shape, page.dtype
         channels = shape[axes.index("S")] if "S" in axes else 1
@@ -71,9 +73,8 @@ def tiff_samples(handle: BinaryIO, path: Path) -> NDArray[np.float32]:
         except ValueError as error:
             if "imagecodecs" not in str(error):
                 raise
-            message = (
-                f"its compression, {page.compression.name}, cannot be read; save it with Deflate or none"
-            )
+            name = tifffile.COMPRESSION(page.compression).name
+            message = f"its compression, {name}, cannot be read; save it with Deflate or none"
             raise DataError(message, file=path) from None
         orientation, extra, photometric = _orientation(page), page.extrasamples, page.photometric
     samples = samples.transpose(1, 2, 0) if axes == "SYX" else samples.reshape(*samples.shape[:2], -1)

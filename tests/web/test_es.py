@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import moderngl
 import pytest
 
@@ -56,6 +58,17 @@ def test_every_program_of_another_tool_that_ships_compiles_as_es(node: Node, ctx
     for kernel in found.values():
         vertex, fragment = (es(node, text) for text in stages_of(kernel))
         ctx.program(vertex_shader=vertex, fragment_shader=fragment).release()
+
+
+def test_what_packs_numbers_compiles_as_es(node: Node, ctx: moderngl.Context, tmp_path: Path):
+    if "GL_ARB_ES3_compatibility" not in ctx.extensions:
+        pytest.skip("this driver compiles no GLSL ES")
+    calls = [f"vec4(unpack{kind}2x16(pack{kind}2x16(p)), 0.0, 1.0)" for kind in ("Half", "Snorm", "Unorm")]
+    path = tmp_path / "a.frag"
+    path.write_text(f"void mainImage(out vec4 c, in vec2 p) {{ c = {' + '.join(calls)}; }}\n")
+    (leaf,) = [leaf for leaf in leaves_of(flatten(load(path)).nodes) if leaf.kernel.dialect]
+    vertex, fragment = (es(node, text) for text in stages_of(leaf.kernel))
+    ctx.program(vertex_shader=vertex, fragment_shader=fragment).release()
 
 
 def test_a_line_is_as_it_was_but_for_the_version_the_precisions_and_initial_values(node: Node):

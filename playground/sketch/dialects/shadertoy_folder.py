@@ -126,7 +126,7 @@ def _inputs(
     types, read = sampler_types(whole.code), names_reached(shared, source.names)
     for number, buffer in enumerate(_BUFFERS):
         kind = types.get(f"iChannel{number}", "sampler2D")
-        label = {"samplerCube": _CUBES[0], "sampler2D": buffer}.get(kind)
+        label = {"samplerCube": _CUBES[0], "sampler2D": buffer}.get(kind, "")
         if number in named or number in taken:
             continue
         if f"iChannel{number}" not in read:  # what Common does with it, this pass does not call
