@@ -77,7 +77,7 @@ def _film(wish: Wish) -> None:
         _, fps = imgui.input_int("##fps", wish.fps, 0)
         wish.fps = min(max(fps, 1), 1000)
     if wish.kind == FILM:
-        with row("Format", "By PyAV"):
+        with row("Format", "By FFmpeg"):
             shown_ending, endings = VIDEO_ENDINGS[wish.ending], list(VIDEO_ENDINGS)
             ending = choose(
                 "##ending", shown_ending, endings, wish.ending, name=lambda e: f"{e}  {VIDEO_ENDINGS[e]}"

@@ -111,6 +111,16 @@ def buttons(*row: tuple[str, str, Callable[[], object], bool], small: bool = Fal
             act()
 
 
+def tooltip_waits() -> bool:
+    """Return whether the mouse is over an item whose tooltip is still to come: frames count its delay."""
+    context, style = imgui.get_current_context(), imgui.get_style()
+    rested = min(
+        context.hover_item_delay_timer - style.hover_delay_normal,
+        context.mouse_stationary_timer - style.hover_stationary_delay,
+    )
+    return context.hover_item_delay_id != 0 and rested < 0.0
+
+
 def header(label: str, look: theme.Theme, flags: int = 0) -> bool:
     """Draw the bar that opens a part of the panel; return whether it is open."""
     with look.font(look.bold):
@@ -163,6 +173,11 @@ def table(name: str, columns: int, rows: Iterable[tuple[Callable[[], object], ..
         imgui.end_table()
 
 
+def plate_size(text: str, padding: float, wrap: float = -1.0) -> ImVec2:
+    """Return the size of a plate."""
+    return imgui.calc_text_size(text, False, wrap) + ImVec2(2 * padding, 2 * padding)
+
+
 def plate(
     draw: imgui.ImDrawList,
     text: str,
@@ -179,10 +194,9 @@ def plate(
 
     ``place`` is the corner that ``align`` says: (0, 0) the upper left one, (1, 1) the lower right one.
     """
-    size = imgui.calc_text_size(text, False, wrap)
-    wide, high = size.x + 2 * padding, size.y + 2 * padding
-    low = ImVec2(place[0] - align[0] * wide, place[1] - align[1] * high)
-    corner = ImVec2(low.x + wide, low.y + high)
+    size = plate_size(text, padding, wrap)
+    low = ImVec2(place[0] - align[0] * size.x, place[1] - align[1] * size.y)
+    corner = low + size
     draw.add_rect_filled(low, corner, ground, rounding)
     inner = ImVec2(low.x + padding, low.y + padding)
     draw.add_text(imgui.get_font(), imgui.get_font_size(), inner, ink, text, max(wrap, 0.0))

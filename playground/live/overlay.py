@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from operator import itemgetter
+
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
-from playground.live.draw import Area, plate
+from playground.live.draw import Area, plate, plate_size
 from playground.live.theme import Theme
 from playground.workbench.notices import Notices
 from playground.workbench.session import Session
 
 _FADE = 1.0  # [s]
+_PADDING = 9  # [units of scale 1] around a notice's text
 PATIENCE = 0.3
 """[s] without a new picture after which the window says what is checked."""
 
@@ -66,11 +69,22 @@ def draw_notices(notices: Notices, look: Theme, area: Area) -> None:
     x, y, wide, _ = area
     margin = 14 * look.scale
     room = max(min(wide - 2 * margin, 560 * look.scale) - 18 * look.scale, 80.0)
-    top = y + margin
+    top, gap = y + margin, 6 * look.scale
     for notice in reversed(notices.items):
         alpha = min(max(notice.until - notices.now(), 0.0) / _FADE, 1.0)
+        size = plate_size(notice.text, _PADDING * look.scale, room)
+        for left, bar_top, right, bar_low in _close_buttons():  # which a notice would cover for seconds
+            if left < x + wide - margin and right > x + wide - margin - size.x:
+                top = bar_low + gap if bar_top < top + size.y and bar_low > top else top
         corner = _plate(notice.text, (x + wide - margin, top), look, alpha=alpha, wrap=room, align=(1.0, 0.0))
-        top = corner.y + 6 * look.scale
+        top = corner.y + gap
+
+
+def _close_buttons() -> list[tuple[float, float, float, float]]:
+    """List where the windows over the picture are closed, from the top: left, top, right, lower edge."""
+    shown = [window for window in imgui.get_current_context().windows if window.was_active]
+    bars = [window.title_bar_rect() for window in shown if window.has_close_button]
+    return sorted(((b.max.x - b.get_height(), b.min.y, b.max.x, b.max.y) for b in bars), key=itemgetter(1))
 
 
 def _plate(
@@ -89,7 +103,7 @@ def _plate(
         place,
         ink=theme.packed(ink, alpha),
         ground=theme.packed(theme.GROUND, 0.92 * alpha),
-        padding=9 * look.scale,
+        padding=_PADDING * look.scale,
         rounding=6 * look.scale,
         wrap=wrap,
         align=align,

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError
-from playground.live import code_window, errors_list
+from playground.live import code_window, errors_list, overlay
 from playground.live.code_window import draw_code
+from playground.live.draw import plate, plate_size
+from playground.live.overlay import draw_notices
 from playground.workbench import open_files as sources
 from playground.workbench.editors import Editor
 from playground.workbench.problems import Problems, Warnings, passes_of
@@ -326,6 +330,37 @@ def test_new_lines_are_indented_as_the_file_is(
     for _ in typed:
         desk.key(imgui.Key.mod_ctrl, imgui.Key.z)
     assert editor.get_text() == text
+
+
+@pytest.mark.parametrize("right", [False, True])
+def test_notices_leave_the_close_button_free(
+    desk: Desk, folder: Path, monkeypatch: pytest.MonkeyPatch, right: bool
+) -> None:
+    plates: list[tuple[imgui.ImVec2, imgui.ImVec2]] = []
+
+    def noted(paint: object, text: str, place: tuple[float, float], **more: Any) -> imgui.ImVec2:
+        corner = plate(paint, text, place, **more)  # type: ignore[arg-type]
+        plates.append((corner - plate_size(text, more["padding"], more["wrap"]), corner))
+        return corner
+
+    monkeypatch.setattr(overlay, "plate", noted)
+    desk.bench.files.open(folder / "wave.glsl", here=True)
+    for text in ("saved wave.glsl", "a long notice " * 20, "another"):
+        desk.bench.notices.say(text)
+    area = (330.0, 0.0, 950.0, 720.0)
+    draw = desk.draw
+    monkeypatch.setattr(desk, "draw", lambda: (draw(), draw_notices(desk.bench.notices, desk.theme, area))[0])
+    if right:  # where the button's left edge is under the notices' right edge
+        monkeypatch.setattr(code_window, "_place", lambda *_: (700.0, 30.0, 560.0, 300.0))
+    desk.run_frames(4)
+    shown = imgui.internal.find_window_by_name("wave.glsl###wave.glsl")
+    edge, top, high = shown.pos.x + shown.size.x, shown.pos.y, imgui.get_frame_height()
+    assert len(plates) == 12
+    for low, corner in plates[-3:]:
+        assert corner.x < edge - high or low.x > edge or corner.y < top or low.y > top + high
+        assert low.y >= 14.0 and corner.x <= 1280.0 - 14.0
+    for (_, above), (below, _) in itertools.pairwise(plates[-3:]):
+        assert below.y > above.y
 
 
 @pytest.mark.parametrize(
