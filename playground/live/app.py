@@ -26,7 +26,7 @@ from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
 from playground.lessons.library import SOURCE, lesson_file
 from playground.live.capture_window import draw_capture
 from playground.live.code_window import draw_code
-from playground.live.draw import Area
+from playground.live.draw import Area, tooltip_waits
 from playground.live.drops import Drops, opened_from
 from playground.live.errors_list import ErrorsList
 from playground.live.guard import Guard
@@ -305,6 +305,8 @@ class Live:
             return 0.0
         if self.session.catch_up.behind is not None:
             return 0.0
+        if tooltip_waits():
+            return FRAME
         if self.session.drafts.testing:
             return _SANDBOX
         if self.warnings.waiting:

@@ -8,7 +8,7 @@ from playground.errors import counted
 from playground.live import theme
 from playground.live.draw import button, buttons, choose, disabled, inked, menu, styled
 from playground.live.panel_memory import Memory
-from playground.live.panel_rows import fitting, fitting_choice, row
+from playground.live.panel_rows import fitting, fitting_choice, fitting_path, row
 from playground.live.sliders import slide
 from playground.live.text_field import letters, with_typed_ahead
 from playground.live.theme import Theme
@@ -42,7 +42,7 @@ def draw_head(memory: Memory, bench: Bench, look: Theme) -> None:
         room = imgui.get_content_region_avail().x
         wide = imgui.calc_text_size("Lessons").x + 2 * style.frame_padding.x
         start = imgui.get_cursor_pos_x()
-        imgui.text_disabled(fitting(shown(path), room - wide - style.item_spacing.x))
+        imgui.text_disabled(fitting_path(shown(path), room - wide - style.item_spacing.x))
         imgui.set_item_tooltip(str(path))
         imgui.same_line(start + room - wide)
         if button("Lessons", "What there is to know of terrain, step by step (F2)", small=True):

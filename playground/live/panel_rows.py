@@ -11,7 +11,7 @@ from playground.live import theme
 
 _LABELS = 0.41  # share of the width that labels take
 _TOOLTIP = 24.0  # width of a tooltip, in heights of its text
-_fitted: dict[tuple[str, float, float], str] = {}  # text, width and size of the font → what fits
+_fitted: dict[tuple[str, str, float, float], str] = {}  # text, how it is cut, width, font's size → what fits
 
 
 @contextmanager
@@ -28,7 +28,7 @@ def row(
     room -= imgui.get_style().scrollbar_size if fixed else 0.0
     slots = slots_width()
     labels = (room - slots) * _LABELS
-    start = imgui.get_cursor_pos_x()
+    start, corner = imgui.get_cursor_pos_x(), imgui.get_cursor_screen_pos()
     imgui.align_text_to_frame_padding()
     size, text = fitting_label(label, labels - imgui.get_style().item_spacing.x)
     imgui.push_font(None, size)
@@ -37,7 +37,9 @@ def row(
     else:
         imgui.text_unformatted(text)
     imgui.pop_font()
-    if imgui.is_item_hovered():
+    imgui.set_cursor_screen_pos(corner)
+    imgui.dummy(ImVec2(labels, imgui.get_frame_height()))
+    if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
         explain(label, note() if callable(note) else note)
     imgui.same_line(start + labels)
     imgui.push_item_width(room - labels - slots)
@@ -86,12 +88,12 @@ def slot_button(label: str, note: str, high: float = 0.0) -> tuple[bool, bool, I
 
 def fitting(text: str, width: float) -> str:
     """Return a text cut off so that it fits a width, with an ellipsis."""
-    key = (text, width, imgui.get_font_size())
-    if key not in _fitted:
-        if len(_fitted) > 2000:
-            _fitted.clear()
-        _fitted[key] = _cut(text, width)
-    return _fitted[key]
+    return _fit(text, width, lambda left: f"{text[:left].rstrip()}…")
+
+
+def fitting_path(path: str, width: float) -> str:
+    """Return a path cut off so that it fits a width, with an ellipsis before its end: the file's name."""
+    return _fit(path, width, lambda left: f"…{path[len(path) - left :]}")
 
 
 def fitting_label(text: str, width: float) -> tuple[float, str]:
@@ -110,9 +112,14 @@ def fitting_choice(text: str) -> str:
     return fitting(text, imgui.calc_item_width() - imgui.get_frame_height() - 2 * style.frame_padding.x)
 
 
-def _cut(text: str, width: float) -> str:
-    if imgui.calc_text_size(text).x <= width:
-        return text
-    while len(text) > 1 and imgui.calc_text_size(text + "…").x > width:
-        text = text[:-1]
-    return text.rstrip() + "…"
+def _fit(text: str, width: float, cut: Callable[[int], str]) -> str:
+    """Return a text, or what ``cut`` leaves of as many of its letters as fit a width."""
+    key = (text, cut(1), width, imgui.get_font_size())
+    if key not in _fitted:
+        if len(_fitted) > 2000:
+            _fitted.clear()
+        left = len(text)
+        while left > 1 and imgui.calc_text_size(text if left == len(text) else cut(left)).x > width:
+            left -= 1
+        _fitted[key] = text if left == len(text) else cut(left)
+    return _fitted[key]

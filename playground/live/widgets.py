@@ -13,6 +13,8 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.engine.files import find_file
+from playground.errors import DataError
 from playground.live import dome, theme
 from playground.live.draw import choose
 from playground.live.panel_rows import fitting_choice
@@ -216,16 +218,19 @@ def _pad(place: Place) -> tuple[ImVec2, float, float, tuple[float, float] | None
     return origin, side, field, (min(max(across, 0.0), 1.0), min(max(down, 0.0), 1.0))
 
 
+_PATH = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.elide_left  # its end is the name
+
+
 def _file(parameter: Parameter, value: Value, place: Place) -> Value | None:
     """Draw a path to type, and a list of the images and elevation files in the sketch's folder."""
     text = str(value)
     button = imgui.get_frame_height()
     imgui.set_next_item_width(max(imgui.calc_item_width() - button, button))
-    changed, typed = imgui.input_text(place.label, text, imgui.InputTextFlags_.enter_returns_true)
+    changed, typed = imgui.input_text(place.label, text, _PATH)
     if not changed and imgui.is_item_deactivated_after_edit():
         changed = True
-    if text:
-        imgui.set_item_tooltip(text)
+    if text and imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+        imgui.set_tooltip(_whole_path(text, parameter, place))
     imgui.same_line(0, 0)
     chosen: str | None = None
     imgui.set_next_item_width(button)
@@ -243,6 +248,13 @@ def _file(parameter: Parameter, value: Value, place: Place) -> Value | None:
     if chosen is not None:
         return chosen
     return typed if changed and typed != text else None
+
+
+def _whole_path(text: str, parameter: Parameter, place: Place) -> str:
+    try:
+        return str(find_file(text, str(place.folder), parameter.file, parameter.name))
+    except DataError as error:
+        return str(error)
 
 
 def _files_in(folder: Path, endings: tuple[str, ...]) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +11,9 @@ from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.images.files import write_png
+from playground.live import panel_rows
+from playground.live.draw import tooltip_waits
+from playground.live.panel_rows import fitting_path
 from playground.live.theme import PANEL_WIDTH
 from playground.paths import SKETCHES
 from playground.sketch.assign import values_of
@@ -365,6 +369,66 @@ def test_a_sketch_that_does_not_open_leaves_the_panel_the_title_and_the_path_of_
     paths.clear()
     bare.run_frames()
     assert str(other / "sketch.toml") in paths
+
+
+def test_a_label_explains_itself_over_its_whole_width_once_the_mouse_rests(
+    bare: Bare, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    explained: list[str] = []
+    monkeypatch.setattr(panel_rows, "explain", lambda label, note: explained.append(label))
+    bare.run_frames(3)
+    x, y, _, high = bare.places["##height.level"]
+    assert not tooltip_waits()
+    imgui.get_io().add_mouse_pos_event(x - 8, y + high / 2)  # after the label's text, before the slider
+    bare.run_frames(3)
+    waited = 0
+    while not explained:
+        assert tooltip_waits() and (waited := waited + 1) < 60, "a window that sleeps would never show it"
+        bare.run_frames()
+    assert set(explained) == {"Level"}
+    bare.run_frames(60)
+    assert not tooltip_waits(), "the window may sleep"
+    imgui.get_io().add_mouse_pos_event(x + 20, y + high / 2)
+    bare.run_frames()
+    explained.clear()
+    bare.run_frames(60)
+    assert not explained and not tooltip_waits()
+
+
+def test_a_path_that_is_too_long_is_cut_at_its_beginning(bare: Bare) -> None:
+    bare.run_frames()
+    imgui.new_frame()
+    path = "/home/ana/terrain/lessons/week 3/valleys/dem.tif"
+    whole = imgui.calc_text_size(path).x
+    for width in (whole + 1, whole / 2, whole / 4):
+        text = fitting_path(path, width)
+        assert imgui.calc_text_size(text).x <= width and path.endswith(text.removeprefix("…"))
+        assert (text == path) == (width > whole)
+        assert text.endswith("dem.tif")
+    imgui.end_frame()
+
+
+def test_a_file_s_field_shows_its_name_and_its_tooltip_the_whole_path(
+    bare: Bare, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "terrain.glsl").write_text(TERRAIN + 'uniform sampler2D dem; //! file("white.png")\n', "utf-8")
+    write_png(folder / "white.png", np.full((4, 4, 4), 255, np.uint8))
+    bare.session.drafts.reload()
+    flags: list[int] = []
+    tooltips: list[str] = []
+    draw = imgui.input_text
+
+    def noted(label: str, text: str, flag: int = 0, *more: Any) -> Any:
+        flags.extend([flag] if text == "white.png" else [])
+        return draw(label, text, flag, *more)
+
+    monkeypatch.setattr(imgui, "input_text", noted)
+    monkeypatch.setattr(imgui, "set_tooltip", tooltips.append)
+    bare.run_frames(4)
+    bare.point("##height.dem")
+    bare.run_frames(60)
+    assert flags and all(flag & imgui.InputTextFlags_.elide_left for flag in flags)
+    assert set(tooltips) == {str(folder / "white.png")}
 
 
 def test_an_image_has_no_place_where_nothing_takes_a_file(bare: Bare, folder: Path) -> None:
