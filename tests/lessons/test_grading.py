@@ -88,6 +88,38 @@ def test_a_zip_in_the_folder_is_looked_into(tmp_path):
     assert read(tmp_path / "Ana").text == TEXT
 
 
+@pytest.mark.parametrize("name", ["ana.zip", "ANA.ZIP", "ana.zip.zip"])
+def test_a_folder_named_like_a_zip_is_a_folder(tmp_path, name):
+    students.write(tmp_path, name, {f"week3.zip/{FILE}": TEXT})
+    ((found,), others) = find_submissions(tmp_path, tmp_path / "report")
+    assert found.student == name[:-4] and not others
+    assert read(found.path).text == TEXT
+
+
+@pytest.mark.parametrize("name", ["ana", "ana.zip.1", "ana.zip (1)", "ana.txt", "ana.cbz"])
+def test_a_zip_by_another_name_is_a_zip(tmp_path, name):
+    zipped(tmp_path / name, (FILE, TEXT))
+    ((found,), others) = find_submissions(tmp_path, tmp_path / "report")
+    assert found.student == name and not others and read(found.path).text == TEXT
+    (tmp_path / "class" / "Bea").mkdir(parents=True)
+    found.path.rename(tmp_path / "class" / "Bea" / name)
+    assert read(tmp_path / "class" / "Bea").text == TEXT
+
+
+def test_an_unreadable_zip_takes_no_points_from_other_files(tmp_path):
+    students.write(tmp_path, "Ana", {FILE: TEXT, "old.zip": "cut short"})
+    found = read_submission(tmp_path / "Ana", [FILE, "other.glsl"])
+    assert found[FILE].text == TEXT and found[FILE].problem == ""
+    assert found["other.glsl"].problem.startswith("old.zip is no zip that can be read")
+    assert not found["other.glsl"].missing
+
+
+def test_a_zip_in_a_zip_is_named(tmp_path):
+    inner = zipped(tmp_path / "week3.zip", (FILE, TEXT)).read_bytes()
+    path = zipped(tmp_path / "Ana.zip", ("week3.zip", inner))
+    assert read(path).problem == "week3.zip is a zip in a zip, which is not looked into; hand in its folder"
+
+
 def test_of_several_files_the_outermost_counts_and_the_others_are_mentioned(tmp_path):
     students.write(tmp_path, "Ana", {FILE: TEXT, f"old/{FILE}": TEXT})
     assert read(tmp_path / "Ana").note == ""

@@ -29,6 +29,8 @@ _MOST_LIST = 2**21  # [bytes] a zip's list of files may have
 _MOST_UNPACKED = 2**30  # [bytes] its files may become
 _ALWAYS_FINE = 2**26  # [bytes] unpacked, with any ratio
 _MOST_RATIO = 200  # of what is unpacked to the zip
+_ENDING = ".zip"
+_FIRST_MARK = b"PK\x03\x04"  # of a zip's first file; section 4.3.7
 _END_MARK = b"PK\x05\x06"  # of a zip's list; APPNOTE 6.3.10, section 4.3.16
 _ZIP64_MARK, _ZIP64_BYTES = b"PK\x06\x07", 20  # of what points to a larger list; section 4.3.15
 _END_BYTES = 22 + 2**16  # its record and the longest comment
@@ -42,6 +44,7 @@ class Entry:
 
     path: str  # within it, with "/"
     read: Callable[[], bytes]  # its bytes; raises ``DataError`` in a sentence
+    is_archive: bool = False  # a zip that is not looked into: ``read`` raises why
 
     @property
     def name(self) -> str:
@@ -60,8 +63,16 @@ def entries_of(path: Path) -> list[Entry]:
 
 
 def is_zip(path: Path) -> bool:
-    """Return whether a path is named like a zip."""
-    return path.suffix.lower() == ".zip"
+    """Return whether a path is a zip: a file, by its ending or else by its first bytes; never a link."""
+    try:
+        if not stat.S_ISREG(path.lstat().st_mode):
+            return False
+        if path.suffix.lower() == _ENDING:
+            return True
+        with path.open("rb") as file:
+            return file.read(len(_FIRST_MARK)) == _FIRST_MARK
+    except OSError:
+        return False
 
 
 def is_by_system(path: str) -> bool:
@@ -84,10 +95,26 @@ def _folder_entries(top: Path) -> Iterator[Entry]:
             if item.is_dir(follow_symlinks=False):
                 if path.count("/") < _DEEPEST:
                     waiting.append((Path(item.path), f"{path}/"))
-            elif is_zip(Path(item.name)) and item.is_file(follow_symlinks=False):
-                yield from (Entry(f"{path}/{e.path}", e.read) for e in _zip_entries(Path(item.path)))
+            elif is_zip(Path(item.path)):
+                yield from _inner_entries(path, Path(item.path))
             else:
                 yield Entry(path, _reader_of(Path(item.path)))
+
+
+def _inner_entries(name: str, path: Path) -> Iterator[Entry]:
+    """Yield the files of a zip in a folder; of one that cannot be read, the zip itself."""
+    try:
+        found = [Entry(f"{name}/{e.path}", e.read, e.is_archive) for e in _zip_entries(path)]
+    except DataError as error:
+        found = [Entry(name, _raiser(error), is_archive=True)]
+    yield from found
+
+
+def _raiser(error: DataError) -> Callable[[], bytes]:
+    def read() -> bytes:
+        raise error
+
+    return read
 
 
 def _listed(folder: Path) -> list[os.DirEntry[str]]:
@@ -150,9 +177,11 @@ def _zip_entries(path: Path) -> Iterator[Entry]:
     except (OSError, zipfile.BadZipFile, NotImplementedError, RuntimeError, ValueError) as error:
         raise DataError(Said("is no zip that can be read: {why}", why=_reason(error))) from None
     for item in items:
-        if item.is_dir():
-            continue
-        yield Entry(item.filename, _zip_reader(path, item))
+        if item.filename.lower().endswith(_ENDING):
+            error = DataError(Said("is a zip in a zip, which is not looked into; hand in its folder"))
+            yield Entry(item.filename, _raiser(error), is_archive=True)
+        elif not item.is_dir():
+            yield Entry(item.filename, _zip_reader(path, item))
 
 
 def _check_list(path: Path) -> None:

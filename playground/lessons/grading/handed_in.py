@@ -40,7 +40,9 @@ def read_submission(path: Path, wanted: Collection[str]) -> dict[str, HandedIn]:
     except DataError as error:
         problem = Said("{name} {what}", name=printable(path.name), what=error.diagnostics[0].message)
         return {name: HandedIn(problem=problem) for name in wanted}
-    return {name: _file_of([e for e in entries if _plain_name(e.name) == name.casefold()]) for name in wanted}
+    found = {name: [e for e in entries if _plain_name(e.name) == name.casefold()] for name in wanted}
+    archives = [entry for entry in entries if entry.is_archive][:1]  # what is missing may be in one
+    return {name: _file_of(named) if named else _file_of(archives) for name, named in found.items()}
 
 
 def lessons_in(path: Path, lessons: Collection[str]) -> set[str]:

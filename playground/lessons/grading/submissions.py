@@ -78,4 +78,4 @@ def _numbered(names: Sequence[str]) -> list[str]:
 
 
 def _student_of(path: Path) -> str:
-    return readable(path.stem if is_zip(path) and not path.is_dir() else path.name)
+    return readable(path.stem if path.suffix.lower() == ".zip" else path.name)
