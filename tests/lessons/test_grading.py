@@ -322,13 +322,22 @@ def graded(name, points=1.5):
 
 
 def test_no_name_becomes_a_formula_and_each_comes_back_from_the_table():
-    data = table_bytes([graded(name) for name in NAMES], ["x-y"])
+    data = table_bytes([graded(name) for name in NAMES], ["x-y"], "en")
     assert data.startswith(b"\xef\xbb\xbf")
     rows = list(csv.reader(io.StringIO(data.decode("utf-8-sig"), newline="")))
     assert rows[0] == ["student", "x-y", "total", "of"]
     assert [row[1:] for row in rows[1:]] == [["1.5", "1.5", "2"]] * len(NAMES)
     assert [row[0].removeprefix("'") for row in rows[1:]] == NAMES
     assert not any(row[0].startswith(("=", "+", "-", "@", "\t")) for row in rows)
+
+
+def test_a_french_table_is_what_a_french_spreadsheet_opens():
+    data = table_bytes([graded(name) for name in NAMES], ["x-y"], "fr")
+    assert data.startswith(b"\xef\xbb\xbf")
+    rows = list(csv.reader(io.StringIO(data.decode("utf-8-sig"), newline=""), delimiter=";"))
+    assert rows[0] == ["élève", "x-y", "total", "sur"]
+    assert [row[1:] for row in rows[1:]] == [["1,5", "1,5", "2"]] * len(NAMES)
+    assert [row[0].removeprefix("'") for row in rows[1:]] == NAMES
 
 
 def test_all_text_of_the_page_is_escaped():
@@ -550,7 +559,7 @@ def test_a_challenge_has_a_score_in_its_column_and_no_points(ctx, monkeypatch):
     assert {(mark.points, mark.of) for mark in marks} == {(0.0, 0)} and wrong.outcome == REFUSED
     assert solved.sentences == (f"Score 100 sur 100\xa0; réussi à partir de {one.task.goal}.",)
     row = Graded("Ana", {"lesson-exercise": Mark(1.5, 2, GRADED), one.name: replace(near, pairs=())})
-    table = table_bytes([row], list(row.marks)).decode("utf-8-sig").splitlines()
+    table = table_bytes([row], list(row.marks), "en").decode("utf-8-sig").splitlines()
     assert table[1] == f"Ana,1.5,{int(near.score)},1.5,2"
     assert f"score {int(near.score)} sur 100" in page(
         [row], dict.fromkeys(row.marks, "x"), replace(setting(), language="fr")

@@ -41,8 +41,7 @@ class Setting:
 
     def number(self, points: float) -> str:
         """Return points as this language writes them."""
-        text = spelled_points(points)
-        return text.replace(".", ",") if self.language == "fr" else text
+        return spelled_points(points).replace(".", self.label("decimal"))
 
 
 def page(graded: Sequence[Graded], titles: dict[str, str], setting: Setting) -> str:

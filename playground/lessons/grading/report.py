@@ -62,7 +62,7 @@ def write_report(
 
     try:
         (folder / PICTURES).mkdir(parents=True, exist_ok=True)
-        table = table_bytes(graded, list(titles))
+        table = table_bytes(graded, list(titles), language)
         text = page(graded, titles, Setting(language, renderer, file_of, _size_of, _hash(table)))
         kept = _keep_changed(folder, table)
         _write(folder / TABLE, table)

@@ -1,5 +1,7 @@
 """Write the marks as a table: CSV (RFC 4180), UTF-8 with the byte order mark that Excel needs to see it.
 
+A French spreadsheet opens what has semicolons between its columns and commas in its numbers.
+
 A name such as ``=1+1`` would be computed by a spreadsheet; behind an apostrophe it stays a text.
 """
 
@@ -10,23 +12,24 @@ import io
 import unicodedata
 from collections.abc import Sequence
 
+from playground.lessons.grading.labels import report_labels
 from playground.lessons.grading.marks import Graded, spelled_points
 
 _FORMULAS = ("=", "+", "-", "@", "\t", "\r", "\n")  # also in their wide forms
-_TOTAL, _OF = "total", "of"
 
 
-def table_bytes(graded: Sequence[Graded], exercises: Sequence[str]) -> bytes:
+def table_bytes(graded: Sequence[Graded], exercises: Sequence[str], language: str) -> bytes:
     """Return the table: a row for each student, the points of each exercise, the total, and of how many.
 
     A challenge has its score in its column, which counts in no total.
     """
-    text = io.StringIO(newline="")
-    rows = csv.writer(text)
-    rows.writerow(["student", *map(as_text, exercises), _TOTAL, _OF])
+    text, label = io.StringIO(newline=""), report_labels(language)
+    rows = csv.writer(text, delimiter=label("separator"))
+    rows.writerow([label("column"), *map(as_text, exercises), label("column_total"), label("column_of")])
     for one in graded:
-        points = [one.marks[name].spelled for name in exercises]
-        rows.writerow([as_text(one.student), *points, spelled_points(one.points), one.of])
+        numbers = [*(one.marks[name].spelled for name in exercises), spelled_points(one.points)]
+        decimal = [number.replace(".", label("decimal")) for number in numbers]
+        rows.writerow([as_text(one.student), *decimal, one.of])
     return text.getvalue().encode("utf-8-sig", "replace")
 
 
