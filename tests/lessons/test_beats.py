@@ -7,10 +7,12 @@ from itertools import pairwise
 
 import pytest
 
+from playground.engine.engine import Engine
 from playground.lessons.excerpt import excerpt
 from playground.lessons.library import LANGUAGES
 from playground.lessons.model import (
     Break,
+    Challenge,
     Code,
     Compare,
     Exercise,
@@ -21,7 +23,7 @@ from playground.lessons.model import (
     Slider,
     Steps,
 )
-from playground.lessons.present.beat import BOTH, Beat
+from playground.lessons.present.beat import BOTH, Beat, Still, scene_of
 from playground.lessons.present.beats import beats_of, first_of_page
 from playground.lessons.present.block_beats import BOARD_WORDS, CODE_LINES
 from playground.lessons.present.labels import LABELS
@@ -86,7 +88,8 @@ def test_answers_and_fixes_come_after_what_asks_for_them(language: str) -> None:
                 early, late = block.ask, block.solution
                 until = next(beat for beat in beats if beat.notes == early)
                 ahead = beats[: beats.index(until) + 1]
-                assert all(beat.still is None or beat.still.block != block.name for beat in ahead), block.name
+                stills = [beat.still for beat in ahead if beat.still is not None]
+                assert all(still.block != block.name or still.begun for still in stills), block.name
             else:
                 continue
             first = next(n for n, beat in enumerate(beats) if early in (beat.notes, beat.board))
@@ -99,6 +102,30 @@ def test_answers_and_fixes_come_after_what_asks_for_them(language: str) -> None:
             if isinstance(block, Code):
                 parts = [beat.code for beat in beats if beat.kind == "code" and beat.file == block.file]
                 assert excerpt(block.file, block.anchor).text in "\n".join(parts), block.name
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_an_exercise_shows_its_own_picture_or_no_other_task_s(language: str) -> None:
+    for lesson, beats in presented(language):
+        tasks = [block for block in lesson.blocks if isinstance(block, Exercise | Challenge)]
+        for task in tasks:
+            (asked,) = (b for b in beats if b.kind in ("exercise", "challenge") and b.notes == task.ask)
+            still = asked.still
+            if isinstance(task, Exercise) and task.begin is None:
+                others = {other.name for other in tasks} - {task.name}
+                assert still is None or still.block not in others or not still.begun, task.name
+            else:
+                assert still == Still(task.name, begun=isinstance(task, Exercise)), task.name
+                assert asked.sliders == (() if task.file or isinstance(task, Challenge) else task.sliders)
+
+
+def test_an_exercise_shows_what_a_student_begins_from(any_engine: Engine) -> None:
+    lesson = read_lesson("first_height")
+    for begun, height in ((True, 0.0), (False, 0.5)):  # empty.glsl returns 0, the solution 0.5
+        scene = scene_of(lesson, Still("constant", begun=begun))
+        assert scene is not None
+        heights = any_engine.read(scene.sketch.with_values({"size": 17}), "height")
+        assert heights.min() == heights.max() == height
 
 
 def _tells(blocks: tuple[object, ...]) -> bool:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from playground.lessons.model import Compare, Lesson, Markdown, Scene, Slider, Steps
+from playground.lessons.model import Compare, Exercise, Lesson, Markdown, Scene, Slider, Steps
+from playground.lessons.tasks.work import scene_of as begun
+from playground.lessons.tasks.work import starter
 
 BOTH = -1
 """The index of a comparison's picture where both are shown, with a line between them."""
@@ -18,6 +20,7 @@ class Still:
     block: str  # its name
     index: int = 0  # of a series or a comparison: which; ``BOTH``
     broken: bool = False  # with the bug of a break in it
+    begun: bool = False  # of an exercise: what a student begins from
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,8 @@ def with_texts(beat: Beat, fill: Callable[[Markdown], Markdown]) -> Beat:
 def scene_of(lesson: Lesson, still: Still) -> Scene | None:
     """Return the picture of a still; of a comparison of two the second, of a bug the whole one."""
     block = lesson.named.get(still.block)
+    if still.begun and isinstance(block, Exercise):
+        return begun(block, starter(block))
     if isinstance(block, Steps | Slider | Compare):
         return block.scenes[still.index]
     return getattr(block, "scene", None)

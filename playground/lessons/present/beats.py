@@ -3,7 +3,8 @@
 A paragraph is one beat, and shows its first sentences; all of it is in the notes. A series is a beat
 a step, a question three, a bug three; an exercise in the middle of the text two, since it goes on from
 the solution, and one at the end one. Until a page's first picture is reached, that picture is
-already shown, unless it answers something; where a page has none, the one before stays.
+already shown, unless it answers something; where a page has none, the one before stays. The picture of
+an exercise or a challenge is shown with it alone.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ from playground.lessons.model import (
 from playground.lessons.present.beat import Beat, Still
 from playground.lessons.present.block_beats import beats_of_block
 from playground.lessons.present.labels import labels_of
+
+_TASKS = ("exercise", "challenge")
 
 
 def beats_of(lesson: Lesson) -> tuple[Beat, ...]:
@@ -39,17 +42,18 @@ def beats_of(lesson: Lesson) -> tuple[Beat, ...]:
                 mine.append(replace(beat, page=page, heading=section.title or lesson.title))
             at += taken[1]
         coming = next((beat for beat in mine if beat.still is not None), None)
-        if coming is not None and coming.kind not in ("broken", "solution", "challenge"):
+        if coming is not None and coming.kind not in ("broken", "solution", *_TASKS):
             shown, sliders = coming.still, coming.sliders
         for beat in mine:
-            if beat.still is not None:
+            own = beat.still is not None and beat.kind in _TASKS
+            if beat.still is not None and not own:
                 shown, sliders = beat.still, beat.sliders
             if beat.kind == "text" and beat.shown[:1].islower() and found and found[-1].formula:
                 both = "\n\n".join(filter(None, [found[-1].formula, beat.formula]))
                 beat = replace(beat, formula=both)  # it goes on from that one
             if beat.kind == "code" and not beat.shown and found[-1].page == page:
                 beat = replace(beat, shown=found[-1].shown)  # "This is the kernel:" stays
-            found.append(replace(beat, still=shown, sliders=sliders))
+            found.append(beat if own else replace(beat, still=shown, sliders=sliders))
             if beat.kind == "sweep" and shown is not None:
                 shown = _at_end(lesson, shown)
     first = next((beat for beat in found if beat.still is not None), None)

@@ -61,7 +61,9 @@ def beats_of_block(block: Block, formula: Markdown, lesson: Lesson) -> Iterator[
     elif isinstance(block, Exercise):
         aside = "\n\n".join(filter(None, [block.hint, f"**{say['solution']}.** {block.solution}"]))
         label = say["exercise"].format(lesson.number_of(block))
-        yield _told("exercise", block.ask, label=label, aside=aside)
+        still = Still(block.name, begun=True) if block.begin is not None else None
+        sliders = () if block.file else block.sliders
+        yield _told("exercise", block.ask, label=label, aside=aside, still=still, sliders=sliders)
         if block.scene is not None and block not in lesson.sections[-1].blocks:  # the text goes on from it
             yield _told("solution", block.solution, label=say["solution"], still=Still(block.name))
     elif isinstance(block, Measure):

@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 
 from playground.errors import ParameterError, PlaygroundError
 from playground.lessons.figure_renders import with_bug
-from playground.lessons.model import Break, Compare, Slider, Steps
+from playground.lessons.model import Break, Compare, Exercise, Slider, Steps
 from playground.lessons.present.beat import Beat, Still
+from playground.lessons.tasks.texts import path_of, starter_text
 from playground.sketch.assign import resolve
 from playground.sketch.described_parameter import range_of
 from playground.sketch.model import Parameter, Value
@@ -15,6 +16,7 @@ from playground.sketch.values import is_whole, write
 from playground.workbench.control.shares import share_of, with_share
 from playground.workbench.lesson.bugs import file_of
 from playground.workbench.lesson.reader import Reader
+from playground.workbench.lesson.tasks import BEGUN
 from playground.workbench.number_format import unit_of
 from playground.workbench.parameter_list import Listing
 
@@ -74,6 +76,8 @@ class PresentedPictures:
         self.shown = still
         if isinstance(block, Break):
             self._bug(block, still)
+        elif isinstance(block, Exercise) and still.begun:
+            self._begun(block)
         elif isinstance(block, Compare):
             reader.choose(block, still.index)
         elif isinstance(block, Steps | Slider):
@@ -119,14 +123,25 @@ class PresentedPictures:
         """Show a picture with or without its bug, and no editor for it."""
         if block.scene is None:
             return
-        self.reader.tasks.leave()
-        self.reader.bugs.leave()
+        self._leave()
         try:
             texts = {str(file_of(block)): with_bug(block)} if still.broken else {}
         except PlaygroundError as error:
             self.reader.bench.notices.say(str(error))
             return
         self.reader.figure.show(block.scene, (block.name, still.index), texts)
+
+    def _begun(self, block: Exercise) -> None:
+        """Show what a student begins from, and no editor for it."""
+        if block.begin is None:
+            return
+        self._leave()
+        texts = {str(path_of(block)): starter_text(block)} if block.file else {}
+        self.reader.figure.show(block.begin, (block.name, BEGUN), texts)
+
+    def _leave(self) -> None:
+        self.reader.tasks.leave()
+        self.reader.bugs.leave()
 
 
 def _step(parameter: Parameter) -> float:
