@@ -281,13 +281,14 @@ def _write_notebooks(folder: Path, lessons: dict[str, list[Lesson]], engine: Eng
     from playground.lessons.measuring import numbers_of
     from playground.lessons.notebook.build import notebook_text
 
+    names = {lesson.name for chosen in lessons.values() for lesson in chosen}
     for in_languages in zip(*lessons.values(), strict=True):
         numbers = numbers_of(engine, in_languages[0])
         for lesson in in_languages:
             path = folder / lesson.language / f"{lesson.name}.ipynb"
             path.parent.mkdir(parents=True, exist_ok=True)
             with replacing(path) as handle:
-                handle.write(notebook_text(lesson, numbers).encode())
+                handle.write(notebook_text(lesson, numbers, names).encode())
             print(path)
 
 

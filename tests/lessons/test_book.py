@@ -25,7 +25,9 @@ from playground.lessons.figure_renders import draw, pictures_of
 from playground.lessons.figures import thesis_figures
 from playground.lessons.glossary import terms
 from playground.lessons.library import interface_labels
+from playground.lessons.measuring import numbers_of
 from playground.lessons.model import Break, Exercise, Question
+from playground.lessons.notebook.build import notebook_text
 
 VOID = {"img", "input", "br", "meta", "link", "hr", "source"}
 
@@ -105,6 +107,38 @@ def test_nothing_on_a_page_comes_from_a_network_and_every_link_leads_somewhere(b
     assert set(outside) == {"https://doi.org/10.1145/358523.358553"}  # a paper, to be followed by hand
     for name in ("book.css", "book.js", "find.js"):
         assert "http" not in (book / name).read_text(encoding="utf-8")
+
+
+def test_a_link_to_a_lesson_that_is_not_in_the_book_is_text(tmp_path, make_lesson, engine):
+    linked = make_lesson(
+        ("see [the last](lesson:small)", "see [the last](lesson:small), [that](lesson:fourier)")
+    )
+    write_book(prepare(tmp_path / "book", {"en": [linked]}, gallery=False), engine)
+    page = Page(tmp_path / "book/en/small.html")
+    assert "see the last, that" in page.text
+    assert "small.html" in page.addresses and "fourier.html" not in page.addresses
+    assert "[the last](small.ipynb), that" in notebook_text(linked, numbers_of(engine, linked), ["small"])
+
+
+def test_the_cover_says_what_the_book_is_and_leads_into_each_language(book):
+    page = Page(book / "index.html")
+    (picture,) = page.all("img")
+    assert (book / picture["src"]).is_file()
+    links = page.all("a")
+    assert [link["href"] for link in links] == ["en/index.html", "fr/index.html"]
+    for language in ("en", "fr"):
+        label = interface_labels(language)
+        assert all(label[key] in page.text for key in ("book", "book_goal", "enter"))
+
+
+def test_a_lesson_s_times_are_a_phrase(book, lesson):
+    times = lesson.minutes, lesson.exercise_minutes
+    for name in ("index", "small"):
+        for language, phrase in (
+            ("en", "reading {} min, exercises {} min"),
+            ("fr", "lecture {} min, exercices {} min"),
+        ):
+            assert phrase.format(*times) in Page(book / language / f"{name}.html").text
 
 
 def test_a_term_shows_its_meaning_and_leads_to_the_glossary(book):

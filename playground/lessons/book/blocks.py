@@ -27,6 +27,13 @@ ANSWERS = ("inline", "end", "none")
 """Where answers are: folded away under their questions, and on paper at the end; at the end; nowhere."""
 
 
+def picture_image(picture: Picture, source: str, alt: str, *, lazy: bool) -> Markup:
+    """Return a picture as an element with its size."""
+    width, height = picture.scene.pixels
+    loading = "lazy" if lazy else None
+    return tag("img", src=source, alt=alt, width=width, height=height, loading=loading, decoding="async")
+
+
 @dataclass(frozen=True)
 class Setting:
     """What the blocks of one lesson are written with."""
@@ -51,16 +58,8 @@ class Setting:
 
     def image(self, picture: Picture, *, lazy: bool = True, alt: str | None = None) -> Markup:
         """Return a picture as an element with its size, so that nothing jumps when it is loaded."""
-        width, height = picture.scene.pixels
-        return tag(
-            "img",
-            src=self.source(picture),
-            alt=plain(self.filled(picture.alt)) if alt is None else alt,
-            width=width,
-            height=height,
-            loading="lazy" if lazy else None,
-            decoding="async",
-        )
+        text = plain(self.filled(picture.alt)) if alt is None else alt
+        return picture_image(picture, self.source(picture), text, lazy=lazy)
 
     def still(self, *inside: Markup | None) -> Markup:
         """Return what a live block replaces where a reader starts it."""

@@ -1,6 +1,6 @@
 """Build the book: one folder that needs no network.
 
-index.html          chooses a language
+index.html          the cover, from which one chooses a language
 en/, fr/            a page for each lesson, the contents, the glossary, the thesis's figures
 pictures/           all pictures, for all languages
 book.css, book.js, find.js, fonts/
@@ -21,7 +21,7 @@ from playground.errors import DataError
 from playground.gpu.context import context_info
 from playground.images.files import replacing
 from playground.json_text import read_json
-from playground.lessons.book.blocks import Setting
+from playground.lessons.book.blocks import Setting, picture_image
 from playground.lessons.book.gallery import gallery_html
 from playground.lessons.book.images import Album, is_blank, of_picture
 from playground.lessons.book.live_files import LiveBook, live_book
@@ -30,7 +30,7 @@ from playground.lessons.book.page import (
     GLOSSARY,
     Book,
     contents_page,
-    door_page,
+    cover_page,
     gallery_page,
     glossary_page,
     hero_image,
@@ -117,8 +117,8 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
     live = live_book(next(iter(build.lessons.values())), engine)
     info = context_info(engine.ctx)
     written = [f"{PICTURES}/{name}" for name in build.names]
-    for language, lessons in build.lessons.items():
-        book = Book(
+    books = [
+        Book(
             language=language,
             label=interface_labels(language),
             lessons=lessons,
@@ -126,11 +126,15 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
             renderer=info.renderer,
             gallery=bool(build.figures),
         )
+        for language, lessons in build.lessons.items()
+    ]
+    for book in books:
         for name, text in _pages(build, book, numbers, live):
-            _write(build.folder / language / name, text.encode())
-            written.append(f"{language}/{name}")
-    titles = {language: interface_labels(language)["book"] for language in build.lessons}
-    _write(build.folder / "index.html", door_page(list(build.lessons), titles).encode())
+            _write(build.folder / book.language / name, text.encode())
+            written.append(f"{book.language}/{name}")
+    _write(
+        build.folder / "index.html", cover_page(books, _cover(build, books[0].lessons[0], PICTURES)).encode()
+    )
     for name in ("book.css", "book.js", "find.js", *FONTS):
         _write(build.folder / name, (_HERE / name).read_bytes())
         written.append(name)
@@ -162,9 +166,7 @@ def _pages(
         if found := build.heroes.get(lesson.name):
             file, one = found
             hero = hero_image(f"../{PICTURES}/{file}", one.alt[lesson.language])
-            covers[lesson.name] = hero_image(f"../{PICTURES}/{file}", "", lazy=True)
-        else:
-            covers[lesson.name] = setting.image(pictures_of(lesson)[0], alt="")
+        covers[lesson.name] = _cover(build, lesson, f"../{PICTURES}", lazy=True)
         yield f"{lesson.name}.html", lesson_page(book, lesson, setting, hero)
     yield "index.html", contents_page(book, covers)
     yield f"{GLOSSARY}.html", glossary_page(book)
@@ -175,6 +177,15 @@ def _pages(
             return f"../{PICTURES}/{build.gallery[drawn.sketch, drawn.shot]}"
 
         yield f"{FIGURES}.html", gallery_page(book, gallery_html(book, build.figures, address))
+
+
+def _cover(build: Build, lesson: Lesson, folder: str, *, lazy: bool = False) -> Markup:
+    """Return a lesson's hero, or else its first picture, without a text: its title is next to it."""
+    if found := build.heroes.get(lesson.name):
+        return hero_image(f"{folder}/{found[0]}", "", lazy=lazy)
+    picture = pictures_of(lesson)[0]
+    source = of_picture(build.files[lesson.name], folder)(picture)
+    return picture_image(picture, source, "", lazy=lazy)
 
 
 def _write(path: Path, data: bytes) -> None:

@@ -42,10 +42,13 @@ class Book:
     gallery: bool = True  # whether the thesis's figures are among the pages
 
     def anchor(self, link: str) -> dict[str, str]:
-        """Return the attributes of a lesson's link: its address in the book, and what a term means."""
+        """Return the attributes of a lesson's link: its address in the book, and what a term means.
+
+        There are none for a lesson that is not in the book: its link is text.
+        """
         kind, _, what = link.partition(":")
         if kind == "lesson":
-            return {"href": f"{what}.html"}
+            return {"href": f"{what}.html"} if any(what == one.name for one in self.lessons) else {}
         if kind == "thesis":  # its text is not ours to give; the figures of that chapter are here
             chapter = f"{FIGURES}.html#chapter-{what.partition('.')[0]}"
             return {"href": chapter if self.gallery else "#thesis-title"}
@@ -78,7 +81,7 @@ def lesson_page(book: Book, lesson: Lesson, setting: Setting, hero: Markup | Non
         body.append(
             tag("section", heading, *setting.at_end, class_="answers", aria_labelledby="answers-title")
         )
-    minutes = label("minutes", n=lesson.minutes, exercises=lesson.exercise_minutes)
+    minutes = label("minutes", reading=lesson.minutes, exercises=lesson.exercise_minutes)
     kicker = f"{label('lesson')} {lesson.number} · {minutes}"
     head = tag(
         "header",
@@ -149,7 +152,7 @@ def contents_page(book: Book, covers: Mapping[str, Markup]) -> str:
 def _card(book: Book, lesson: Lesson, cover: Markup) -> Markup:
     name = tag("span", f"{lesson.number}. {lesson.title}", class_="name")
     link = tag("a", cover, name, href=f"{lesson.name}.html")
-    minutes = book.label("minutes", n=lesson.minutes, exercises=lesson.exercise_minutes)
+    minutes = book.label("minutes", reading=lesson.minutes, exercises=lesson.exercise_minutes)
     return tag("li", link, tag("p", line(lesson.goal, book.anchor)), tag("p", minutes, class_="kicker"))
 
 
@@ -191,15 +194,35 @@ def _term(book: Book, term: Term, users: Sequence[Lesson]) -> tuple[Markup, Mark
     return tag("dt", name, id=term.key), tag("dd", tag("p", term.meaning[book.language]), *lines)
 
 
-def door_page(languages: Sequence[str], titles: Mapping[str, str]) -> str:
-    """Return the page above the languages, from which one chooses."""
-    first = languages[0]
-    links = [
-        tag("a", f"{LANGUAGES[code]}: {titles[code]}", href=f"{code}/index.html", lang=code, hreflang=code)
-        for code in languages
-    ]
-    body = tag("main", tag("h1", titles[first]), tag("ul", *(tag("li", link) for link in links)))
-    return _document(first, _head(titles[first], folder=""), tag("body", body))
+def cover_page(books: Sequence[Book], hero: Markup) -> str:
+    """Return the page above the languages: what the book is, and a way into each."""
+    first = books[0]
+    body = tag(
+        "main",
+        tag("figure", hero, class_="hero"),
+        tag("div", _way_in(first, "h1"), *(_way_in(book, "h2") for book in books[1:]), class_="languages"),
+        tag("p", first.label("source", thesis=THESIS), class_="more"),
+        class_="cover",
+    )
+    return _document(first.language, _head(first.label("book"), folder=""), tag("body", body))
+
+
+def _way_in(book: Book, heading: str) -> Markup:
+    """Return a language on the cover: title, parts, and the link to the contents."""
+    label, front = book.label, f"{book.language}/index.html"
+    rows = []
+    for number, part in enumerate(parts(), 1):
+        if titles := [lesson.title for lesson in book.lessons if lesson.name in part.lessons]:
+            inside = part.titles[book.language], tag("small", " · ".join(titles))
+            rows.append(tag("li", tag("a", *inside, href=f"{front}#part-{number}")))
+    return tag(
+        "section",
+        tag(heading, label("book")),
+        tag("p", label("book_goal"), class_="goal"),
+        tag("p", tag("a", label("enter"), href=front, hreflang=book.language, class_="enter")),
+        tag("ul", *rows) if rows else None,
+        lang=book.language,
+    )
 
 
 def slug(text: str) -> str:

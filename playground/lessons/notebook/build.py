@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from playground.errors import DataError
@@ -22,8 +22,11 @@ from playground.sketch.assign import value_of, values_of
 _LINK = re.compile(r"\[([^\]]*)\]\((lesson|sketch|thesis|term):([^)]*)\)")
 
 
-def notebook_text(lesson: model.Lesson, numbers: Mapping[str, Number]) -> str:
-    """Return a lesson's notebook, not run yet, with its numbers; raise ``DataError`` without nbformat."""
+def notebook_text(lesson: model.Lesson, numbers: Mapping[str, Number], lessons: Collection[str] = ()) -> str:
+    """Return a lesson's notebook, not run yet, with its numbers and with links to ``lessons``, by name.
+
+    Raises ``DataError`` without nbformat.
+    """
     try:
         import nbformat
     except ModuleNotFoundError:
@@ -31,7 +34,7 @@ def notebook_text(lesson: model.Lesson, numbers: Mapping[str, Number]) -> str:
     form: Any = nbformat  # its functions have no types
     make: Any = {"markdown": form.v4.new_markdown_cell, "code": form.v4.new_code_cell}
     cells = []
-    for number, (kind, text) in enumerate(_Writer(lesson, numbers).cells()):
+    for number, (kind, text) in enumerate(_Writer(lesson, numbers, lessons).cells()):
         cell: Any = make[kind](text)
         cell["id"] = f"{lesson.name.replace('_', '-')[:40]}-{number}"  # the same at every build
         cells.append(cell)
@@ -46,15 +49,16 @@ def notebook_text(lesson: model.Lesson, numbers: Mapping[str, Number]) -> str:
 class _Writer:
     """Writes the cells of one lesson: (kind, text)."""
 
-    def __init__(self, lesson: model.Lesson, numbers: Mapping[str, Number]) -> None:
+    def __init__(self, lesson: model.Lesson, numbers: Mapping[str, Number], lessons: Collection[str]) -> None:
         self.lesson = lesson
+        self.lessons = lessons
         self.numbers = numbers
         self.label = interface_labels(lesson.language)
 
     def cells(self) -> Iterator[tuple[str, str]]:
         """Yield all cells."""
         lesson, label = self.lesson, self.label
-        minutes = label("minutes", n=lesson.minutes, exercises=lesson.exercise_minutes)
+        minutes = label("minutes", reading=lesson.minutes, exercises=lesson.exercise_minutes)
         head = f"{label('lesson')} {lesson.number} · {minutes}\n\n# {lesson.title}"
         goal = f"**{label('goal')}**{label('colon')}{lesson.goal}"
         yield "markdown", f"{head}\n\n{goal}\n\n{label('run_first')}"
@@ -140,7 +144,7 @@ class _Writer:
             name = f'[{text}](#{self.label("glossary")} "{term.definition(self.lesson.language)}")'
             bold = link.string[: link.start()].endswith("**") and link.string[link.end() :].startswith("**")
             return name if bold else f"**{name}**"
-        return f"[{text}]({what}.ipynb)" if kind == "lesson" else text
+        return f"[{text}]({what}.ipynb)" if kind == "lesson" and what in self.lessons else text
 
 
 def _begun(task: model.Exercise | model.Challenge) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 _ENGLISH = {
     "lesson": "Lesson {}",
-    "minutes": "{} min, exercises {}",
+    "minutes": "reading {} min, exercises {} min",
     "close": "Close the lessons (F2)",
     "page": "{} of {}",
     "previous": "Previous",
@@ -81,7 +81,7 @@ _ENGLISH = {
 }
 _FRENCH = {
     "lesson": "Leçon {}",
-    "minutes": "{} min, exercices {}",
+    "minutes": "lecture {} min, exercices {} min",
     "close": "Fermer les leçons (F2)",
     "page": "{} sur {}",
     "previous": "Précédent",
