@@ -49,6 +49,7 @@ from playground.commands.import_name import check_package
 from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarning, nearest
 from playground.paths import quoted
 from playground.signals import ended_by_signals
+from playground.sketch.allowed_files import exists
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.streams import let_go, open_streams
 from playground.terminal import complain, note, with_loudness
@@ -191,7 +192,7 @@ def _no_command(name: str, ctx: Any) -> str:
     hint = nearest(name, ctx.command.list_commands(ctx))
     if ctx.parent is not None:
         return f"no command '{name}' in {ctx.command_path}{hint}"
-    if name in options.complete_sketch("") or Path(name).exists():
+    if name in options.complete_sketch("") or exists(Path(name)):
         shell = quoted(name)
         return f"'{name}' is no command; did you mean: playground live {shell}, or playground render {shell}?"
     return f"no command '{name}'{hint}"

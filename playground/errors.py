@@ -29,10 +29,15 @@ from pathlib import Path
 
 from playground.paths import shown
 
+MAX_LINE = 600  # characters of a line of a message, in which a name or a driver's text may be quoted whole
+MAX_LINES = 200  # of a message
+_MAX_PATH = 4096  # characters; no file has a longer one
+_MAX_EXCERPT = 300  # characters that are shown of a line of a file
+
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One mistake, and where it is."""
+    """One mistake, and where it is. A message is shortened where it is too long to read."""
 
     message: str
     file: str = ""  # as the user would name it; empty when there is none
@@ -41,6 +46,10 @@ class Diagnostic:
     severity: str = "error"  # "error" or "warning"
     excerpt: str = ""  # the offending line, as written
     chain: tuple[str, ...] = ()  # "file:line" of each #include that led here, outermost first
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "message", shortened(self.message))
+        object.__setattr__(self, "file", _cut(self.file, _MAX_PATH))
 
     @property
     def place(self) -> str:
@@ -52,9 +61,10 @@ class Diagnostic:
         head = f"{self.place}: {self.message}" if self.place else self.message
         lines = [head]
         if self.excerpt.strip():
-            lines.append(f"    {self.excerpt.rstrip()}")
-            if self.column:
-                indent = "".join("\t" if c == "\t" else " " for c in self.excerpt[: self.column - 1])
+            excerpt, column = _around(self.excerpt.rstrip(), self.column)
+            lines.append(f"    {excerpt}")
+            if column:
+                indent = "".join("\t" if c == "\t" else " " for c in excerpt[: column - 1])
                 lines.append(f"    {indent}^")
         lines += [f"    included from {place}" for place in reversed(self.chain)]
         return "\n".join(lines)
@@ -223,6 +233,34 @@ class PlainFormWarning(PlaygroundWarning):
             warnings.simplefilter("ignore", playground.PlainFormWarning)
             playground.render("l_dot_n", size=(64, 36))
     """
+
+
+def shortened(text: str) -> str:
+    """Return a message with the middle of its long lines, and of many lines, left out."""
+    if len(text) <= MAX_LINE and text.count("\n") < MAX_LINES:
+        return text
+    lines = [_cut(line, MAX_LINE) for line in text.split("\n")]
+    if len(lines) > MAX_LINES:
+        half = MAX_LINES // 2
+        lines[half:-half] = [f"… {counted(len(lines) - 2 * half, 'line')} left out …"]
+    return "\n".join(lines)
+
+
+def _cut(line: str, most: int) -> str:
+    if len(line) <= most:
+        return line
+    half = most // 2 - 20  # for what says how much is left out
+    return f"{line[:half]} … {len(line) - 2 * half} characters left out … {line[-half:]}"
+
+
+def _around(line: str, column: int) -> tuple[str, int]:
+    """Return the part of a long line around a column, from 1, and the column in it; 0 stays 0."""
+    if len(line) <= _MAX_EXCERPT:
+        return line, column
+    start = max(min(column - _MAX_EXCERPT // 2, len(line) - _MAX_EXCERPT), 0)
+    before, after = "… " if start else "", " …" if start + _MAX_EXCERPT < len(line) else ""
+    part = f"{before}{line[start : start + _MAX_EXCERPT]}{after}"
+    return part, column - start + len(before) if column else 0
 
 
 def counted(number: int, noun: str) -> str:

@@ -22,6 +22,7 @@ from contextlib import contextmanager
 from enum import Enum
 from typing import TYPE_CHECKING, TextIO
 
+from playground.errors import shortened
 from playground.streams import let_go
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def complain(text: str, severity: str = "error") -> None:
     """Print a mistake on standard error."""
     colour = "1;31" if severity == "error" else "1;33"
     if severity == "error" or _loudness is not Loudness.QUIET:
-        say(f"{painted(f'{severity}:', colour, sys.stderr)} {text}")
+        say(f"{painted(f'{severity}:', colour, sys.stderr)} {shortened(text)}")
 
 
 def note(text: str) -> None:

@@ -664,3 +664,46 @@ def test_a_new_sketch_passes_its_check_renders_and_is_never_overwritten(run: Run
     (tmp_path / "my-land/my_land.glsl").write_text("mine")
     assert run("new", "my-land").returncode == 2
     assert (tmp_path / "my-land/my_land.glsl").read_text() == "mine"
+
+
+# ── Long names ───────────────────────────────────────────────────────────────
+
+LONG = "x" * 200_000
+QUOTED_WHOLE = {
+    "a.glsl": f'#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {LONG}; }}\n',
+    "b.glsl": f'#pragma kernel(output = "height:r32f", {LONG} = "1")\n',
+    "c.glsl": f'#include "{LONG}"\n#pragma kernel(output = "height:r32f")\n',
+    "d.frag": f"#version 330\nout vec4 c;\nvoid main() {{ c = vec4(1.0); {LONG}(); }}\n",
+    "e.toml": f'format = 1\n[[pass]]\nname = "a"\nuse = "{LONG}"\n',
+    "f.toml": f"format = 1\n{LONG} = 1\n",
+}
+
+
+@pytest.mark.parametrize("name", QUOTED_WHOLE)
+def test_a_long_name_is_shortened_in_the_middle(name, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path(name).write_text(QUOTED_WHOLE[name], encoding="utf-8")
+    assert cli.main(["render", name, "-o", "x.png", "--size", "32x18"]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0].startswith(f"error: {name}:") or name == "c.glsl"
+    assert max(map(len, lines)) < 1000
+    assert any("characters left out" in line for line in lines) or name in ("a.glsl", "d.frag")
+    with pytest.raises(playground.PlaygroundError) as caught:
+        playground.render(name, size=(32, 18))
+    assert max(len(line) for line in str(caught.value).split("\n")) < 1000
+
+
+@pytest.mark.parametrize("before", [[], ["render"], ["render", "l_dot_n", "-o", "x.png", "--size"]])
+@pytest.mark.parametrize("name", [LONG[:1000], LONG[:100_000]])
+def test_a_long_word_of_a_command_is_shortened(before, name, capsys):
+    assert cli.main([*before, name]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("error: ") and "Traceback" not in line and len(line) < 1000
+
+
+def test_of_a_message_of_many_lines_the_middle_is_left_out():
+    error = DataError("\n".join(["first", *["| of a driver's log"] * 5000, "last"]))
+    lines = str(error).split("\n")
+    assert len(lines) < 300 and lines[0] == "first" and lines[-1] == "last"
+    assert any("lines left out" in line for line in lines)
+    assert str(DataError("short\nas it is")) == "short\nas it is"
