@@ -17,6 +17,7 @@ from playground.errors import DataError
 from playground.images.files import replacing
 from playground.json_text import read_json
 from playground.paths import shown
+from playground.regular_file import read_regular
 
 FORMAT = 1
 KIND = "playground bench"
@@ -90,7 +91,7 @@ def write(results: Results, path: Path) -> None:
 def read(path: Path) -> Results:
     """Read what ``write`` wrote; raise ``DataError`` for any other file."""
     try:
-        found = read_json(path.read_text(encoding="utf-8"))
+        found = read_json(read_regular(path).decode())
     except FileNotFoundError:
         raise DataError("no such file; expected results of playground bench", file=shown(path)) from None
     except (ValueError, OSError) as error:
