@@ -164,7 +164,7 @@ def test_a_library_file_may_declare_what_the_file_that_includes_it_defines(folde
     assert (Path(found.file).name, found.line) == ("slip.glsl", 3), found
 
 
-COUNTED = """#pragma draw(mesh = "sheet", instances = "min(list.y // 2, 6)", output = "drawn:rgba32f")
+COUNTED = """#pragma draw(mesh = "sheet", instances = "min(list.y, 6)", output = "drawn:rgba32f")
 uniform sampler2D list;  //! input
 vec4 vertex(vec3 corner, out vec2 place) {
     place = corner.xy;
@@ -181,7 +181,7 @@ def test_an_input_that_counts_instances_is_a_whole_number(folder, sandbox):
     outer = inner.replace("./draw", "./inner").replace("a.list", "a.numbers").replace("numbers =", "rows =")
     assert check_file(folder.write("inner.toml", inner), sandbox).errors == ()
     assert check_file(folder.write("outer.toml", outer), sandbox).errors == ()
-    fraction = folder.write("draw.glsl", COUNTED.replace("min(list.y // 2, 6)", "list.y / 7"))
+    fraction = folder.write("draw.glsl", COUNTED.replace("min(list.y, 6)", "list.y / 7"))
     assert "a whole number was expected" in check_file(fraction, sandbox).errors[0].message
 
 

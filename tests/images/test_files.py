@@ -6,14 +6,17 @@ import io
 import struct
 import subprocess
 import sys
+import time
 import zlib
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from PIL import Image as PillowImage
 
 from playground.errors import DataError
+from playground.images.content_hash import content_hash
 from playground.images.files import (
     encode_png,
     encode_samples,
@@ -453,3 +456,14 @@ def test_samples_are_stored_as_they_are_with_texts(dtype, shape, tmp_path):
         assert picture.text == {"scale_m": "0.25", "Title": "Grès"}
     with pytest.raises(DataError, match="cannot name a text"):
         encode_samples(samples, {"": "x"})
+
+
+def test_saves_in_one_tick_of_the_clock_have_different_hashes(tmp_path, monkeypatch):
+    """Each keeps inode, size and time of change, as ``cp -p`` does; the clock of the file system stands."""
+    path, hashes = tmp_path / "a.png", set()
+    tick = SimpleNamespace(st_ino=1, st_size=1, st_mtime_ns=10**18, st_ctime_ns=time.time_ns())
+    monkeypatch.setattr("playground.images.content_hash.require_regular", lambda _: tick)
+    for value in range(5):
+        path.write_bytes(bytes([value]))
+        hashes.add(content_hash(path))
+    assert len(hashes) == 5

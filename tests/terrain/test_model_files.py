@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import os
 import struct
 
 import numpy as np
@@ -319,3 +320,9 @@ def test_a_file_is_read_again_only_when_it_changes(tmp_path, monkeypatch):
     path.write_text(json.dumps(found))
     assert make_model(values, size_of_model(values))["place"][0, 0, 0] == 5
     assert read_ == [path] * 2
+    for far in range(6, 10):  # saves that keep inode, size and time of change
+        time = path.stat().st_mtime_ns
+        found["nodes"][0]["translation"] = [far, 0, 0]
+        path.write_text(json.dumps(found))
+        os.utime(path, ns=(time, time))
+        assert make_model(values, size_of_model(values))["place"][0, 0, 0] == far
