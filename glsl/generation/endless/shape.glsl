@@ -9,7 +9,9 @@
 // Gradient noise where the thesis has values at nodes: its hills are not in rows.
 #include "noise/gradient.glsl"
 #include "terrain/parts.glsl"
-#pragma kernel(output = "shape:r32f")
+#pragma kernel(output = "shape:r32f", warns = "\
+    hills < 2 ** layers: \
+    the last layers all have hills of two texels (raise hills or lower layers)")
 
 uniform ivec2 part = ivec2(0);     //! parts("east", "north") Which part of the terrain, counted
                                    //! east and north
