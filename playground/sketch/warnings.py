@@ -51,6 +51,7 @@ _TOKEN = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\w*|[A-Za-z_]\w*|&&|\|
 _WHOLE = re.compile(r"\d+")
 _WHOLE_TYPE = re.compile(r"u?int|[iu]vec[234]")
 _DECLARED_WHOLE = re.compile(r"\b(?:u?int|[iu]vec[234])\b(?!\s*\()([^;(){}]*)")
+_TAKES = re.compile(r"\b[A-Za-z_]\w* ([A-Za-z_]\w*) \( ([^()]*\b(?:u?int|[iu]vec[234])\b[^()]*) \)")
 _WHOLE_GIVEN = frozenset("size iteration iterations until stage texel gl_InstanceID gl_VertexID".split())
 _TAKES_WHOLE = frozenset(
     "texelFetch texelFetchOffset textureSize imageLoad imageStore bitfieldExtract".split()
@@ -79,6 +80,7 @@ def whole_divisions(source: SourceText) -> list[Diagnostic]:
     whole = set(_WHOLE_GIVEN)
     for declared in _DECLARED_WHOLE.finditer(" ".join(texts)):
         whole |= set(re.findall(r"(?:^|,)\s*([A-Za-z_]\w*)", declared[1]))
+    whole |= {function[1] for function in _TAKES.finditer(" ".join(texts))}
     for at, text in enumerate(texts):
         if text != "/":
             continue
@@ -164,7 +166,7 @@ def _is_whole(texts: Sequence[str], start: int, end: int, whole: AbstractSet[str
         head.pop(0)
     if head and (_WHOLE_TYPE.fullmatch(head[0]) or head[0] == "case"):
         return True
-    if len(head) > 1 and head[1] in ("=", "+", "-", "*", "/", "[", "<", ">") and head[0] in whole:
+    if "=" in head and _is_set_whole(" ".join(head[: head.index("=")]), whole):
         return True
     if head[:1] == ["return"]:
         return _returns_whole(texts, before)
@@ -176,6 +178,12 @@ def _is_whole(texts: Sequence[str], start: int, end: int, whole: AbstractSet[str
     others = (*range(left, start), *range(end, right))
     names = [texts[k] for k in others if re.match(r"[A-Za-z_]|\.\d|\d+\.", texts[k]) and texts[k - 1] != "."]
     return bool(names) and whole >= set(names)
+
+
+def _is_set_whole(target: str, whole: set[str]) -> bool:
+    """Return whether what is set, as ``n``, ``n[k]``, ``v.x`` or ``s.count``, is a whole number."""
+    names = re.sub(r"\[[^\]]*\]", "", target).rstrip("+-*/%&|^<> ").split(" . ")
+    return names[0] in whole or (len(names) > 1 and names[-1] in whole)
 
 
 def _returns_whole(texts: Sequence[str], at: int) -> bool:

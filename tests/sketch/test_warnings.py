@@ -102,6 +102,7 @@ def divisions_in(folder: Path, code: str) -> list[Diagnostic]:
 
 
 HEAD = '#pragma kernel(output = "a:r32f")\nint whole = 3;\nint of(int k) { return k; }\n'
+HEAD += "struct Part { int count; float share; };\nfloat at(int k) { return float(k); }\n"
 
 
 @pytest.mark.parametrize(
@@ -119,6 +120,9 @@ HEAD = '#pragma kernel(output = "a:r32f")\nint whole = 3;\nint of(int k) { retur
         ("for (float t = 0.0; t < 1.0; t += 1/8) x += t;", "1/8", 0),
         ("int a = int(4.0 * float(1/4));", "1/4", 0),
         ("x *= 3/2;", "3/2", 1),
+        ("Part a; a.share = 1/4;", "1/4", 0),
+        ("float a[2]; a[whole - 3] = 1/4;", "1/4", 0),
+        ("vec2 v = vec2(0.0); v.x = 1/4;", "1/4", 0),
     ],
 )
 def test_a_quotient_of_whole_literals_is_warned_of(
@@ -126,7 +130,7 @@ def test_a_quotient_of_whole_literals_is_warned_of(
 ) -> None:
     (found,) = divisions_in(tmp_path, code)
     assert found.message.startswith(f"{written} divides whole numbers, which gives {value}; write ")
-    assert (found.line, found.column) == (6, 5 + code.index(written))
+    assert (found.line, found.column) == (8, 5 + code.index(written))
 
 
 @pytest.mark.parametrize(
@@ -141,6 +145,10 @@ def test_a_quotient_of_whole_literals_is_warned_of(
         "whole += 7/2;",
         "if (whole > 7/2) x = 2.0;",
         "x = float(of(7/2) * int(texel.x));",
+        "x = at(7/2);",
+        "Part a; a.count = 7/2;",
+        "ivec2 v = ivec2(0); v.x = 7/2;",
+        "int n[2]; n[1] += 7/2;",
         "float a = x * 1/4;",
         "float a = x/4;",
         "float a = 4/2;",
