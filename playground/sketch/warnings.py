@@ -6,7 +6,6 @@ import re
 import tomllib
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from collections.abc import Set as AbstractSet
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -144,7 +143,7 @@ def _evaluated(texts: Sequence[str]) -> int | None:
         return None
 
 
-def _is_whole(texts: Sequence[str], start: int, end: int, whole: AbstractSet[str]) -> bool:
+def _is_whole(texts: Sequence[str], start: int, end: int, whole: set[str]) -> bool:
     """Return whether a division stands where a whole number is meant."""
     before, depth, calls = start, 0, list[str]()
     while before > 0 and texts[before - 1] not in (";", "{", "}"):
