@@ -35,7 +35,7 @@
     stages = "0, 1, 2, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, \
               1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, \
               1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3", \
-    where = "pairs = max(directions // 8 * 4, 1); \
+    where = "pairs = max(directions // 8 * 4, 4 if keep else 1); \
              texels = (size.x + 32) * (size.y + 32); \
              room = max(min(2 ** 25 // texels, 8), 1); \
              rounds = (pairs - 1) // room + 1; \

@@ -29,7 +29,6 @@ class Traits:
     files: tuple[tuple[str, Parameter], ...]  # parameters that name files, by the paths of the leaves
     draws: tuple[tuple[str, Kernel], ...]  # kernels that draw meshes
     faster: tuple[tuple[str, Kernel], ...]  # kernels with a menu of which previews have another choice
-    arcs: bool  # an angle follows a direction until it is set
 
 
 def traits_of(sketch: Sketch) -> Traits:
@@ -69,7 +68,6 @@ def _traits(key: Identity[Graph]) -> Traits:
             for path, kernel in kernels
             if any(p.preview is not None for p in kernel.parameters)
         ),
-        arcs=any(p.follows for _, k in kernels for p in k.parameters),
     )
 
 

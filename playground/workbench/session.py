@@ -38,7 +38,6 @@ from playground.workbench.maps import fitted, in_view
 from playground.workbench.reload_stages import Reload, ReloadStage, Sandbox
 from playground.workbench.resume import StoredEdits
 from playground.workbench.shown_picture import ShownPicture
-from playground.workbench.sun_arc import sun_off_arc
 from playground.workbench.view import View, steps_of_repeats
 
 if TYPE_CHECKING:
@@ -484,8 +483,6 @@ class Session:
         self.plan = engine.internal.plan
         if engine.internal.eye_height.message:
             self._note_once("ground", engine.internal.eye_height.message)
-        if traits.arcs and engine.internal.plan is not None and "arc" not in self._reported:
-            self._note_once("arc", sun_off_arc(engine.internal.plan))
 
     def _pause_once(self) -> None:
         """Let time stand still, the first time that a sketch is too slow for it: so it is drawn in full."""

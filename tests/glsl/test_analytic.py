@@ -86,21 +86,12 @@ def test_a_sun_of_no_width_is_there_or_not(on_gpu):
     np.testing.assert_array_equal(found, [1, 0])
 
 
-@pytest.mark.parametrize("arc", [90.0, 135.0, 10.0])
-def test_a_sun_is_put_on_its_arc(on_gpu, arc):
-    azimuth, elevation = (v.ravel() for v in np.meshgrid(np.arange(0, 360, 15.0), [-10.0, 5.0, 40.0, 85.0]))
-    sun = towards(azimuth, elevation)
-    found = on_gpu(ARC, f"on_arc(sun, {arc}, ARC)", sun=sun.astype(np.float32))
-    # The nearest of many places on the arc.
-    turns = np.radians(np.arange(0, 360, 0.05))
-    level = np.array([np.sin(np.radians(arc)), np.cos(np.radians(arc)), 0])
-    circle = np.cos(turns)[:, None] * level + np.sin(turns)[:, None] * np.array([0, 0, 1])
-    nearest = circle[np.argmax(sun @ circle.T, axis=1)]
-    clear = np.linalg.norm(sun @ np.stack([level, [0, 0, 1]], axis=-1), axis=1) > 0.05
-    np.testing.assert_allclose(found[clear], nearest[clear], atol=2e-3)
-    np.testing.assert_allclose(
-        on_gpu(ARC, f"on_arc(sun, {arc}, EIGHT)", sun=sun.astype(np.float32)), sun, atol=1e-6
-    )
+@pytest.mark.parametrize("arc", [90.0, 135.0, 10.0, -70.0])
+def test_a_sun_off_its_arc_takes_eight_horizons(on_gpu, arc):
+    away, elevation = (v.ravel() for v in np.meshgrid(np.arange(0, 360, 10.0), [5.0, 40.0, 85.0, 90.0]))
+    sun = towards(arc + away, elevation).astype(np.float32)
+    eight = on_gpu(ARC, f"int(directions_for(sun, {arc}, ARC, false) == EIGHT)", sun=sun)
+    np.testing.assert_array_equal(eight == 1, (away % 180 != 0) & (elevation < 90))
 
 
 @pytest.mark.parametrize("arc", [0.0, 135.0])
@@ -239,7 +230,9 @@ def ran(kept):
 
 @pytest.mark.parametrize("use", ["horizon_sun", "analytic"])
 def test_moving_the_sun_looks_at_no_terrain(kept, sketch, use):
-    made = sketch(steep(33), use, sun=(138, 20), **({"arc": 135.0} if use == "horizon_sun" else {}))
+    # Of the same gain, the tables of both are the same, and cached.
+    own = {"arc": 135.0, "gain": 1.1} if use == "horizon_sun" else {"gain": 1.2}
+    made = sketch(steep(33), use, sun=(138, 20), **own)
     kept.read(made, "light")
     for sun in ((140, 20), (140, 60)):
         kept.read(made.with_values({"light.sun": sun}), "light")
@@ -286,6 +279,21 @@ def test_unless_set_the_arc_is_under_the_sun(read, azimuth):
     _, truth = sunlight(terrain, azimuth, 18.0)
     assert light[..., 0].mean() == pytest.approx(truth.mean(), abs=0.02)
     assert np.abs(light[..., 0] - truth).mean() < 0.03
+
+
+@pytest.mark.parametrize("directions", [2, 8])
+@pytest.mark.parametrize("way", [{"arc": 70.0}, {"arc": 205.0}, {"measured": "eight directions"}], ids=str)
+def test_a_sun_off_its_arc_is_lit_from_its_own_azimuth(read, way, directions):
+    """As much light as the truth has, but for the horizon that is rounded off between two of eight."""
+    terrain = Land(real(65).heights * 2, (90.0, 90.0), "real")
+    values = {"sun": (110.0, 15.0), "gain": 1.0, "directions": directions}
+    light = read(terrain, "horizon_sun", "light", **way, **values)[..., 0]
+    _, truth = sunlight(terrain, 110.0, 15.0)
+    assert light.mean() == pytest.approx(truth.mean(), rel=0.05)
+    # Where the sun is over the horizon in all eight directions, it shines in full.
+    open_to_sun = read(terrain, "horizon_sun", "visibility", **way, **values) == 1
+    normals = np.maximum(terrain.normals() @ towards(110.0, 15.0), 0)
+    np.testing.assert_allclose(light[open_to_sun], normals[open_to_sun], atol=0.01)
 
 
 def test_a_sun_on_a_free_arc_is_measured_anew_when_its_azimuth_changes(kept, sketch):

@@ -1,7 +1,7 @@
-// lighting/horizon_sun/arc.glsl -- where a sun is on its arc, and how much of it is seen.
+// lighting/horizon_sun/arc.glsl -- the horizons that a sun is between, and how much of it is seen.
 //
-//   gives    ARC, EIGHT, directions_for, on_arc, Between, between_horizons, elevation_of,
-//            in_diameters, disc_seen
+//   gives    ARC, EIGHT, directions_for, Between, between_horizons, elevation_of, in_diameters,
+//            disc_seen
 //   needs    maths/angle.glsl
 //   units    degrees; azimuths clockwise from north; unit vectors with x east, y north, z up
 //   source   Belaiche 2010, section 3.4, eqs 3.5, 3.6 and 3.8, after Hoffman and Mitchell 2001,
@@ -10,11 +10,10 @@
 //   tested   tests/glsl/test_analytic.py, against float64
 //
 // The thesis has the sun rise in one direction, go through the zenith and set in the opposite
-// one: two horizons a texel are enough. The arc is under the sun unless an azimuth is set for it;
-// a sun that then leaves it is put on it, where it is nearest. With eight horizons the sun may
-// be anywhere, and its horizon is taken between the two that are nearest to its azimuth, which
-// rounds off what is between them. The sun of a daylight keeps to no arc, and no parameter
-// knows its azimuth: it takes the eight.
+// one: two horizons a texel are enough. The arc is under the sun unless an azimuth is set for it.
+// With eight horizons the sun may be anywhere, and its horizon is taken between the two that are
+// nearest to its azimuth, which rounds off what is between them. A sun that is off the arc set for
+// it takes the eight; so does that of a daylight, whose azimuth no parameter knows.
 #ifndef LIGHTING_HORIZON_SUN_ARC
 #define LIGHTING_HORIZON_SUN_ARC
 #include "maths/angle.glsl"
@@ -23,19 +22,13 @@
 const int ARC = 0;
 const int EIGHT = 1;
 
-// How many count for a sun of a daylight, or of a parameter.
-int directions_for(int measured, bool of_daylight) {
-    return of_daylight ? EIGHT : measured;
-}
+const float MAX_OFF_ARC = 2e-4;  // the sine of 0.01 degrees
 
-// The sun's direction, put on the upright circle through the azimuth `arc` where there is one.
-vec3 on_arc(vec3 to_sun, float arc, int measured) {
+// How many count for a sun of a daylight, or of a parameter.
+int directions_for(vec3 to_sun, float arc, int measured, bool of_daylight) {
     vec2 level = cos_sin_degrees(arc).yx;
-    vec2 held = vec2(dot(to_sun.xy, level), to_sun.z);
-    float reach = length(held);
-    // Square to the arc every place on it is as near: then take the zenith.
-    held = reach < 1e-6 ? vec2(0.0, 1.0) : held / reach;
-    return measured == ARC ? vec3(held.x * level, held.y) : to_sun;
+    float off_arc = abs(to_sun.x * level.y - to_sun.y * level.x);
+    return of_daylight || off_arc > MAX_OFF_ARC ? EIGHT : measured;
 }
 
 // The two measured horizons that the sun is between, and how much each counts. The first is one

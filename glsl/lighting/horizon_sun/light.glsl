@@ -29,7 +29,6 @@ uniform sampler2D sky_factor;            //! input("white")
 #include "lighting/parameters/sunlight.glsl"
 uniform float clouds = 0.0;              //! slider(0, 1) step(0.01) group("Sun")
                                          //! How much of the sun's light clouds keep back
-#include "lighting/parameters/arc.glsl"
 uniform int sun_term = 0;                //! menu("table", "each texel") group("Sun")
                                          //! Sunlight from a table of normals, or worked out for
                                          //! each texel
@@ -43,9 +42,7 @@ vec4 received_at(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
     vec2 slope = relief * slope_at(height, place_on(grid, texel, size), spacing_of(grid, extent),
                                    normal);
-    float received = max(dot(normal_of_slope(slope),
-                             on_arc(given.direction, arc,
-                                    directions_for(measured, wired_daylight))), 0.0);
+    float received = max(dot(normal_of_slope(slope), given.direction), 0.0);
     return vec4(given.sun * (gain * (1.0 - clouds) * received), received > 0.0 ? 1.0 : 0.0);
 }
 

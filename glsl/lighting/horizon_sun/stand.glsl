@@ -23,9 +23,10 @@ uniform float ambient = 0.0;             //! slider(0, 1) step(0.01) group("Sky"
 
 vec4 kernel(ivec2 texel) {
     Sunlight given = sunlight(wired_daylight, daylight, towards_sun, sun, vec3(0.0), sky_colour);
-    vec3 to_sun = on_arc(given.direction, arc, directions_for(measured, wired_daylight));
+    vec3 to_sun = given.direction;
     if (texel.x == 0) {
-        Between found = between_horizons(to_sun, arc, directions_for(measured, wired_daylight));
+        int count = directions_for(to_sun, arc, measured, wired_daylight);
+        Between found = between_horizons(to_sun, arc, count);
         return vec4(vec2(found.which), found.weights * in_diameters(90.0, diameter));
     }
     float upper_edge = elevation_of(to_sun) + 0.5 * diameter;

@@ -25,6 +25,7 @@ const float HIGHEST = 60000.0;  // a tangent that a half float holds
 // 128 MiB on some drivers.
 struct Batch {
     int pairs;      // in all
+    int counted;    // of these, in K
     int from, end;  // those of this one
     int apart;      // in the buffer, from one direction to the next
 };
@@ -32,7 +33,8 @@ struct Batch {
 // The batches after those that are needed have no pairs.
 Batch batch_at(int number) {
     Batch batch;
-    batch.pairs = pairs_of(directions);
+    batch.counted = pairs_of(directions);
+    batch.pairs = keep ? max(batch.counted, 4) : batch.counted;
     batch.apart = (size.x + 32) * (size.y + 32) / 8;
     int room = lines.length() / (2 * batch.apart);
     int batches = (batch.pairs + room - 1) / room;

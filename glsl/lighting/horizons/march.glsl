@@ -27,7 +27,7 @@
 #include "lighting/horizons/slope.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "ahead:rgba16f, behind:rgba16f, sky:r32f, land:r32f", \
-               repeat = "max(directions // 8 * 4, 1)")
+               repeat = "max(directions // 8 * 4, 4 if keep else 1)")
 
 uniform sampler2D height;               //! input
 uniform sampler2D range;                //! input
@@ -73,19 +73,20 @@ void kernel(ivec2 texel, out vec4 ahead, out vec4 behind, out float sky, out flo
     vec2 slope = slope_here(texel, size, spacing_of(size, extent), relief, normal);
     land = land_at(texel);
     float highest = texelFetch(range, ivec2(0), 0).g;
-    float shape = sector_shape(2 * iterations);
+    // The maps hold eight directions, also where K counts two.
+    int counted = pairs_of(directions);
+    float shape = sector_shape(2 * counted);
     vec2 towards = pair_towards(iteration, iterations, first);
     float there = relief * steepest_from(grid, start, towards, metres, land, highest);
     float back = relief * steepest_from(grid, start, -towards, metres, land, highest);
     there = min(there, 60000.0);
     back = min(back, 60000.0);
-    // A single pair is in all channels.
-    bvec4 here = equal(ivec4(keep ? iteration : -1),
-                       iterations == 1 ? ivec4(0) : ivec4(0, 1, 2, 3));
+    bvec4 here = equal(ivec4(keep ? iteration : -1), ivec4(0, 1, 2, 3));
     ahead = mix(previous_ahead(texel), vec4(there), here);
     behind = mix(previous_behind(texel), vec4(back), here);
     float both = sky_of_sector(there, slope, towards, shape)
             + sky_of_sector(back, slope, -towards, shape);
-    sky = previous_sky(texel) + both / (float(2 * iterations) * sqrt(1.0 + dot(slope, slope)));
+    float sum = float(2 * counted) * sqrt(1.0 + dot(slope, slope));
+    sky = previous_sky(texel) + (iteration < counted ? both / sum : 0.0);
     if (iteration == iterations - 1) sky = max(sky, 0.0);
 }

@@ -53,7 +53,7 @@ Course course_of(int number) {
     uvec2 words = uvec2(lines[there][(row & 1) * 2 + word], \
                         lines[opposite][(back & 1) * 2 + word]); \
     vec2 tangents = from_halves(words >> ((line & 1) << 4)); \
-    total[nth] += sky_of_sectors(tangents, slope[nth], towards, shape);
+    total[nth] += weight * sky_of_sectors(tangents, slope[nth], towards, shape);
 #define ADD_ONLY(nth) { ADD(nth) }
 #define ADD_AND_KEEP(nth) { \
     ADD(nth) \
@@ -64,12 +64,13 @@ Course course_of(int number) {
     vec2 towards = ways[pair - batch.from]; \
     Course course = course_of(pair - batch.from); \
     int line_0 = courses[pair - batch.from].w; \
-    bvec4 channel = equal(ivec4(pair), batch.pairs == 1 ? ivec4(0) : ivec4(0, 1, 2, 3)); \
+    bvec4 channel = equal(ivec4(pair), ivec4(0, 1, 2, 3)); \
+    float weight = pair < batch.counted ? 1.0 : 0.0; \
     ADD_1(0) ADD_1(1) ADD_1(2) ADD_1(3) ADD_1(4) \
         ADD_1(5) ADD_1(6) ADD_1(7) }
 #define STORE(nth) if (y + nth < end) { \
     ivec2 texel = ivec2(x, y + nth); \
-    float whole = max(total[nth], 0.0) / float(2 * batch.pairs) / sqrt(1.0 + dot(slope[nth], \
+    float whole = max(total[nth], 0.0) / float(2 * batch.counted) / sqrt(1.0 + dot(slope[nth], \
         slope[nth])); \
     sky[texel.y * size.x + texel.x] = batch.end == batch.pairs ? whole : total[nth]; \
     if (keep && batch.from < 4) imageStore(out_ahead, texel, ahead[nth]); \
@@ -80,7 +81,7 @@ Course course_of(int number) {
 void sum(Batch batch, bool goes_on) {
     int x = int(gl_GlobalInvocationID.x);
     int end = x < size.x ? min(int(gl_WorkGroupID.y + 1u) * CHUNK, size.y) : 0;
-    float shape = sector_shape(2 * batch.pairs);
+    float shape = sector_shape(2 * batch.counted);
     vec2 metres = spacing_of(size, extent);
     for (int k = 0; k < batch.end - batch.from; k++) {
         ways[k] = pair_towards(batch.from + k, batch.pairs, first);
