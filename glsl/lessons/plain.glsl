@@ -32,8 +32,8 @@ vec2 ground(vec2 pixel) {
     float focal = 0.5 * float(size.x) * zoom;    // pixels
     float down = (float(size.y) - pixel.y) / focal;
     float aside = (pixel.x - 0.5 * float(size.x)) / focal;
-    float distance = eye_height / down;
-    return vec2(aside * distance, distance + shift) / tile;
+    float forward = eye_height / down;
+    return vec2(aside * forward, forward + shift) / tile;
 }
 
 vec4 shown(vec4 found) {

@@ -84,8 +84,9 @@ float refraction(float elevation) {
         float high = 103.4 + elevation * (-12.79 + elevation * 0.711);
         seconds = 1735.0 + elevation * (-518.2 + elevation * high);
     } else if (elevation < 85.0) {
-        float inverse = 1.0 / tangent;
-        seconds = inverse * (58.1 + inverse * inverse * (-0.07 + inverse * inverse * 0.000086));
+        float cotangent = 1.0 / tangent;
+        float square = cotangent * cotangent;
+        seconds = cotangent * (58.1 + square * (-0.07 + square * 0.000086));
     }
     return seconds / 3600.0;
 }

@@ -60,7 +60,7 @@ struct Columns {
 // Where four columns run: how far east they are, and how far north a row is of the one before.
 struct Rows {
     vec4 east;
-    float step;
+    float spacing;
 };
 
 // Octaves `from` .. `to` - 1, one at least, and the first one's frequency and strength.
@@ -105,12 +105,12 @@ int columns_end(Rows rows, int row, Octaves o, Span span) {
     float left = 1e6;
     int k = span.from;
     do {
-        float there = float(row) * rows.step * frequency + OCTAVE_SHIFT.y;
+        float there = float(row) * rows.spacing * frequency + OCTAVE_SHIFT.y;
         left = min(left, (floor(there) + 1.0 - there) / frequency);
         frequency *= o.lacunarity;
         k++;
     } while (k < span.to);
-    return row + max(int(min(ceil(left / rows.step), 1e6)), 1);
+    return row + max(int(min(ceil(left / rows.spacing), 1e6)), 1);
 }
 
 // Add some octaves, around a row.
@@ -120,7 +120,7 @@ Columns columns_add(Columns c, Rows rows, float row, Octaves o, Span span) {
     int k = span.from;
     do {
         vec4 east = rows.east * frequency + OCTAVE_SHIFT.x;
-        float north = row * rows.step * frequency + OCTAVE_SHIFT.y;
+        float north = row * rows.spacing * frequency + OCTAVE_SHIFT.y;
         vec4 u = east - floor(east);
         uint seed = lattice_seed(o.seed, k);
         uvec2 lines = lattice_rows(int(floor(north)), seed);
@@ -140,7 +140,7 @@ Columns columns_add(Columns c, Rows rows, float row, Octaves o, Span span) {
         Columns piece = Columns(middle + 0.5 * rise, low_slope + 0.5 * twist + 1.875 * rise,
                                 1.875 * twist, -5.0 * rise, -5.0 * twist, 6.0 * rise, 6.0 * twist);
         piece = columns_moved(piece, north - floor(north) - 0.5);
-        float pace = rows.step * frequency;
+        float pace = rows.spacing * frequency;
         vec4 powers = vec4(1.0, pace, pace * pace, pace * pace * pace);
         powers *= PERLIN_SCALE * strength * octave_weight(o.texels / frequency);
         c.c0 += powers.x * piece.c0;

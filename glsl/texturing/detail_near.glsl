@@ -13,8 +13,8 @@
 #define TEXTURING_DETAIL_NEAR
 
 // 1 at the eye, 0 from `max_distance` on, with no slope at either end.
-float detail_nearness(float distance, float max_distance) {
-    float share = clamp(1.0 - distance / max(max_distance, 1e-6), 0.0, 1.0);
+float detail_nearness(float eye_distance, float max_distance) {
+    float share = clamp(1.0 - eye_distance / max(max_distance, 1e-6), 0.0, 1.0);
     return share * share * (3.0 - 2.0 * share);
 }
 

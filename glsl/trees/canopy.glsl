@@ -25,8 +25,8 @@ void kernel(ivec2 texel, out float canopy, out float height) {
     float stands = height_at(density, place_on(textureSize(density, 0), texel, size));
     float needled = needle_share(needles, needles_from, ground * relief + base_elevation);
     vec4 others = shares_with(needled);
-    Stand all = stand_of(clamp(stands, 0.0, 1.0), cell, tallest, shortest, others);
-    float covered = 1.0 - reaches(all, 1.0, vec3(0.0, 0.0, 1.0), 1.0);
-    canopy = (all.middle + 2.0 / 3.0 * all.up) * covered;
+    Stand stand = stand_of(clamp(stands, 0.0, 1.0), cell, tallest, shortest, others);
+    float covered = 1.0 - reaches(stand, 1.0, vec3(0.0, 0.0, 1.0), 1.0);
+    canopy = (stand.middle + 2.0 / 3.0 * stand.up) * covered;
     height = relief > 0.0 ? ground + canopy / relief : ground;
 }

@@ -107,13 +107,13 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     vec2 rises = max(vec2(rise_of(to_eye, around.slope), rise_of(to_sun, around.slope)), LOWEST);
     if (to_sun.z <= 0.0) rises.y = 0.0;
     vec4 others = species_at(species, share);
-    Stand all = stand_of(stands, cell, tallest, shortest, others);
+    Stand stand = stand_of(stands, cell, tallest, shortest, others);
     float end = wired_key ? end_of_table(reach, cell, textureSize(key, 0)) : reach;
-    Stand drawn = thinned(all, away, whole, end, texelFetch(limit, ivec2(0), 0).r);
+    Stand drawn = thinned(stand, away, whole, end, texelFetch(limit, ivec2(0), 0).r);
     float phase = leaf_phase(to_eye, to_sun);
     if (tree) {
         float over = at.z - map_of(height, share) * relief;
-        vec2 light = tree_light(all, drawn, normal_of(at.w), over, to_eye, to_sun, rises);
+        vec2 light = tree_light(stand, drawn, normal_of(at.w), over, to_eye, to_sun, rises);
         albedo.rgb = colour_of_tree(leaves, kind_of(at.w), late_at(at.xy));
         taken = vec4(0.0, phase * light.x, light.y, 1.0);
         return;
@@ -121,12 +121,12 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     vec2 shaded = shade_at(at.xy);
     shadow = other * mix(shadow_of_woods(share, around.sun), 1.0 - shaded.x, shaded.y);
     if (stands <= 0.0) return;
-    float sun_left = mix(reaches(all, 1.0, to_sun, rises.y), 1.0, shaded.y);
-    float sky_left = exp(-depth_of_sky(all));
+    float sun_left = mix(reaches(stand, 1.0, to_sun, rises.y), 1.0, shaded.y);
+    float sky_left = exp(-depth_of_sky(stand));
     taken = vec4(sun_left, 0.0, sky_left, 1.0);
     if (is_object(at.w)) return;
     // What of the ground all trees leave free, over what those leave free that are drawn.
-    float free = reaches(all, 1.0, to_eye, rises.x);
+    float free = reaches(stand, 1.0, to_eye, rises.x);
     float hidden = 1.0 - clamp(free / max(reaches(drawn, 1.0, to_eye, rises.x), 1e-6), 0.0, 1.0);
     if (hidden < 0.002) return;
     // Half the angle of a pixel is one over the lens's scale, times one over the picture's half.
@@ -139,9 +139,9 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     albedo.rgb = mix(albedo.rgb, crowns, hidden);
     // By brightness, what comes from the leaves of the colour that both have together.
     float part = hidden * luminance(crowns) / max(luminance(albedo.rgb), 1e-6);
-    Depths depths = Depths(depth_towards(all, to_eye, rises.x),
-                           depth_towards(all, to_sun, max(rises.y, LOWEST)),
-                           depth_of_sky(all));
+    Depths depths = Depths(depth_towards(stand, to_eye, rises.x),
+                           depth_towards(stand, to_sun, max(rises.y, LOWEST)),
+                           depth_of_sky(stand));
     vec2 lit = wood_at(table, to_eye, to_sun, depths, in_sight.z + in_sight.w);
     taken = mix(taken, vec4(0.0, phase * lit.x, lit.y, 1.0), part);
 }

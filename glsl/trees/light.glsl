@@ -15,13 +15,13 @@
 #define TREES_LIGHT
 #include "trees/stand.glsl"
 
-// Shares of the sun, as of what faces it, and of the sky. `all`, `drawn`: the stand around, and
+// Shares of the sun, as of what faces it, and of the sky. `stand`, `drawn`: the stand around, and
 // what of it is drawn so far away (`thinned`); `height`: over the ground; `rises`: of the ways to
 // the eye and to the sun (rise_of).
-vec2 tree_light(Stand all, Stand drawn, vec3 normal, float height, vec3 to_eye, vec3 to_sun,
+vec2 tree_light(Stand stand, Stand drawn, vec3 normal, float height, vec3 to_eye, vec3 to_sun,
                 vec2 rises) {
     float above = share_above(drawn, height);
-    float share = share_in(all, drawn, above, to_eye, rises.x);
-    return crown_light(all, normal_in(normal, above, share), share, to_sun, rises.y);
+    float share = share_in(stand, drawn, above, to_eye, rises.x);
+    return crown_light(stand, normal_in(normal, above, share), share, to_sun, rises.y);
 }
 #endif

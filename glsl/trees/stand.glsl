@@ -138,11 +138,11 @@ vec2 crown_light(Stand s, vec3 normal, float share, vec3 to_sun, float rise) {
                 facing_sky(normal) * open);
 }
 
-// The share above in the stand `all` of what is as deep in it as a share above is in the stand
+// The share above in one stand of what is as deep in it as a share above is in the stand
 // `thin`: one sees as much deeper into a thin stand. Of what one sees in a stand of depth d the
 // part (1 - exp(-d share)) / (1 - exp(-d)) lies higher.
-float share_in(Stand all, Stand thin, float share, vec3 to_eye, float rise) {
-    float d = depth_towards(all, to_eye, rise);
+float share_in(Stand stand, Stand thin, float share, vec3 to_eye, float rise) {
+    float d = depth_towards(stand, to_eye, rise);
     float t = depth_towards(thin, to_eye, rise);
     if (d < 1e-3) return share;
     float higher = t < 1e-3 ? share : (1.0 - exp(-t * share)) / (1.0 - exp(-t));

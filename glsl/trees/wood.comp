@@ -32,12 +32,12 @@ void main() {
     vec2 node = vec2(column, side) / vec2(max(axes.xy - 1, ivec2(1)));
     vec3 to_sun = sun_direction(wired_daylight, daylight, towards_sun);
     to_sun = vec3(length(to_sun.xy), 0.0, to_sun.z);
-    Stand all = stand_of(1.0, cell, tallest, shortest, shape == 0 ? ALL_LEAVES : ALL_NEEDLES);
+    Stand stand = stand_of(1.0, cell, tallest, shortest, shape == 0 ? ALL_LEAVES : ALL_NEEDLES);
     vec3 to_eye = direction_of(node.x, node.y);
     vec3 totals[DEPTHS];
     for (int layer = 0; layer < DEPTHS; layer++) totals[layer] = vec3(0.0);
     for (int k = 0; k < WOOD_PLACES; k++) {
-        WoodPlace seen = wood_place(all, to_eye, k);
+        WoodPlace seen = wood_place(stand, to_eye, k);
         vec3 light = vec3(facing_sun(seen.normal, to_sun), facing_sky(seen.normal), 1.0);
         for (int layer = 0; layer < DEPTHS; layer++) {
             totals[layer] += seen.weight * exp(-depth_of_layer(layer) * seen.share) * light;

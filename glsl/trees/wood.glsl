@@ -24,7 +24,7 @@ vec4 kernel(ivec2 texel) {
     vec3 to_sun = sun_direction(wired_daylight, daylight, towards_sun);
     to_sun = vec3(length(to_sun.xy), 0.0, to_sun.z);
     vec4 others = layer < axes.z ? ALL_LEAVES : ALL_NEEDLES;
-    Stand all = stand_of(1.0, cell, tallest, shortest, others);
-    vec3 sums = wood_sums(all, direction_of(node.x, node.y), to_sun, depth);
+    Stand stand = stand_of(1.0, cell, tallest, shortest, others);
+    vec3 sums = wood_sums(stand, direction_of(node.x, node.y), to_sun, depth);
     return vec4((1.0 + depth) * sums, 1.0);
 }

@@ -34,10 +34,10 @@ vec3 ray_through(mat4 clip_from_world, vec2 place) {
 #include "view/surface.glsl"
 
 struct Ground {
-    vec2 place;      // east and north  [m]
-    float distance;  // to the eye  [m]
-    vec2 change;     // east and north, to the next pixel, without sign  [m]
-    float mark;      // as place_of_vertex gives it
+    vec2 place;  // east and north  [m]
+    float eye_distance;  // [m]
+    vec2 change;  // east and north, to the next pixel, without sign  [m]
+    float mark;  // as place_of_vertex gives it
 };
 
 const float IS_BROKEN = -1000.0;

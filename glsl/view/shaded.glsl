@@ -39,13 +39,13 @@ vec4 fragment(vec2 pixel, vec3 ray) {
         vec2 repeats = detail_repeats * vec2(1.0, extent.y / extent.x);
         vec3 fine = texture_on_ground(detail_image, share * repeats, moves * repeats, SHARPER).rgb;
         vec3 mean = textureLod(detail_image, vec2(0.5), 99.0).rgb;
-        float nearness = detail_nearness(seen.distance, detail_max_distance);
+        float nearness = detail_nearness(seen.eye_distance, detail_max_distance);
         shown = with_detail(shown, fine, mean, detail_strength * nearness);
     }
     shown *= draped_on_ground(light, share, moves, SHARPER).rgb;
     shown = cut_or(shown, earth, share, seen.mark);
     vec3 air = horizon;
     if (sky == 1 && wired_daylight) air = horizon_of(daylight, 0.001 * (base_elevation + eye.z));
-    if (haze > 0.0) shown = through_air(shown, air, haze, seen.distance, extent);
+    if (haze > 0.0) shown = through_air(shown, air, haze, seen.eye_distance, extent);
     return vec4(shown, 1.0);
 }

@@ -30,7 +30,7 @@ vec4 vertex(vec3 corner, out vec3 ray) {
 }
 vec4 fragment(vec3 ray) {
     Ground seen = ground_of_texel(texelFetch(ground, ivec2(gl_FragCoord.xy), 0).rg, ray);
-    return vec4(seen.place, seen.distance, seen.mark);
+    return vec4(seen.place, seen.eye_distance, seen.mark);
 }
 """
 TERRAIN_VIEW = (

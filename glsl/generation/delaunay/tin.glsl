@@ -74,8 +74,8 @@ vec4 fragment(int drawn) {
     }
     // end: walk
     // anchor: plane
-    float all = exact_cross(ivec2(b.xy - a.xy), ivec2(c.xy - a.xy));
+    float doubled = exact_cross(ivec2(b.xy - a.xy), ivec2(c.xy - a.xy));
     // From one corner on, not a sum of three: between equal heights it is exactly that height.
-    return vec4(a.z + ((b.z - a.z) * areas.y + (c.z - a.z) * areas.z) / all, 0.0, 0.0, 1.0);
+    return vec4(a.z + ((b.z - a.z) * areas.y + (c.z - a.z) * areas.z) / doubled, 0.0, 0.0, 1.0);
     // end: plane
 }

@@ -131,7 +131,7 @@ vec4 kernel(ivec2 texel) {
         Label label = label_on_left(vec2(12.0 * u, paper.y - (31.0 + 17.0 * float(k)) * u),
                                     k == 2 && off ? 0 : LENGTHS[which], u);
         vec3 at = cell_of(label, place);
-        if (at.x >= 0.0 && label.length > 0) {
+        if (at.x >= 0.0 && label.characters > 0) {
             board = which;
             found = at;
         }

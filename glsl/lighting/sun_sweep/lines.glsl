@@ -78,8 +78,8 @@ int across_at(Lines lines, int row, int line) {
     return line + int(floor(float(row) * lines.drift));
 }
 float part_at(Lines lines, int row) {
-    float all = float(row) * lines.drift;
-    return all - floor(all);
+    float drifted = float(row) * lines.drift;
+    return drifted - floor(drifted);
 }
 
 float height_across(sampler2D field, Lines lines, int row, int across) {

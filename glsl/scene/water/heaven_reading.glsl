@@ -14,9 +14,9 @@ const float THICK_CLOUD = 0.9;
 
 // How much of the second in a cloud between both: light goes about as one over a cloud's depth.
 float share_of_thick(float thickness) {
-    vec3 inverse = 1.0 / (0.15 + vec3(clamp(thickness, THIN_CLOUD, THICK_CLOUD), THIN_CLOUD,
+    vec3 reciprocal = 1.0 / (0.15 + vec3(clamp(thickness, THIN_CLOUD, THICK_CLOUD), THIN_CLOUD,
                                       THICK_CLOUD));
-    return (inverse.y - inverse.x) / (inverse.y - inverse.z);
+    return (reciprocal.y - reciprocal.x) / (reciprocal.y - reciprocal.z);
 }
 
 // Three skies, one over the other in the table.

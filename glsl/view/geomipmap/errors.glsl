@@ -41,9 +41,9 @@ float node(ivec2 at) {
 // The corners and the middles of a block's sides, counter-clockwise from the south-west; even ones
 // are corners.
 ivec2 around(int k, int half_side) {
-    ivec2 sign = ivec2(k >= 2 && k <= 4 ? 1 : k == 1 || k == 5 ? 0 : -1,
+    ivec2 side = ivec2(k >= 2 && k <= 4 ? 1 : k == 1 || k == 5 ? 0 : -1,
                        k >= 4 && k <= 6 ? 1 : k == 3 || k == 7 ? 0 : -1);
-    return sign * half_side;
+    return side * half_side;
 }
 
 // The largest error of the fans of one block, `middle` counted from the tile's corner; the tile has

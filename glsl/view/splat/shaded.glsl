@@ -52,5 +52,5 @@ vec4 fragment(vec2 pixel, vec3 ray) {
     vec3 shown = weight.x * one + weight.y * two + weight.z * three + weight.w * four;
     vec3 lit = shown * draped_on_ground(light, share, moves, SHARPER).rgb;
     vec3 colour = cut_or(lit, earth, share, seen.mark);
-    return vec4(through_air(colour, horizon, haze, seen.distance, extent), 1.0);
+    return vec4(through_air(colour, horizon, haze, seen.eye_distance, extent), 1.0);
 }

@@ -26,10 +26,10 @@ void main() {
     vec2 disc = disc_of(on_disc, gl_FragCoord.xy / picture);
     CrownPoint point = crown_point(disc, middle, form, ragged, SALT, local_eye);
     if (!point.hit) discard;
-    Stand all = stand_at(stand.x, stand.y);
+    Stand around = stand_at(stand.x, stand.y);
     vec3 towards_eye = -normalize(away);
     vec2 rises = vec2(max(towards_eye.z, LOWEST), to_sun.z > 0.0 ? max(to_sun.z, LOWEST) : 0.0);
-    vec2 taken = tree_light(all, drawn_of(all, stand.z), point.normal, point.place.z - stand.w,
+    vec2 taken = tree_light(around, drawn_of(around, stand.z), point.normal, point.place.z - stand.w,
                             towards_eye, to_sun, rises);
     vec3 light = sun_light * (leaf_phase(towards_eye, to_sun) * taken.x * lit.x * lit.y)
             + sky_light * taken.y;

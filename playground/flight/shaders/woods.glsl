@@ -20,11 +20,11 @@ Wood wood_from(vec3 away, float metres, vec2 here, float open) {
     vec3 towards_eye = -away / max(length(away), 1e-3);
     float rise = max(towards_eye.z, LOWEST);
     float density = max(here.x, THINNEST);
-    Stand all = stand_at(density, metres);
-    Stand drawn = drawn_of(all, length(away + level_eye));
-    Depths depths = Depths(depth_towards(all, towards_eye, rise),
-                           depth_towards(all, to_sun, max(to_sun.z, LOWEST)),
-                           depth_of_sky(all));
+    Stand around = stand_at(density, metres);
+    Stand drawn = drawn_of(around, length(away + level_eye));
+    Depths depths = Depths(depth_towards(around, towards_eye, rise),
+                           depth_towards(around, to_sun, max(to_sun.z, LOWEST)),
+                           depth_of_sky(around));
     float hides = max(depths.sight - depth_towards(drawn, towards_eye, rise), 0.0) / density;
     vec2 below = exp(-vec2(depths.sun, depths.sky) * (here.x / density));
     vec4 in_sight = others_in_sight(species_at(metres));

@@ -179,8 +179,8 @@ vec4 kernel(ivec2 texel) {
                              line_cover(place, vec2(column, land), vec2(column, top), pen)
                              * step(0.001, one.z));
             }
-            float round = min(marked ? 4.2 * u : 3.0 * u, 0.45 * pitch);
-            colour = mix(colour, paint_of(one.z), dot_cover(place, vec2(column, middle), round));
+            float spot = min(marked ? 4.2 * u : 3.0 * u, 0.45 * pitch);
+            colour = mix(colour, paint_of(one.z), dot_cover(place, vec2(column, middle), spot));
         }
         colour = mix(colour, SKY, dot_cover(place, from, 6.6 * u));
         colour = mix(colour, paint_of(about.x), dot_cover(place, from, 5.2 * u));
@@ -197,20 +197,20 @@ vec4 kernel(ivec2 texel) {
     vec3 legend_paint = INK;
     for (int k = 0; k < 8; k++) {
         int which = k < 2 ? k : k == 2 ? 2 + beam : k == 3 ? (second >= 0 ? 6 : 5) : k + 3;
-        int length = LENGTHS[which];
-        if (k == 1 && second < 0) length = 0;
-        if (k == 7 && (highest.y < 0.0 || highest.y > paper.y - 60.0 * u)) length = 0;
+        int characters = LENGTHS[which];
+        if (k == 1 && second < 0) characters = 0;
+        if (k == 7 && (highest.y < 0.0 || highest.y > paper.y - 60.0 * u)) characters = 0;
         Label label = label_on_left(vec2(12.0 * u, paper.y - (31.0 + 17.0 * float(k - 2)) * u),
-                                    length, u);
+                                    characters, u);
         if (k < 2) {
             label = label_around(on_paper(section, k == 0 ? facts.zw : other.zw)
-                                 - vec2(0.0, 27.0 * u), length, u);
+                                 - vec2(0.0, 27.0 * u), characters, u);
         }
-        if (k == 7) label = label_on_left(vec2(12.0 * u, highest.y + 4.0 * u), length, u);
+        if (k == 7) label = label_on_left(vec2(12.0 * u, highest.y + 4.0 * u), characters, u);
         if (k >= 4 && k < 7) {
             // A legend along the lower edge, each entry after its dot.
             float at = k == 4 ? 26.0 : k == 5 ? 92.0 : 230.0;
-            label = label_on_left(vec2(at * u, 10.0 * u), length, u);
+            label = label_on_left(vec2(at * u, 10.0 * u), characters, u);
             float spot = dot_cover(place, label.corner + vec2(-8.0, 7.5) * u, 4.2 * u);
             legend = max(legend, spot);
             if (spot > 0.0) legend_paint = k == 4 ? FREE : k == 5 ? PARTLY : HIDDEN;
@@ -218,7 +218,7 @@ vec4 kernel(ivec2 texel) {
         }
         behind = max(behind, board_cover(label, place));
         vec3 found = cell_of(label, place);
-        if (found.x >= 0.0 && length > 0) {
+        if (found.x >= 0.0 && characters > 0) {
             board = which;
             cell = found;
         }

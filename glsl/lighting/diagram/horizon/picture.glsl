@@ -111,8 +111,8 @@ vec4 kernel(ivec2 texel) {
     vec2 along = normalize(vec2(1.0, east.z));
     vec2 normal = vec2(-along.y, along.x);
     if (shows == EFFECTIVE) {
-        float round = covered(HEMISPHERE * u - length(off)) * half_plane(place, eye, along);
-        colour = mix(colour, SUN, 0.2 * round);
+        float half_disc = covered(HEMISPHERE * u - length(off)) * half_plane(place, eye, along);
+        colour = mix(colour, SUN, 0.2 * half_disc);
         float arc = covered(0.6 * u - abs(length(off) - HEMISPHERE * u))
                 * half_plane(place, eye, along);
         colour = mix(colour, PARTLY, arc);
@@ -197,23 +197,23 @@ vec4 kernel(ivec2 texel) {
     for (int k = 0; k < 5; k++) {
         // Two labels at the lines, three lines of text.
         int which = k < 2 ? k : shows == HORIZON_ANGLE ? k : shows == EFFECTIVE ? k + 2 : k + 4;
-        int length = LENGTHS[which];
-        if (shows == SUN_SEEN && k < 2) length = 0;
-        if (shows == HORIZON_ANGLE && k < 4 && (k & 1) == 0 && east.y < 0.0) length = 0;
-        if (shows == HORIZON_ANGLE && k < 4 && (k & 1) == 1 && west.y < 0.0) length = 0;
-        if (shows != SUN_SEEN && k == 4) length = 0;
+        int characters = LENGTHS[which];
+        if (shows == SUN_SEEN && k < 2) characters = 0;
+        if (shows == HORIZON_ANGLE && k < 4 && (k & 1) == 0 && east.y < 0.0) characters = 0;
+        if (shows == HORIZON_ANGLE && k < 4 && (k & 1) == 1 && west.y < 0.0) characters = 0;
+        if (shows != SUN_SEEN && k == 4) characters = 0;
         Label label = label_on_left(vec2(12.0 * u, paper.y - (14.0 + 17.0 * float(k - 1)) * u),
-                                    length, u);
+                                    characters, u);
         if (k == 0) {
             vec2 way = way_of(radians(values[0]), 1.0);
-            label = label_on_right(eye + 175.0 * u * way + vec2(-4.0, 6.0) * u, length, u);
+            label = label_on_right(eye + 175.0 * u * way + vec2(-4.0, 6.0) * u, characters, u);
         } else if (k == 1) {
             vec2 way = way_of(radians(values[1]), -1.0);
-            label = label_on_left(eye + 175.0 * u * way + vec2(4.0, 6.0) * u, length, u);
+            label = label_on_left(eye + 175.0 * u * way + vec2(4.0, 6.0) * u, characters, u);
         }
         behind = max(behind, board_cover(label, place));
         vec3 found = cell_of(label, place);
-        if (found.x >= 0.0 && length > 0) {
+        if (found.x >= 0.0 && characters > 0) {
             board = which;
             cell = found;
         }

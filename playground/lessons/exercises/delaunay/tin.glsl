@@ -71,7 +71,7 @@ vec4 fragment(int drawn) {
         if (next < 0.0) break;
         triangle = int(next);
     }
-    float all = exact_cross(ivec2(b.xy - a.xy), ivec2(c.xy - a.xy));
+    float doubled = exact_cross(ivec2(b.xy - a.xy), ivec2(c.xy - a.xy));
     // From one corner on, not a sum of three: between equal heights it is exactly that height.
-    return vec4(a.z + ((b.z - a.z) * areas.z + (c.z - a.z) * areas.y) / all, 0.0, 0.0, 1.0);
+    return vec4(a.z + ((b.z - a.z) * areas.z + (c.z - a.z) * areas.y) / doubled, 0.0, 0.0, 1.0);
 }
