@@ -1,6 +1,7 @@
 """Tokenise a GLSL text behind its preprocessor: macros expanded, branches that are off left out.
 
 Each token knows its place in the text; one of a macro has the place of the whole call, the outermost one.
+A macro that names itself, as ``#define iTime (iTime * 0.5)``, stays: its name is one of what it stands for.
 A text whose conditions depend on the driver has two readings: see ``readings``.
 """
 
@@ -114,12 +115,13 @@ class _Reader:
         if match is None:
             return
         word, name, brackets, parameters, rest = match.groups()
+        self.macros.pop(name, None)
         if word == "undef":
-            self.macros.pop(name, None)
             return
         names = tuple(p.strip() for p in parameters.split(",") if p.strip()) if brackets else None
         body = [text for text in _TOKEN.findall(rest) if not text.startswith(("//", "/*"))]
-        self.macros[name] = _Macro(names, tuple(body))
+        if name not in body:
+            self.macros[name] = _Macro(names, tuple(body))
 
     def _expand(self, token: Token) -> bool:
         """Replace a token that calls a macro by what the macro stands for; return whether it does."""

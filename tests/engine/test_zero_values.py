@@ -109,6 +109,11 @@ LOCALS = {
         "DECL(a)« = 0.»; DECL(b) = s.y; a += s.x;",
         "a, b, 0",
     ),
+    "a macro beside one that names itself": (
+        "#define iTime (iTime * .5)\n#define SUM(n, x) float n« = 0.»; n += x + iTime",
+        "SUM(a, s.x);",
+        "a, s.y, 0",
+    ),
     "out parameters": (
         "void f(float x, out float a, out vec2 b[2], inout float k)"
         " {« a = 0.; b[0] = b[1] = vec2(0);» a += x; b[1] += x; k += x; }",
