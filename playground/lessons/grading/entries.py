@@ -178,8 +178,8 @@ def _zip_entries(path: Path) -> Iterator[Entry]:
         raise DataError(Said("is no zip that can be read: {why}", why=_reason(error))) from None
     for item in items:
         if item.filename.lower().endswith(_ENDING):
-            error = DataError(Said("is a zip in a zip, which is not looked into; hand in its folder"))
-            yield Entry(item.filename, _raiser(error), is_archive=True)
+            nested = DataError(Said("is a zip in a zip, which is not looked into; hand in its folder"))
+            yield Entry(item.filename, _raiser(nested), is_archive=True)
         elif not item.is_dir():
             yield Entry(item.filename, _zip_reader(path, item))
 
