@@ -61,6 +61,10 @@ class _Zeros:
         if not self.declared.is_balanced:
             return
         globals_ = "".join(map(self._begin, self.declared.variables))
+        for block, colon in self.declared.entries:  # a jump there passes the declarations above
+            for one in self.declared.variables:
+                if one.block == block and one.at < colon and not one.qualifiers & _OUTSIDE:
+                    self._insert(colon, self._statements(one.name, one.type))
         for function in self.declared.functions:
             if function.closes >= 0:
                 self._frame(function, globals_ if function.name == "main" else "")

@@ -24,6 +24,7 @@ _QUALIFIERS = frozenset(
 _NO_TYPES = frozenset(
     "return else do while for if switch case default break continue discard precision struct".split()
 )
+_JUMPS = frozenset({"break", "return", "continue", "discard"})
 _HEADERS = frozenset({"for", "while", "if", "switch"})
 _BEHIND_NAMES = frozenset({"=", ";", ",", ")", "[", "("})
 _CLOSES = {"(": ")", "[": "]", "{": "}"}
@@ -54,6 +55,7 @@ class Variable:
     close: int = -1  # index of the token that ends the declaration: a semicolon, or the bracket of a header
     is_global: bool = False
     may_follow: bool = False  # a statement may stand behind the semicolon
+    block: int = -1  # index of the bracket that opens the block around it; -1: none does
 
 
 @dataclass(slots=True)
@@ -74,6 +76,7 @@ class _Open:
     """An open bracket."""
 
     bracket: str
+    at: int = -1  # its index
     header: str = ""  # for | while | if | switch before a round one
     function: Function | None = None  # whose body a curly one opens
 
@@ -88,6 +91,8 @@ class Declarations:
     prototypes: list[Function] = field(default_factory=list)
     structs: dict[str, Type] = field(default_factory=dict)
     numbers: dict[str, str] = field(default_factory=dict)  # const ints with values that can be worked out
+    entries: list[tuple[int, int]] = field(default_factory=list)  # labels that are only jumped to: the
+    # bracket of their switch, and their colon
     is_balanced: bool = True
 
     def __post_init__(self) -> None:
@@ -123,9 +128,13 @@ class Declarations:
         stack: list[_Open] = []
         index, first = 0, ""  # of the statement: its first token's text
         begins, single = True, False  # a statement begins here; it stands alone behind a header
+        jumped = False  # no statement goes on to this one
         while index < count:
             if begins:
-                first = texts[index]
+                is_label = texts[index] in ("case", "default")
+                if not (is_label and texts[index - 1] == ":"):
+                    jumped = is_label and texts[index - 1] == ";" and first in _JUMPS
+                first = "" if single else texts[index]
                 body = stack[0].function if stack else None
                 if body is not None and len(stack) == 1 and not single and texts[index] != "}":
                     body.last = index
@@ -137,11 +146,11 @@ class Declarations:
             begins, single = False, False
             if text in ("(", "["):
                 before = texts[index - 1] if index else ""
-                stack.append(_Open(text, before if before in _HEADERS else ""))
+                stack.append(_Open(text, index, before if before in _HEADERS else ""))
                 begins = before == "for"
             elif text == "{":
                 own = self.functions[-1] if not stack and self.functions else None
-                stack.append(_Open(text, function=own if own and own.opens == index else None))
+                stack.append(_Open(text, index, function=own if own and own.opens == index else None))
                 begins = True
             elif text in (")", "]", "}"):
                 self.is_balanced &= bool(stack) and _CLOSES[stack[-1].bracket] == text
@@ -152,8 +161,12 @@ class Declarations:
                     closed.function.closes = index
                 begins = text == "}" or bool(closed.header)
                 single = bool(closed.header)
-            elif text == ";" or (text == ":" and first in ("case", "default")):
+            elif text == ";":
                 begins = True
+            elif text == ":" and first in ("case", "default"):
+                begins = True
+                if jumped and stack:
+                    self.entries.append((stack[-1].at, index))
             elif text in ("else", "do"):
                 begins = single = True
             elif text == "return" and stack and stack[0].function and texts[index + 1 : index + 2] != [";"]:
@@ -195,7 +208,14 @@ class Declarations:
             return None
         follows = not single and not in_header
         self.variables += [
-            replace(one, close=close, is_global=not stack, may_follow=follows) for one in found
+            replace(
+                one,
+                close=close,
+                is_global=not stack,
+                may_follow=follows,
+                block=stack[-1].at if stack else -1,
+            )
+            for one in found
         ]
         return close
 

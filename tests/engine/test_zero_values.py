@@ -48,6 +48,12 @@ LOCALS = {
         " default: vec2 r« = vec2(0)»; r += s; t = r.y; }",
         "t, 0, 0",
     ),
+    "switch, declared above another label": (
+        "",
+        "float t = 0.; switch (int(p.x) % 4) { case 0: float q« = 0.»; q += s.x; t = q; break;"
+        " case 1: case 2:« q = 0.;» q += s.y; default: t = 1. - s.x; }",
+        "t, 0, 0",
+    ),
     "behind if": ("", "float t« = 0.»; if (s.x > .5) t = 1.;", "t, s.y, 0"),
     "precisions": ("", "highp float a« = 0.»; lowp vec3 b« = vec3(0)»; a += s.x; b += s.y;", "a, b.x, 0"),
     "other types": (
@@ -223,6 +229,15 @@ def test_zeros_change_no_line_and_no_text_that_has_them(folder):
     text = "float f(float x) { return x; }\nfloat g = 1.0;"
     stage, kernel = zeroed(of_case(text, " float a = s.x, b[2] = float[2](1.0, a);", "a"))
     assert text in stage.text and "float a = s.x, b[2] = float[2](1.0, a);" in stage.text
+
+
+def test_a_jump_past_a_declaration_in_a_switch_finds_zeros(folder):
+    body = "switch (int(p.x)) { case 0: float q; if (s.x > 0.5) break;"
+    body += " case 1: q += 1.0; break; case 2: c.x = q; }"
+    kernel = load(folder.write("a.frag", of_case("", body))).graph.find("view").technique
+    text = with_zeros(wrap(kernel, FRAGMENT, 450)).stages["fragment"].text
+    assert "case 0: float q = 0.0; if" in text and "case 2: q = 0.0; c.x" in text
+    assert "case 1: q += 1.0" in text  # case 0 goes on to it
 
 
 def test_a_text_that_zeros_would_break_is_drawn_as_it_is(any_engine, folder, caplog):
