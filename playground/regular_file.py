@@ -8,7 +8,7 @@ from __future__ import annotations
 import errno
 import os
 import stat
-from io import BufferedReader
+from io import BufferedReader, FileIO
 from pathlib import Path
 
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
@@ -37,7 +37,8 @@ def require_regular(path: Path) -> os.stat_result:
 
 def open_regular(path: Path) -> BufferedReader:
     """Open a regular file to read its bytes; raise as ``require_regular`` does."""
-    return os.fdopen(_opened(path)[0], "rb")
+    number, _ = _opened(path)
+    return BufferedReader(FileIO(path, opener=lambda *_: number))  # its name is the path, as libraries expect
 
 
 def read_regular(path: Path, most: int | None = None) -> bytes:

@@ -330,7 +330,9 @@ def test_every_option_that_is_named_exists():
         return own.union(*map(options, getattr(command, "commands", {}).values()))
 
     plugin = (ROOT / "playground" / "shots" / "plugin.py").read_text("utf-8")
+    own_tests = (ROOT / "tests" / "conftest.py").read_text("utf-8")
     known = options(cli.command_line()) | set(re.findall(r'"(--shots-[a-z-]+)"', plugin))
+    known |= set(re.findall(r'addoption\(\s*"(--[a-z-]+)"', own_tests))
     known |= {
         "--help",
         "--reuse-window",

@@ -16,6 +16,7 @@ from PIL import Image
 
 import playground
 from playground.errors import DataError, ParameterError
+from playground.extras import install_command
 from playground.notebook import engine_thread, sketch_widget
 from playground.sketch.model import Camera
 
@@ -283,5 +284,5 @@ def test_without_anywidget_one_sentence_names_the_extra(monkeypatch):
             sys.modules, name
         )
     for call in (playground.widget, lambda: playground.compare("jacksboro", "jacksboro")):
-        with pytest.raises(DataError, match=r'needs anywidget.*"terrain-shader-playground\[notebook\]"'):
+        with pytest.raises(DataError, match=f"needs anywidget: {re.escape(install_command('notebook'))}"):
             call()

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
 import tifffile
 
 from playground.errors import DataError
+from playground.extras import install_command
 from playground.paths import GLSL
 from playground.sketch.allowed_files import VECTORS
 from playground.sketch.techniques import read_technique
@@ -259,7 +261,7 @@ def test_other_formats_are_read_by_ogr_or_name_the_extra(tmp_path, monkeypatch, 
     with pytest.raises(DataError, match=f"is no {ending[1:]} file, although its name says so"):
         read_vectors(path)
     monkeypatch.setattr(vectors, "find_spec", lambda _: None)
-    with pytest.raises(DataError, match=r'is read by OGR; the extra gis .*playground\[gis\]"'):
+    with pytest.raises(DataError, match=f"is read by OGR; .*{re.escape(install_command('gis'))}"):
         read_vectors(path)
 
 

@@ -33,7 +33,7 @@
     (layer == 0) * (octaves > 1) * (frequency == 1): \
     with frequency 1 all layers have the same one interval (raise frequency or lower octaves); \
     (octaves > 0) * (frequency > (size.x - 1) * tiles): \
-    frequency asks for more intervals than there are gaps between texels, and is lowered to these; \
+    frequency asks for more intervals than there are gaps between texels, and is lowered to them; \
     (layer == 0) * (octaves > 1) * (1 < frequency) \
         * (frequency ** (octaves - 1) >= (size.x - 1) * tiles): \
     the last layers all have as many intervals as there are gaps between texels \

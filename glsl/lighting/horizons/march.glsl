@@ -9,14 +9,14 @@
 //            Surfaces"; K(p) by eqs 3.12 to 3.15
 //   tested   tests/glsl/test_horizons.py, against brute force in float64
 //
-// The plain form: from each texel a march over the whole terrain, in steps of one row of the finer
-// of two grids, the heights' and this pass's own. It ends where the highest terrain could not be
-// seen over the horizon found so far. Heights count where the ray crosses a row, interpolated: a
-// texel less than one texel beside the ray is seen in part. Between two rows a bilinear cell may
-// stand higher by a quarter of its twist |a - b - c + d|; of a ridge one texel wide that runs
-// across the rows, half of the height or more is seen. A step of the repeat marches in two opposite
-// directions: no single draw lasts so long that a graphics driver would give it up. Half a texel
-// beyond the terrain's edge a march leaves the terrain.
+// The plain form: from each texel a march over the whole terrain, in steps of one row of the
+// finer of two grids, the heights' and this pass's own. It ends where the highest terrain could
+// not be seen over the horizon found so far. Heights count where the ray crosses a row,
+// interpolated: a texel less than one texel beside the ray is seen in part. Between two rows a
+// bilinear cell may stand higher by a quarter of its twist |a - b - c + d|; of a ridge one texel
+// wide that runs across the rows, half of the height or more is seen. A step of the repeat
+// marches in two opposite directions: no single draw lasts so long that a graphics driver would
+// give it up. Half a texel beyond the terrain's edge a march leaves the terrain.
 //
 // Beyond the edge the sky is open, so that near it horizons are too low and K is too bright. Of
 // 65 x 65 texels cut out of real terrain with slopes of 16 degrees the outermost have 0.01 too

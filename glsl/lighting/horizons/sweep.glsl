@@ -32,9 +32,10 @@
 // From height h a texel looks at point q of the hull of all c, where the slope m = (c(q) - h) / q
 // is greatest: by (1) it finds a slope of at least m - t/q. By (2) a certain row p has a slope of
 // at most m + t/p. Both are over 16 rows away: t = 8.5 e makes the difference at most e. An
-// uncertain row is passed over only where U(k) <= h + (found + e/4) k, so that it is over the slope
-// found by even less. With e = MAX_ERROR as a tangent the elevation is too low by at most
-// atan(MAX_ERROR) = 2.86 degrees; it is never too high, since all slopes found are the march's own.
+// uncertain row is passed over only where U(k) <= h + (found + e/4) k, so that it is over the
+// slope found by even less. With e = MAX_ERROR as a tangent the elevation is too low by at most
+// atan(MAX_ERROR) = 2.86 degrees; it is never too high, since all slopes found are the march's
+// own.
 // Lines along axes and diagonals of the grid are the lines of sight: L = U, and nothing is lost.
 // A line leaves the terrain up to half a texel after some of the lines of sight along it, or
 // before: the rows between are uncertain, and are not on the hull.

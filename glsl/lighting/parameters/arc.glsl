@@ -13,6 +13,6 @@ uniform int measured = 0;     //! menu("on its arc", "eight directions") group("
 uniform float arc = -360.0;   //! angle follows("sun", "measured", "on its arc") group("Sun")
                               //! Azimuth of the first horizon, and of the sun's arc, which goes on
                               //! through the zenith. Unless set, the arc is under the sun, and its
-                              //! horizons are worked out anew when the sun's azimuth changes; a sun
-                              //! off the arc that is set has its horizon taken between two of eight
+                              //! horizons are computed again when the sun's azimuth changes. Off
+                              //! an arc that is set, its horizon is interpolated from eight
 #endif

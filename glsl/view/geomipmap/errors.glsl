@@ -46,8 +46,8 @@ ivec2 around(int k, int half_side) {
     return side * half_side;
 }
 
-// The largest error of the fans of one block, `middle` counted from the tile's corner; the tile has
-// so many cells.
+// The largest error of the fans of one block of a tile of `cells`; `middle` is counted from its
+// corner.
 float error_of_block(ivec2 middle, int half_side, ivec2 cells) {
     float ring[8];
     for (int k = 0; k < 8; k++) ring[k] = node(middle + around(k, half_side));
@@ -61,7 +61,8 @@ float error_of_block(ivec2 middle, int half_side, ivec2 cells) {
         for (int x = -low.x; x <= high.x; x++) {
             float truth = node(at + ivec2(x, y));
             // Four sectors, each with a side: how far out towards it, and how far along it.
-            vec2 way = vec2(x, y) / vec2(max(ivec2(x < 0 ? low.x : high.x, y < 0 ? low.y : high.y), 1));
+            ivec2 half_extent = ivec2(x < 0 ? low.x : high.x, y < 0 ? low.y : high.y);
+            vec2 way = vec2(x, y) / vec2(max(half_extent, 1));
             bool upright = abs(way.y) >= abs(way.x);
             int side = upright ? (y < 0 ? 0 : 2) : (x < 0 ? 3 : 1);
             float outward = max(abs(way.x), abs(way.y));

@@ -7,9 +7,9 @@
 //   tested   tests/glsl/test_view_geomipmap.py
 //
 // A tile is 16 x 16 cells, from 512 triangles down to 2 in five levels, and a cell lies between
-// texels: so each node is on a texel, whatever the terrain's size. Where the texels less one are no
-// multiple of 16, the tiles at the eastern and northern edge have fewer cells: the nodes beyond the
-// edge lie on it, and the triangles between them have no area.
+// texels: so each node is on a texel, whatever the terrain's size. Where the texels less one are
+// no multiple of 16, the tiles at the eastern and northern edge have fewer cells: the nodes
+// beyond the edge lie on it, and the triangles between them have no area.
 #ifndef VIEW_GEOMIPMAP_TILES
 #define VIEW_GEOMIPMAP_TILES
 

@@ -36,6 +36,7 @@ _MOST_ELEMENTS = 16  # of an array of samplers: what a driver of OpenGL 3.3 may 
 _MODEL = "MODEL_"
 _PACKS = 420  # the version of GLSL that has all of these
 _PACKING = frozenset(f"{way}{kind}2x16" for way in ("pack", "unpack") for kind in ("Half", "Snorm", "Unorm"))
+_DEFINED = re.compile(r"\s*#\s*define\s+(\w+)")
 _SHADOW_MAP = "#define LIGHT_SHADOWMAP "
 _STANDS_IN = "a stand-in is drawn; a sketch may wire an image to it"
 _SOUNDS = "a made-up sound stands in; a sketch may wire foreign/sound to it"
@@ -284,8 +285,8 @@ def places_of(file: str, line: Line, root: Path) -> tuple[Path, ...]:
 
 def _packing(source: SourceText) -> tuple[str, ...]:
     """Return what packs numbers for a text that does so in a version of GLSL without such functions."""
-    code = source.code
-    packs = [name for name in _PACKING & source.names if not is_declared(code, name, anywhere=False)]
+    own = {found[1] for found in map(_DEFINED.match, source.code.splitlines()) if found}
+    packs = [n for n in (_PACKING & source.names) - own if not is_declared(source.code, n, anywhere=False)]
     return ("packing.glsl",) if packs and version_of(source) < _PACKS else ()
 
 
