@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from playground.api import headless
 from playground.capture.atomic_group import write_together
 from playground.capture.export_options import Form, bits_for, check, sidecar_paths
-from playground.capture.export_textures import height_of, kind_of
+from playground.capture.export_textures import height_of, is_light, kind_of
 from playground.capture.extensions import (
     COLOUR,
     HEIGHT,
@@ -30,13 +30,22 @@ from playground.capture.extensions import (
     RAW,
     SHADERS,
     USUAL_GRID,
+    whole_numbers,
 )
 from playground.capture.gltf import encode_glb
 from playground.capture.mesh import sampled, terrain_mesh
 from playground.capture.obj import encode_mtl, encode_obj
 from playground.capture.shader_export.es_check import check_es
 from playground.capture.shader_export.export import ShaderFiles, shader_files
-from playground.capture.values import SOFTWARE, Encoded, Layer, colour_samples, encode, encode_picture
+from playground.capture.values import (
+    SOFTWARE,
+    Encoded,
+    Layer,
+    colour_samples,
+    encode,
+    encode_picture,
+    light_span,
+)
 from playground.capture.web_page import WebPage, page_bytes, prepare_page
 from playground.engine.engine import Engine
 from playground.engine.internals import opened
@@ -249,10 +258,13 @@ def _write_values(engine: Engine, job: ExportJob) -> Exported:
     rows, cols = values.shape[:2]
     spacing = _spacing(job, (cols, rows))
     with naming(job.path):
+        span = job.form.span
+        if span is None and job.kind == COLOUR and is_light(job.plan, job.texture):
+            span = light_span(values) if whole_numbers(job.ending, job.form.bits) else None
         if job.ending in PICTURES:
-            made = encode_picture(values, job.ending)
+            made = encode_picture(values, job.ending, span or (0.0, 1.0))
         else:
-            layer = Layer(values, job.kind, spacing, job.form.bits, job.form.span, _place(job))
+            layer = Layer(values, job.kind, spacing, job.form.bits, span, _place(job))
             made = encode(layer, job.ending)
     files = {job.path: made.data}
     sidecars = tuple(sidecar_paths(job.path)) if made.sidecar else ()

@@ -151,8 +151,8 @@ def bits_for(path: Path, kind: str, form: Form) -> int:
     if form.bits and form.bits not in bits:
         raise _wrong_bits(path, form.bits, set(bits))
     chosen = form.bits or bits[0]
-    if form.span and (kind == COLOUR or not whole_numbers(ending, chosen)):
-        raise DataError("a range is for heights and numbers in whole numbers; these need none", file=path)
+    if form.span and not whole_numbers(ending, chosen):
+        raise DataError("a range is for whole numbers; floats hold any value", file=path)
     return chosen
 
 

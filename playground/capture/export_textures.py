@@ -20,13 +20,21 @@ def height_of(plan: Plan) -> str:
 
 def kind_of(plan: Plan, texture: str) -> str:
     """Return what a texture holds, by the name of the output and, if it is not named, of the pass."""
-    path, _, output = texture.partition(":")
-    last = path.rpartition(".")[2]
-    outputs = plan.flat.outputs[path]
-    names = [output] if output else [last, last if last in outputs else next(iter(outputs))]
-    for name in names:
+    for name in _names(plan, texture):
         if name == HEIGHT:
             return HEIGHT
         if name in (COLOUR, "light"):
             return COLOUR
     return NUMBERS
+
+
+def is_light(plan: Plan, texture: str) -> bool:
+    """Return whether a texture holds light, by the same names."""
+    return next((name for name in _names(plan, texture) if name in (HEIGHT, COLOUR, "light")), "") == "light"
+
+
+def _names(plan: Plan, texture: str) -> list[str]:
+    path, _, output = texture.partition(":")
+    last = path.rpartition(".")[2]
+    outputs = plan.flat.outputs[path]
+    return [output] if output else [last, last if last in outputs else next(iter(outputs))]

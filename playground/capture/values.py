@@ -25,6 +25,7 @@ from playground.capture.extensions import COLOUR, HEIGHT, whole_numbers
 from playground.errors import DataError
 from playground.images.files import encode_samples
 from playground.images.image_formats import JPEG_QUALITY, encode_as
+from playground.images.values import clamped_note
 from playground.sketch.colour import linear_to_srgb
 from playground.terrain.geokeys import (
     CITATION,
@@ -89,8 +90,10 @@ def encode(layer: Layer, ending: str) -> Encoded:
     if not whole_numbers(ending, layer.bits):
         return _floats(layer, ending)
     if layer.kind == COLOUR:
-        samples, warning = colour_samples(layer.values, layer.bits)
-        return Encoded(encode_samples(samples, _text(layer)), (f"sRGB in {layer.bits} bits",), warning)
+        span = layer.span or (0.0, 1.0)
+        samples, warning = colour_samples(layer.values, layer.bits, span)
+        details = (f"sRGB in {layer.bits} bits", *_black_and_white(span))
+        return Encoded(encode_samples(samples, _text(layer, span)), details, warning)
     span = layer.span or usual_span(layer)
     samples, warning = _quantised(layer, span, ending)
     top = 2**layer.bits - 1
@@ -112,29 +115,43 @@ def usual_span(layer: Layer) -> tuple[float, float]:
     return low, high if high > low else low + 1.0  # flat terrain: any scale will do, but one metre
 
 
+def light_span(values: NDArray[np.float32]) -> tuple[float, float]:
+    """Return black and white of light, which has no highest value: white is the brightest, 1 at least."""
+    _check_finite(values, "a picture")
+    return 0.0, max(float(values.max()), 1.0)
+
+
 def scale_of(span: tuple[float, float], bits: int) -> float:
     """Return the difference in value of one step of the whole numbers."""
     return (span[1] - span[0]) / float(2**bits - 1)
 
 
 def colour_samples(
-    values: NDArray[np.float32], bits: int = 8
+    values: NDArray[np.float32], bits: int = 8, span: tuple[float, float] = (0.0, 1.0)
 ) -> tuple[NDArray[np.uint8] | NDArray[np.uint16], str]:
-    """Return linear colours encoded as sRGB, in whole numbers, and a sentence on what was clamped."""
+    """Return linear colours encoded as sRGB, in whole numbers, and a sentence on what was clamped.
+
+    ``span`` is what black and white mean.
+    """
     _check_finite(values, "a picture")
-    outside = int(np.count_nonzero((values < 0.0) | (values > 1.0)))
-    warning = ""
-    if outside:
-        warning = (
-            f"{outside} of {values.size} values are outside 0 to 1 "
-            f"(from {values.min():.4g} to {values.max():.4g}) and were clamped"
-        )
     top = 2**bits - 1
-    encoded = np.rint(linear_to_srgb(np.clip(values, 0.0, 1.0)) * top)
-    return encoded.astype(np.uint8 if bits == 8 else np.uint16), warning
+    encoded = np.rint(linear_to_srgb(_share_of(values, span)) * top)
+    return encoded.astype(np.uint8 if bits == 8 else np.uint16), clamped_note(values, *span)
 
 
-def encode_picture(colours: NDArray[np.float32], ending: str) -> Encoded:
+def _share_of(values: NDArray[np.float32], span: tuple[float, float]) -> NDArray[np.float64]:
+    """Return values as shares of a range, 0 to 1."""
+    low, high = span
+    return np.clip((values.astype(np.float64) - low) / (high - low), 0.0, 1.0)
+
+
+def _black_and_white(span: tuple[float, float]) -> tuple[str, ...]:
+    return () if span == (0.0, 1.0) else (f"black is {span[0]:.7g} and white is {span[1]:.7g}",)
+
+
+def encode_picture(
+    colours: NDArray[np.float32], ending: str, span: tuple[float, float] = (0.0, 1.0)
+) -> Encoded:
     """Return the bytes of a WebP or a JPEG; ``colours`` is (rows, cols) or (rows, cols, 3), linear.
 
     The north row comes first. WebP loses nothing; JPEG keeps its colours at full resolution.
@@ -142,9 +159,10 @@ def encode_picture(colours: NDArray[np.float32], ending: str) -> Encoded:
     Raises:
         DataError: a picture larger than the format takes, or colours that are not finite.
     """
-    samples, warning = colour_samples(colours)
+    samples, warning = colour_samples(colours, span=span)
     lossless = "lossless" if ending == ".webp" else f"quality {JPEG_QUALITY}"
-    return Encoded(encode_as(ending, samples.astype(np.uint8)), (f"sRGB in 8 bits, {lossless}",), warning)
+    details = (f"sRGB in 8 bits, {lossless}", *_black_and_white(span))
+    return Encoded(encode_as(ending, samples.astype(np.uint8)), details, warning)
 
 
 def _quantised(
@@ -152,17 +170,8 @@ def _quantised(
 ) -> tuple[NDArray[np.uint8] | NDArray[np.uint16], str]:
     values = layer.values
     _check_finite(values, f"{layer.bits} bits of {ending}")
-    low, high = span
-    outside = int(np.count_nonzero((values < np.float32(low)) | (values > np.float32(high))))
-    warning = ""
-    if outside:
-        warning = (
-            f"{outside} of {values.size} values are outside {low:.7g} to {high:.7g}{layer.unit} "
-            f"(from {values.min():.7g} to {values.max():.7g}) and were clamped"
-        )
-    share = np.clip((values.astype(np.float64) - low) / (high - low), 0.0, 1.0)
-    whole = np.rint(share * (2**layer.bits - 1))
-    return whole.astype(np.uint8 if layer.bits == 8 else np.uint16), warning
+    whole = np.rint(_share_of(values, span) * (2**layer.bits - 1))
+    return whole.astype(np.uint8 if layer.bits == 8 else np.uint16), clamped_note(values, *span, layer.unit)
 
 
 def _check_finite(values: NDArray[np.float32], where: str) -> None:
@@ -220,7 +229,9 @@ def _spacing(layer: Layer) -> str:
 def _text(layer: Layer, span: tuple[float, float] | None = None) -> dict[str, str]:
     """Return what a PNG says of itself: number * scale + offset is the value."""
     text = {"Software": SOFTWARE, "spacing_m": _spacing(layer)}
-    if span is not None:
+    if span is not None and layer.kind == COLOUR:
+        text |= {"black": repr(span[0]), "white": repr(span[1])}
+    elif span is not None:
         unit = "_m" if layer.kind == HEIGHT else ""
         text |= {f"offset{unit}": repr(span[0]), f"scale{unit}": repr(scale_of(span, layer.bits))}
     return text

@@ -110,7 +110,10 @@ def export(
     ] = "",
     span: Annotated[
         str,
-        value("--range LOW,HIGH", "What 0 and the largest whole number mean, in metres for heights."),
+        value(
+            "--range LOW,HIGH",
+            "What 0 and the largest whole number mean: in metres for heights, black and white for colours.",
+        ),
     ] = "",
     grid: Annotated[
         str,

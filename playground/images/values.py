@@ -76,11 +76,19 @@ def _values_as_png(image: NDArray[np.float32], path: Path) -> tuple[bytes, str]:
             f"{unusable} of {image.size} values are not finite, which a PNG cannot hold; .npy and .tif can",
             file=path,
         )
-    low, high = float(image.min()), float(image.max())
-    outside = int(np.count_nonzero((image < 0.0) | (image > 1.0)))
-    note = ""
-    if outside:
-        note = f"{outside} of {image.size} values are outside 0..1 (from {low:.6g} to {high:.6g}); clamped."
     with np.errstate(all="ignore"):
         scaled = np.rint(np.clip(image, 0.0, 1.0).astype(np.float64) * 65535.0)
-    return encode_samples(scaled.astype(np.uint16)), note
+    return encode_samples(scaled.astype(np.uint16)), clamped_note(image)
+
+
+def clamped_note(values: NDArray[np.float32], low: float = 0.0, high: float = 1.0, unit: str = "") -> str:
+    """Return a sentence on how many values are clamped to a range; nothing where none are."""
+    outside = int(np.count_nonzero((values < np.float32(low)) | (values > np.float32(high))))
+    if not outside:
+        return ""
+    percent = 100.0 * outside / values.size
+    amount = f"{percent:.1f} %" if percent >= 0.1 else "less than 0.1 %"
+    return (
+        f"{outside} of {values.size} values ({amount}) are outside {low:.7g} to {high:.7g}{unit} "
+        f"(from {values.min():.7g} to {values.max():.7g}) and were clamped"
+    )

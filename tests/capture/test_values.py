@@ -193,8 +193,8 @@ def test_colours_in_floats_stay_linear_and_whole(any_engine: Engine, lop: Sketch
     light = exr(tmp_path / "b.exr")["R"]
     assert light.dtype == np.float16
     np.testing.assert_allclose(light[:, 0], [1.25, 1.0625, 0.875, 0.6875, 0.5], rtol=1e-3)
-    done = playground.export(lop, tmp_path / "c.png", texture="light", engine=any_engine)
-    assert "outside 0 to 1 (from 0.5 to 1.25)" in done.warnings[0]
+    done = playground.export(lop, tmp_path / "c.png", texture="light", span=(0.0, 1.0), engine=any_engine)
+    assert "(from 0.5 to 1.25) and were clamped" in done.warnings[0]
 
 
 def test_other_numbers_stay_as_they_are(any_engine: Engine, lop: Sketch, tmp_path: Path):
@@ -258,3 +258,37 @@ def test_a_picture_that_its_format_cannot_take_is_a_sentence(monkeypatch: pytest
     monkeypatch.delitem(PIL.Image.SAVE, "WEBP")
     with pytest.raises(playground.DataError, match=r"this Pillow cannot write \.webp; \.png can be written"):
         encode_picture(wide[:, :9], ".webp")
+
+
+@pytest.mark.parametrize("name", ["light.png", "light.webp"])
+def test_light_is_exported_from_black_to_the_brightest(any_engine: Engine, tmp_path: Path, name: str):
+    """Nothing is clamped; decoded by IEC 61966-2-1 and times white, it is the light that floats hold."""
+    text = 'format = 1\nsize = 33\nextent = 640.0\nrelief = 200.0\n[[pass]]\nname = "height"\n'
+    text += 'use = "generation/diamond_square"\n[[pass]]\nname = "light"\nuse = "lighting/ray_cast"\n'
+    (tmp_path / "hills.toml").write_text(text)
+    hills = playground.load(tmp_path / "hills.toml")
+    floats = playground.export(hills, tmp_path / "light.npy", texture="light", engine=any_engine)
+    light = np.load(floats.path).astype(np.float64)
+    assert (light > 1.0).mean() > 0.2
+    done = playground.export(hills, tmp_path / name, texture="light", engine=any_engine)
+    assert not done.warnings and f"black is 0 and white is {light.max():.7g}" in done.summary
+    with PIL.Image.open(done.path) as picture:
+        codes = np.asarray(picture.convert("RGB"), np.float64) / 255
+        text = getattr(picture, "text", {})
+    assert name != "light.png" or float(text["white"]) == light.max()
+    low, high = (
+        np.where(c <= 0.04045, c / 12.92, ((np.maximum(c, 0) + 0.055) / 1.055) ** 2.4) * light.max()
+        for c in (codes - 0.501 / 255, codes + 0.501 / 255)
+    )
+    assert (low <= light + 1e-6).all() and (light - 1e-6 <= high).all()
+
+
+def test_a_range_of_colours_says_how_much_is_clamped(any_engine: Engine, lop: Sketch, tmp_path: Path):
+    whole = np.load(playground.export(lop, tmp_path / "a.npy", texture="colour", engine=any_engine).path)
+    limit = float(np.median(whole))
+    span = (0.0, limit)
+    done = playground.export(lop, tmp_path / "a.png", texture="colour", span=span, engine=any_engine)
+    outside = int((whole > np.float32(limit)).sum())
+    assert f"{outside} of {whole.size} values ({100 * outside / whole.size:.1f} %)" in done.warnings[0]
+    with PIL.Image.open(done.path) as picture:
+        assert np.array_equal(np.asarray(picture) == 255, whole >= np.float32(limit * 0.996))

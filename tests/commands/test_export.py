@@ -110,7 +110,9 @@ def test_bits_range_grid_and_driver_are_heard(folder: Path, capsys: pytest.Captu
     assert "5 x 5 vertices, 32 triangles" in printed(capsys)[1]
     assert cli.main(["export", "rise", "--range", "10,20", "-o", "a.png"]) == 0
     assert re.search(
-        r"^warning: a\.png: \d+ of 289 values are outside 10 to 20 m", printed(capsys)[1], re.MULTILINE
+        r"^warning: a\.png: \d+ of 289 values \([\d.]+ %\) are outside 10 to 20 m",
+        printed(capsys)[1],
+        re.MULTILINE,
     )
 
 
@@ -142,7 +144,7 @@ def test_bits_range_grid_and_driver_are_heard(folder: Path, capsys: pytest.Captu
         (["--to", "a.png", "--range", "5"], "--range 5: expected two numbers, as 0,2500"),
         (["--to", "a.png", "--range", "5,5"], "a range from 5 to 5; expected two numbers, the lower first"),
         (["--to", "a.png", "--range", "nan,5"], "expected two numbers, the lower first"),
-        (["--to", "a.npy", "--range", "0,5"], "a.npy: a range is for heights and numbers in whole numbers"),
+        (["--to", "a.npy", "--range", "0,5"], "a.npy: a range is for whole numbers; floats hold any value"),
         (["--to", "a.glb", "--range", "0,5"], "a.glb: a mesh has no bits and no range to choose"),
         (["--to", "a.glb", "--grid", "1"], "a grid of 1 vertices a side: .glb takes 2 to 2049"),
         (["--to", "a.obj", "--grid", "1026"], "a grid of 1026 vertices a side: .obj takes 2 to 1025"),

@@ -366,7 +366,7 @@ def test_other_programs_read_the_tiff(tmp_path):
 def test_what_was_clamped_is_reported(tmp_path):
     values = np.array([[0.0, -0.5], [1.0, 2.0], [0.5, 1e30]], np.float32)
     message = write_values(tmp_path / "a.png", values)
-    assert message == "3 of 6 values are outside 0..1 (from -0.5 to 1e+30); clamped."
+    assert message == "3 of 6 values (50.0 %) are outside 0 to 1 (from -0.5 to 1e+30) and were clamped"
     assert read_samples(tmp_path / "a.png")[..., 0].tolist() == [[32768, 65535], [65535, 65535], [0, 0]]
 
 
