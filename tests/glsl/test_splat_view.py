@@ -164,6 +164,22 @@ def test_only_where_two_parts_tie_in_depth_the_many_draws_differ(any_engine, mak
             assert (times > 0.9).mean() > 0.3 and (times[differs] > 1.9).all()
 
 
+def test_a_tie_moves_a_quarter_of_the_weights_at_most(any_engine, make_sketch):
+    """On white noise, where ties are many: of layers of one colour each, by the contrast between these."""
+    noise = TERRAIN.replace("./terrain", "generation/white_noise")
+    terrain = {"size": 257, "extent": 2560.0, "relief": 470.0, "weights": SPREAD, **FLAT}
+    camera = Camera(azimuth=70, elevation=22, distance=1800, target=(1280, 1280, 100))
+    frames = []
+    for view, last in (("view/splat", "land"), ("view/splat_multipass", "fourth")):
+        sketch = make_sketch(noise + VIEW.format(view, 1, "").replace("grid = 65", ""), **terrain)
+        frame = any_engine.read(sketch.plainly().with_camera(camera), f"view.{last}", size=(480, 270))
+        frames.append(frame[..., :3].astype(float))
+    one, many = frames
+    difference = np.abs(many - one)
+    assert (difference > 0.02).any(axis=-1).sum() > 20 and difference.max() > 0.1
+    assert (difference <= np.ptp(LAYERS, axis=0) / 4 + 2e-3).all()
+
+
 @pytest.mark.parametrize("detail", ["geomipmap", "morph"])
 def test_tiles_of_the_mesh_give_the_picture_of_the_full_grid(any_engine, make_sketch, detail):
     """With a tolerance below a pixel, in one draw and in four; the four meet the one to 2 of 255 here too."""
