@@ -10,6 +10,7 @@ set "venv=%root%.venv"
 set "python=%venv%\Scripts\python.exe"
 set "stamp=%venv%\play-stamp.toml"
 set "extras=%venv%\play-extras.txt"
+set "PLAYGROUND_PROGRAM=%~0"
 set "need="
 if "%~1"=="test" set "need=test"
 call :ensure || exit /b 1

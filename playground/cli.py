@@ -47,13 +47,14 @@ from playground.commands.arguments import Renderer, help_text, moment_of, read_d
 from playground.commands.common_options import prepared, with_root
 from playground.commands.import_name import check_package
 from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarning, nearest
-from playground.paths import quoted
+from playground.paths import program, quoted
 from playground.signals import ended_by_signals
 from playground.sketch.allowed_files import exists
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.streams import let_go, open_streams
 from playground.terminal import complain, note, with_loudness
 
+_NAME = "playground"
 MISTAKE, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
 
 # The base of every mistake that typer finds itself; it exports only the leaves of that family.
@@ -91,7 +92,7 @@ def _status(given: list[str]) -> int:
     try:
         with _printing_warnings():
             check_package()
-            status = command_line()(given, prog_name="playground", standalone_mode=False)
+            status = command_line()(given, prog_name=_NAME, standalone_mode=False)
         sys.stdout.flush()
     except PlaygroundError as error:
         for diagnostic in error.diagnostics:
@@ -171,7 +172,7 @@ def _open_default(renderer: Renderer) -> None:
     if where_to_show(os.environ, sys.platform):
         live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, show_lessons=True)
         return
-    note("no display here, so a picture is rendered instead; playground --help lists the commands")
+    note(f"no display here, so a picture is rendered instead; {program()} --help lists the commands")
     render.write_output(moment_of(load()), render.Output(), renderer)
 
 
@@ -180,7 +181,7 @@ def _usage_message(error: Exception) -> str:
     text: str = error.format_message() if hasattr(error, "format_message") else str(error)
     text = " ".join(text.split())
     ctx: Any = getattr(error, "ctx", None)
-    path = ctx.command_path if ctx is not None else "playground"
+    path = (ctx.command_path if ctx is not None else _NAME).replace(_NAME, program(), 1)
     if text.startswith("No such command") and ctx is not None:
         return _no_command(text.split("'")[1] if text.count("'") >= 2 else "", ctx)
     if not text:
@@ -194,7 +195,8 @@ def _no_command(name: str, ctx: Any) -> str:
         return f"no command '{name}' in {ctx.command_path}{hint}"
     if name in options.complete_sketch("") or exists(Path(name)):
         shell = quoted(name)
-        return f"'{name}' is no command; did you mean: playground live {shell}, or playground render {shell}?"
+        live, drawn = f"{program()} live {shell}", f"{program()} render {shell}"
+        return f"'{name}' is no command; did you mean: {live}, or {drawn}?"
     return f"no command '{name}'{hint}"
 
 

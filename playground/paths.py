@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
@@ -39,6 +40,11 @@ def quoted(text: str) -> str:
     import shlex
 
     return shlex.quote(text)
+
+
+def program() -> str:
+    """Return how the shell starts this program: as ``./play`` was started, where it did."""
+    return quoted(os.environ.get("PLAYGROUND_PROGRAM", "playground"))
 
 
 _current = Path("/")

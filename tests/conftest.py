@@ -21,6 +21,7 @@ from .spread import Spread
 # a home or caches of its own finds there what is compiled already: that takes most of a cold run.
 MESA_CACHE = os.environ.get("XDG_CACHE_HOME") or str(Path("~/.cache").expanduser())
 os.environ.setdefault("MESA_SHADER_CACHE_DIR", MESA_CACHE)
+os.environ.pop("PLAYGROUND_PROGRAM", None)  # of ./play test: messages are the same however tests are started
 
 pytest_plugins = ["pytester"]
 

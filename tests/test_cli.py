@@ -666,6 +666,13 @@ def test_a_new_sketch_passes_its_check_renders_and_is_never_overwritten(run: Run
     assert (tmp_path / "my-land/my_land.glsl").read_text() == "mine"
 
 
+def test_messages_name_the_program_as_it_was_started(run: Run, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setenv("PLAYGROUND_PROGRAM", "../my land/play")
+    for words in (["new", "hills"], ["check"], ["jacksboro"]):
+        message = run(*words).stderr
+        assert "'../my land/play' " in message and "playground " not in message
+
+
 # ── Long names ───────────────────────────────────────────────────────────────
 
 LONG = "x" * 200_000

@@ -41,7 +41,8 @@ class Checkout:
         for name in ("play", "pyproject.toml", "playground/_version.py"):
             shutil.copy(ROOT / name, root / name)
         stub = STUB.replace("{root}", str(root)).replace("{python}", sys.executable)
-        for name, text in (("python", stub), ("playground", '#!/bin/sh\necho "started $*"\n')):
+        echo = '#!/bin/sh\necho "started $*"\necho "as $PLAYGROUND_PROGRAM"\n'
+        for name, text in (("python", stub), ("playground", echo)):
             (self.venv / "bin" / name).write_text(text)
             (self.venv / "bin" / name).chmod(0o755)
 
@@ -74,7 +75,7 @@ class Checkout:
 @pytest.fixture
 def checkout(tmp_path: Path) -> Checkout:
     made = Checkout(tmp_path / "my land")
-    assert "started --version" in made.play("--version") and made.asked() == [""]
+    assert f"as {made.root}/play\n" in made.play("live") and made.asked() == [""]
     assert "started --version" in made.play("--version") and made.asked() == []
     return made
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from playground.commands.arguments import help_text
 from playground.commands.options import flag, positional
-from playground.paths import quoted
+from playground.paths import program, quoted
 from playground.terminal import note
 
 HELP = help_text(
@@ -36,7 +36,7 @@ def new(
     kernel = next(path for path in made if path.suffix == ".glsl")
     shell = quoted(str(folder))
     note(
-        f"next: playground live {shell}     opens it; edit {kernel}, save, and look\n"
-        f"      playground render {shell}   makes a PNG\n"
-        f"      playground check {shell}    reports what is wrong with it, if anything"
+        f"next: {program()} live {shell}     opens it; edit {kernel}, save, and look\n"
+        f"      {program()} render {shell}   makes a PNG\n"
+        f"      {program()} check {shell}    reports what is wrong with it, if anything"
     )

@@ -32,6 +32,7 @@ from playground.commands.standard_input import kept
 from playground.commands.standard_output import check_standard_output
 from playground.errors import DataError, ParameterError, counted
 from playground.images.extensions import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
+from playground.paths import program
 from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE, MOST_SUPERSAMPLE
 from playground.terminal import busy, console_for, note, progress
 
@@ -214,7 +215,7 @@ def _note_hidden_defaults(sketch: Sketch) -> None:
         note(str(one))
     if len(hidden) > _MOST_HIDDEN:
         more = counted(len(hidden) - _MOST_HIDDEN, "more default")
-        note(f"{more} that a set overrides: playground check lists them")
+        note(f"{more} that a set overrides: {program()} check lists them")
 
 
 def _draw(engine: Engine, output: Output, moment: Moment, target: Path) -> None:

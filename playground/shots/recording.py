@@ -14,7 +14,7 @@ import pytest
 from numpy.typing import NDArray
 
 from playground.errors import DataError
-from playground.paths import shown
+from playground.paths import program, shown
 from playground.shots.claims import forget_claims
 from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, STRUCTURE_ONLY
 from playground.shots.plugin_constants import CHECKED, SCREENSHOTS, STOOD_IN, UNRECORDED
@@ -322,4 +322,4 @@ def report(folder: Path) -> list[str]:
     except DataError as error:
         return [f"no report: {error}"]
     given = "" if folder.name == FOLDER else f" {shlex.quote(shown(folder))}"
-    return [*lines, f"to look and accept: playground shots review{given}"]
+    return [*lines, f"to look and accept: {program()} shots review{given}"]

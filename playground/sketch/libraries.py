@@ -17,6 +17,7 @@ from playground.errors import DataError, ParameterError, nearest
 from playground.folders import state_folder
 from playground.json_text import read_json
 from playground.partial import partial_file
+from playground.paths import program
 from playground.regular_file import read_regular
 from playground.sketch.allowed_files import is_inside, names_below, note
 
@@ -103,7 +104,7 @@ def library_around(file: Path, known: Mapping[str, Path]) -> str:
 
 def how_to_name(name: str) -> str:
     """Return how a library's folder is named, as a command."""
-    return f"playground library add {name} FOLDER"
+    return f"{program()} library add {name} FOLDER"
 
 
 def _remember(known: Mapping[str, Path]) -> None:

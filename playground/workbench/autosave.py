@@ -15,6 +15,7 @@ from typing import Any
 
 from playground.errors import PlaygroundError, SandboxError
 from playground.folders import state_folder
+from playground.paths import program
 from playground.sketch.find import find
 from playground.sketch.map_sketch import Map
 from playground.workbench.edit_merge import FileValue, file_values
@@ -93,7 +94,7 @@ class Autosave:
         session, now = self.session, self._now()
         if session.shown is None or session.drafts.opening:
             if self._recalled and isinstance(session.error, SandboxError):
-                session.notes.append("playground live --fresh opens it without your edits")
+                session.notes.append(f"{program()} live --fresh opens it without your edits")
                 self._recalled = False
             if session.shown is None or self._latest is None:
                 return
