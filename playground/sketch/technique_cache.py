@@ -2,12 +2,15 @@
 
 A live session loads its sketch at every save, which changes one file of a hundred. A technique
 is reused, as the same object, where every text that it was read from is the same, and every
-other place where a file was looked for has the same signature. Texts are compared, not times:
-a save may keep inode, size and times.
+other place where a file was looked for has the same signature. A text is read again unless its
+file's signature proves that it is the same: a save may keep inode, size and time of modification,
+two saves may fall into one tick of a clock, and Windows has no time that no program sets.
 """
 
 from __future__ import annotations
 
+import os
+import time
 from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -26,6 +29,7 @@ from playground.sketch.model import Technique
 from playground.sketch.source import read_text
 from playground.sketch.techniques import Techniques
 
+RESTED = 3.0  # [s] from a file's last change to its reading, at least; FAT counts in steps of two seconds
 _MOST = 256
 
 _Name = tuple[str, Path, Path]
@@ -36,18 +40,24 @@ class _Entry:
     technique: Technique
     places: Mapping[Path, Signature | None]  # where files were looked for
     texts: Mapping[tuple[Path, bool], str]  # those that were read, by path and whether in any encoding
-    unread: Mapping[Path, Signature | None]  # the other places
+    unproven: frozenset[Path]  # whose signature does not prove that a text is the same
     depth: int  # how deep techniques of several passes nest in it, itself among them
 
     def is_fresh(self) -> bool:
         """Return whether all files that it was read from are unchanged."""
+        return all(
+            (signature_in_load(path) == known and path not in self.unproven) or self._has_same_text(path)
+            for path, known in self.places.items()
+        )
+
+    def _has_same_text(self, path: Path) -> bool:
+        """Return whether a file that was read has the same text."""
+        read = [(any_encoding, self.texts.get((path, any_encoding))) for any_encoding in (False, True)]
         try:
-            return all(signature_in_load(path) == known for path, known in self.unread.items()) and all(
-                read_text(path, any_encoding=any_encoding) == text
-                for (path, any_encoding), text in self.texts.items()
-            )
-        except PlaygroundError:  # a text that cannot be read any more
+            same = [read_text(path, any_encoding=way) == text for way, text in read if text is not None]
+        except PlaygroundError:  # it cannot be read any more
             return False
+        return bool(same) and all(same)
 
 
 class TechniqueCache(Techniques):
@@ -79,6 +89,7 @@ class TechniqueCache(Techniques):
 
     def _read_again(self, name: _Name, use: str, folder: Path, root: Path) -> _Entry:
         around, self.deepest = self.deepest, len(self.open)
+        began = time.time_ns()
         self.known.clear()  # it would not note where it read from
         try:
             with noting_part() as places:
@@ -88,9 +99,11 @@ class TechniqueCache(Techniques):
         in_load = texts_of_load() or {}
         keys = [(path, any_encoding) for path in places for any_encoding in (False, True)]
         texts = {key: in_load[key] for key in keys if key in in_load}
-        read = {path for path, _ in texts}
-        unread = {path: known for path, known in places.items() if path not in read}
-        made = self._cached[name] = _Entry(found, places, texts, unread, depth)
+        rested = 0 if os.name == "nt" else began - RESTED * 1e9
+        unproven = frozenset(
+            path for path, _ in texts if (known := places[path]) is None or known.latest >= rested
+        )
+        made = self._cached[name] = _Entry(found, places, texts, unproven, depth)
         self._cached.move_to_end(name)
         while len(self._cached) > _MOST:
             self._cached.popitem(last=False)
