@@ -121,10 +121,19 @@ def test_root_opens_a_folder_for_one_command_only(
         assert cli.main([*words, "all/a/x.frag", "--size", "8x4", "-o", "x.png"]) == 0
         assert cli.main(["render", "all/a/x.frag", "--size", "8x4", "-o", "x.png"]) == 2
         assert "--root all opens it" in capsys.readouterr().err
-    assert cli.main(["check", "--root", "all", "all/a/x.frag"]) == 0
-    assert cli.main(["check", "--root", "all", "all/a"]) == 0
     assert cli.main(["pack", "--root", "all", "all/a/x.frag", "-o", "x.zip"]) == 0
     assert cli.main(["render", "x.zip", "--size", "8x4", "-o", "x.png"]) == 0
     capsys.readouterr()
     assert cli.main(["render", "--root", "none", "all/a/x.frag"]) == 2
     assert capsys.readouterr().err == "error: --root none: expected a folder that is there\n"
+
+
+@pytest.mark.slow
+def test_check_takes_the_root_for_a_file_and_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(tmp_path)
+    Path("all/a").mkdir(parents=True)
+    Path("all/m.glsl").write_text("float level() { return 0.25; }\n")
+    Path("all/a/x.frag").write_text('#include "../m.glsl"\nvoid main() { gl_FragColor = vec4(level()); }\n')
+    for path in ("all/a/x.frag", "all/a"):
+        assert cli.main(["check", "--root", "all", path]) == 0
+        assert cli.main(["check", path]) == 1

@@ -300,7 +300,7 @@ def test_a_given_name_of_another_type_is_the_text_s_own(any_engine, folder, kind
             assert sum(name in one for one in said) == 1, (name, said)
 
 
-def test_a_given_name_of_a_sampler_is_a_parameter_where_it_is_a_number(any_engine, folder):
+def test_a_sampler_s_name_as_a_number_is_a_parameter(any_engine, folder):
     text = "uniform vec2 u_tex0;\nuniform float iChannel1 = 0.5;\n"
     text += "void main() { gl_FragColor = vec4(u_tex0, iChannel1, 1.0); }\n"
     sketch = load(folder.write("a.frag", text)).with_values({"view.u_tex0": (1.0, 0.0)})
