@@ -38,7 +38,7 @@ _QUEUED = "context_gc"  # moderngl's mode in which dropped objects stay in ``Con
 _finalizers: weakref.WeakKeyDictionary[moderngl.Context, weakref.finalize[..., Any]] = (
     weakref.WeakKeyDictionary()
 )
-_dropped: deque[tuple[threading.Thread, Any]] = deque()  # contexts to destroy, each in its own thread
+_dropped: deque[_Made] = deque()  # contexts to destroy, each in its own thread
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,28 +211,66 @@ def _destroy_when_dropped(ctx: moderngl.Context) -> None:
     ctx.gc_mode = _QUEUED
     with suppress(AttributeError):  # moderngl's own, which would hold the newest for ever
         moderngl._store.default_context = None  # type: ignore[attr-defined]
-    _finalizers[ctx] = weakref.finalize(ctx, _drop, threading.current_thread(), ctx.mglo)
+    made = _Made(threading.current_thread(), ctx.mglo, _current_handle())
+    _finalizers[ctx] = weakref.finalize(ctx, _drop, made)
     _finalizers[ctx].atexit = False
 
 
 def release_context(ctx: moderngl.Context) -> None:
     """Destroy a context; nothing is left to do when it is dropped."""
+    if (finalizer := _finalizers.pop(ctx, None)) and (found := finalizer.detach()):
+        found[2][0].unbind()
     ctx.release()
-    if finalizer := _finalizers.pop(ctx, None):
-        finalizer.detach()
 
 
-def _drop(thread: threading.Thread, context: Any) -> None:
+@dataclass(frozen=True, slots=True)
+class _Made:
+    """A context that was opened here, as it is to be destroyed."""
+
+    thread: threading.Thread
+    context: Any  # moderngl's own object; that of its users has been collected
+    handle: int | None  # EGL's; None on other platforms
+
+    @property
+    def is_ours(self) -> bool:
+        """Whether it is this thread's, or that of one that has ended."""
+        return self.thread is threading.current_thread() or not self.thread.is_alive()
+
+    def unbind(self) -> None:
+        """Make it no longer current: EGL keeps what is, and a thread that ends may leave it so for ever."""
+        if self.handle is not None and self.handle == _current_handle():
+            self.context.__exit__(None, None, None)
+
+
+def _current_handle() -> int | None:
+    """Return EGL's handle of this thread's current context."""
+    if not sys.platform.startswith("linux"):
+        return None
+    try:
+        current = ctypes.CDLL("libEGL.so.1").eglGetCurrentContext
+    except (OSError, AttributeError):
+        return None
+    current.restype = ctypes.c_void_p
+    handle: int | None = current()
+    return handle
+
+
+def _drop(made: _Made) -> None:
     """Destroy a context that was dropped, or leave it to its thread."""
-    _dropped.append((thread, context))
-    if thread is not threading.current_thread() and thread.is_alive():
+    _dropped.append(made)
+    if made.thread is not threading.current_thread():
+        until = (
+            "until that thread uses an engine again"
+            if made.thread.is_alive()
+            else "for that thread has ended"
+        )
         warnings.warn(
-            f"an engine of thread '{thread.name}' was dropped in '{threading.current_thread().name}' without "
-            "release(): its context stays until that thread uses an engine again",
+            f"an engine of thread '{made.thread.name}' was dropped in '{threading.current_thread().name}' "
+            f"without release(): its context stays, {until}",
             ResourceWarning,
             stacklevel=2,
         )
-    elif sys.platform.startswith("linux"):  # elsewhere glcontext leaves no context current
+    if made.is_ours and sys.platform.startswith("linux"):  # elsewhere glcontext leaves no context current
         _destroy_dropped()
 
 
@@ -240,13 +278,14 @@ def _destroy_dropped() -> None:
     """Destroy the contexts that were dropped, of this thread and of those that have ended."""
     for _ in range(len(_dropped)):
         try:
-            thread, context = _dropped.popleft()
+            made = _dropped.popleft()
         except IndexError:  # a collection during this one was faster
             return
-        if thread is threading.current_thread() or not thread.is_alive():
-            context.release()
+        if made.is_ours:
+            made.unbind()
+            made.context.release()
         else:
-            _dropped.append((thread, context))
+            _dropped.append(made)
 
 
 def report_leak(ctx: moderngl.Context) -> None:

@@ -305,3 +305,31 @@ def test_an_engine_dropped_in_another_thread_waits(sketch, other):
     np.testing.assert_array_equal(*pictures)
     engines.clear()  # one that was released is nothing to report
     other.assert_intact()
+
+
+def test_an_engine_whose_thread_has_ended_is_reported(sketch, other):
+    engines: list[Engine] = []
+    thread = threading.Thread(target=lambda: engines.append(headless()), name="worker")
+    thread.start()
+    thread.join(30)
+    dropped(engines.pop())
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        other.assert_intact()
+    assert ["that thread has ended" in str(w.message) for w in caught] == [True]
+
+
+@pytest.mark.slow
+def test_threads_that_release_their_engines_leave_no_memory(sketch):
+    def work() -> None:
+        with headless() as engine:
+            engine.render(sketch, size=(64, 36))
+
+    seen = []
+    for count in (12, 24):
+        for _ in range(count):
+            thread = threading.Thread(target=work)
+            thread.start()
+            thread.join()
+        seen.append(resident())
+    assert seen[1] - seen[0] < 24 * 2**20  # a context is some 10 MiB
