@@ -32,7 +32,7 @@
 // From height h a texel looks at point q of the hull of all c, where the slope m = (c(q) - h) / q
 // is greatest: by (1) it finds a slope of at least m - t/q. By (2) a certain row p has a slope of
 // at most m + t/p. Both are over 16 rows away: t = 8.5 e makes the difference at most e. An
-// uncertain row is passed over only where U(k) <= h + (found + e/4) k, so that it is over the
+// uncertain row is passed over only where U(k) <= h + (found + e/10) k, so that it is over the
 // slope found by even less. With e = MAX_ERROR as a tangent the elevation is too low by at most
 // atan(MAX_ERROR) = 2.86 degrees; it is never too high, since all slopes found are the march's
 // own.
@@ -49,7 +49,7 @@ const int NEAR = 16;            // rows that are looked at exactly
 const int ROWS = BLOCK + NEAR;
 const float NONE = -1e30;       // a height that hides nothing
 const float MAX_ERROR = 0.05;   // of a horizon's tangent, on any terrain
-const float MIN_GAIN = 0.25;    // of that error, for which an uncertain row is looked at
+const float MIN_GAIN = 0.1;     // of that error, for which an uncertain row is looked at
 
 // Each of several rows, or pairs of rows, written out as in lighting/horizons/lines.glsl.
 #define FROM_8(DO) DO(8) DO(9) DO(10) DO(11) DO(12) DO(13) DO(14) DO(15)
