@@ -35,7 +35,7 @@ def handout(
         "handout.zip"
     ),
     hints: Annotated[bool, flag("--hints", "Put the exercises' hints on the page.")] = False,
-    install: Annotated[str, value("--install TEXT", "How students install the playground.")] = "",
+    install: Annotated[str, value("--install LINE", "How students install the playground.")] = "",
     wheel: Annotated[
         Path | None, value("--wheel FILE", "A wheel of the playground, to put into the zip.")
     ] = None,

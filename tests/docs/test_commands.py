@@ -365,9 +365,9 @@ SMALL = {
     "python tests/truth": ["--size", "25"],
 }
 FRAMES = "python -m tests.benchmarks.page_frames"
-IN_HILLS = [c for c in OTHERS if re.fullmatch(r"(python -m )?pytest hills.*", c)]
+IN_HILLS = [c for c in OTHERS if re.fullmatch(r"(python -m pytest|pytest|\./play test) hills.*", c)]
 EXPORT = "jupyter nbconvert --to terrain_html diamond_square.ipynb"
-OF_PLAY = [c for c in OTHERS if c.startswith("./play test ")]
+OF_PLAY = [c for c in OTHERS if c.startswith("./play test ") and c not in IN_HILLS]
 UPDATE = "pytest hills --shots-update"
 COLLECT = """
 import shlex, sys, pytest
@@ -412,7 +412,7 @@ def test_the_pictures_of_hills_from_none_to_accepted(folder: Path):
         done = run(folder, shlex.split(command))
         assert wanted is None or done.returncode == wanted, done.stdout
     assert list((folder / "hills" / "screenshots").rglob("*.png"))
-    others = [c.removeprefix("python -m ") for c in IN_HILLS if c not in ("pytest hills", UPDATE)]
+    others = {f"pytest hills{c.partition(' hills')[2]}" for c in IN_HILLS} - {"pytest hills", UPDATE}
     done = run(folder, ["python", "-c", COLLECT, *others])
     assert done.returncode == 0, done.stdout + done.stderr
     sketch = folder / "hills" / "sketch.toml"

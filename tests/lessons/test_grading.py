@@ -541,11 +541,11 @@ def test_no_texel_of_another_s_work_is_left_in_a_picture(ctx, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_challenge_has_a_score_in_its_column_and_no_points(ctx, monkeypatch):
+def test_a_challenge_has_a_score_in_its_column_and_no_points(ctx, any_engine, monkeypatch):
     """Its picture has 100, what is handed out 0, between them it grows with the slider that was moved."""
     one = next(x for x in assignments_of([read_lesson("slopes", "fr")]) if isinstance(x.task, Challenge))
     monkeypatch.setattr(handler, "open_context", lambda **choice: ctx)
-    monkeypatch.setattr(handler, "Engine", lambda context, **rest: Engine(context))
+    monkeypatch.setattr(handler, "Engine", lambda context, **rest: any_engine)
     judge = handler.open_service(Silent(), handler.Options(("slopes",), "fr")).answer
     begin, wanted = (values_of(scene.sketch)["light.sun"] for scene in (one.task.begin, one.task.scene))
     half = tuple((a + b) / 2 for a, b in zip(begin, wanted, strict=True))
