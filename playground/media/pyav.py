@@ -49,9 +49,9 @@ def open_media(path: Path, what: str, endings: tuple[str, ...]) -> av.container.
     checked_file(path)
     listed = ", ".join(ending[1:] for ending in endings)
     try:
-        found: av.container.InputContainer = module.open(
-            str(path), "r", options=dict(_OPTIONS), metadata_errors="replace"
-        )
+        # Metadata need not be UTF-8; from version 19 on PyAV escapes what is not, and has no such option.
+        lenient = {"metadata_errors": "replace"} if int(module.__version__.split(".")[0]) < 19 else {}
+        found: av.container.InputContainer = module.open(str(path), "r", options=dict(_OPTIONS), **lenient)
     except (module.FFmpegError, OSError, ValueError) as error:
         message = f"not {what} that can be read ({_why(error)}); expected {listed}"
         raise DataError(message, file=path) from None

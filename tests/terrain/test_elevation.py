@@ -527,7 +527,7 @@ def test_permission_denied_is_a_sentence(tmp_path, monkeypatch):
     def denied(*_: object, **__: object) -> None:
         raise PermissionError(13, "Permission denied")
 
-    for place in ("pathlib.Path.open", "io.open", "builtins.open", "numpy.fromfile"):
+    for place in ("pathlib.Path.open", "io.open", "builtins.open", "os.open", "numpy.fromfile"):
         monkeypatch.setattr(place, denied)
     for ending in ("png", "npy", "npz", "r16"):
         refused(tmp_path / f"a.{ending}", "cannot be read: Permission denied", raw_size=(3, 3))

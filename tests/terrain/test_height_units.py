@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 import sys
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -65,7 +66,7 @@ def rows_of_proj(query):
     database = Path(rasterio.__file__).parent / "proj_data" / "proj.db"
     if not database.exists():
         pytest.skip("rasterio has no database of PROJ beside it")
-    with sqlite3.connect(database) as opened:
+    with closing(sqlite3.connect(database)) as opened:
         return dict(opened.execute(query).fetchall())
 
 
