@@ -166,6 +166,8 @@ class _Program:
                 command += [f"-{key}", "bt709"]
         if codec.form == "mp4":
             command += ["-movflags", "+faststart"]
+        if codec.form == "gif":  # how long the last picture is shown
+            command += ["-final_delay", str(int(100 / fps))]
         self._errors = tempfile.TemporaryFile()
         self._process = subprocess.Popen(
             [*command, "-f", codec.form, _of_file(path)],

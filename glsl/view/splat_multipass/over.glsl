@@ -68,8 +68,8 @@ vec4 fragment(vec3 position, float mark) {
     float own = layer == 1 ? weight.y : layer == 2 ? weight.z : weight.w;
     float alpha = alphas == 1 ? own : alpha_of_layer(weight, layer);
     vec3 seen = surface_seen(shown, light, position, mark, earth, horizon, haze);
-    // The cut earth is no mixture: it is drawn with the first layer, and hides no surface that ties
-    // with it at the border. Nor is what is not a number.
+    // The cut earth is no mixture: it is drawn with the first layer, and hides no surface that
+    // ties with it at the border. Nor is what is not a number.
     if (mark > 0.0) alpha = 0.0;
     if (!is_number(alpha) || seen == NOT_A_NUMBER) alpha = 1.0;
     return vec4(seen, alpha);
