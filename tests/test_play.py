@@ -110,7 +110,7 @@ def test_an_extra_that_cannot_be_installed_breaks_nothing(checkout: Checkout):
     assert "started live" in checkout.play("live") and checkout.asked() == []
 
 
-def test_without_a_name_extras_are_listed_and_a_wrong_name_is_refused(checkout: Checkout):
+def test_extras_are_listed_and_a_wrong_name_is_refused(checkout: Checkout):
     assert "xarray" in checkout.play("add")
     assert "no extra 'vidoe'; did you mean 'video'?" in checkout.play("add", "gis", "vidoe", status=2)
     assert checkout.asked() == []

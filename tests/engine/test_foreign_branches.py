@@ -223,7 +223,7 @@ def test_a_text_may_ask_what_its_tool_defines(drawn, name):
         check(drawn(text.replace("0.25", choice.format(first, second)), file))
 
 
-def test_a_uniform_of_a_macro_is_a_parameter_and_of_a_comment_none(drawn, folder):
+def test_a_macro_s_uniform_is_a_parameter(drawn, folder):
     text = "#define KNOB(n, v) uniform float n = v;\nKNOB(level, 0.25)\n/* uniform float other; */\n"
     check(drawn(f"{text}{IMAGE.replace('0.25', 'level')}"))
     found = load(folder.path / "a.frag").graph.find("view").technique.parameters

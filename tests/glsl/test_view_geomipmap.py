@@ -297,7 +297,7 @@ def in_picture(surface: np.ndarray, texels: tuple[int, ...], view: sight.View) -
         pytest.param(1.0, [344, 403], marks=pytest.mark.slow),
     ],
 )
-def test_a_change_of_level_moves_no_place_by_more_than_the_tolerance(engine, shown, tolerance, size):
+def test_a_change_of_level_keeps_the_tolerance(engine, shown, tolerance, size):
     sketch = shown(size=size)
     tables = tables_of(engine, sketch)
     heights = engine.read(sketch, "height")

@@ -120,7 +120,7 @@ def test_a_link_to_a_lesson_that_is_not_in_the_book_is_text(tmp_path, make_lesso
     assert "[the last](small.ipynb), that" in notebook_text(linked, numbers_of(engine, linked), ["small"])
 
 
-def test_the_cover_says_what_the_book_is_and_leads_into_each_language(book):
+def test_the_cover_leads_into_each_language(book):
     page = Page(book / "index.html")
     (picture,) = page.all("img")
     assert (book / picture["src"]).is_file()

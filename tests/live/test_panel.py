@@ -371,9 +371,7 @@ def test_a_sketch_that_does_not_open_leaves_the_panel_the_title_and_the_path_of_
     assert str(other / "sketch.toml") in paths
 
 
-def test_a_label_explains_itself_over_its_whole_width_once_the_mouse_rests(
-    bare: Bare, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_label_s_tooltip_covers_its_whole_width(bare: Bare, monkeypatch: pytest.MonkeyPatch) -> None:
     explained: list[str] = []
     monkeypatch.setattr(panel_rows, "explain", lambda label, note: explained.append(label))
     bare.run_frames(3)
@@ -408,7 +406,7 @@ def test_a_path_that_is_too_long_is_cut_at_its_beginning(bare: Bare) -> None:
     imgui.end_frame()
 
 
-def test_a_file_s_field_shows_its_name_and_its_tooltip_the_whole_path(
+def test_a_file_field_shows_the_name_its_tooltip_the_path(
     bare: Bare, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (folder / "terrain.glsl").write_text(TERRAIN + 'uniform sampler2D dem; //! file("white.png")\n', "utf-8")
