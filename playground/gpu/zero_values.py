@@ -61,9 +61,11 @@ class _Zeros:
         if not self.declared.is_balanced:
             return
         globals_ = "".join(map(self._begin, self.declared.variables))
+        last_uses = {token.text: index for index, token in enumerate(self.tokens)}
         for block, colon in self.declared.entries:  # a jump there passes the declarations above
             for one in self.declared.variables:
-                if one.block == block and one.at < colon and not one.qualifiers & _OUTSIDE:
+                is_read = one.block == block and one.at < colon < last_uses[one.name]
+                if is_read and not one.qualifiers & _OUTSIDE:
                     self._insert(colon, self._statements(one.name, one.type))
         for function in self.declared.functions:
             if function.closes >= 0:

@@ -21,7 +21,7 @@ _TOKEN = re.compile(
 )
 _DIRECTIVE = re.compile(r"\s*#")
 _DEFINE = re.compile(r"\s*#\s*(define|undef)\s+([A-Za-z_]\w*)(\(([^)]*)\))?(.*)")
-_MAX_TOKENS = 1_000_000  # behind the preprocessor: macros may double without end
+_MAX_TOKENS = 200_000  # behind the preprocessor: macros may double without end
 _NO_NAMES: frozenset[str] = frozenset()
 
 

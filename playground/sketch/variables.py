@@ -28,6 +28,7 @@ _JUMPS = frozenset({"break", "return", "continue", "discard"})
 _HEADERS = frozenset({"for", "while", "if", "switch"})
 _BEHIND_NAMES = frozenset({"=", ";", ",", ")", "[", "("})
 _CLOSES = {"(": ")", "[": "]", "{": "}"}
+_MAX_MEMBERS = 256  # of a struct, those of its members too
 
 Size = tuple[str, ...]
 """The tokens between the brackets of an array."""
@@ -40,6 +41,11 @@ class Type:
     name: str
     sizes: tuple[Size, ...] = ()  # the outermost first
     members: tuple[tuple[str, Type], ...] = ()  # of a struct
+
+    @property
+    def member_count(self) -> int:
+        """How many members it has, and they have in turn; an array counts once."""
+        return sum(1 + member.member_count for _, member in self.members)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +103,13 @@ class Declarations:
 
     def __post_init__(self) -> None:
         self._texts = [token.text for token in self.tokens]
+        self._closing: dict[int, int] = {}
+        opened: list[int] = []
+        for index, text in enumerate(self._texts):
+            if text in _CLOSES:
+                opened.append(index)
+            elif text in _CLOSES.values() and opened:
+                self._closing[opened.pop()] = index
         self._read()
 
     # ── what there is ────────────────────────────────────────────────────────
@@ -278,7 +291,7 @@ class Declarations:
         inner, members = opens + 1, []
         while inner < closing:
             _, inner = self._qualifiers(inner)
-            kind = self._type(inner)
+            kind = self._type(inner) if self._text(inner) != "struct" else None
             if kind is None:
                 return None
             own, inner = kind
@@ -291,6 +304,8 @@ class Declarations:
             else:
                 return None
         made = Type(name, (), tuple(members))
+        if made.member_count > _MAX_MEMBERS:
+            return None
         if name:
             self.structs[name] = made
         return made, closing + 1
@@ -316,13 +331,7 @@ class Declarations:
 
     def closing(self, index: int) -> int | None:
         """Return the index of the bracket that closes the one at an index."""
-        depth = 0
-        for at in range(index, len(self._texts)):
-            text = self._texts[at]
-            depth += (text in _CLOSES) - (text in (")", "]", "}"))
-            if depth == 0:
-                return at
-        return None
+        return self._closing.get(index)
 
     def _text(self, index: int) -> str:
         return self._texts[index] if index < len(self._texts) else ""

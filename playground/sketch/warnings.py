@@ -48,6 +48,7 @@ def unheeded(kernel: Kernel) -> tuple[Diagnostic, ...]:
 _MAYBE_DIVIDED = re.compile(r"[\d)]\s*/\s*[\d(]")
 _TOKEN = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\w*|[A-Za-z_]\w*|&&|\|\||[<>=!]=|\S")
 _WHOLE = re.compile(r"\d+")
+_MAX_LITERALS = 64  # tokens of a product of literals
 _WHOLE_TYPE = re.compile(r"u?int|[iu]vec[234]")
 _DECLARED_WHOLE = re.compile(r"\b(?:u?int|[iu]vec[234])\b(?!\s*\()([^;(){}]*)")
 _TAKES = re.compile(r"\b[A-Za-z_]\w* ([A-Za-z_]\w*) \( ([^()]*\b(?:u?int|[iu]vec[234])\b[^()]*) \)")
@@ -98,15 +99,15 @@ def whole_divisions(source: SourceText) -> list[Diagnostic]:
 def _whole_before(texts: Sequence[str], at: int) -> tuple[int, int | None]:
     """Return where the product of whole literals before a place begins, and its value if it is one."""
     start = at
-    while start > 0:
+    while 0 < start and at - start <= _MAX_LITERALS:
         begin = _group_before(texts, start)
         if begin == start or (begin > 0 and texts[begin] == "(" and re.match(r"\w", texts[begin - 1])):
             return at, None
         start = begin
         if start == 0 or texts[start - 1] not in ("*", "/", "%"):
-            break
+            return start, _evaluated(texts[start:at])
         start -= 1
-    return start, _evaluated(texts[start:at])
+    return at, None
 
 
 def _group_before(texts: Sequence[str], end: int) -> int:
@@ -114,7 +115,7 @@ def _group_before(texts: Sequence[str], end: int) -> int:
     if _WHOLE.fullmatch(texts[end - 1]):
         return end - 1
     depth = 0
-    for at in range(end - 1, -1, -1):
+    for at in range(end - 1, max(end - _MAX_LITERALS, 0) - 1, -1):
         depth += (texts[at] == ")") - (texts[at] == "(")
         if depth == 0:
             return at if texts[at] == "(" else end
@@ -126,7 +127,7 @@ def _group_before(texts: Sequence[str], end: int) -> int:
 def _whole_after(texts: Sequence[str], start: int) -> tuple[int, int | None]:
     """Return where the literal, or the bracket of literals, ends that begins at a place, and its value."""
     depth = 0
-    for at in range(start, len(texts)):
+    for at in range(start, min(start + _MAX_LITERALS, len(texts))):
         if not re.fullmatch(r"[()+*/%-]|\d+", texts[at]):
             break
         depth += (texts[at] == "(") - (texts[at] == ")")

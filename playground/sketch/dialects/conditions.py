@@ -34,6 +34,7 @@ _LEVELS: tuple[tuple[str, ...], ...] = (
 )
 """Operators of two numbers, those that bind least first."""
 _DEEPEST = 32
+_MAX_TOKENS = 4_096  # of one expression, its macros expanded: they may double without end
 _MAX_SHIFT = 62
 
 
@@ -262,7 +263,7 @@ class _Judge:
 
 
 class _Wrong(Exception):
-    """An expression is none, or nests too deeply."""
+    """An expression is none, nests too deeply or is too long."""
 
 
 class _Expression:
@@ -271,6 +272,7 @@ class _Expression:
     def __init__(self, judge: _Judge, text: str) -> None:
         self.judge = judge
         self.tokens: list[str | None] = []  # None: what cannot be known
+        self.left = _MAX_TOKENS
         try:
             self.tokens = [*self._expanded(text, frozenset())]
             self.is_wrong = False
@@ -297,6 +299,9 @@ class _Expression:
         while index < len(tokens):
             token = tokens[index]
             index += 1
+            self.left -= 1
+            if self.left < 0:
+                raise _Wrong
             if token == "defined":
                 names = (
                     tokens[index : index + 3]

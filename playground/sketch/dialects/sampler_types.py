@@ -86,15 +86,21 @@ def _handed(code: str) -> Iterator[tuple[str, str]]:
     for name, forms in functions.items():
         if not any(kind.startswith("sampler") for kinds in forms for kind in kinds):
             continue
+        looked_at = Counter[str]()
         for call in re.finditer(rf"\b{name}\s*\(", code):
-            given, before = _arguments(code, call.end()), code[: call.start()]
-            widths = [_width(one, before) for one in given]
-            fitting = [
-                kinds
-                for kinds in forms
-                if len(kinds) == len(given)
-                and all(not w or _TYPES.get(k, w) == w for k, w in zip(kinds, widths, strict=True))
-            ]
+            given = _arguments(code, call.end())
+            channels = " ".join(one for one in given if _CHANNEL.fullmatch(one))
+            looked_at[channels] += 1
+            if not channels or looked_at[channels] > _MOST_LOOKUPS:
+                continue
+            fitting = [kinds for kinds in forms if len(kinds) == len(given)]
+            if len(fitting) > 1:
+                widths = [_width(one, code[: call.start()]) for one in given]
+                fitting = [
+                    kinds
+                    for kinds in fitting
+                    if all(not w or _TYPES.get(k, w) == w for k, w in zip(kinds, widths, strict=True))
+                ]
             for at, one in enumerate(given):
                 if _CHANNEL.fullmatch(one):
                     yield from ((one, kinds[at]) for kinds in fitting)
