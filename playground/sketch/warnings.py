@@ -56,6 +56,8 @@ _WHOLE_GIVEN = frozenset("size iteration iterations until stage texel gl_Instanc
 _TAKES_WHOLE = frozenset(
     "texelFetch texelFetchOffset textureSize imageLoad imageStore bitfieldExtract".split()
 )
+_GENERIC = frozenset("abs clamp max min sign".split())  # whole if their arguments are
+_NO_CALLS = frozenset("if while for return".split())
 _ENDS = frozenset(("(", ")", ",", ";", "{", "}", "?", ":", "&&", "||", "=", "return", "[", "]"))
 
 
@@ -146,6 +148,8 @@ def _evaluated(texts: Sequence[str]) -> int | None:
 
 def _is_whole(texts: Sequence[str], start: int, end: int, whole: set[str]) -> bool:
     """Return whether a division stands where a whole number is meant."""
+    if _is_among_whole(texts, start, end, whole):
+        return True
     before, depth, calls = start, 0, list[str]()
     while before > 0 and texts[before - 1] not in (";", "{", "}"):
         before -= 1
@@ -157,9 +161,9 @@ def _is_whole(texts: Sequence[str], start: int, end: int, whole: set[str]) -> bo
             calls.append(texts[before - 1] if before else "")
     # The innermost call decides; what is no call, as a bracket or if, leaves it to what is around.
     for call in calls:
-        if _WHOLE_TYPE.fullmatch(call) or call in _TAKES_WHOLE:
+        if _WHOLE_TYPE.fullmatch(call) or call in _TAKES_WHOLE or call == "switch":
             return True
-        if re.fullmatch(r"[A-Za-z_]\w*", call) and call not in ("if", "while", "for", "return", "switch"):
+        if re.fullmatch(r"[A-Za-z_]\w*", call) and call not in _NO_CALLS:
             return call in whole
     head = [text for text in texts[before:start] if text not in ("const", "highp", "mediump", "lowp", "(")]
     while head and head[0] in ("if", "else", "for", "while"):
@@ -170,19 +174,62 @@ def _is_whole(texts: Sequence[str], start: int, end: int, whole: set[str]) -> bo
         return True
     if head[:1] == ["return"]:
         return _returns_whole(texts, before)
-    left, right = start, end
-    while left > before and texts[left - 1] not in _ENDS:
-        left -= 1
-    while right < len(texts) and texts[right] not in _ENDS:
-        right += 1
-    others = (*range(left, start), *range(end, right))
-    names = [texts[k] for k in others if re.match(r"[A-Za-z_]|\.\d|\d+\.", texts[k]) and texts[k - 1] != "."]
-    return bool(names) and whole >= set(names)
+    return False
+
+
+def _is_among_whole(texts: Sequence[str], start: int, end: int, whole: set[str]) -> bool:
+    """Return whether only whole numbers join a division, as in ``n + 7/2`` or ``max(n, 7/2)``."""
+    while True:
+        left, right = _reach(texts, start, -1), _reach(texts, end, 1)
+        names = _names_read(texts, [*range(left, start), *range(end, right)])
+        opens, closes = left - 1, right
+        if not names and (generic := _opening_of_generic(texts, left)) >= 0:
+            opens = generic
+            while closes < len(texts) and texts[closes] == ",":
+                closes = _reach(texts, closes + 1, 1)
+            names = _names_read(texts, [*range(opens + 1, start), *range(end, closes)])
+            left = opens - 1
+        if names:
+            return whole >= names
+        is_bracket = opens >= 0 and texts[opens] == "(" and texts[closes : closes + 1] == [")"]
+        if not is_bracket or (left == opens + 1 and re.match(r"\w", texts[opens - 1])):
+            return False
+        start, end = min(left, opens), closes + 1
+
+
+def _reach(texts: Sequence[str], at: int, step: int) -> int:
+    """Return how far the operands beside a place reach, with the brackets among them."""
+    opens, closes = (("(", "["), (")", "]")) if step > 0 else ((")", "]"), ("(", "["))
+    depth, index = 0, at if step > 0 else at - 1
+    while 0 <= index < len(texts):
+        text = texts[index]
+        if (text in closes or text in _ENDS - {*opens, *closes}) and depth == 0:
+            break
+        depth += (text in opens) - (text in closes)
+        index += step
+    return index if step > 0 else index + 1
+
+
+def _opening_of_generic(texts: Sequence[str], at: int) -> int:
+    """Return the index of the bracket around an argument of ``max`` or its like; -1 where none is there."""
+    while at > 0 and texts[at - 1] == ",":
+        at = _reach(texts, at - 1, -1)
+    return at - 1 if at > 1 and texts[at - 1] == "(" and texts[at - 2] in _GENERIC else -1
+
+
+def _names_read(texts: Sequence[str], places: Sequence[int]) -> set[str]:
+    """Return the names and the numbers with a point at some places; no members, no ``max`` or its like."""
+    return {
+        texts[k]
+        for k in places
+        if re.match(r"[A-Za-z_]|\.\d|\d+\.", texts[k]) and texts[k - 1] != "." and texts[k] not in _GENERIC
+    }
 
 
 def _is_set_whole(target: str, whole: set[str]) -> bool:
     """Return whether what is set, as ``n``, ``n[k]``, ``v.x`` or ``s.count``, is a whole number."""
-    names = re.sub(r"\[[^\]]*\]", "", target).rstrip("+-*/%&|^<> ").split(" . ")
+    bare = re.sub(r"\[[^\]]*\]", "", target).rpartition(")")[2]
+    names = bare.strip("+-*/%&|^<> ").split(" . ")
     return names[0] in whole or (len(names) > 1 and names[-1] in whole)
 
 
@@ -362,7 +409,8 @@ class _Reads:
     def _reads_itself(self, at: int) -> bool:
         """Return whether a value that is assigned names the variable."""
         end = self.declared.end_of_value(at + 2)
-        return any(at + 2 <= use < end for use in self.places[self.texts[at]])
+        uses = [use for use in self.places[self.texts[at]] if at + 2 <= use < end]
+        return bool(uses) and self._behind(uses[0])[0] != "="
 
     def _may_be_written_by_call(self, at: int) -> bool:
         """Return whether a variable is an argument, as a whole, that a function may write."""

@@ -123,6 +123,9 @@ HEAD += "struct Part { int count; float share; };\nfloat at(int k) { return floa
         ("Part a; a.share = 1/4;", "1/4", 0),
         ("float a[2]; a[whole - 3] = 1/4;", "1/4", 0),
         ("vec2 v = vec2(0.0); v.x = 1/4;", "1/4", 0),
+        ("x = max(x, 1/4);", "1/4", 0),
+        ("x = clamp(x, 0.0, float(whole) * (1/4));", "1/4", 0),
+        ("if (whole > 1) x = 1/4;", "1/4", 0),
     ],
 )
 def test_a_quotient_of_whole_literals_is_warned_of(
@@ -156,6 +159,14 @@ def test_a_quotient_of_whole_literals_is_warned_of(
         "uint n = 7u/2u;",
         "float a = float(3)/2;",
         "float a = x;  // 1/4",
+        "x += float(whole + 7/2);",
+        "x = float(whole << (7/2));",
+        "x = float(texel.x / 2 * 2 + 1/2);",
+        "bool a = (whole % 3) == 7/2;",
+        "if (x > 0.0) whole = 7/2;",
+        "whole = clamp(whole, 0, 7/2);",
+        "int a = abs(whole - 7/2);",
+        "switch (7/2) { default: x = 2.0; }",
     ],
 )
 def test_whole_quotients_that_are_meant_are_left_alone(tmp_path: Path, code: str) -> None:
@@ -220,6 +231,7 @@ def test_a_local_read_before_it_is_written_is_a_warning(tmp_path: Path, body: st
         "float a; { float a = 1.0; a += 1.0; } a = 2.0; return a;",
         "vec2 b = vec2(1.0); float x; x = b.x; return x;",
         "float a; if ((a = 2.0) > 1.0) return a; return 0.0;",
+        "float a; a = abs(a = 1.0); return a;",
     ],
 )
 def test_a_local_that_may_be_written_first_is_none(tmp_path: Path, body: str) -> None:
