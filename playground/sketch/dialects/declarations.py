@@ -58,7 +58,7 @@ class Declared:
 @lru_cache(maxsize=32)  # passes of one file share a text
 def uniforms(code: str) -> Mapping[str, Declared]:
     """Return the uniforms that a text declares, by name; of one in two branches, the first."""
-    code = _expanded(code)
+    code = expanded(code)
     found: dict[str, Declared] = {}
     for match in _UNIFORM.finditer(code):
         of_type = match.group(2).strip()  # the array of "float[3] a"
@@ -67,6 +67,17 @@ def uniforms(code: str) -> Mapping[str, Declared]:
             written = written.replace(name, f"{name}{of_type}", 1)
             found.setdefault(name, Declared(name, match.group(1), bool(array or of_type), line, written))
     return found
+
+
+def expanded(code: str) -> str:
+    """Return a text, as many lines, without its directives and with the macros expanded."""
+    lines = _DIRECTIVE.sub("", code).split("\n")
+    for tokens in readings(code):
+        for line, some in groupby(tokens, key=lambda token: token.line):
+            texts = [token.text for token in some]
+            if "".join(texts) != "".join(lines[line].split()):
+                lines[line] = " ".join(texts)
+    return "\n".join(lines)
 
 
 def takes(kind: str, given: str) -> bool:
@@ -97,7 +108,7 @@ def declared_names(code: str) -> Mapping[str, frozenset[str]]:
 @lru_cache(maxsize=32)
 def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
     """Return what the vertex shader gives a fragment shader: declarations, and statements that set them."""
-    code = _expanded(code)
+    code = expanded(code)
     found: dict[str, tuple[str, str]] = {}
     for block in _BLOCK.finditer(code):
         members = " ".join(block.group(2).split())
@@ -117,17 +128,6 @@ def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
                 declaration = " ".join(f"{layout or ''} {ways} out {kind} {name}{array};".split())
                 found.setdefault(name, (declaration, _set(name, name, kind, array)))
     return tuple(found.values())
-
-
-def _expanded(code: str) -> str:
-    """Return a text, as many lines, without its directives and with the macros expanded."""
-    lines = _DIRECTIVE.sub("", code).split("\n")
-    for tokens in readings(code):
-        for line, some in groupby(tokens, key=lambda token: token.line):
-            texts = [token.text for token in some]
-            if "".join(texts) != "".join(lines[line].split()):
-                lines[line] = " ".join(texts)
-    return "\n".join(lines)
 
 
 def _names(text: str) -> Iterator[tuple[str, str, int, str]]:

@@ -11,6 +11,8 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterator
 
+from playground.sketch.dialects.declarations import expanded
+
 _LOOKUP = re.compile(r"\b(texture(?:Lod|Grad|Cube\w*)?)\s*\(\s*(iChannel\d)\s*,")
 _TYPES = {
     "float": 1,
@@ -21,7 +23,6 @@ _TYPES = {
 }
 _DECLARED = rf"\b({'|'.join(_TYPES)})\s+(?:[A-Za-z_]\w*\s*(?:=[^;,(){{}}]*)?,\s*)*"
 _CHANNEL = re.compile(r"iChannel\d")
-_ALIAS = re.compile(r"^[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)[ \t]+(iChannel\d)[ \t]*$", re.MULTILINE)
 _TEXELS = re.compile(r"\b(?:texelFetch\s*\(\s*(?=iChannel\d\s*,\s*ivec3\b)|texture3D\w*\s*\(\s*)(iChannel\d)")
 _FUNCTION = re.compile(r"\b[A-Za-z_]\w*\s+([A-Za-z_]\w*)\s*\(([^(){};]*)\)\s*[{;]")
 _BODY = re.compile(r"\b(?!(?:if|for|while|switch)\b)([A-Za-z_]\w*)\s*\([^(){};]*\)\s*\{")
@@ -45,8 +46,7 @@ _OF_ARGUMENTS = frozenset(
 
 def sampler_types(code: str) -> dict[str, str]:
     """Return the channels of a text that are no pictures, each with its type in GLSL."""
-    for alias, channel in _ALIAS.findall(code):
-        code = re.sub(rf"\b{alias}\b(?!\s+{channel}\b)", channel, code)
+    code = expanded(code)
     threes, twos = _looked_up(code)
     types: dict[str, set[str]] = {name: {"sampler2D"} for name in twos}
     for name, kind in (*_handed(code), *((name, "sampler3D") for name in _TEXELS.findall(code))):

@@ -99,3 +99,22 @@ void mainImage(out vec4 c, in vec2 fragCoord) { vec3 rd; vec2 uv; c = vec4(LOOKU
 )
 def test_a_function_that_takes_a_channel_says_its_type(lookup, types):
     assert sampler_types(TAKES.replace("LOOKUP", lookup)) == types
+
+
+@pytest.mark.parametrize(
+    ("macros", "lookup", "types"),
+    [
+        ("#define T(s, p) texture(s, p)", "T(iChannel0, rd)", {"iChannel0": "samplerCube"}),
+        ("#define T(p) texture(S, p)\n#define S iChannel1", "T(rd)", {"iChannel1": "samplerCube"}),
+        ("#define T(s, p) texture(s, (p).xy)", "T(iChannel0, rd)", {}),
+        ("#define SKY texture(iChannel0, rd)", "SKY", {"iChannel0": "samplerCube"}),
+        ("#define T(s, p) texelFetch(s, ivec3(p), 0)", "T(iChannel2, rd)", {"iChannel2": "sampler3D"}),
+        (
+            "#define S iChannel0\n#undef S\n#define S iChannel1",
+            "texture(S, rd)",
+            {"iChannel1": "samplerCube"},
+        ),
+    ],
+)
+def test_macros_look_up_what_they_stand_for(macros, lookup, types):
+    assert sampler_types(f"{macros}\n{DECLARED.replace('LOOKUP', lookup)}") == types
