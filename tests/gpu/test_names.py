@@ -263,6 +263,7 @@ SUGGESTED = {
         "iTime": "`TIME` is the same",
         "iFrame": "`FRAMEINDEX` is the same",
         "levl": "did you mean `level`?",
+        "isf_FragNormCord, 0, 1": "did you mean `isf_FragNormCoord`?",
         "IMG_NORM_PIXEL(inputImge, vec2(0))": "did you mean `inputImage`?",
         "IMG_NORM_PIXL(inputImage, vec2(0))": "did you mean `IMG_NORM_PIXEL`?",
     },

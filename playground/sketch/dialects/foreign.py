@@ -104,6 +104,7 @@ class ForeignKernel:
             tool_names=(
                 *((n, m) for n, (_, m) in self.rules.names.items()),
                 *((p.name, "") for p in shader.parameters),
+                *((one.rstrip(";").split()[-1], "") for one in self.rules.varyings),
             ),
             meanings=tuple(meanings),
             unfed=tuple(self._unfed(own)),
