@@ -200,10 +200,11 @@ def _is_among_whole(texts: Sequence[str], start: int, end: int, whole: set[str])
 def _reach(texts: Sequence[str], at: int, step: int) -> int:
     """Return how far the operands beside a place reach, with the brackets among them."""
     opens, closes = (("(", "["), (")", "]")) if step > 0 else ((")", "]"), ("(", "["))
+    ends = _ENDS.difference(opens)
     depth, index = 0, at if step > 0 else at - 1
     while 0 <= index < len(texts):
         text = texts[index]
-        if (text in closes or text in _ENDS - {*opens, *closes}) and depth == 0:
+        if text in ends and depth == 0:
             break
         depth += (text in opens) - (text in closes)
         index += step
