@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from playground.terrain.units import HEIGHTS_IN_FEET, METRE, UNITS
-from playground.terrain.wkt import CrsFacts
+from playground.terrain.wkt import CrsFacts, read_wkt
 
 Key = int | str | tuple[float, ...]
 Keys = tuple[tuple[int, Key], ...]
@@ -25,6 +26,7 @@ GEOGRAPHIC, ANGLE, PROJECTED, PROJECTED_CITATION, LENGTH, LENGTH_SIZE = 2048, 20
 VERTICAL, VERTICAL_UNIT = 4096, 4099
 IS_AREA, IS_POINT = 1, 2
 OWN = 32767  # defined by further keys, not by a code
+_ESRI_TEXT = "ESRI PE String = "  # before well-known text in a citation, where keys cannot say the system
 _IN_METRES = (258, 269, 326, 327)  # hundreds of EPSG's codes of projected systems: UTM, all in metres
 
 
@@ -90,7 +92,8 @@ def read_facts(keys: Keys) -> CrsFacts:
         epsg = _epsg(known, PROJECTED)
         unit, more = _cell_unit(known, epsg)
         return CrsFacts("projected", unit, epsg, height_unit, (*more, *notes))
-    return CrsFacts(height_unit=height_unit, notes=notes)
+    cited = read_wkt(str(known.get(PROJECTED_CITATION, "")).partition(_ESRI_TEXT)[2])
+    return replace(cited, height_unit=height_unit or cited.height_unit, notes=notes)
 
 
 def _cell_unit(known: Mapping[int, Key], epsg: int) -> tuple[float, tuple[str, ...]]:

@@ -130,6 +130,20 @@ def test_a_geotiff_s_heights_are_in_metres(tmp_path, form, compress):
     assert not assert_metres(path, factor).assumed
 
 
+@pytest.mark.parametrize(
+    ("crs", "unit", "factor"),
+    [
+        ("EPSG:32633", 1.0, 1.0),
+        ("EPSG:2264", SURVEY_FOOT, SURVEY_FOOT),
+        ("EPSG:2264+5703", SURVEY_FOOT, 1.0),
+        ("EPSG:26918+8052", 1.0, SURVEY_FOOT),
+    ],
+)
+def test_a_citation_of_esri_s_says_both_units(tmp_path, crs, unit, factor):
+    path = raster(tmp_path / "a.tif", crs, GEOTIFF_KEYS_FLAVOR="ESRI_PE")
+    assert assert_metres(path, factor).spacing == pytest.approx((30 * unit,) * 2)
+
+
 @pytest.mark.parametrize("dtype", ["f4", "i2", "u2", "u1"])
 def test_scale_and_offset_are_in_the_unit(tmp_path, dtype):
     values = (NUMBERS / 10).astype(dtype)
