@@ -26,6 +26,7 @@ GEOGRAPHIC, ANGLE, PROJECTED, PROJECTED_CITATION, LENGTH, LENGTH_SIZE = 2048, 20
 VERTICAL, VERTICAL_UNIT = 4096, 4099
 IS_AREA, IS_POINT = 1, 2
 OWN = 32767  # defined by further keys, not by a code
+_DEGREES = {9101: math.degrees(1.0), 9103: 1.0 / 60.0, 9104: 1.0 / 3600.0, 9105: 0.9, 9106: 0.9}
 _ESRI_TEXT = "ESRI PE String = "  # before well-known text in a citation, where keys cannot say the system
 _IN_METRES = (258, 269, 326, 327)  # hundreds of EPSG's codes of projected systems: UTM, all in metres
 
@@ -86,7 +87,7 @@ def read_facts(keys: Keys) -> CrsFacts:
     model = code(known, MODEL)
     height_unit, notes = _height_unit(known)
     if model == 2:
-        degrees = math.degrees(1.0) if code(known, ANGLE) == 9101 else 1.0
+        degrees = _DEGREES.get(code(known, ANGLE), 1.0)
         return CrsFacts("geographic", degrees, _epsg(known, GEOGRAPHIC), height_unit, notes)
     if model == 1:
         epsg = _epsg(known, PROJECTED)

@@ -222,6 +222,15 @@ def test_a_code_in_feet_scales_cells_without_a_unit(tmp_path, monkeypatch):
     assert "its keys do not say the unit of EPSG:2264; a metre is assumed" in found.notes
 
 
+@pytest.mark.parametrize("crs", ["EPSG:4807", "EPSG:4901"])
+def test_cells_in_grads_are_nine_tenths_of_degrees(tmp_path, crs):
+    tif = read_elevation(raster(tmp_path / "a.tif", crs=crs))
+    north = 1e-3 * np.radians(0.9) * 6_367_500  # [m] on a sphere
+    assert tif.spacing[1] == pytest.approx(north, rel=0.005)
+    asc = read_elevation(raster(tmp_path / "a.asc", crs=crs, driver="AAIGrid"))
+    assert asc.spacing == pytest.approx(tif.spacing)
+
+
 @pytest.mark.parametrize(("crs", "factor"), [("EPSG:2264", SURVEY_FOOT), ("EPSG:2222", FOOT)])
 def test_a_map_in_feet_has_heights_in_feet(tmp_path, crs, factor):
     found = assert_metres(raster(tmp_path / "a.tif", crs=crs), factor)
