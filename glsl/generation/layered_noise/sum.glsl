@@ -28,6 +28,8 @@
         * (size.y - 1 + (size.x - 1) // 2 < 2 * (size.x - 1)): \
     a tile has one interval of its coarsest layer, and both nodes of it are one number where \
     seams are removed, so that layer adds no detail (raise frequency or lower tiles); \
+    (layer == 0) * (octaves > 0) * (octaves <= left_out): \
+    all layers are left out, so nothing has any detail (raise octaves); \
     (tiles > 1) * (size.x == 2) * (size.y == 2): \
     a tile is one texel wide, so the whole terrain has the same detail (lower tiles); \
     (layer == 0) * (octaves > 1) * (frequency == 1): \
