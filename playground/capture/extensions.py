@@ -57,6 +57,7 @@ OTHERS = {
     f"a shader is {', '.join(SHADERS[:-1])} or {SHADERS[-1]}": (
         ".cg .comp .fx .hlsl .metal .osl .shader .spv .vert .wgsl"
     ),
+    "a sketch is packed by playground pack": ".toml",
     "a video is what playground render --video writes": ".apng .avi .gif .mkv .mov .mp4 .webm",
 }
 """What each kind of file is exported as → endings of that kind that nothing is exported as."""

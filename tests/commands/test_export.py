@@ -124,6 +124,7 @@ def test_bits_range_grid_and_driver_are_heard(folder: Path, capsys: pytest.Captu
         (["--to", "a.zip"], f"nothing is exported as '.zip'; expected one of {', '.join(ENDINGS)}"),
         *((["--to", f"a.{e}"], f"nothing is exported as '.{e}'; a mesh is .glb or .obj")
           for e in ("blend", "fbx", "stl", "ply")),
+        (["--to", "a.toml"], "nothing is exported as '.toml'; a sketch is packed by playground pack"),
         (["--to", "a.asc"], "nothing is exported as '.asc'; heights are .tif, .npy,"),
         (["--to", "a.bmp"], "nothing is exported as '.bmp'; a picture is .png, .webp or .jpg"),
         (["--to", "a.hlsl"], "nothing is exported as '.hlsl'; a shader is .fs, .frag, .json or .glsl"),
