@@ -1,4 +1,4 @@
-"""What GDAL's metadata say of the numbers of a raster's first band: their unit, scale and offset.
+"""What GDAL's metadata say of a raster: the unit, scale and offset of its first band, its reference system.
 
 In a TIFF they are XML in tag 42112; of any file, in the ``.aux.xml`` next to it. Source: GDAL's documentation
 of the GTiff driver and of the PAM format (persistent auxiliary metadata).
@@ -6,6 +6,7 @@ of the GTiff driver and of the PAM format (persistent auxiliary metadata).
 
 from __future__ import annotations
 
+import html
 import math
 import re
 from dataclasses import dataclass
@@ -38,16 +39,27 @@ def band_facts(path: Path, tag: str = "") -> BandFacts:
         role = re.search(r'\brole="(scale|offset|unittype)"', attributes)
         if role and not re.search(r'\bsample="(?!0")', attributes):
             items[role[1]] = value
-    beside = next((file for file in sidecars(path) if file.name.lower().endswith(AUXILIARY)), None)
-    if beside is not None and beside.stat().st_size <= _MAX_BYTES:
-        text = beside.read_text("utf-8", "replace")
-        band = re.search(r'<PAMRasterBand\s+band="1"[^>]*>(.*?)</PAMRasterBand>', text, re.DOTALL)
-        for name, value in re.findall(r"<(UnitType|Scale|Offset)>([^<]*)</", band[1] if band else ""):
-            items[name.lower()] = value
+    band = re.search(r'<PAMRasterBand\s+band="1"[^>]*>(.*?)</PAMRasterBand>', _beside(path), re.DOTALL)
+    for name, value in re.findall(r"<(UnitType|Scale|Offset)>([^<]*)</", band[1] if band else ""):
+        items[name.lower()] = value
     scale, offset = (_number(items.get(name), usual) for name, usual in (("scale", 1.0), ("offset", 0.0)))
     if not (math.isfinite(scale) and math.isfinite(offset) and scale):
         raise DataError("says that its numbers have a scale or an offset that is no number", file=path)
     return BandFacts(items.get("unittype", "").strip(), scale, offset)
+
+
+def system_beside(path: Path) -> str:
+    """Return the well-known text of a reference system that the file next to it states; "" for none."""
+    found = re.search(r"<SRS\b[^>]*>([^<]*)</SRS>", _beside(path))
+    return html.unescape(found[1]) if found else ""
+
+
+def _beside(path: Path) -> str:
+    """Return the text of the ``.aux.xml`` next to a file; "" where there is none."""
+    beside = next((file for file in sidecars(path) if file.name.lower().endswith(AUXILIARY)), None)
+    if beside is None or beside.stat().st_size > _MAX_BYTES:
+        return ""
+    return beside.read_text("utf-8", "replace")
 
 
 def _number(text: str | None, usual: float) -> float:

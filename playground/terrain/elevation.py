@@ -239,7 +239,8 @@ def open_elevation(
       in the name, as `N36W085.hgt`.
 
     The `.aux.xml` that GDAL writes next to TIFF and ESRI's grids may have a unit, a scale and an
-    offset of heights. `assumed` says what nothing tells of the unit.
+    offset of heights, and a reference system where the file has none. `assumed` says what nothing
+    tells of the unit.
 
     `packing="rgb"` reads R*65536 + G*256 + B from three 8-bit channels of a PNG or
     TIFF. `first_row` says which edge the file begins with: "north" for everything

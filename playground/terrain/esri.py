@@ -17,7 +17,7 @@ import numpy as np
 from playground.errors import DataError
 from playground.regular_file import open_regular
 from playground.sketch.sidecars import sidecars
-from playground.terrain.band import band_facts
+from playground.terrain.band import band_facts, system_beside
 from playground.terrain.grid import Found, check_grid
 from playground.terrain.place import Crs, Place
 from playground.terrain.rows import Band, FileRows, Rows, StreamRows
@@ -180,7 +180,7 @@ def _place(header: Header, size: tuple[int, int], path: Path) -> Place | None:
             return None
         west, north = ends[0], ends[1] + (ny - 1) * dy
     beside = next((file for file in sidecars(path) if file.suffix.lower() == ".prj"), None)
-    wkt = beside.read_text("utf-8", "replace") if beside is not None else ""
+    wkt = beside.read_text("utf-8", "replace") if beside is not None else system_beside(path)
     return Place(west, north, (dx, dy), (nx, ny), Crs(wkt=wkt))
 
 

@@ -21,7 +21,7 @@ from playground.errors import DataError
 from playground.images.bounds import MAX_TEXELS, refuse_bomb
 from playground.images.files import reason
 from playground.terrain import gis
-from playground.terrain.band import band_facts
+from playground.terrain.band import band_facts, system_beside
 from playground.terrain.geokeys import (
     DIRECTORY,
     DOUBLES,
@@ -80,7 +80,8 @@ def read_tiff(path: Path, packing: Packing) -> Found:
             refuse_bomb(path, math.prod(shape) * page.dtype.itemsize, sum(page.databytecounts))
         no_data = _no_data(page)
         rows = _rows(page, path, no_data)
-        crs = Crs(read_keys(*(page.tags.valueof(number) for number in (DIRECTORY, DOUBLES, WORDS))))
+        keys = read_keys(*(page.tags.valueof(number) for number in (DIRECTORY, DOUBLES, WORDS)))
+        crs = Crs(keys, "" if keys else system_beside(path))
         place, south_first = _place(page, (rows_cols[1], rows_cols[0]), crs, path)
         band = band_facts(path, str(page.tags.valueof(42112) or ""))
         overviews, notes = _further(tif, page, path, no_data)

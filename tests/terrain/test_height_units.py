@@ -222,6 +222,15 @@ def test_a_code_in_feet_scales_cells_without_a_unit(tmp_path, monkeypatch):
     assert "its keys do not say the unit of EPSG:2264; a metre is assumed" in found.notes
 
 
+@pytest.mark.parametrize(("driver", "ending"), [("GTiff", "tif"), ("AAIGrid", "asc"), ("EHdr", "bil")])
+def test_a_system_stated_beside_a_file_counts(tmp_path, driver, ending):
+    path = raster(tmp_path / f"a.{ending}", None, driver=driver)
+    wkt = CRS.from_user_input("EPSG:2264+8228").to_wkt().replace('"', "&quot;")
+    Path(f"{path}.aux.xml").write_text(f"<PAMDataset>\n  <SRS>{wkt}</SRS>\n</PAMDataset>")
+    found = assert_metres(path, FOOT)
+    assert found.spacing == pytest.approx((30 * SURVEY_FOOT,) * 2) and not found.assumed
+
+
 @pytest.mark.parametrize("crs", ["EPSG:4807", "EPSG:4901"])
 def test_cells_in_grads_are_nine_tenths_of_degrees(tmp_path, crs):
     tif = read_elevation(raster(tmp_path / "a.tif", crs=crs))
