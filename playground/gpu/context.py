@@ -7,6 +7,7 @@ EGL on Linux (no display and no GPU needed), a hidden native context elsewhere. 
 from __future__ import annotations
 
 import ctypes.util
+import gc
 import os
 import re
 import sys
@@ -34,8 +35,9 @@ _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3  # glibc's M_TRIM_THRESHOLD and M_MMAP
 _MAPPED = 2**23  # [bytes] from which a block goes back to the system as soon as it is freed
 _KEPT = 6 * 2**23  # [bytes] of freed blocks that stay: a frame's triangles are some 30 MiB
 _MESA_VENDOR = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
+_MAX_UNCOLLECTED = 3  # contexts of a thread, from which on garbage is collected before one more is opened
 _QUEUED = "context_gc"  # moderngl's mode in which dropped objects stay in ``Context.objects``
-_finalizers: weakref.WeakKeyDictionary[moderngl.Context, weakref.finalize[..., Any]] = (
+_opened: weakref.WeakKeyDictionary[moderngl.Context, tuple[weakref.finalize[..., Any], _Made]] = (
     weakref.WeakKeyDictionary()
 )
 _dropped: deque[_Made] = deque()  # contexts to destroy, each in its own thread
@@ -93,6 +95,8 @@ def open_context(*, software: bool = False, device: int | None = None) -> modern
     ``software`` asks for the software renderer (Mesa llvmpipe); ``device`` picks the
     EGL device by its number. Raises ``ContextError`` with the known advice for the failure.
     """
+    if sum(made.is_ours for _, made in _opened.values()) >= _MAX_UNCOLLECTED:
+        gc.collect()  # a dropped engine is a cycle, whose size in the driver Python does not know
     if software:
         return _open_software(device)
     return _open(device)
@@ -212,14 +216,17 @@ def _destroy_when_dropped(ctx: moderngl.Context) -> None:
     with suppress(AttributeError):  # moderngl's own, which would hold the newest for ever
         moderngl._store.default_context = None  # type: ignore[attr-defined]
     made = _Made(threading.current_thread(), ctx.mglo, _current_handle())
-    _finalizers[ctx] = weakref.finalize(ctx, _drop, made)
-    _finalizers[ctx].atexit = False
+    finalizer = weakref.finalize(ctx, _drop, made)
+    finalizer.atexit = False
+    _opened[ctx] = finalizer, made
 
 
 def release_context(ctx: moderngl.Context) -> None:
     """Destroy a context; nothing is left to do when it is dropped."""
-    if (finalizer := _finalizers.pop(ctx, None)) and (found := finalizer.detach()):
-        found[2][0].unbind()
+    if opened := _opened.pop(ctx, None):
+        finalizer, made = opened
+        finalizer.detach()
+        made.unbind()
     ctx.release()
 
 

@@ -259,6 +259,20 @@ def test_a_texture_of_a_released_engine_frees_nothing(sketch, other):
     other.assert_intact()
 
 
+def test_dropped_engines_do_not_pile_up(sketch):
+    contexts = []
+    gc.disable()  # as it may be long before Python looks for garbage
+    try:
+        for _ in range(8):
+            engine = headless()
+            engine.render(sketch, size=(64, 36))
+            contexts.append(weakref.ref(engine.ctx))
+            dropped(engine)
+        assert sum(context() is not None for context in contexts) <= 4
+    finally:
+        gc.enable()
+
+
 @pytest.mark.parametrize("mode", ["auto", "context_gc", None])
 def test_an_engine_dropped_on_a_users_context_is_reported(sketch, other, mode):
     ctx = open_context()
