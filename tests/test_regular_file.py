@@ -110,6 +110,12 @@ def test_a_file_next_to_it_that_is_none_is_not_opened(tmp_path: Path) -> None:
         read_vectors(tmp_path / "a.shp")
 
 
+def test_a_folder_whose_sketch_is_none_says_so(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "sketch.toml")
+    with pytest.raises(PlaygroundError, match=r"sketch\.toml: this is a FIFO, not a file"):
+        load(tmp_path)
+
+
 def test_an_include_and_a_technique_that_are_none_are_named(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "part.glsl")
     (tmp_path / "k.glsl").write_text('#include "part.glsl"\n#pragma kernel(output = "height:r32f")\n')

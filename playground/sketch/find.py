@@ -57,10 +57,11 @@ def find(name: str | Path) -> Path:
     for candidate in places:
         if candidate.suffix in TEXTS and is_file(candidate) and is_inside(candidate, (GLSL,)):
             return candidate
+    wanted = path / "sketch.toml" if is_folder else path
+    if what := irregularity(wanted):
+        raise SketchError(what, file=wanted)
     if is_folder:
         raise SketchError("this folder holds no sketch.toml, and no Image of Shadertoy of its own", file=path)
-    if what := irregularity(path):
-        raise SketchError(what, file=path)
     names = [*shipped_sketches(), *(shipped_names() if "/" in text else [])]
     raise SketchError(f"there is no file and no shipped sketch '{text}'{nearest(text, names)}")
 
