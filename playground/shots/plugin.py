@@ -244,6 +244,8 @@ class Results:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Record a finished test, which may come from another process."""
+        if report.when == "teardown":
+            self.uses.add_used(report)
         if report.when != "call":
             return
         self.uses.add(report)

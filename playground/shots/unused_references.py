@@ -71,7 +71,12 @@ class Uses:
         file = self._files.setdefault(report.nodeid.partition("::")[0], _File())
         file.tests = int(str(tests[0]))
         file.ended.add(report.nodeid)
-        file.used.update(str(value) for name, value in report.user_properties if name == USED)
+        self.add_used(report)
+
+    def add_used(self, report: pytest.TestReport) -> None:
+        """Record what a test has used so far, in its fixtures' clean-up too."""
+        if file := self._files.get(report.nodeid.partition("::")[0]):
+            file.used.update(str(value) for name, value in report.user_properties if name == USED)
 
     def complete(self) -> dict[Path, set[str]]:
         """Return the test files of which every test ran and passed, with the names of what they checked.

@@ -245,6 +245,13 @@ def test_a_test_that_checks_no_picture_fails(run: Run, pytester: pytest.Pytester
     assert result.stdout.str().count("takes `shot` and checks nothing: expected shot.check") >= 4
 
 
+def test_a_check_in_a_clean_up_uses_its_reference(run: Run, pytester: pytest.Pytester) -> None:
+    text = UNCHECKED[: UNCHECKED.index("@pytest.fixture\ndef helper")]
+    pytester.makepyfile(test_sea=text + "def test_late(late): pass\n")
+    for options in (("--shots-update",), ()):
+        run(*options).assert_outcomes(passed=1)
+
+
 @pytest.mark.parametrize("workers", [(), pytest.param(("-n", "1"), marks=pytest.mark.slow)])
 def test_the_reference_of_a_check_that_is_gone_is_named(
     run: Run, pytester: pytest.Pytester, workers: tuple[str, ...]
