@@ -322,7 +322,6 @@ set = { elevation = "real.npz" }
 [[pass]]
 name = "fill"
 use = "water/fill"
-set = { steps = 400 }
 [[pass]]
 name = "down"
 use = "water/directions"
