@@ -251,9 +251,7 @@ class Kernels:
         program.set(WINDOW, origin)
         program.set(PART, _shares(step.whole_size, origin, step.size))
         for name, meaning in kernel.usual:
-            kind = getattr(
-                program.uniforms.get(name), "gl_type", 0
-            )  # another than the name's is the text's own
+            kind = getattr(program.uniforms.get(name), "gl_type", 0)  # of another type it is the text's own
             if kind in _NUMBERS or (kind in _MATRICES and meaning.startswith("identity")):
                 _set_fitting(program, name, usual.get(meaning) or _numbers(meaning, job, sizes))
         fed = {parameter.name for parameter in kernel.parameters if parameter.type == "sampler2D"}

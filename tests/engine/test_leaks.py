@@ -78,6 +78,18 @@ def resident() -> int:
     return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
 
 
+def run_alone(script: str, *arguments: str) -> str:
+    """Run a script in a process of its own, and return what it prints."""
+    done = subprocess.run(
+        [sys.executable, "-c", script, *arguments],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
 @pytest.fixture
 def sketch(folder, tmp_path):
     write_png(tmp_path / "p.png", np.full((4, 4, 4), 255, np.uint8))
@@ -184,13 +196,7 @@ one.release()
 
 @pytest.mark.slow
 def test_each_engine_draws_in_its_own_context(sketch):
-    done = subprocess.run(
-        [sys.executable, "-c", TWO_CONTEXTS, sketch.file],
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stderr
+    run_alone(TWO_CONTEXTS, sketch.file)
 
 
 class Textures:
@@ -354,12 +360,5 @@ for count in (12, 24):
 @pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 def test_threads_that_release_engines_leave_no_memory(sketch):
-    done = subprocess.run(
-        [sys.executable, "-c", THREADS, sketch.file],
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stderr
-    early, late = map(int, done.stdout.split())
+    early, late = map(int, run_alone(THREADS, sketch.file).split())
     assert late - early < 24 * 2**20  # a context is some 10 MiB
