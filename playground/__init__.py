@@ -47,12 +47,12 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.errors import SketchError as SketchError
     from playground.notebook.show import compare as compare
     from playground.notebook.show import widget as widget
+    from playground.shader.parameter import Parameter as Parameter
     from playground.sketch.find import shipped_sketches as shipped_sketches
     from playground.sketch.load import load as load
     from playground.sketch.model import Camera as Camera
     from playground.sketch.model import Shot as Shot
     from playground.sketch.model import Sketch as Sketch
-    from playground.sketch.parameter import Parameter as Parameter
     from playground.sketch.techniques import shipped_techniques as shipped_techniques
 
 _NAMES = {
@@ -71,7 +71,7 @@ _NAMES = {
     "playground.sketch.find": "shipped_sketches",
     "playground.sketch.load": "load",
     "playground.sketch.model": "Camera Shot Sketch",
-    "playground.sketch.parameter": "Parameter",
+    "playground.shader.parameter": "Parameter",
     "playground.sketch.techniques": "shipped_techniques",
 }
 _HOMES = {name: home for home, names in _NAMES.items() for name in names.split()}

@@ -6,12 +6,12 @@ import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from playground.engine.context import open_context
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.engine.internals import CACHE_BYTES, opened
 from playground.engine.plain_forms import warn
 from playground.errors import Diagnostic, PlaygroundWarning
-from playground.gpu.context import open_context
 from playground.sketch.assign import shown_parameters, value_of, values_of
 from playground.sketch.model import DEFAULT_PICTURE, Parameter, Sketch, Value
 

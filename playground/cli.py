@@ -23,6 +23,7 @@ from typing import Annotated, Any
 import typer
 
 from playground._version import __version__
+from playground.allowed_files import exists
 from playground.commands import (
     bench,
     cache,
@@ -49,7 +50,6 @@ from playground.commands.import_name import check_package
 from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarning, nearest
 from playground.paths import program, quoted
 from playground.signals import ended_by_signals
-from playground.sketch.allowed_files import exists
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.streams import let_go, open_streams
 from playground.terminal import complain, note, with_loudness
@@ -165,7 +165,7 @@ def _global(
 
 
 def _open_default(renderer: Renderer) -> None:
-    from playground.gpu.doctor import where_to_show
+    from playground.doctor import where_to_show
     from playground.paths import DEFAULT_SKETCH
     from playground.sketch.load import load
 

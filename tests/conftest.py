@@ -12,8 +12,8 @@ import moderngl
 import numpy as np
 import pytest
 
+from playground.engine.context import open_context
 from playground.engine.engine import Engine
-from playground.gpu.context import open_context
 
 from .spread import Spread
 

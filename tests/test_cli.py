@@ -23,14 +23,14 @@ import tifffile
 
 import playground
 from playground import cli
+from playground.data.image_files import read_png, read_samples
+from playground.doctor import where_to_show
 from playground.engine import sandbox
-from playground.engine.check import find_files
+from playground.engine.picture_reduction import reduced
 from playground.errors import DataError
-from playground.gpu.doctor import where_to_show
-from playground.images.files import read_png, read_samples
-from playground.images.supersampled import reduced
 from playground.paths import DEFAULT_SKETCH, GLSL
 from playground.sketch.find import shipped_sketches
+from playground.verify.check import find_files
 
 from .sketch_texts import map_of_height
 

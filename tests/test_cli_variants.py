@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from playground.cli import main
-from playground.images.files import read_png
+from playground.data.image_files import read_png
 from playground.paths import GLSL
 from playground.sketch.find import shipped_sketches
-from playground.sketch.variant_record import NAME
+from playground.sketch.variants import NAME
 
 from .sketch_texts import map_of_height
 from .variants import trust

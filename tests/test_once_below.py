@@ -19,7 +19,7 @@ def left(items: list[str], *folders: str) -> tuple[list[str], list[str]]:
 
 
 GLSL = ["tests/glsl/test_a.py::test[1]", "tests/glsl/test_a.py::test[2-[x]]", "tests/glsl/test_a.py::plain"]
-OTHER = ["tests/glsl/test_b.py::test[2]", "tests/gpu/test_a.py::test[1]", "tests/gpu/test_a.py::test[2]"]
+OTHER = ["tests/glsl/test_b.py::test[2]", "tests/data/test_a.py::test[1]", "tests/data/test_a.py::test[2]"]
 
 
 def test_without_it_all_run():
@@ -28,7 +28,7 @@ def test_without_it_all_run():
 
 def test_each_function_below_the_folder_runs_once_and_all_others_as_ever():
     assert left(GLSL + OTHER, "tests/glsl") == ([GLSL[0], GLSL[2], *OTHER], [GLSL[1]])
-    assert left(GLSL + OTHER, "tests/glsl", "tests/gpu") == (
+    assert left(GLSL + OTHER, "tests/glsl", "tests/data") == (
         [GLSL[0], GLSL[2], *OTHER[:2]],
         [GLSL[1], OTHER[2]],
     )

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.images.files import read_png
+from playground.data.image_files import read_png
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -55,8 +55,8 @@ def test_the_wheel_carries_every_file_of_the_library(wheel: Path):
     assert {"report.html", "report.css", "viewer.js"} <= {path.name for path in page}
     for path in page:
         assert f"playground/shots/page/{path.name}" in inside
-    shaders = list((ROOT / "playground/gpu/shaders").iterdir())
-    assert shaders and inside >= {f"playground/gpu/shaders/{path.name}" for path in shaders}
+    shaders = list((ROOT / "playground/shader/shaders").iterdir())
+    assert shaders and inside >= {f"playground/shader/shaders/{path.name}" for path in shaders}
     web = {name for name in inside if name.startswith("playground/web/") and not name.endswith(".py")}
     bundles = {f"playground/web/bundle/{path.name}" for path in (ROOT / "playground/web/bundle").glob("*")}
     assert bundles and web == bundles

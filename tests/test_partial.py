@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.images.files import replacing
+from playground.data.image_files import replacing
 from playground.partial import partial_file, remove_left_over
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -10,23 +10,21 @@ from pathlib import Path
 
 import pytest
 
+from playground.allowed_files import ELEVATIONS, VECTORS
 from playground.capture.atomic_group import refuse_foreign_files
+from playground.data.content_hash import content_hash, content_key
+from playground.data.elevation import read_elevation
+from playground.data.image_files import picture_size, read_image, read_png
+from playground.data.media import film_of, open_media
+from playground.data.model_files import read_model
+from playground.data.vectors import read_vectors
 from playground.engine.files import find_file
 from playground.errors import PlaygroundError
 from playground.flight.record import read_record
-from playground.images.content_hash import content_hash, content_key
-from playground.images.files import read_image, read_png
-from playground.images.picture_size import picture_size
-from playground.media.film import film_of
-from playground.media.pyav import open_media
+from playground.shader.source import read_source, read_text
 from playground.shots.results import digests_of, read_result
-from playground.sketch.allowed_files import ELEVATIONS, VECTORS
 from playground.sketch.find import find
 from playground.sketch.load import load
-from playground.sketch.source import read_source, read_text
-from playground.terrain.elevation import read_elevation
-from playground.terrain.model_files import read_model
-from playground.terrain.vectors import read_vectors
 from playground.workbench.text_file import OpenText
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system's folders hold files alone")

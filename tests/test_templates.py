@@ -7,14 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
+from playground.engine.camera import look
 from playground.engine.engine import Engine
 from playground.lessons.tasks.texts import EXERCISES
 from playground.paths import SKETCHES
 from playground.sketch.assign import values_of
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE
-from playground.templates import make_sketch
-from playground.terrain.camera import look
+from playground.sketch.templates import make_sketch
 
 
 def test_the_first_view_of_a_new_sketch_shows_all_of_the_terrain(engine: Engine, tmp_path: Path) -> None:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from playground.sketch.allowed_files import canonical_of, is_variant, root_of
-from playground.sketch.canonical import content_of
+from playground.allowed_files import canonical_of, is_variant, root_of
 from playground.sketch.techniques import Techniques
-from playground.sketch.variant_record import NAME, written
+from playground.sketch.variants import NAME, content_of, written
 
 
 def trust(folder: Path) -> None:

@@ -8,11 +8,11 @@ from functools import cache
 from pathlib import Path
 
 from playground.paths import GLSL
+from playground.shader.kernel import NOT
 from playground.sketch.catalogue import Choice, Entry
 from playground.sketch.catalogue import techniques as listed
 from playground.sketch.model import Graph, Kernel, Technique, Variant, kernels_of
 from playground.sketch.presence import deciding_inputs
-from playground.sketch.technique import NOT
 from playground.sketch.techniques import Techniques
 
 from .markdown import code, escaped, fenced, folded, table

@@ -1,7 +1,7 @@
 // foreign/camera.glsl -- a camera of the computer, for a channel of another tool.
 //
 //   gives    channel_texels, colours encoded for the display
-//   needs    nothing; the window looks (playground/media/camera.py), with PyAV
+//   needs    nothing; the window looks (playground/data/live_inputs.py), with PyAV
 //   units    none
 //   source   made here
 //   tested   tests/glsl/test_foreign_live.py, by a camera of the test's own

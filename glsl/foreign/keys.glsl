@@ -1,7 +1,7 @@
 // foreign/keys.glsl -- the keyboard, for a channel of another tool.
 //
 //   gives    channel_texels: red, 1 or 0
-//   needs    nothing; the window has a keyboard (playground/media/live_inputs.py)
+//   needs    nothing; the window has a keyboard (playground/data/live_inputs.py)
 //   units    none
 //   source   Shadertoy's layout: 256 x 3 texels, the column is the key's code in JavaScript
 //   tested   tests/glsl/test_foreign_live.py, by keys that go down and up

@@ -1,7 +1,7 @@
 // foreign/microphone.glsl -- the computer's microphone, for a channel of another tool.
 //
 //   gives    channel_texels: red, 0..1
-//   needs    nothing; the window listens (playground/media/microphone.py), with sounddevice
+//   needs    nothing; the window listens (playground/data/live_inputs.py), with sounddevice
 //   units    none
 //   source   W3C, Web Audio API (2021), section 1.8, AnalyserNode, as Shadertoy has it
 //   tested   tests/glsl/test_foreign_live.py, by a device of the test's own

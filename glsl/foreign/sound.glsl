@@ -1,7 +1,7 @@
 // foreign/sound.glsl -- the spectrum and the wave of a sound file, for a channel of another tool.
 //
 //   gives    channel_texels: red, 0..1
-//   needs    nothing; the processor reads the file (playground/media/sound.py), with PyAV
+//   needs    nothing; the processor reads the file (playground/data/media.py), with PyAV
 //   units    seconds
 //   source   W3C, Web Audio API (2021), section 1.8, AnalyserNode, as Shadertoy has it
 //   tested   tests/glsl/test_foreign_over_time.py, against tones of known frequencies

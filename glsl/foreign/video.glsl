@@ -1,7 +1,7 @@
 // foreign/video.glsl -- a video file for a channel of another tool, encoded as in the file.
 //
 //   gives    channel_texels, colours encoded for the display
-//   needs    nothing; the processor reads the file (playground/media/film.py), with PyAV
+//   needs    nothing; the processor reads the file (playground/data/media.py), with PyAV
 //   units    seconds
 //   source   made here
 //   tested   tests/glsl/test_foreign_over_time.py, against films of known colours

@@ -1,13 +1,13 @@
 // generation/from_example.glsl -- terrain like an example, along the ridges of a sketch.
 //
 //   gives    height, 0 at the lowest
-//   needs    nothing; the processor makes it (playground/terrain/example)
+//   needs    nothing; the processor makes it (playground/engine/by_example.py)
 //   units    heights without unit; where the file tells its metres, the sketch's relief and base
 //            elevation take them unless it sets its own. Metres are the file's: terrain of finer
 //            texels is as smooth as the example between its own
 //   source   Zhou, Sun, Turk and Rehg 2007, "Terrain Synthesis from Digital Elevation Models"
 //            (IEEE TVCG 13(4)); Efros and Freeman 2001, "Image Quilting" (SIGGRAPH)
-//   tested   tests/terrain/test_example.py, by the example's slopes, spectrum and drainage, and by
+//   tested   tests/engine/test_example.py, by the example's slopes, spectrum and drainage, and by
 //            each part against brute force
 //
 // Square pieces of the example, turned and mirrored, are laid along the guide's ridges and valleys

@@ -1,7 +1,7 @@
 // generation/heightmap.glsl -- terrain from an elevation file: real, or painted.
 //
 //   gives    height: 0 at the file's lowest, 1 at its highest
-//   needs    nothing; the processor reads the file (playground/terrain/elevation.py)
+//   needs    nothing; the processor reads the file (playground/data/elevation.py)
 //   units    heights without unit; the sketch's relief, base elevation and extent take the metres
 //            of the file or of `metres` unless it sets its own. Only pictures have no heights
 //   source   Belaiche 2010, section 2.3.1, for heights as greys in [a, b]

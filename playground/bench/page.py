@@ -21,9 +21,9 @@ from playground._version import __version__
 from playground.bench.against import changes
 from playground.bench.results import Figure, Results
 from playground.bench.table import HEADINGS, rows_of
+from playground.data.image_files import replacing
 from playground.errors import DataError
 from playground.extras import needs
-from playground.images.files import replacing
 from playground.markup import Markup, joined, tag
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from typing import Any
 
 from playground.bench.rows import Goal
 from playground.bench.timing import Samples
+from playground.data.image_files import replacing
 from playground.errors import DataError
-from playground.images.files import replacing
 from playground.json_text import read_json
 from playground.paths import shown
 from playground.regular_file import read_regular

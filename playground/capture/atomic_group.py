@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 
+from playground.data.image_files import reason, replacing
 from playground.errors import DataError
-from playground.images.files import reason, replacing
 from playground.regular_file import open_regular
 
 _MARK = b"terrain shader playground"

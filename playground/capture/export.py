@@ -47,17 +47,16 @@ from playground.capture.values import (
     light_span,
 )
 from playground.capture.web_page import WebPage, page_bytes, prepare_page
+from playground.data.gis import advice, geokeys_of
+from playground.data.grid import fitted
+from playground.data.image_files import encode_samples, naming
+from playground.data.place import Place
 from playground.engine.engine import Engine
 from playground.engine.internals import opened
 from playground.engine.plan import Plan
 from playground.engine.view_inputs import view_input
 from playground.errors import DataError, SketchError
-from playground.images.files import encode_samples
-from playground.images.image_formats import naming
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
-from playground.terrain.gis import advice, geokeys_of
-from playground.terrain.grid import fitted
-from playground.terrain.place import Place
 
 _NO_TEXTURE = "no texture: the view shows no colour; name one with --texture"
 

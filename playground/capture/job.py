@@ -21,9 +21,9 @@ from playground.capture.sequence import write_sequence
 from playground.capture.sheet import write_sheet
 from playground.capture.sweep import USUAL_STEPS, read_sweep, swept
 from playground.capture.video import QUALITY
+from playground.data.image_files import new_name, reason
 from playground.engine.engine import Engine
 from playground.errors import DataError
-from playground.images.files import new_name, reason
 from playground.sketch.model import Sketch
 
 PICTURE, PICTURES, FILM, SHEET = KINDS = ("picture", "pictures", "film", "sheet")

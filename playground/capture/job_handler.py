@@ -6,7 +6,7 @@ from playground.api import headless
 from playground.capture.job import CaptureJob, do
 from playground.capture.job_process import Finished
 from playground.engine.plain_forms import silent
-from playground.process.child import Parent, Service
+from playground.engine.process.child import Parent, Service
 
 
 def open_service(parent: Parent, options: tuple[bool, str]) -> Service:

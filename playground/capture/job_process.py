@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from playground.capture.job import CaptureJob
+from playground.engine.process.messages import Answer, Cancelled, summary_of
+from playground.engine.process.worker import Launch, Worker, WorkerDied
 from playground.errors import PlaygroundError
-from playground.process.messages import Answer, Cancelled, summary_of
-from playground.process.worker import Launch, Worker, WorkerDied
 
 _GRACE = 10.0  # [s] that a job may take to stop by itself
 

@@ -16,15 +16,14 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.capture.png_strips import PngStrips
+from playground.data.image_files import replacing
 from playground.engine.engine import Engine
 from playground.engine.internals import opened
+from playground.engine.picture_reduction import drawn_size, reduced
 from playground.engine.plan import Window
-from playground.engine.supersampling import drawn_size
+from playground.engine.textures import read_picture
 from playground.errors import DataError, ParameterError, SketchError
-from playground.gpu.textures import read_picture
-from playground.images.files import replacing
-from playground.images.png_strips import PngStrips
-from playground.images.supersampled import reduced
 from playground.sketch.model import LARGEST_PICTURE, Sketch
 
 TILE = (2048, 512)

@@ -1,4 +1,4 @@
-"""Pack a sketch with all that it needs into one zip; ``playground.sketch.unpack`` opens it.
+"""Pack a sketch with all that it needs into one zip; ``playground.sketch.find`` opens it.
 
 In it are the sketch's own texts, the images and elevation files that its values, presets,
 shots and keyframes name, references, and a README and a licence of its folder. Of what ships
@@ -17,14 +17,14 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from playground._version import __version__
+from playground.data.image_files import reason, replacing
 from playground.engine.packed_files import contents, folder_of
 from playground.errors import DataError
-from playground.images.files import reason, replacing
 from playground.paths import shown
 from playground.regular_file import read_regular
-from playground.sketch.libraries import libraries_of
+from playground.shader.libraries import libraries_of
+from playground.sketch.find import FORMAT, MANIFEST, MOST_BYTES, MOST_FILES
 from playground.sketch.model import Sketch
-from playground.sketch.unpack import FORMAT, MANIFEST, MOST_BYTES, MOST_FILES
 
 _DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can say
 _PLAIN_FILE = 0o100644 << 16

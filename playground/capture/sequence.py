@@ -17,10 +17,10 @@ from pathlib import Path
 from playground.api import headless
 from playground.capture.film import FPS, MOST_FRAMES, USUAL_SIZE, Film, frame_uniforms
 from playground.capture.large import is_large, write_large
+from playground.data.image_files import make_folder, read_png
 from playground.engine.engine import Engine
 from playground.engine.internals import opened
 from playground.errors import DataError, ParameterError
-from playground.images.files import make_folder, read_png
 from playground.sketch.model import Sketch
 
 MADE_OF = "Made of"

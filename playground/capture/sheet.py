@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from playground.api import headless
 from playground.capture.sweep import USUAL_STEPS, Swept, read_sweep, swept
 from playground.capture.video import QUALITY, Video, alpha_note, has_alpha
+from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.engine.internals import opened
 from playground.errors import ParameterError
-from playground.images.files import write_png
 from playground.sketch.model import LARGEST_SIDE, Sketch
 
 if TYPE_CHECKING:

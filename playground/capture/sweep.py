@@ -13,9 +13,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from playground.errors import ParameterError, nearest
+from playground.shader.parameter import coerce, expected, is_whole, length_of, read_whole, write
 from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve, value_of, values_of
 from playground.sketch.model import Parameter, Sketch, Value
-from playground.sketch.values import coerce, expected, is_whole, length_of, read_whole, write
 
 USUAL_STEPS = 9
 MOST_PICTURES = 400

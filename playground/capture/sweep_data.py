@@ -25,9 +25,9 @@ from playground.capture.sweep import Sweep, sweep_of, with_one_of_each
 from playground.capture.sweep_case import Case, Found
 from playground.engine.internals import opened
 from playground.engine.plan_request import checked_pixels
+from playground.engine.process.worker import Launch, Worker, WorkerDied
 from playground.errors import ParameterError, PlaygroundError, SandboxCrash
 from playground.extras import needs
-from playground.process.worker import Launch, Worker, WorkerDied
 from playground.sketch.model import LARGEST_SIDE, Sketch
 
 if TYPE_CHECKING:

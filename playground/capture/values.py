@@ -22,12 +22,7 @@ from numpy.typing import NDArray
 from playground._version import __version__
 from playground.capture.exr import encode_exr
 from playground.capture.extensions import COLOUR, HEIGHT, whole_numbers
-from playground.errors import DataError
-from playground.images.files import encode_samples
-from playground.images.image_formats import JPEG_QUALITY, encode_as
-from playground.images.values import clamped_note
-from playground.sketch.colour import linear_to_srgb
-from playground.terrain.geokeys import (
+from playground.data.geokeys import (
     CITATION,
     DIRECTORY,
     DOUBLES,
@@ -47,9 +42,13 @@ from playground.terrain.geokeys import (
     with_keys,
     write_keys,
 )
-from playground.terrain.gis import geokeys_of
-from playground.terrain.place import Crs, Place
-from playground.terrain.units import METRE
+from playground.data.gis import geokeys_of
+from playground.data.image_files import JPEG_QUALITY, encode_as, encode_samples
+from playground.data.place import Crs, Place
+from playground.data.units import METRE
+from playground.data.values import clamped_note
+from playground.errors import DataError
+from playground.shader.parameter import linear_to_srgb
 
 SOFTWARE = f"terrain shader playground {__version__}"
 

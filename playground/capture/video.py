@@ -17,9 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.capture.encoders import Codec, open_encoder, read_packets
+from playground.data.image_files import VIDEO_ENDINGS, reason, writing
 from playground.errors import DataError, ParameterError, PlaygroundError, counted, nearest
-from playground.images.extensions import VIDEO_ENDINGS
-from playground.images.files import reason, writing
 from playground.partial import partial_file
 from playground.paths import shown
 

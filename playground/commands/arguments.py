@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import typer
 
 from playground.errors import DataError, ParameterError, PlaygroundError
+from playground.shader.parameter import read_whole
 from playground.sketch.model import DRIVERS, LARGEST_SIDE, Shot, Sketch
-from playground.sketch.values import read_whole
 
 if TYPE_CHECKING:
     from playground.engine.engine import Engine
@@ -215,7 +215,7 @@ def output_file(output: str, usual: str, endings: Sequence[str], what: str) -> A
     the sentence, as "a picture is".
     """
     if not output:
-        from playground.images.files import new_name
+        from playground.data.image_files import new_name
 
         return new_name(usual)
     path = Path(output).expanduser()

@@ -12,7 +12,7 @@ from playground.commands import options
 from playground.commands.arguments import FAILED, Renderer, help_text, read_option, within
 from playground.commands.options import flag, positional, value
 from playground.errors import ParameterError
-from playground.sketch.values import read_whole
+from playground.shader.parameter import read_whole
 from playground.terminal import note, print_json, print_table, progress
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from playground.errors import Diagnostic, counted
 from playground.terminal import painted, print_json, progress
 
 if TYPE_CHECKING:
-    from playground.engine.check import FileReport
+    from playground.verify.check import FileReport
 
 
 HELP = help_text(
@@ -48,9 +48,9 @@ def check(
     device: options.Device = "",
 ) -> None:
     """Check shaders and sketches."""
-    from playground.engine.check import check_file, find_files
     from playground.engine.sandbox import LIMIT_SECONDS, Sandbox
-    from playground.sketch.dialects import check_name
+    from playground.shader.dialects import check_name
+    from playground.verify.check import check_file, find_files
 
     renderer: Renderer = ctx.obj.or_else(software, device)
     seconds = read_option("--limit", limit, within(0.1, 86_400.0), "seconds, 0.1 to 86400, as 60")

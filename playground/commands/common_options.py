@@ -11,8 +11,8 @@ from typing import Annotated, Any
 import typer
 from typer.main import get_command
 
+from playground.allowed_files import ROOT
 from playground.errors import ParameterError
-from playground.sketch.allowed_files import ROOT
 from playground.terminal import Loudness, choose_loudness, loudness
 
 

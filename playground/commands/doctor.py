@@ -16,7 +16,7 @@ from playground.commands.import_name import explained, other_owners
 from playground.terminal import complain, print_json
 
 if TYPE_CHECKING:
-    from playground.gpu.doctor import Health
+    from playground.doctor import Health
 
 
 HELP = help_text(
@@ -36,7 +36,7 @@ def doctor(
     device: options.Device = "",
 ) -> None:
     """Report what this machine offers."""
-    from playground.gpu.doctor import examine
+    from playground.doctor import examine
 
     renderer: Renderer = ctx.obj.or_else(software, device)
     others = other_owners()

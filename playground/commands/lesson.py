@@ -204,7 +204,7 @@ def pictures(
     software: options.Software = False,
 ) -> None:
     """Draw every picture of a lesson into a folder."""
-    from playground.images.files import write_png
+    from playground.data.image_files import write_png
     from playground.lessons.figure_renders import draw, pictures_of
     from playground.lessons.read import read_lesson
 
@@ -277,7 +277,7 @@ def translated(
 
 
 def _write_notebooks(folder: Path, lessons: dict[str, list[Lesson]], engine: Engine) -> None:
-    from playground.images.files import replacing
+    from playground.data.image_files import replacing
     from playground.lessons.measuring import numbers_of
     from playground.lessons.notebook.build import notebook_text
 

@@ -40,7 +40,7 @@ Name = Annotated[str, positional("NAME", "What its includes begin with, as lygia
 @app.command("add", help=ADD_HELP)
 def add(name: Name, folder: Annotated[str, positional("FOLDER", "The library's own folder.")]) -> None:
     """Remember the folder of a library."""
-    from playground.sketch.libraries import add_library
+    from playground.shader.libraries import add_library
 
     place = add_library(name, folder)
     print(place)
@@ -50,7 +50,7 @@ def add(name: Name, folder: Annotated[str, positional("FOLDER", "The library's o
 @app.command("list", help=LIST_HELP)
 def list_(as_json: options.Json = False) -> None:
     """List the libraries that were named."""
-    from playground.sketch.libraries import how_to_name, libraries
+    from playground.shader.libraries import how_to_name, libraries
 
     known = libraries()
     if as_json:
@@ -66,7 +66,7 @@ def list_(as_json: options.Json = False) -> None:
 @app.command("remove", help=REMOVE_HELP)
 def remove(name: Name) -> None:
     """Forget a library."""
-    from playground.sketch.libraries import remove_library
+    from playground.shader.libraries import remove_library
 
     remove_library(name)
     note(f"{name} is no longer looked for")

@@ -99,7 +99,7 @@ def live(
     osc_to: Annotated[str, value("--osc-to HOST:PORT", "Send each new value there by OSC.")] = "",
 ) -> None:
     """Open a sketch in a window."""
-    from playground.sketch.dialects import check_name
+    from playground.shader.dialects import check_name
 
     renderer: Renderer = ctx.obj.or_else(software)
     pixels, values = read_pixels(size), read_values(settings)
@@ -151,12 +151,12 @@ def _address(text: str) -> tuple[str, int] | None:
 
 def check_display(renderer: Renderer) -> None:
     """Raise ``ContextError`` where no window can be opened, or not on the chosen renderer."""
-    from playground.gpu.doctor import where_to_show
+    from playground.doctor import where_to_show
 
     if renderer.device is not None:
         raise ContextError("--device is for pictures without a window; a window opens where its display is")
     if not where_to_show(os.environ, sys.platform):
-        from playground.gpu.driver_advice import advice
+        from playground.engine.driver_advice import advice
 
         raise ContextError(advice("unable to open display", sys.platform, os.environ))
 
@@ -179,9 +179,8 @@ def open_window(
     )  # a wrong value in the environment is an error before a window opens
     from playground.engine.sandbox import Sandbox
     from playground.remote.remotes import RemoteOptions, Remotes
-    from playground.sketch.find import find
+    from playground.sketch.find import find, is_pack
     from playground.sketch.load import load
-    from playground.sketch.unpack import is_pack
 
     if sketch and not is_pack(Path(sketch)):
         find(sketch)  # says so before anything is started, where there is none

@@ -76,7 +76,7 @@ def mutants(
     loaded = load(sketch)
     first = shot_of(loaded, shot, pixels)
     if pictures is not None:
-        from playground.images.files import make_folder
+        from playground.data.image_files import make_folder
 
         make_folder(pictures)
     results: list[Result] = []
@@ -181,7 +181,7 @@ def _as_json(
 
 def _write(folder: Path, expected: Mapping[str, RenderedShot], results: Sequence[Result]) -> None:
     """Write each mutant's picture and its difference ×16, and the unbroken shots."""
-    from playground.images.files import write_png
+    from playground.data.image_files import write_png
     from playground.shots.compare import difference_picture
 
     for name, picture in expected.items():

@@ -27,7 +27,7 @@ def new(
     empty: Annotated[bool, flag("--empty", "An empty kernel of heights, to be written.")] = False,
 ) -> None:
     """Make a new sketch folder."""
-    from playground.templates import make_sketch
+    from playground.sketch.templates import make_sketch
 
     folder = make_sketch(Path(name).expanduser(), empty=empty)
     made = sorted(folder.iterdir())

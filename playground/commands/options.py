@@ -50,7 +50,7 @@ def complete_driver(incomplete: str) -> list[str]:
 
 def complete_dialect(incomplete: str) -> list[str]:
     """Return the dialects that complete a word."""
-    from playground.sketch.dialects import names
+    from playground.shader.dialects import names
 
     return [name for name in names() if name.startswith(incomplete)]
 

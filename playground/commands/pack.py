@@ -36,9 +36,9 @@ def pack(
 ) -> None:
     """Pack a sketch into one zip."""
     from playground.capture import pack as packing
-    from playground.sketch.libraries import how_to_name, libraries_of
+    from playground.shader.libraries import how_to_name, libraries_of
+    from playground.sketch.find import ENDING, read_pack, summary
     from playground.sketch.load import load
-    from playground.sketch.unpack import ENDING, read_pack, summary
 
     loaded = load(sketch)
     usual = f"{loaded.name}{ENDING}"

@@ -30,8 +30,8 @@ from playground.commands.film import Series, SeriesJob, make_series, read_fps, r
 from playground.commands.options import flag, value
 from playground.commands.standard_input import kept
 from playground.commands.standard_output import check_standard_output
+from playground.data.image_files import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.errors import DataError, ParameterError, counted
-from playground.images.extensions import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.paths import program
 from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE, MOST_SUPERSAMPLE
 from playground.terminal import busy, console_for, note, progress
@@ -208,7 +208,7 @@ def write_output(moment: Moment, output: Output, renderer: Renderer) -> None:
 
 def _note_hidden_defaults(sketch: Sketch) -> None:
     """Note which defaults of the sketch's own kernels have no effect, because its own files override them."""
-    from playground.sketch.shadowed import shadowed_by_files
+    from playground.sketch.warnings import shadowed_by_files
 
     hidden = shadowed_by_files(sketch)
     for one in hidden[:_MOST_HIDDEN]:
@@ -243,7 +243,7 @@ def _draw(engine: Engine, output: Output, moment: Moment, target: Path) -> None:
 
 
 def _write_texture(engine: Engine, sketch: Sketch, texture: str, target: Path, at: dict[str, Any]) -> None:
-    from playground.images.values import write_values
+    from playground.data.values import write_values
 
     clamped = write_values(target, engine.read(sketch, texture, **at))
     if clamped:
@@ -253,7 +253,7 @@ def _write_texture(engine: Engine, sketch: Sketch, texture: str, target: Path, a
 def _write_frame(engine: Engine, sketch: Sketch, target: Path, at: dict[str, Any]) -> None:
     frame = engine.render(sketch, **at)
     if target.name == "-":
-        from playground.images.files import encode_png
+        from playground.data.image_files import encode_png
 
         sys.stdout.buffer.write(encode_png(frame.array))
     else:
@@ -270,7 +270,7 @@ def _note_not_finite(engine: Engine) -> None:
 
 def _draw_large(engine: Engine, moment: Moment, size: tuple[int, int], target: Path) -> None:
     from playground.capture.large import TILE, count_tiles, encode_strips, strips, uncut, write_large
-    from playground.engine.supersampling import drawn_size
+    from playground.engine.picture_reduction import drawn_size
 
     whole = drawn_size(moment.sketch, size, LARGEST_PICTURE)
     tiles = count_tiles(whole, uncut(TILE, moment.sketch.supersample))

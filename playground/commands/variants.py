@@ -15,8 +15,7 @@ from playground.errors import counted
 from playground.terminal import print_json, print_table, progress
 
 if TYPE_CHECKING:
-    from playground.engine.verify import Verdict
-    from playground.engine.verify_targets import Subject
+    from playground.verify.variants import Subject, Verdict
 
 HELP = help_text(
     "Fast variants: other forms of a technique, that give the same result and exist only for speed.\n\n"
@@ -56,7 +55,7 @@ WhatArgument = Annotated[
 @app.command("list", help=LIST_HELP)
 def list_(what: WhatArgument = "", as_json: options.Json = False) -> None:
     """List fast variants, how closely they agree, and which of them run."""
-    from playground.engine.verify_targets import subjects
+    from playground.verify.variants import subjects
 
     rows = [_row(subject) for subject in subjects(what, Path())]
     if as_json:
@@ -84,7 +83,7 @@ def renew(
     device: options.Device = "",
 ) -> None:
     """Verify fast variants, and record those that agree."""
-    from playground.engine.verify_targets import recorded
+    from playground.verify.variants import recorded
 
     verdicts = _verdicts(what, ctx.obj.or_else(software, device))
     for path in recorded(verdicts):
@@ -107,9 +106,8 @@ def _row(subject: Subject) -> tuple[str, str, str]:
 
 def _verdicts(what: str, renderer: Renderer) -> list[Verdict]:
     from playground.engine.plain_forms import silent
-    from playground.engine.verify import verify
-    from playground.engine.verify_targets import subjects
     from playground.paths import shown
+    from playground.verify.variants import subjects, verify
 
     found: list[Verdict] = []
     with TemporaryDirectory(prefix="playground-variants-") as folder:

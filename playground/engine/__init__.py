@@ -1,4 +1,4 @@
-"""Plan and run a sketch on a context: passes, loops, staleness, iterations, the sandbox.
+"""From a sketch to textures: plan, run, cache, sandbox.
 
 Knows no technique by name: the terrain lives in ``glsl/``.
 """

@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from playground.sketch import expressions
-from playground.sketch.expressions import ExpressionError, Number
+from playground.shader import expressions
+from playground.shader.expressions import ExpressionError, Number
 from playground.sketch.flat import Leaf
 from playground.sketch.model import Kernel
 from playground.sketch.wiring import initial_names

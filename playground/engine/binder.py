@@ -14,24 +14,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from playground.data.content_hash import content_hash
+from playground.data.image_files import MAX_HALF, read_image
+from playground.engine.camera import unit_vector
+from playground.engine.gl_calls import mirror, surround
 from playground.engine.plan import Step
 from playground.engine.programs import Program
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Wired
+from playground.engine.textures import FACES, Shaped, check_size, copied, drain, shaped_size
 from playground.errors import ContextError
-from playground.gpu.gl_calls import mirror, surround
-from playground.gpu.shapes import FACES, Shaped, copied, shaped_size
-from playground.gpu.textures import check_size, drain
-from playground.gpu.wrap import reads_unwired
-from playground.images.content_hash import content_hash
-from playground.images.files import read_image
-from playground.images.tiff_pictures import MAX_HALF
 from playground.paths import shown
-from playground.sketch.colour import srgb_to_linear
-from playground.sketch.fixed_texels import fixed_texels, read_by_texels_alone
+from playground.shader.fixed_texels import fixed_texels, read_by_texels_alone
+from playground.shader.parameter import srgb_to_linear
+from playground.shader.reserved_names import MATCHES, PRESSED, TOWARDS, UNWIRED, WINDOW, WIRED
+from playground.shader.wrap import reads_unwired
 from playground.sketch.model import Input, Kernel, Parameter, Sampling, Value
-from playground.sketch.reserved_names import MATCHES, PRESSED, TOWARDS, UNWIRED, WINDOW, WIRED
-from playground.terrain.directions import unit_vector
 
 if TYPE_CHECKING:
     import moderngl

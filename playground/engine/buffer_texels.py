@@ -12,8 +12,8 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from playground.gpu.buffer_reads import FIRST_UNIT, read_by_functions
-from playground.gpu.gl_calls import Calls
+from playground.engine.gl_calls import Calls
+from playground.shader.buffer_reads import FIRST_UNIT, read_by_functions
 from playground.sketch.model import Buffer, Kernel
 
 if TYPE_CHECKING:

@@ -23,15 +23,15 @@ from heapq import heappop, heappush
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from playground.data.content_hash import content_hash
+from playground.engine.meshes import mesh_parameters
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_version, sources_of, walk
-from playground.images.content_hash import content_hash
-from playground.sketch.expressions import counts_frames
-from playground.sketch.fixed_texels import read_by_texels_alone
+from playground.engine.source_kinds import Terrain
+from playground.shader.expressions import counts_frames
+from playground.shader.fixed_texels import read_by_texels_alone
+from playground.shader.reserved_names import CLOCKED, GIVEN, MATCHES, PRESSED, TOWARDS
 from playground.sketch.flat import Fed, Ref, Shape, Source
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import CLOCKED, GIVEN, MATCHES, PRESSED, TOWARDS
-from playground.terrain.known import Terrain
-from playground.terrain.meshes import mesh_parameters
 
 _MAX_TEXTS = 512
 _HEADER = ("kind", "outputs", "registry", "blend", "depth", "over", "samples", "local", "buffers",

@@ -17,14 +17,14 @@ from math import isqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 from playground.engine.buffer_texels import BufferTexels
+from playground.engine.gl_calls import Calls
 from playground.engine.kernels import Job, Kernels
 from playground.engine.programs import Program
 from playground.engine.results import UNWIRED, Result
-from playground.gpu.buffer_reads import TEXELS
-from playground.gpu.gl_calls import Calls
-from playground.gpu.wrap import COMPUTE
-from playground.sketch import expressions
-from playground.sketch.expressions import ExpressionError, Number
+from playground.shader import expressions
+from playground.shader.buffer_reads import TEXELS
+from playground.shader.expressions import ExpressionError, Number
+from playground.shader.wrap import COMPUTE
 from playground.sketch.model import Buffer, Kernel
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 from playground.engine.plan import Step
 from playground.engine.results import Result
-from playground.gpu.textures import make_framebuffer
-from playground.sketch.reserved_names import SKIPS
+from playground.engine.textures import make_framebuffer
+from playground.shader.reserved_names import SKIPS
 
 if TYPE_CHECKING:
     import moderngl

@@ -30,11 +30,11 @@ from playground.engine.plan import (
     walk,
 )
 from playground.engine.results import Result
-from playground.gpu.textures import bytes_of
-from playground.sketch.expressions import follows_time
+from playground.engine.textures import bytes_of
+from playground.shader.expressions import follows_time
+from playground.shader.reserved_names import OF_THE_TERRAIN
 from playground.sketch.flat import Ref
 from playground.sketch.identity import Identity
-from playground.sketch.reserved_names import OF_THE_TERRAIN
 
 _PASSING = ("time", "clip_from_world", "world_from_clip", "eye")  # given names that change while one looks
 

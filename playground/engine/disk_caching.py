@@ -23,9 +23,9 @@ from playground.engine.disk_cache import CachedTextures, DiskCache
 from playground.engine.disk_cache_choice import choose, passing, worth_caching
 from playground.engine.execution import Execution
 from playground.engine.frame_record import FrameSource
+from playground.engine.gl_calls import read_mipmap, write_mipmaps
 from playground.engine.plan import Plan, PlanNode, Step, needed
-from playground.gpu.gl_calls import read_mipmap, write_mipmaps
-from playground.gpu.textures import bytes_of, levels_of, read_block
+from playground.engine.textures import bytes_of, levels_of, read_block
 from playground.sketch.flat import Ref
 
 if TYPE_CHECKING:

@@ -17,23 +17,21 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.engine.gl_calls import copy_depth
 from playground.engine.instances import Texels, instances_of
 from playground.engine.kernels import Job, Kernels
+from playground.engine.lod import CHOOSERS, Chosen, View, ranges
+from playground.engine.meshes import drawn_mesh, mesh_key, mesh_parameters
 from playground.engine.plan import Window
 from playground.engine.programs import Program
 from playground.engine.results import Result, Surface, Wired, started
+from playground.engine.textures import drain, make_framebuffer, read_texture, split_format
 from playground.errors import ContextError, SketchError
-from playground.gpu.gl_calls import copy_depth
-from playground.gpu.textures import drain, make_framebuffer, read_texture, split_format
-from playground.sketch import expressions
-from playground.sketch.expressions import ExpressionError
+from playground.shader import expressions
+from playground.shader.expressions import ExpressionError
+from playground.shader.reserved_names import ZOOM
 from playground.sketch.flat import Ref
 from playground.sketch.model import Value
-from playground.sketch.reserved_names import ZOOM
-from playground.terrain.lod import CHOOSERS
-from playground.terrain.meshes import drawn_mesh, mesh_key, mesh_parameters
-from playground.terrain.tiles import Chosen, ranges
-from playground.terrain.visibility import View
 
 if TYPE_CHECKING:
     import moderngl

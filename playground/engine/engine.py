@@ -12,17 +12,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.engine.context import ContextInfo
 from playground.engine.frame import Frame
 from playground.engine.internals import CACHE_BYTES, Internals, opened
 from playground.engine.non_finite import NotFinite
+from playground.engine.picture_reduction import drawn_size, reduced
 from playground.engine.plain_forms import warn
 from playground.engine.plan import most_iterations
 from playground.engine.planner import repeated_in
-from playground.engine.supersampling import drawn_size
+from playground.engine.textures import read_picture, read_texture
 from playground.errors import SketchError
-from playground.gpu.context import ContextInfo
-from playground.gpu.textures import read_picture, read_texture
-from playground.images.supersampled import reduced
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from playground.engine.replay import Replay, replay_of
 from playground.engine.results import UNWIRED, Result, Wired, started
 from playground.engine.runner import Runner
 from playground.engine.unfinished import Deadline
-from playground.sketch.expressions import follows_time
+from playground.shader.expressions import follows_time
 from playground.sketch.flat import Fed, Ref, Source
 
 Compute = Callable[[Step, Mapping[str, Wired], LoopIteration | None, Result | None], Result]

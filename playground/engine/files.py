@@ -12,12 +12,11 @@ from collections import OrderedDict
 from pathlib import Path
 from typing import NamedTuple
 
+from playground.allowed_files import ELEVATIONS, VECTORS, named_root, outside_sidecar, sidecar_places
+from playground.data.media import SOUND_FILES, VIDEO_FILES
 from playground.errors import DataError, nearest
-from playground.media.pyav import SOUND_FILES, VIDEO_FILES
 from playground.paths import GLSL, shown
 from playground.regular_file import irregularity
-from playground.sketch.allowed_files import ELEVATIONS, VECTORS, named_root, outside_sidecar
-from playground.sketch.sidecars import sidecar_places
 
 _IMAGES = (".jpg", ".jpeg", ".webp")
 _DATA = {*_IMAGES, *ELEVATIONS, *VECTORS, *VIDEO_FILES, *SOUND_FILES}

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.images.files import encode_png
-from playground.images.image_formats import write_picture
+from playground.data.image_files import encode_png, write_picture
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,11 +13,11 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from playground.engine.kernels import Job
+from playground.engine.lod import CHOOSERS
 from playground.engine.results import Result, Wired
-from playground.sketch import expressions
-from playground.sketch.expressions import ExpressionError, Number
+from playground.shader import expressions
+from playground.shader.expressions import ExpressionError, Number
 from playground.sketch.model import Kernel, Technique
-from playground.terrain.lod import CHOOSERS
 
 if TYPE_CHECKING:
     import moderngl

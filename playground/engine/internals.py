@@ -20,26 +20,7 @@ from typing import TYPE_CHECKING
 
 from playground.engine.cache import Cache
 from playground.engine.cache_keys import KeyMaker, Keys
-from playground.engine.disk_cache_choice import choose
-from playground.engine.disk_caching import DiskCaching
-from playground.engine.execution import Execution, would_run
-from playground.engine.eye_height import EyeHeight
-from playground.engine.frame_record import FrameRecord, Recorded
-from playground.engine.last_use import last_uses
-from playground.engine.non_finite import FiniteCheck, NotFinite
-from playground.engine.painted_images import PaintedFiles
-from playground.engine.picture_hash import PictureHasher
-from playground.engine.plain_forms import PlainForms
-from playground.engine.plan import LoopIteration, Plan, Step, Window, needed
-from playground.engine.plan_warnings import PlanWarnings
-from playground.engine.planner import Planner
-from playground.engine.results import Pool, Result, Wired
-from playground.engine.runner import Runner
-from playground.engine.supersampling import drawn_size
-from playground.engine.unfinished import Deadline, Piece
-from playground.engine.window import windowed
-from playground.errors import ContextError, Diagnostic, OpenGLFault
-from playground.gpu.context import (
+from playground.engine.context import (
     ContextInfo,
     context_info,
     keep_freed_memory,
@@ -47,9 +28,28 @@ from playground.gpu.context import (
     release_context,
     report_leak,
 )
-from playground.gpu.timers import Timer
-from playground.gpu.wrap import COMPUTE, FRAGMENT
+from playground.engine.disk_cache_choice import choose
+from playground.engine.disk_caching import DiskCaching
+from playground.engine.execution import Execution, would_run
+from playground.engine.eye_height import EyeHeight
+from playground.engine.frame_record import FrameRecord, Recorded
+from playground.engine.gl_calls import Timer
+from playground.engine.last_use import last_uses
+from playground.engine.non_finite import FiniteCheck, NotFinite
+from playground.engine.painted_images import PaintedFiles
+from playground.engine.picture_hash import PictureHasher
+from playground.engine.picture_reduction import drawn_size
+from playground.engine.plain_forms import PlainForms
+from playground.engine.plan import LoopIteration, Plan, Step, Window, needed
+from playground.engine.plan_warnings import PlanWarnings
+from playground.engine.planner import Planner
+from playground.engine.results import Pool, Result, Wired
+from playground.engine.runner import Runner
+from playground.engine.unfinished import Deadline, Piece
+from playground.engine.window import windowed
+from playground.errors import ContextError, Diagnostic, OpenGLFault
 from playground.paths import shown
+from playground.shader.wrap import COMPUTE, FRAGMENT
 from playground.sketch.flat import Ref
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, DRIVERS, LARGEST_PICTURE, LARGEST_SIDE, Sketch

@@ -25,14 +25,12 @@ from playground.engine.quicker_texts import quicker_texts
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.settling import Settling
-from playground.gpu.own_shaders import own_shader
-from playground.gpu.textures import make_framebuffer
-from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
-from playground.sketch import expressions
-from playground.sketch.expressions import FRAME_RATE, ExpressionError, Number, counts_frames
-from playground.sketch.fixed_texels import fixed_texels
-from playground.sketch.model import Kernel, Sampling
-from playground.sketch.reserved_names import (
+from playground.engine.textures import make_framebuffer
+from playground.shader import expressions
+from playground.shader.expressions import FRAME_RATE, ExpressionError, Number, counts_frames
+from playground.shader.fixed_texels import fixed_texels
+from playground.shader.own_shaders import own_shader
+from playground.shader.reserved_names import (
     DEPTH,
     ELEMENT,
     FIXED,
@@ -46,6 +44,8 @@ from playground.sketch.reserved_names import (
     WINDOW,
     WIRED,
 )
+from playground.shader.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
+from playground.sketch.model import Kernel, Sampling
 from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:

@@ -28,8 +28,8 @@ from numpy.typing import NDArray
 from playground.engine.frame_record import FrameSource
 from playground.engine.plan import LoopStep, Plan, Step, every_node
 from playground.engine.results import Result, Wired
-from playground.gpu.textures import read_bands, split_format
-from playground.gpu.wrap import FRAGMENT
+from playground.engine.textures import read_bands, split_format
+from playground.shader.wrap import FRAGMENT
 from playground.sketch.flat import Ref
 from playground.sketch.model import Kernel
 

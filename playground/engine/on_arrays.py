@@ -22,8 +22,8 @@ from playground.engine.plan import LoopStep, Plan, every_version, sources_of, wa
 from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.source_works import SourceWorks
 from playground.engine.standalone import free_name, shown_alone, text_of
+from playground.engine.textures import read_texture, write_texture
 from playground.errors import ParameterError, nearest
-from playground.gpu.textures import read_texture, write_texture
 from playground.paths import GLSL
 from playground.sketch.flat import Ref
 from playground.sketch.model import Kernel, Output, Parameter, PassSpec, Sketch, Technique

@@ -6,16 +6,15 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from playground.allowed_files import is_inside, sidecars
 from playground.engine.files import find_file
 from playground.errors import DataError
 from playground.paths import GLSL, SKETCHES, shown
-from playground.sketch.allowed_files import is_inside
+from playground.shader.libraries import libraries, library_around
 from playground.sketch.arrays import holds_array
 from playground.sketch.assign import resolve, values_of
-from playground.sketch.libraries import libraries, library_around
 from playground.sketch.load import is_technique
 from playground.sketch.model import Sketch, Value, kernels_of
-from playground.sketch.sidecars import sidecars
 
 _DOCUMENTS = ("README*", "readme*", "LICENSE*", "LICENCE*")
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.gpu.textures import make_texture, split_format, write_texels, write_texture
-from playground.images.content_hash import content_key
+from playground.data.content_hash import content_key
+from playground.engine.textures import make_texture, split_format, write_texels, write_texture
 
 if TYPE_CHECKING:
     import moderngl

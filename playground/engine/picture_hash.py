@@ -18,8 +18,8 @@ from typing import Any
 
 from playground.engine.cache_keys import KeyMaker
 from playground.engine.plan import Plan, Step
-from playground.sketch.canonical import compiled_text
-from playground.sketch.reserved_names import MOMENT
+from playground.shader.reserved_names import MOMENT
+from playground.sketch.variants import compiled_text
 
 _DIGITS = 9
 

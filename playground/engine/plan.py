@@ -8,12 +8,12 @@ from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 from playground.engine.between import Between
-from playground.sketch.expressions import counts_frames
+from playground.engine.camera import Eye
+from playground.engine.source_kinds import Terrain
+from playground.shader.expressions import counts_frames
 from playground.sketch.flat import Flat, Ref, Source
 from playground.sketch.identity import Identity
 from playground.sketch.model import Kernel, PassSpec, Sketch, Value
-from playground.terrain.camera import Eye
-from playground.terrain.known import Terrain
 
 _MOST_PLANS = 2  # of so many what follows from their passes alone is remembered: more would live long
 

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from numbers import Integral, Real
 
+from playground.engine.source_kinds import Terrain
 from playground.errors import ParameterError
-from playground.terrain.known import Terrain
 
 DEFAULT_SIZE = (513, 513)  # texels of a terrain whose size nothing says
 DEFAULT_EXTENT = 10_240.0  # [m] from west to east

@@ -7,20 +7,20 @@ from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
+from playground.data.live_inputs import LiveInputs
 from playground.engine.plan import Plan, PlanNode, Step, most_iterations, walk
+from playground.engine.source_kinds import Terrain
+from playground.engine.sources import source_kind
 from playground.errors import DataError, Diagnostic
-from playground.media.live_inputs import LiveInputs
 from playground.paths import GLSL, shown
-from playground.sketch import expressions
+from playground.shader import expressions
+from playground.shader.expressions import ExpressionError, Number
 from playground.sketch.assign import effective_values
-from playground.sketch.expressions import ExpressionError, Number
 from playground.sketch.flat import Flat, Ref, Source
 from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
-from playground.sketch.variant_check import INSIDE
+from playground.sketch.variants import INSIDE
 from playground.sketch.warnings import former_names_used, unheeded, warnings_of_kernel
-from playground.terrain.known import Terrain
-from playground.terrain.sources import source_kind
 
 
 class PlanWarnings:
@@ -92,7 +92,7 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
     assumptions = _assumptions(plan)
     for step in _fed_from_outside(Identity(plan.nodes)):
         if step.kernel.dialect:
-            from playground.sketch.dialects.foreign import unfed_warnings
+            from playground.shader.dialects.foreign import unfed_warnings
 
             for warning in unfed_warnings(step.kernel, _wired(plan, step)):
                 found.setdefault(f"{step.kernel.path} {warning.message}", warning)
@@ -195,8 +195,8 @@ def _readers(plan: Plan, source: Step) -> str:
 
 def _wired(plan: Plan, step: Step) -> set[str]:
     """Return the inputs that something feeds besides the stand-ins that another tool's shader comes with."""
-    from playground.sketch.dialects.passes import stand_in_paths
-    from playground.sketch.dialects.shader import STAND_INS
+    from playground.shader.dialects.foreign import STAND_INS
+    from playground.shader.dialects.passes import stand_in_paths
 
     def is_stand_in(name: str, source: Source) -> bool:
         if not isinstance(source, Ref) or source.path not in stand_in_paths(step.path, name):

@@ -14,10 +14,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from playground.engine.accepted_sizes import sizes_of_variant
+from playground.data.image_files import picture_size
 from playground.engine.between import between_of
-from playground.engine.input_shapes import check_shapes
-from playground.engine.pass_sizes import MAX_REPEAT, PassSizes, counted
+from playground.engine.camera import Eye, look
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, most_iterations
 from playground.engine.plan_request import (
     PlanRequest,
@@ -25,19 +24,18 @@ from playground.engine.plan_request import (
     checked_seconds,
     checked_steps,
 )
+from playground.engine.sizes import MAX_REPEAT, PassSizes, check_shapes, counted, sizes_of_variant
 from playground.engine.source_facts import described, given_values, own_sizes
+from playground.engine.source_kinds import Terrain
 from playground.errors import ParameterError, SketchError, nearest
-from playground.images.picture_size import picture_size
 from playground.paths import shown
-from playground.sketch import expressions
-from playground.sketch.expressions import Number
+from playground.shader import expressions
+from playground.shader.expressions import Number
 from playground.sketch.flat import Flat, Leaf, Loop, Node, repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
 from playground.sketch.identity import Identity
 from playground.sketch.model import LARGEST_SIDE, Graph, Sketch, Technique, Value
 from playground.sketch.wiring import inner, output_names, target_of
-from playground.terrain.camera import Eye, look
-from playground.terrain.known import Terrain
 
 _MOST_PLANS = 8  # of so many graphs, picture sizes and stops the last plan is remembered
 

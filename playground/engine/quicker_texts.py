@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from playground.engine.binder import are_of_own_size
+from playground.engine.choices import quicker_choices
 from playground.engine.plan import Step
 from playground.engine.results import Wired
-from playground.gpu.choices import quicker_choices
-from playground.gpu.wrap import FRAGMENT
-from playground.sketch.reserved_names import OWN_SIZE, PLACE
+from playground.shader.reserved_names import OWN_SIZE, PLACE
+from playground.shader.wrap import FRAGMENT
 
 
 def quicker_texts(step: Step, inputs: Mapping[str, Wired], driver: str) -> list[str]:

@@ -17,7 +17,7 @@ from playground.engine.kernels import Kernels
 from playground.engine.plan import LoopIteration, LoopStep, PlanNode, Step
 from playground.engine.programs import Program
 from playground.engine.results import Result, Wired
-from playground.sketch.expressions import FRAME_RATE
+from playground.shader.expressions import FRAME_RATE
 from playground.sketch.flat import Fed, Ref, Source
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from playground.gpu.shapes import Shaped
-from playground.gpu.textures import (
+from playground.engine.textures import (
+    Shaped,
     bytes_of,
     make_framebuffer,
     make_texture,

@@ -11,8 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from playground.data.live_inputs import LiveInputs, Now
+from playground.data.media import bands_at
 from playground.engine.binder import Binder
 from playground.engine.compute_variant import ComputeVariants
+from playground.engine.context import ContextInfo
 from playground.engine.draws import Draws
 from playground.engine.error_place import placed
 from playground.engine.kernels import Job, Kernels, usual_of
@@ -22,18 +25,14 @@ from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.scene import MEANINGS as OF_THE_SCENE
 from playground.engine.scene import scene_of
+from playground.engine.source_kinds import Material, SourceKind
 from playground.engine.source_works import Arrays, SourceWorks, Task
+from playground.engine.sources import source_kind
+from playground.engine.textures import read_texture, split_format, write_texture
 from playground.errors import DataError
-from playground.gpu.context import ContextInfo
-from playground.gpu.textures import read_texture, split_format, write_texture
-from playground.media.bands import bands_at
-from playground.media.live_inputs import LiveInputs
-from playground.media.now import Now
-from playground.sketch.expressions import FRAME_RATE, last_frame_at
+from playground.shader.expressions import FRAME_RATE, last_frame_at
+from playground.shader.reserved_names import MOMENT, NEUTRAL, OF_THE_TERRAIN, PRESSED
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import MOMENT, NEUTRAL, OF_THE_TERRAIN, PRESSED
-from playground.terrain.source_kinds import Material, SourceKind
-from playground.terrain.sources import source_kind
 
 if TYPE_CHECKING:
     import moderngl

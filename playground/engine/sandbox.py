@@ -20,10 +20,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from playground.engine.files import find_file
+from playground.engine.process.crash_report import CrashReport
+from playground.engine.process.messages import Answer, summary_of
+from playground.engine.process.worker import Closing, Launch, Replaceable, Worker, WorkerDied
 from playground.errors import DataError, PlaygroundError, SandboxCrash, SandboxTimeout
-from playground.process.crash_report import CrashReport
-from playground.process.messages import Answer, summary_of
-from playground.process.worker import Closing, Launch, Replaceable, Worker, WorkerDied
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
 from playground.sketch.traits import traits_of

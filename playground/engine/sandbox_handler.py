@@ -7,22 +7,22 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.engine.accepted_sizes import smallest_terrain
+from playground.allowed_files import reading_unsaved
 from playground.engine.all_errors import all_errors
+from playground.engine.context import open_context
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Step
+from playground.engine.process.child import Parent, Service
+from playground.engine.programs import compile_library
 from playground.engine.sandbox import Activity, Request, SandboxReport, TryLibrary, TrySketch
+from playground.engine.sizes import smallest_terrain
+from playground.engine.textures import drain, is_lost
 from playground.engine.unfinished import Unfinished
 from playground.errors import ContextError, PlaygroundError, SandboxCrash, ShaderError
-from playground.gpu.context import open_context
-from playground.gpu.program import compile_library
-from playground.gpu.textures import drain, is_lost
-from playground.gpu.wrap import COMPUTE
-from playground.process.child import Parent, Service
-from playground.sketch.allowed_files import reading_unsaved
+from playground.shader.source import read_source
+from playground.shader.wrap import COMPUTE
 from playground.sketch.model import Sketch
-from playground.sketch.source import read_source
 
 if TYPE_CHECKING:
     import moderngl

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from playground.engine.camera import unit_vector
 from playground.engine.plan import Plan
-from playground.sketch.reserved_names import NEUTRAL
-from playground.terrain.directions import unit_vector
+from playground.shader.reserved_names import NEUTRAL
 
 MEANINGS = frozenset({"camera", "light"})
 """What ``scene_of`` knows."""

@@ -11,7 +11,7 @@ from math import isqrt
 from typing import TYPE_CHECKING, Any
 
 from playground.engine.results import Pool, Result
-from playground.gpu.own_shaders import own_shader
+from playground.shader.own_shaders import own_shader
 from playground.sketch.model import Output, Sampling
 
 if TYPE_CHECKING:

@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping
 from playground.engine.error_place import placed
 from playground.engine.files import find_file
 from playground.engine.plan_request import DEFAULT_EXTENT, DEFAULT_RELIEF, DEFAULT_SIZE
+from playground.engine.source_kinds import Terrain
+from playground.engine.sources import source_kind
 from playground.errors import DataError, PlaygroundError
 from playground.sketch.flat import Flat, Leaf
 from playground.sketch.model import Sketch, Value
-from playground.terrain.known import Terrain
-from playground.terrain.sources import source_kind
 
 Values = Mapping[str, Mapping[str, Value]]
 """The values of each leaf, by its path."""

@@ -13,8 +13,8 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from playground.engine.process.messages import Cancelled
 from playground.engine.unfinished import Unfinished
-from playground.process.messages import Cancelled
 
 Arrays = Mapping[str, NDArray[Any]]
 Report = Callable[[int, int], None]

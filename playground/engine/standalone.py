@@ -10,10 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
+from playground.data.values import write_values
 from playground.engine.instances import counts_instances
-from playground.gpu.own_shaders import own_shader
-from playground.images.values import write_values
 from playground.paths import shown
+from playground.shader.own_shaders import own_shader
+from playground.shader.source import Line, SourceText
 from playground.sketch.assign import values_of
 from playground.sketch.model import (
     Graph,
@@ -26,7 +27,6 @@ from playground.sketch.model import (
     Technique,
     kernels_of,
 )
-from playground.sketch.source import Line, SourceText
 
 SEED = "seed"
 """The placeholders' parameter: which terrain."""

@@ -21,11 +21,11 @@ from functools import lru_cache
 
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, Window, sources_of, walk
 from playground.errors import SketchError
+from playground.shader.reserved_names import MATCHES, WINDOW, WIRED, ZOOM
+from playground.shader.source import SourceText
 from playground.sketch.flat import Ref
 from playground.sketch.identity import Identity
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import MATCHES, WINDOW, WIRED, ZOOM
-from playground.sketch.source import SourceText
 
 _KERNEL = re.compile(r"\bkernel\s*\(\s*(?:in\s+)?(ivec2\s+)(\w+)\b[^)]*\)\s*\{")
 _BLOCK = re.compile(r"^(?:\w+\s+\w+\s*\([^()]*\)|struct\s+\w+)\s*\{", re.MULTILINE)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from playground.engine.textures import make_framebuffer
 from playground.flight.layout import Plot
 from playground.flight.programs import screen_program
-from playground.gpu.textures import make_framebuffer
 
 if TYPE_CHECKING:
     import moderngl

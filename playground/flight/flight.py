@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
+from playground.engine.textures import read_picture
 from playground.flight.craft import CLEARANCE, LEVEL, Controls, Craft, stepped
 from playground.flight.layout import Plot, plot_of
 from playground.flight.lens import through, turned
 from playground.flight.parts import Parts
 from playground.flight.record import Moment
 from playground.flight.scene import Before, Scene
-from playground.gpu.textures import read_picture
 from playground.sketch.model import Sketch
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.engine.textures import make_framebuffer, make_texture, read_texture
 from playground.flight.layout import PartName, Plot
 from playground.flight.programs import screen_program
-from playground.gpu.textures import make_framebuffer, make_texture, read_texture
 
 if TYPE_CHECKING:
     import moderngl

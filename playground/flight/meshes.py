@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.terrain.meshes import skirted
+from playground.engine.meshes import skirted
 
 LEVELS = 4
 BLOCKS = 4

@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from playground.engine.camera import Eye
 from playground.engine.engine import Engine
+from playground.engine.textures import make_texture
 from playground.flight.layout import Plot
 from playground.flight.lens import Lens
-from playground.gpu.textures import make_texture
 from playground.paths import GLSL
 from playground.sketch.flat import Ref
 from playground.sketch.model import Graph, PassSpec, Sketch
 from playground.sketch.techniques import read_technique
-from playground.terrain.camera import Eye
 
 if TYPE_CHECKING:
     import moderngl

@@ -22,12 +22,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
+from playground.engine.textures import bytes_of, make_texture, read_texture
 from playground.errors import SketchError
 from playground.flight.cutter import Cutter
 from playground.flight.daylight import daylight_of
 from playground.flight.groves import Grove
 from playground.flight.layout import DAYLIGHT, DENSITY, FARTHEST, LIGHT, VISIBILITY, PartName, Plot
-from playground.gpu.textures import bytes_of, make_texture, read_texture
 from playground.sketch.model import Sketch
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from playground.paths import GLSL
-from playground.sketch.source import read_source
+from playground.shader.source import read_source
 
 if TYPE_CHECKING:
     import moderngl

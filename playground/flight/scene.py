@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from playground.engine.engine import Engine
+from playground.engine.textures import make_framebuffer, make_texture, read_texture
 from playground.flight.daylight import daylight_of
 from playground.flight.layout import Plot
 from playground.flight.lens import Lens
@@ -19,7 +20,6 @@ from playground.flight.outdoors import Around, Outdoors
 from playground.flight.parts import Parts, Slot
 from playground.flight.programs import AIR_DIRECTIONS, screen_program, terrain_program
 from playground.flight.woods import Woods
-from playground.gpu.textures import make_framebuffer, make_texture, read_texture
 
 if TYPE_CHECKING:
     import moderngl

@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
+from playground.engine.textures import make_framebuffer, make_texture, read_texture
 from playground.flight.daylight import Daylight
 from playground.flight.groves import Grove, Planter, cells_of
 from playground.flight.layout import PartName, Plot
 from playground.flight.lens import Lens
 from playground.flight.parts import Parts
 from playground.flight.programs import screen_program, trees_program
-from playground.gpu.textures import make_framebuffer, make_texture, read_texture
 
 if TYPE_CHECKING:
     import moderngl

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from playground.lessons.figure_renders import with_bug
 from playground.lessons.model import Break
 from playground.paths import GLSL
-from playground.sketch.source import read_text
+from playground.shader.source import read_text
 
 CONTEXT = 4
 """Lines that are shown before and after those that differ."""

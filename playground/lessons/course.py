@@ -8,8 +8,8 @@ from pathlib import Path
 
 from playground.errors import nearest
 from playground.lessons import library
+from playground.shader.parameter import spell
 from playground.sketch.toml_table import TomlFile
-from playground.sketch.values import spell
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,9 @@ from pathlib import Path
 from playground.errors import SketchError
 from playground.lessons.markdown import Piece, pieces
 from playground.lessons.model import Prose
-from playground.sketch.source import read_text
+from playground.shader.parameter import spell
+from playground.shader.source import read_text
 from playground.sketch.toml_table import TomlFile
-from playground.sketch.values import spell
 
 _EDGE = "+++"
 _HEADING = re.compile(r"^#+\s*(.*?)\s*#*$")

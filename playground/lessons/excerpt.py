@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from playground.errors import SketchError, nearest
 from playground.paths import GLSL
-from playground.sketch.source import read_text
+from playground.shader.source import read_text
 
 _MARK = re.compile(r"^\s*//\s*(anchor|end):\s*(\S+)\s*$")
 

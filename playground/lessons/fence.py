@@ -14,9 +14,9 @@ from playground.lessons.markdown import Piece
 from playground.lessons.measures import MEASURES
 from playground.lessons.scenes import PICTURE, STATE, Sketches, read_scene
 from playground.paths import GLSL
+from playground.shader.parameter import spell
 from playground.sketch.assign import resolve
 from playground.sketch.toml_table import TomlFile
-from playground.sketch.values import spell
 
 B = TypeVar("B", bound=model.Named)
 

@@ -13,10 +13,10 @@ from playground.lessons.markdown import Piece
 from playground.lessons.scenes import FRAME, STATE, Sketches, read_scene, with_steps, with_value
 from playground.lessons.task_fences import read_challenge, read_exercise
 from playground.paths import GLSL
+from playground.shader.parameter import spell
 from playground.sketch.assign import check_value, resolve
 from playground.sketch.model import Value
 from playground.sketch.toml_table import TomlFile
-from playground.sketch.values import spell
 
 _NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 

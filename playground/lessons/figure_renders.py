@@ -10,9 +10,9 @@ from playground.engine.frame import Frame
 from playground.errors import SketchError
 from playground.lessons import model
 from playground.paths import GLSL
+from playground.shader.source import read_text
 from playground.sketch.model import Shot, kernels_of
-from playground.sketch.source import read_text
-from playground.sketch.text_overrides import with_texts
+from playground.sketch.replace_technique import with_texts
 
 SMALL = 3
 """How many times smaller, each way, the pictures are that tests compare."""

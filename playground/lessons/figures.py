@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from playground.lessons.library import HERE
 from playground.lessons.model import Scene
 from playground.lessons.scenes import Sketches
+from playground.shader.parameter import write
 from playground.sketch.assign import resolve, value_of, values_of
 from playground.sketch.find import shipped_sketches
 from playground.sketch.model import Sketch
-from playground.sketch.values import write
 
 _SHOT = re.compile(r"figure-(\d+)-(\d+)(?:-([a-z]))?")
 

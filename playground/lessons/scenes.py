@@ -10,20 +10,19 @@ from typing import Any
 from playground.errors import ParameterError, PlaygroundError, nearest
 from playground.lessons.model import Scene
 from playground.paths import SKETCHES
+from playground.shader.parameter import spell
 from playground.sketch.find import shipped_sketches
 from playground.sketch.flat import leaves_of
 from playground.sketch.flatten import flatten
 from playground.sketch.load import load_with
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import LARGEST_SIDE, Shot, Sketch, Value
+from playground.sketch.replace_technique import with_texts
 from playground.sketch.techniques import Techniques
-from playground.sketch.text_overrides import with_texts
-from playground.sketch.toml_camera import read_camera
 from playground.sketch.toml_graph import read_set
-from playground.sketch.toml_places import Place
-from playground.sketch.toml_sketch import read_steps
+from playground.sketch.toml_sketch import read_camera, read_steps
 from playground.sketch.toml_table import TomlFile
-from playground.sketch.values import spell
+from playground.sketch.toml_text import Place
 
 STATE = ("sketch", "shot", "preset", "set", "steps", "camera", "time", "pixels", "view", "range")
 """The keys that describe a picture."""

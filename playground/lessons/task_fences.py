@@ -7,15 +7,15 @@ from dataclasses import replace
 from typing import Any, TypeVar
 
 from playground.errors import DataError, PlaygroundError, ShaderError, nearest
-from playground.images.picture_difference import SHARE
 from playground.lessons import model
 from playground.lessons.fence import Fence, measure_of, shader
+from playground.lessons.picture_difference import SHARE
 from playground.lessons.scenes import STATE, read_scene
 from playground.lessons.tasks.texts import EXERCISES, answer_text, path_of, starter_text
+from playground.shader.parameter import spell
 from playground.sketch.assign import TERRAIN_KEYS, check_value, current_path, resolve
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Value, kernels_of
-from playground.sketch.values import spell
 
 T = TypeVar("T", bound=model.Task)
 

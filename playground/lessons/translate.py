@@ -16,8 +16,8 @@ from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
 
+from playground.data.image_files import replacing
 from playground.errors import SketchError
-from playground.images.files import replacing
 from playground.lessons.document import Document, prose_of, texts_in
 from playground.lessons.fence import Fence
 from playground.lessons.fences import open_fence

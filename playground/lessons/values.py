@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from playground.lessons.model import Scene, Slider
+from playground.shader.parameter import write
 from playground.sketch.assign import resolve
 from playground.sketch.model import Value
-from playground.sketch.values import write
 
 
 def spelled_value(slider: Slider, value: Value, language: str) -> str:

@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, cast
 
 from imgui_bundle import imgui
 
+from playground.allowed_files import TEXTS
+from playground.engine.context import prefer_software
 from playground.engine.engine import Engine
+from playground.engine.programs import warnings_of
 from playground.engine.sandbox import Sandbox
 from playground.errors import Diagnostic, PlaygroundError
-from playground.gpu.context import prefer_software
-from playground.gpu.driver_warnings import warnings_of
-from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
 from playground.lessons.library import SOURCE, lesson_file
 from playground.live.capture_window import draw_capture
 from playground.live.code_window import draw_code
@@ -48,7 +48,7 @@ from playground.live.window import Window, wake
 from playground.live.window_place import Place
 from playground.paths import DEFAULT_SKETCH
 from playground.remote.remotes import Remotes
-from playground.sketch.allowed_files import TEXTS
+from playground.shader.wrap import COMPUTE, FRAGMENT, wrap
 from playground.sketch.assign import current_paths
 from playground.sketch.find import find
 from playground.sketch.load import load

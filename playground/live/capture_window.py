@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.capture.job import FILM, KINDS, PICTURE, PICTURES, SHEET
 from playground.capture.job_process import JobProcess
 from playground.capture.video import QUALITIES
-from playground.images.extensions import VIDEO_ENDINGS
+from playground.data.image_files import VIDEO_ENDINGS
 from playground.live import theme
 from playground.live.draw import POPUP_COLOUR, QUIET, button, choose, disabled, styled, wrapped
 from playground.live.panel_rows import row

@@ -12,9 +12,9 @@ from playground.live.draw import choose
 from playground.live.panel_rows import cross, fitting_choice, row, slot
 from playground.live.theme import Theme
 from playground.live.widgets import Place, draw_value, explanation
-from playground.sketch.channels import Channel, channels, source_of, sources
 from playground.sketch.model import PassSpec, Sketch
 from playground.workbench.channel_list import endings_of, file_of, in_words, note_of
+from playground.workbench.channels import Channel, channels, source_of, sources
 from playground.workbench.edits import Draft
 from playground.workbench.parameter_list import Listing
 from playground.workbench.session import Session

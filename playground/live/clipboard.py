@@ -11,8 +11,8 @@ import imgui_bundle  # noqa: F401  # before glfw, so that both use one GLFW libr
 # isort: split
 import glfw
 
+from playground.engine.driver_advice import advice
 from playground.errors import ContextError
-from playground.gpu.driver_advice import advice
 
 
 def clipboard_text() -> str:

@@ -11,14 +11,13 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.allowed_files import SHADERS, VECTORS, is_elevation
 from playground.errors import PlaygroundError
 from playground.live.theme import Theme
 from playground.live.widgets import IMAGES
-from playground.sketch.allowed_files import SHADERS, VECTORS, is_elevation
-from playground.sketch.dialects import is_export
-from playground.sketch.find import find
+from playground.shader.dialects import is_export
+from playground.sketch.find import find, is_pack, unpacked_beside
 from playground.sketch.model import Parameter, Sketch, Value
-from playground.sketch.unpack import is_pack, unpacked_beside
 from playground.workbench.channel_list import MEDIA, Taker, in_words, takers
 from playground.workbench.commands import Commands
 from playground.workbench.parameter_list import Item, Listing
@@ -41,7 +40,7 @@ def opened_from(sketch: Path) -> tuple[Path, str]:
 def _is_sketch(path: Path) -> bool:
     """Return whether a file or a folder opens as a sketch."""
     if path.is_dir():
-        from playground.sketch.dialects.shadertoy_folder import image_of
+        from playground.shader.dialects.shadertoy_files import image_of
 
         return (path / "sketch.toml").is_file() or image_of(path) is not None
     with suppress(PlaygroundError):

@@ -19,13 +19,13 @@ from imgui_bundle import imgui
 # isort: split
 import glfw
 
+from playground.engine.context import context_info, prefer_software
 from playground.engine.engine import Engine
 from playground.engine.sandbox import Sandbox
 from playground.errors import DataError
 from playground.flight.craft import STEP, Controls
 from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
 from playground.flight.record import Header, Moment, Record, Recorder
-from playground.gpu.context import context_info, prefer_software
 from playground.live.flight_controls import Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.live.instruments import Instruments
 from playground.live.keys import pressed_sign

@@ -13,8 +13,8 @@ from playground.live.sliders import slide
 from playground.live.text_field import letters, with_typed_ahead
 from playground.live.theme import Theme
 from playground.paths import shown
+from playground.shader.parameter import spell, write
 from playground.sketch.model import Preset, Sketch
-from playground.sketch.values import spell, write
 from playground.workbench.bench import Bench
 from playground.workbench.commands import Commands
 from playground.workbench.edits import Edits

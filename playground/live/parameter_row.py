@@ -15,7 +15,7 @@ from playground.live.panel_rows import cross, row, slot, slot_button
 from playground.live.text_field import await_field, letters, with_typed_ahead
 from playground.live.theme import Theme
 from playground.live.widgets import Place, draw_value, explanation
-from playground.sketch.values import write
+from playground.shader.parameter import write
 from playground.workbench.control.controllers import Controllers
 from playground.workbench.interface import TypedAhead
 from playground.workbench.notices import Notices

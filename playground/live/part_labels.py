@@ -16,9 +16,9 @@ from imgui_bundle import ImVec2, imgui
 from playground.live import theme
 from playground.live.draw import Area
 from playground.live.theme import Theme
+from playground.shader.parameter import label_of
 from playground.sketch.assign import values_of
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch
-from playground.sketch.parameter import label_of
 
 _LEAST = 48.0  # [units of scale 1] a part that is narrower has no room for a name
 _WIDEST = 260.0

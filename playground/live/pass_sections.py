@@ -17,12 +17,12 @@ from playground.live.panel_rows import cross, fitting_choice, row, slot
 from playground.live.parameter_row import Rows
 from playground.live.sliders import slide_whole
 from playground.live.theme import Theme
-from playground.sketch.channels import channels
+from playground.shader.parameter import label_of
 from playground.sketch.composed import parts_of
 from playground.sketch.model import PassSpec, Sketch, kernels_of
-from playground.sketch.parameter import label_of
 from playground.sketch.replace_technique import choices
 from playground.workbench.bench import Bench
+from playground.workbench.channels import channels
 from playground.workbench.commands import Commands
 from playground.workbench.edits import Draft
 from playground.workbench.inspect.pass_graph import cost_of

@@ -13,8 +13,8 @@ from contextlib import contextmanager
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
+from playground.shader.parameter import is_whole
 from playground.sketch.model import Parameter
-from playground.sketch.values import is_whole
 from playground.workbench.number_format import format_of, snapped, unit_of
 
 _CLAMP = imgui.SliderFlags_.always_clamp.value

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.allowed_files import ELEVATIONS
 from playground.engine.files import find_file
 from playground.errors import DataError
 from playground.live import dome, theme
@@ -20,11 +21,17 @@ from playground.live.draw import choose
 from playground.live.panel_rows import fitting_choice
 from playground.live.sliders import draw_numbers, part_names
 from playground.paths import shown
-from playground.sketch.allowed_files import ELEVATIONS
-from playground.sketch.colour import linear_to_srgb, srgb_to_linear
+from playground.shader.parameter import (
+    WIDGETS,
+    expected,
+    is_whole,
+    length_of,
+    linear_to_srgb,
+    srgb_to_linear,
+    tidied,
+    write,
+)
 from playground.sketch.model import Parameter, Value
-from playground.sketch.values import expected, is_whole, length_of, tidied, write
-from playground.sketch.widgets import WIDGETS
 from playground.workbench.number_format import unit_of
 
 _CLAMP = imgui.SliderFlags_.always_clamp.value

@@ -20,9 +20,9 @@ from imgui_bundle import imgui
 # isort: split
 import glfw
 
+from playground.engine.context import abandon, adopt_context
+from playground.engine.driver_advice import advice
 from playground.errors import ContextError
-from playground.gpu.context import abandon, adopt_context
-from playground.gpu.driver_advice import advice
 from playground.live import releases
 from playground.live.double_click import Clicks
 from playground.live.theme import Theme

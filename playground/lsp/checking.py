@@ -12,13 +12,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from playground.engine.check import check_file
+from playground.allowed_files import noting_places
+from playground.engine.process.messages import summary_of
 from playground.engine.sandbox import Request, Sandbox, SandboxReport
 from playground.errors import ContextError, Diagnostic, OpenGLFault, PlaygroundError
 from playground.lsp.documents import Document, Documents
 from playground.paths import GLSL, current_folder, without_part
-from playground.process.messages import summary_of
-from playground.sketch.allowed_files import noting_places
+from playground.verify.check import check_file
 
 Found = Mapping[Path, tuple[Diagnostic, ...]]
 """What is wrong, by file."""

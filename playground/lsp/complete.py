@@ -7,19 +7,18 @@ from collections.abc import Iterable
 
 from lsprotocol import types
 
+from playground.allowed_files import names_below
+from playground.engine.meshes import MESHES
+from playground.engine.sources import SOURCES
 from playground.lsp import describe
 from playground.lsp.documents import Document, Documents, Text
 from playground.lsp.shader import Shader, is_code, library_declared, shader_of, word_at
 from playground.paths import GLSL, SKETCHES
-from playground.sketch.allowed_files import names_below
-from playground.sketch.header import CHOICES, FORMATS, PRAGMAS
-from playground.sketch.libraries import libraries
-from playground.sketch.outline import code_of, locals_of
-from playground.sketch.reserved_names import GLSL_WORDS
-from playground.sketch.uniforms import FALLBACKS, MODIFIERS
-from playground.sketch.widgets import WIDGETS
-from playground.terrain.meshes import MESHES
-from playground.terrain.sources import SOURCES
+from playground.shader.header import CHOICES, FALLBACKS, FORMATS, MODIFIERS, PRAGMAS
+from playground.shader.libraries import libraries
+from playground.shader.outline import code_of, locals_of
+from playground.shader.parameter import WIDGETS
+from playground.shader.reserved_names import GLSL_WORDS
 
 Kind = types.CompletionItemKind
 _INCLUDE = re.compile(r"\s*#\s*include\s*[\"<]([^\">]*)$")

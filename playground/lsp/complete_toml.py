@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from lsprotocol import types
 
+from playground.allowed_files import is_variant
 from playground.lsp import describe
 from playground.lsp.complete import Kind, item, replacing
 from playground.lsp.documents import Document, Documents
 from playground.lsp.sketch_text import Cursor, SketchText, cursor_at, own_techniques
-from playground.sketch import toml_keys
-from playground.sketch.allowed_files import is_variant
+from playground.shader.parameter import spell
+from playground.sketch import toml_table
 from playground.sketch.assign import all_paths, find_targets
 from playground.sketch.find import shipped_names
 from playground.sketch.keyframes import EASES
 from playground.sketch.model import Parameter, Technique
 from playground.sketch.toml_graph import TECHNIQUE_KEYS
-from playground.sketch.values import spell
 from playground.sketch.wiring import input_names, output_names
 
 _CHOICES: dict[str, tuple[object, ...]] = {
@@ -53,22 +53,22 @@ class _Completion:
         if cursor.is_header:
             return self._headers()
         head = cursor.table[0] if cursor.table else ""
-        keys = tuple(str(key) for key in cursor.table[2 if head in toml_keys.LISTS else 1 :]) + cursor.keys
+        keys = tuple(str(key) for key in cursor.table[2 if head in toml_table.LISTS else 1 :]) + cursor.keys
         return self._values(str(head), keys) if cursor.is_value else self._keys(str(head), keys)
 
     def _headers(self) -> list[types.CompletionItem]:
-        names = [*toml_keys.LISTS, "view", *TECHNIQUE_KEYS]
-        known = toml_keys.SKETCH | toml_keys.TECHNIQUE
+        names = [*toml_table.LISTS, "view", *TECHNIQUE_KEYS]
+        known = toml_table.SKETCH | toml_table.TECHNIQUE
         return [item(name, Kind.Module, "", known[name]) for name in names]
 
     # ── keys ─────────────────────────────────────────────────────────────────
 
     def _keys(self, head: str, keys: tuple[str, ...]) -> list[types.CompletionItem]:
         if not keys:
-            table = toml_keys.TABLES.get(head, {}) if head else toml_keys.SKETCH | toml_keys.TECHNIQUE
+            table = toml_table.TABLES.get(head, {}) if head else toml_table.SKETCH | toml_table.TECHNIQUE
             return [item(key, Kind.Property, "", meaning) for key, meaning in table.items()]
         if keys == ("camera",):
-            return [item(key, Kind.Property, "", meaning) for key, meaning in toml_keys.CAMERA.items()]
+            return [item(key, Kind.Property, "", meaning) for key, meaning in toml_table.CAMERA.items()]
         if keys[0] == "set":
             return self._settable(head, keys[1:])
         technique = self._technique(head)
@@ -183,9 +183,9 @@ class _Completion:
 
     def _technique(self, head: str) -> Technique | None:
         """Return what fills the pass that the cursor is in; ``use`` may be on its own line."""
-        table = self.cursor.table[: 2 if head in toml_keys.LISTS else 1]
+        table = self.cursor.table[: 2 if head in toml_table.LISTS else 1]
         return self.sketch.technique(table) or self.whole.technique(table)
 
     def _parameter(self, head: str, path: str) -> Parameter | None:
-        table = self.cursor.table[: 2 if head in toml_keys.LISTS else 1]
+        table = self.cursor.table[: 2 if head in toml_table.LISTS else 1]
         return self.sketch.parameter(table, path) or self.whole.parameter(table, path)

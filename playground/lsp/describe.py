@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from playground.paths import shown
+from playground.shader.outline import Declared
+from playground.shader.parameter import expected, write
 from playground.sketch.catalogue import Choice
 from playground.sketch.model import Kernel, Parameter, Technique
-from playground.sketch.outline import Declared
-from playground.sketch.values import expected, write
 from playground.sketch.wiring import input_names, output_names
 
 

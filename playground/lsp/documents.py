@@ -14,9 +14,9 @@ from urllib.parse import unquote, urlsplit
 from lsprotocol import types
 from pygls import uris
 
+from playground.allowed_files import SHADERS, looking_once, reading_unsaved, root_of
 from playground.paths import GLSL, SKETCHES
-from playground.sketch.allowed_files import SHADERS, looking_once, reading_unsaved, root_of
-from playground.sketch.source import normalised, read_text
+from playground.shader.source import normalised, read_text
 
 Units = Callable[[str], int]
 """How many units an editor counts for a text: of UTF-16, unless it has agreed to others."""

@@ -13,12 +13,12 @@ from playground.lsp.documents import Document, Documents, Text
 from playground.lsp.shader import include_at, is_code, library_declared, shader_of, word_at
 from playground.lsp.sketch_text import SketchText
 from playground.paths import GLSL, shown
-from playground.sketch import toml_keys
-from playground.sketch.header import title_of
-from playground.sketch.outline import local_at, locals_of, outline
-from playground.sketch.reserved_names import DRIVER_BOUND, RESERVED
-from playground.sketch.source import find_include, read_source, read_text
-from playground.sketch.toml_places import Pair, Place
+from playground.shader.header import title_of
+from playground.shader.outline import local_at, locals_of, outline
+from playground.shader.reserved_names import DRIVER_BOUND, RESERVED
+from playground.shader.source import find_include, read_source, read_text
+from playground.sketch import toml_table
+from playground.sketch.toml_text import Pair, Place
 from playground.sketch.wiring import inner
 
 _SYMBOLS = {
@@ -117,7 +117,7 @@ def hover_sketch(document: Document, documents: Documents, at: int) -> str:
         place, pair = _pair_at(sketch, at)
         if pair is None:
             name = _header_at(document, sketch, at)
-            return (toml_keys.SKETCH | toml_keys.TECHNIQUE).get(name, "")
+            return (toml_table.SKETCH | toml_table.TECHNIQUE).get(name, "")
         table, keys = _parted(place)
         if keys[:1] == ("set",) and len(keys) > 1:
             parameter = sketch.parameter(table, ".".join(keys[1:]))
@@ -130,9 +130,9 @@ def hover_sketch(document: Document, documents: Documents, at: int) -> str:
             technique = sketch.technique_of(name)
             return describe.technique(name, technique) if technique is not None else ""
         head = str(table[0]) if table else ""
-        known = toml_keys.TABLES.get(head, {}) if head else toml_keys.SKETCH | toml_keys.TECHNIQUE
+        known = toml_table.TABLES.get(head, {}) if head else toml_table.SKETCH | toml_table.TECHNIQUE
         if keys[:1] == ("camera",) and len(keys) > 1:
-            return toml_keys.CAMERA.get(keys[1], "")
+            return toml_table.CAMERA.get(keys[1], "")
         return known.get(keys[0], "") if len(keys) == 1 else ""
 
 
@@ -190,7 +190,7 @@ def _pair_at(sketch: SketchText, at: int) -> tuple[Place, Pair | None]:
 def _parted(place: Place) -> tuple[Place, tuple[str, ...]]:
     """Return a place's table, one with a header, and the keys in it."""
     size = 0
-    if place and place[0] in toml_keys.LISTS:
+    if place and place[0] in toml_table.LISTS:
         size = 2
     elif len(place) > 1 and place[0] == "view":
         size = 1

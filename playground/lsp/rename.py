@@ -16,15 +16,14 @@ from pathlib import Path
 
 from lsprotocol import types
 
+from playground.allowed_files import FAST, SHADERS, is_file, names_below, reading_unsaved
 from playground.errors import PlaygroundError
 from playground.lsp.documents import Document, Documents, root_for
 from playground.lsp.rename_toml import Edit, edits_in_toml
 from playground.lsp.shader import Shader, is_code, shader_at, shader_of, word_at
 from playground.paths import shown
-from playground.sketch.allowed_files import FAST, SHADERS, is_file, names_below, reading_unsaved
-from playground.sketch.header import parse_kernel
-from playground.sketch.load import load_with
-from playground.sketch.outline import (
+from playground.shader.header import is_given, parse_kernel
+from playground.shader.outline import (
     Declared,
     code_of,
     has_branches,
@@ -34,10 +33,10 @@ from playground.sketch.outline import (
     outline,
     words,
 )
-from playground.sketch.reserved_names import GLSL_WORDS, MATCHES, PREFIX, TOWARDS, WIRED
-from playground.sketch.source import read_source, read_text
+from playground.shader.reserved_names import GLSL_WORDS, MATCHES, PREFIX, TOWARDS, WIRED
+from playground.shader.source import read_source, read_text
+from playground.sketch.load import load_with
 from playground.sketch.techniques import Techniques
-from playground.sketch.uniforms import is_given
 
 _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _ENTRIES = frozenset({"main", "mainImage", "mainVR", "mainSound"})

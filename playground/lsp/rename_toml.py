@@ -9,10 +9,10 @@ from pathlib import Path
 from playground.errors import PlaygroundError
 from playground.lsp.documents import Document
 from playground.lsp.sketch_text import SketchText
+from playground.shader.source import read_text
 from playground.sketch.assign import find_targets
 from playground.sketch.model import Graph, Parameter, Technique
-from playground.sketch.source import read_text
-from playground.sketch.toml_places import TomlPlaces
+from playground.sketch.toml_text import TomlPlaces
 
 Edit = tuple[int, int, str]
 """Where a text begins and ends that is replaced, and by what."""

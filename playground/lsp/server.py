@@ -30,7 +30,7 @@ from playground.lsp.complete_toml import complete_sketch
 from playground.lsp.documents import Document, Documents, Text
 from playground.lsp.rename import Refused, prepare, rename
 from playground.lsp.shader import library_declared
-from playground.sketch.outline import WORD
+from playground.shader.outline import WORD
 
 T = TypeVar("T")
 

@@ -12,15 +12,14 @@ from functools import cache
 from pathlib import Path
 
 from playground.errors import PlaygroundError
-from playground.gpu.name_suggestions import library
 from playground.lsp.documents import Document, Documents
 from playground.paths import GLSL
-from playground.sketch.header import parse_kernel
+from playground.shader.driver_log import library
+from playground.shader.header import parse_kernel, read_uniforms
+from playground.shader.outline import Declared, code_of, identifiers, local_at, locals_of, outline
+from playground.shader.reserved_names import GIVEN, MATCHES, SKIPS, TOWARDS, WIRED
+from playground.shader.source import SourceText, find_include, read_source, read_text
 from playground.sketch.model import Input, Kernel, Parameter
-from playground.sketch.outline import Declared, code_of, identifiers, local_at, locals_of, outline
-from playground.sketch.reserved_names import GIVEN, MATCHES, SKIPS, TOWARDS, WIRED
-from playground.sketch.source import SourceText, find_include, read_source, read_text
-from playground.sketch.uniforms import read_uniforms
 
 _INCLUDE = re.compile(r"^[ \t]*#[ \t]*(?:pragma[ \t]+)?include[ \t]*[\"<]([^\">\n]*)", re.MULTILINE)
 _PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(kernel|source|draw|compute)\b", re.MULTILINE)

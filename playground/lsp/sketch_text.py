@@ -16,9 +16,9 @@ from playground.sketch.assign import find_targets
 from playground.sketch.load import load_with
 from playground.sketch.model import Graph, Parameter, Sketch, Technique
 from playground.sketch.techniques import Techniques
-from playground.sketch.toml_keys import LISTS
-from playground.sketch.toml_places import Pair, Place, TomlPlaces
 from playground.sketch.toml_sketch import DEFAULT_VIEW
+from playground.sketch.toml_table import LISTS
+from playground.sketch.toml_text import Pair, Place, TomlPlaces
 
 _KEY = re.compile(r"[\w.-]|\"")
 _TEXT = re.compile(r"\"((?:[^\"\\\n]|\\.)*)\"|'([^'\n]*)'")

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from playground.engine.internals import opened
 from playground.errors import DataError
 from playground.extras import needs
+from playground.shader.parameter import spell
 from playground.sketch.model import Sketch
-from playground.sketch.values import spell
 
 if TYPE_CHECKING:
     from playground.notebook.sketch_widget import CompareWidget, SketchWidget

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from playground.engine.context import ContextInfo
+from playground.engine.process.worker import Closing, Launch, Replaceable, Worker, WorkerDied, WorkerTimeout
 from playground.engine.sandbox import LIMIT_BYTES
 from playground.errors import ContextError, SandboxCrash
-from playground.gpu.context import ContextInfo
-from playground.process.worker import Closing, Launch, Replaceable, Worker, WorkerDied, WorkerTimeout
 from playground.reduce.draw_handler import DrawResult, DrawTask
 
 LIMIT = 10.0

@@ -16,7 +16,7 @@ from pathlib import Path
 from playground.reduce.variant import record_text
 from playground.sketch.map_sketch import USE
 from playground.sketch.model import Camera, Value
-from playground.sketch.variant_record import NAME
+from playground.sketch.variants import NAME
 
 SHOT = "reduced"
 """The one shot of a sketch that is written: its picture's size and time."""

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
+from playground.engine.context import context_info, open_context
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
+from playground.engine.process.child import Parent, Service
+from playground.engine.textures import drain, read_picture
 from playground.errors import Diagnostic, PlaygroundError, ShaderError
-from playground.gpu.context import context_info, open_context
-from playground.gpu.textures import drain, read_picture
-from playground.process.child import Parent, Service
 from playground.sketch.load import load_with
 from playground.sketch.model import Sketch
 from playground.sketch.techniques import Techniques, WithLibrary

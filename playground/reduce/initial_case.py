@@ -12,10 +12,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from playground.engine.context import ContextInfo
 from playground.engine.frame import Frame
 from playground.errors import DataError, ParameterError, nearest
-from playground.gpu.context import ContextInfo
-from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.reduce.candidate_process import LIMIT, CandidateProcess
 from playground.reduce.case import Case
 from playground.reduce.draw_handler import DrawTask
@@ -32,6 +31,7 @@ from playground.reduce.failures import (
 )
 from playground.reduce.inline import inline_sketch
 from playground.reduce.probe import Probe
+from playground.shader.wrap import COMPUTE, FRAGMENT
 from playground.shots.compare import TOLERANCE
 from playground.shots.suite import ShotCase, check
 from playground.sketch.model import Sketch

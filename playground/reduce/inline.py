@@ -12,13 +12,12 @@ from playground.errors import SketchError
 from playground.paths import shown
 from playground.reduce.case import Case, Pass
 from playground.reduce.tokens import tidy
-from playground.sketch.annotation import note_at
-from playground.sketch.dialects.isf_header import read_header
+from playground.shader.dialects.isf import read_header
+from playground.shader.header import note_at
+from playground.shader.reserved_names import MATCHES, WIRED
+from playground.shader.source import SourceText, read_source_and_origin, without_guards
 from playground.sketch.flat import Ref, Source
-from playground.sketch.include_guards import without_guards
 from playground.sketch.model import Kernel, Sketch, Value
-from playground.sketch.reserved_names import MATCHES, WIRED
-from playground.sketch.source import SourceText, read_source_and_origin
 from playground.sketch.variants import active_variant
 
 _OF_SHADERS = (".fs", ".fragment", ".glsl", ".json")

@@ -10,9 +10,8 @@ from pathlib import Path
 from shlex import quote as quoted
 
 from playground._version import __version__
+from playground.data.image_files import replacing, writing
 from playground.errors import DataError, counted
-from playground.gpu.wrap import wrap
-from playground.images.files import replacing, writing
 from playground.json_text import read_json
 from playground.paths import shown
 from playground.reduce.candidate_process import CandidateProcess
@@ -22,6 +21,7 @@ from playground.reduce.failures import Commanded, Died, FailureKind, Finding, Re
 from playground.reduce.initial_case import InitialCase, Question
 from playground.reduce.probe import Probe
 from playground.reduce.search import Search
+from playground.shader.wrap import wrap
 from playground.sketch.load import load
 from playground.sketch.model import kernels_of
 

@@ -7,11 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from playground.errors import PlaygroundError
-from playground.sketch.canonical import content_of
-from playground.sketch.header import parse_kernel
+from playground.shader.header import parse_kernel
+from playground.shader.source import read_source
 from playground.sketch.model import Kernel
-from playground.sketch.source import read_source
-from playground.sketch.variant_record import Verified, written
+from playground.sketch.variants import Verified, content_of, written
 
 
 def record_text(pairs: Mapping[str, tuple[str, str]]) -> str:

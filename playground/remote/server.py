@@ -30,9 +30,9 @@ from typing import Any
 
 from aiohttp import WSMsgType, web
 
+from playground.data.image_files import encode_png
 from playground.engine.frame import Frame
 from playground.errors import DataError, ParameterError, PlaygroundError
-from playground.images.files import encode_png
 from playground.json_text import read_json
 from playground.local_server import BACKLOG, MAX_SILENCE, Unauthenticated
 from playground.remote.access import refusal

@@ -19,8 +19,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.data.image_files import make_folder, read_png, replacing, write_png
 from playground.errors import DataError, ParameterError, nearest
-from playground.images.files import make_folder, read_png, replacing, write_png
 from playground.paths import shown
 from playground.regular_file import read_regular
 from playground.shots.references import FOLDER, accepted_in

@@ -26,8 +26,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.engine.context import ContextInfo
 from playground.errors import DataError
-from playground.gpu.context import ContextInfo
 
 if TYPE_CHECKING:
     import moderngl

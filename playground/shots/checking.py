@@ -18,6 +18,7 @@ from typing import NoReturn, TypeVar
 
 import pytest
 
+from playground.engine.context import ContextInfo
 from playground.engine.plain_forms import PlainForms, silent
 from playground.errors import (
     ContextError,
@@ -27,7 +28,6 @@ from playground.errors import (
     SandboxCrash,
     SandboxTimeout,
 )
-from playground.gpu.context import ContextInfo
 from playground.paths import shown
 from playground.shots import soft_failures
 from playground.shots.claims import Claim, Claims, keeping, writing

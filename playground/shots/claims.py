@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.images.files import make_folder, replacing
+from playground.data.image_files import make_folder, replacing
 from playground.shots.names import one_spelling
 
 _FOLDER = ".names"

@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from playground import paths
+from playground.data.image_files import read_texts
 from playground.errors import DataError, PlaygroundError, counted, nearest
-from playground.images.files import read_texts
 from playground.paths import shown
 from playground.shots.checking import checker_of
 from playground.shots.recording import references_name

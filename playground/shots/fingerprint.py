@@ -31,8 +31,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 
 from playground._version import __version__
-from playground.gpu.build import processor
-from playground.gpu.context import ContextInfo
+from playground.engine.context import ContextInfo, processor
 
 _MESA = re.compile(r"\bMesa (\d\S*(?: \(git-\w+\))?)")
 _LLVM = re.compile(r"\bLLVM (\d[\w.]*)")

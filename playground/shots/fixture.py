@@ -18,11 +18,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from playground.engine.context import ContextInfo, context_info
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
+from playground.engine.textures import read_picture
 from playground.errors import DataError, PlaygroundError
-from playground.gpu.context import ContextInfo, context_info
-from playground.gpu.textures import read_picture
 from playground.paths import shown
 from playground.shots.adapters import Taken, taken
 from playground.shots.checking import checker_of
@@ -35,8 +35,7 @@ from playground.shots.soft_failures import add_check, add_failure, expect_check,
 from playground.shots.suite import RenderedShot, ShotCase, film_of
 from playground.sketch.find import find
 from playground.sketch.load import load
-from playground.sketch.model import Graph, Shot, Sketch
-from playground.sketch.tolerance import Given, tolerance_of
+from playground.sketch.model import Given, Graph, Shot, Sketch, tolerance_of
 
 if TYPE_CHECKING:
     import moderngl

@@ -35,7 +35,7 @@ from playground.shots.flip import TILE, flip
 from playground.shots.masking import Mask, hidden, shown_alone
 from playground.shots.references import Reference
 from playground.shots.tolerated import tolerated
-from playground.sketch.tolerance import Tolerance
+from playground.sketch.model import Tolerance
 
 WORDS = (
     "same",  # it passes; all others fail

@@ -9,7 +9,7 @@ import numpy as np
 
 from playground.shots.adapters import taken
 from playground.shots.masking import Light, Rectangle
-from playground.sketch.toml_comparison import MASK_ENDING
+from playground.sketch.toml_sketch import MASK_ENDING
 
 
 class MaskOfTest:

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.data.image_files import read_png
 from playground.errors import DataError
-from playground.images.files import read_png
 from playground.paths import shown
 
 Rectangle = tuple[int, int, int, int]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+from playground.engine.context import context_info, open_context
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
+from playground.engine.process.child import Parent, Service
 from playground.errors import ContextError
-from playground.gpu.context import context_info, open_context
-from playground.process.child import Parent, Service
 from playground.shots.suite import render_shot
 
 if TYPE_CHECKING:

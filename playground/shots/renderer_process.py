@@ -6,9 +6,8 @@ it ended, with what it printed. The next shot is rendered all the same.
 
 from __future__ import annotations
 
-from playground.errors import ContextError, PlaygroundError, SandboxCrash, SandboxTimeout
-from playground.gpu.context import ContextInfo
-from playground.process.worker import (
+from playground.engine.context import ContextInfo
+from playground.engine.process.worker import (
     START_SECONDS,
     Closing,
     Launch,
@@ -17,6 +16,7 @@ from playground.process.worker import (
     WorkerDied,
     WorkerTimeout,
 )
+from playground.errors import ContextError, PlaygroundError, SandboxCrash, SandboxTimeout
 from playground.shots.suite import RenderedShot, ShotCase
 
 LIMIT = 120.0

@@ -16,8 +16,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from playground.data.image_files import replacing
 from playground.errors import counted
-from playground.images.files import replacing
 from playground.paths import shown
 from playground.regular_file import read_regular
 from playground.shots.page.document import page

@@ -13,8 +13,8 @@ import secrets
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
+from playground.data.image_files import replacing
 from playground.errors import DataError
-from playground.images.files import replacing
 from playground.shots.results import PICTURES, Record, make_results_folder, read_result
 
 _CLAIM = ".home"

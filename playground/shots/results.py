@@ -30,8 +30,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.data.image_files import encode_png, make_folder, replacing
 from playground.errors import DataError
-from playground.images.files import encode_png, make_folder, replacing
 from playground.json_text import read_json
 from playground.regular_file import read_regular
 from playground.shots.plugin_constants import REPORT

@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
 from playground.engine.error_place import located_at
 from playground.engine.frame import Frame
 from playground.errors import DataError
-from playground.gpu.context import ContextInfo
 from playground.shots.compare import difference_picture
 from playground.shots.fingerprint import fingerprint_of
 from playground.shots.flip import flip_picture
@@ -37,7 +37,7 @@ from playground.shots.references import (
 from playground.shots.strip import frame_size, judge_frames, repeated, strip_of
 from playground.sketch.load import load
 from playground.sketch.model import Shot, Sketch
-from playground.sketch.toml_comparison import MASK_ENDING
+from playground.sketch.toml_sketch import MASK_ENDING
 
 
 @dataclass(frozen=True)

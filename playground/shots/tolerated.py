@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from playground.shots.compare import TOLERANCE, sums_of_windows
 from playground.shots.flip import flip
-from playground.sketch.tolerance import Tolerance
+from playground.sketch.model import Tolerance
 
 WINDOW = 32
 """[pixels] Side of the windows."""

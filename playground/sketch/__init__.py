@@ -1,5 +1,5 @@
-"""Text and numbers only: sketches, techniques, kernels' headers, includes, expressions.
+"""A sketch as a value: read, changed, saved.
 
-Nothing here opens a window, a context or an image. A ``Sketch`` is a frozen
+Nothing here opens a window, a context or a picture. A ``Sketch`` is a frozen
 value: a slider, a preset or ``--set`` makes a new one.
 """

@@ -12,8 +12,8 @@ from dataclasses import replace
 from functools import lru_cache
 
 from playground.errors import Diagnostic, SketchError
+from playground.shader.kernel_cache import replaced
 from playground.sketch.identity import Identity
-from playground.sketch.kernel_cache import replaced
 from playground.sketch.model import Export, Graph, Kernel, Output, PassSpec, Technique
 from playground.sketch.wiring import input_names, output_names
 

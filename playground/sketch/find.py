@@ -1,13 +1,25 @@
-"""Find a sketch by name or path, and list what ships."""
+"""Find a sketch by name or path, unpack a packed one, and list what ships.
+
+A zip is not trusted: nothing of it is written outside its folder, no link is made, and how many
+files and bytes it may become is known before the first is written. Commands read it from
+the cache, in a folder named after its bytes, which is made anew where a file of it was
+changed; a window opens a copy in the same folder, whose files may be edited.
+"""
 
 from __future__ import annotations
 
-from pathlib import Path
+import hashlib
+import re
+import secrets
+import shutil
+import stat
+import zipfile
+import zlib
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
 
-from playground.errors import SketchError, nearest
-from playground.paths import GLSL, SKETCHES
-from playground.regular_file import irregularity
-from playground.sketch.allowed_files import (
+from playground._version import __version__
+from playground.allowed_files import (
     ELEVATIONS,
     SHADERS,
     TECHNIQUES,
@@ -17,8 +29,274 @@ from playground.sketch.allowed_files import (
     is_inside,
     is_variant,
 )
-from playground.sketch.dialects import EXPORT, is_export
-from playground.sketch.unpack import is_pack, unpacked
+from playground.errors import DataError, SketchError, counted, nearest
+from playground.folders import cache_folder
+from playground.json_text import read_json
+from playground.paths import GLSL, SKETCHES
+from playground.regular_file import irregularity, open_regular
+from playground.shader.dialects import EXPORT, is_export
+
+ENDING = ".zip"
+MANIFEST = "pack.json"
+FORMAT = 1
+MOST_FILES = 2000
+MOST_BYTES = 2**30
+_MOST_RATIO = 200  # of what is unpacked to the zip; what is drawn or measured stays far below
+_ALWAYS_FINE = 2**26  # [bytes] unpacked, with any ratio
+_MOST_PACKS = 16  # packs in the cache
+_STAMP = ".unpacked-from"
+_MOST_MANIFEST = 2**20
+
+# Windows takes these for devices, with any ending.
+_DEVICES = {"con", "prn", "aux", "nul", *(f"{name}{n}" for name in ("com", "lpt") for n in range(1, 10))}
+_FORBIDDEN = re.compile(r'[\x00-\x1f<>:"|?*\\]')
+_LEFT_OUT = ("__MACOSX/", "/.DS_Store", "/Thumbs.db", "/desktop.ini")  # what systems put into zips
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """What a pack says of itself."""
+
+    sketch: str  # the file to open, from the zip's root
+    version: str = ""  # of the playground that packed it
+    shipped: tuple[str, ...] = ()  # files of ``glsl/`` that it needs
+    libraries: tuple[str, ...] = ()  # libraries that it includes from, which are not in it
+
+
+@dataclass(frozen=True)
+class Pack:
+    """A zip that was looked through and is safe to unpack."""
+
+    path: Path
+    digest: str
+    manifest: Manifest
+    files: dict[str, zipfile.ZipInfo] = field(default_factory=dict)  # by name
+
+
+def is_pack(path: Path) -> bool:
+    """Return whether a path is named like a packed sketch."""
+    return path.suffix.lower() == ENDING
+
+
+def unpacked(path: Path, cache: Path | None = None) -> Path:
+    """Return the sketch's file of a zip, unpacked into the cache; raise ``DataError`` in a sentence."""
+    pack = read_pack(path)
+    home = (cache or cache_folder()) / "packs"
+    target = home / pack.digest
+    if not _is_whole(pack, target):
+        shutil.rmtree(target, ignore_errors=True)
+        _unpack(pack, target)
+        _drop_oldest(home, target)
+    return target / pack.manifest.sketch
+
+
+def unpacked_beside(path: Path, cache: Path | None = None) -> tuple[Path, str]:
+    """Return the sketch's file of a zip in a new folder next to it, to be edited, and a message.
+
+    A folder that came of the same zip before is opened again, with what was edited there.
+    Where the zip's own folder cannot be written to, it is one in the cache, and stays there.
+    """
+    pack = read_pack(path)
+    top, in_folder, inner = pack.manifest.sketch.partition("/")
+    name, inner = (top, inner) if in_folder else (path.stem, top)
+    for home in (path.resolve().parent, (cache or cache_folder()) / "edited" / pack.digest):
+        for number in range(1, 1000):
+            target = home / (name if number == 1 else f"{name}-{number}")
+            if _stamp_of(target) == pack.digest and (target / inner).is_file():
+                message = f"{path.name} is unpacked in {target}: this is what opens, and edits stay"
+                return target / inner, message
+            if target.exists() or target.is_symlink():
+                continue
+            if not _can_make(target):
+                break
+            _unpack(pack, target, strip=bool(in_folder))
+            return target / inner, f"{path.name} is unpacked into {target}: edits go there, the zip stays"
+    raise DataError("no folder could be made to unpack it into", file=path)
+
+
+def read_pack(path: Path) -> Pack:
+    """Look through a zip and return what it holds; raise ``DataError`` for one that is not safe to unpack."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            entries = [e for e in archive.infolist() if not e.is_dir() and not _is_left_out(e.filename)]
+            _check(entries, path.stat().st_size)
+            files = {entry.filename: entry for entry in entries}
+            manifest = _manifest(archive, files)
+        digest = _digest(path)
+    except DataError as error:
+        raise DataError(error.diagnostics[0].message, file=path) from None
+    except (OSError, zipfile.BadZipFile, NotImplementedError, RuntimeError, zlib.error, EOFError) as error:
+        raise DataError(f"is no zip that can be read: {_reason(error)}", file=path) from None
+    missing = [name for name in manifest.shipped if not (GLSL / name).is_file()]
+    if missing:
+        raise DataError(
+            f"needs glsl/{missing[0]}, which this playground ({__version__}) has not; it was packed with "
+            f"{manifest.version or 'another one'}",
+            file=path,
+        )
+    return Pack(path, digest, manifest, {name: files[name] for name in files if name != MANIFEST})
+
+
+def _check(entries: list[zipfile.ZipInfo], size: int) -> None:
+    """Raise ``DataError`` for what is not safe to unpack; ``size`` is the zip's own, in bytes."""
+    if not entries:
+        raise DataError("holds no file; expected a packed sketch")
+    if len(entries) > MOST_FILES:
+        raise DataError(f"holds {len(entries)} files; at most {MOST_FILES} are unpacked")
+    whole = sum(e.file_size for e in entries)
+    if sum(e.compress_size for e in entries) > size:
+        raise DataError("its files overlap, as those of a zip bomb do; it is not unpacked")
+    if whole > MOST_BYTES or (whole > _ALWAYS_FINE and whole > _MOST_RATIO * size):
+        raise DataError(
+            f"would become {whole / 2**20:.0f} MiB from {size / 2**20:.2g}: that is too much to unpack"
+        )
+    names = set()
+    for entry in entries:
+        _check_entry(entry)
+        folded = entry.filename.casefold()  # some systems tell no capitals
+        if folded in names:
+            raise DataError(f"holds '{entry.filename}' twice")
+        names.add(folded)
+    for name in names:
+        if any(folder.as_posix() in names for folder in PurePosixPath(name).parents):
+            raise DataError(f"'{_plain(name)}' lies in what is a file")
+
+
+def _check_entry(entry: zipfile.ZipInfo) -> None:
+    name, wrong = entry.filename, ""
+    if stat.S_IFMT(entry.external_attr >> 16) not in (0, stat.S_IFREG):
+        wrong = "is a link or a device; only plain files are unpacked"
+    elif entry.flag_bits & 1:
+        wrong = "is encrypted; a packed sketch has no password"
+    elif entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        wrong = "is compressed in a way other than deflate"
+    elif (
+        (name.startswith("/") or len(name) > 200 or entry.orig_filename != name)
+        or _FORBIDDEN.search(name)
+        or any(map(_is_bad_part, name.split("/")))
+    ):
+        wrong = "is no name that a file of a sketch may have; nothing was unpacked"
+    if wrong:
+        raise DataError(f"'{_plain(name)}' {wrong}")
+
+
+def _is_bad_part(part: str) -> bool:
+    bare = part.partition(".")[0].rstrip().casefold()
+    return part in ("", ".", "..") or part[-1] in " ." or bare in _DEVICES
+
+
+def _is_left_out(name: str) -> bool:
+    return any(name.startswith(s) if s.endswith("/") else f"/{name}".endswith(s) for s in _LEFT_OUT)
+
+
+def _plain(name: str) -> str:
+    return "".join(c if c.isprintable() else "?" for c in name)[:80]
+
+
+def _manifest(archive: zipfile.ZipFile, files: dict[str, zipfile.ZipInfo]) -> Manifest:
+    """Return what the zip says of itself; of one that was made by the user, where its sketch is."""
+    if MANIFEST not in files:
+        sketches = [n for n in files if PurePosixPath(n).name == "sketch.toml" and n.count("/") <= 1]
+        if len(sketches) == 1:
+            return Manifest(sketches[0])
+        what = f"{len(sketches)} of them" if sketches else "none"
+        raise DataError(
+            f"is no packed sketch: expected one sketch.toml, in it or in its only folder, and found {what}"
+        )
+    if files[MANIFEST].file_size > _MOST_MANIFEST:
+        raise DataError(f"its {MANIFEST} is too large")
+    try:
+        table = read_json(archive.read(MANIFEST))
+        if table["format"] != FORMAT:
+            raise DataError(f"is of format {table['format']}; this playground ({__version__}) reads {FORMAT}")
+        shipped, named = (tuple(map(str, some)) for some in (table["shipped"], table.get("libraries", ())))
+        found = Manifest(str(table["sketch"]), str(table["version"]), shipped, named)
+    except (ValueError, KeyError, TypeError) as error:
+        raise DataError(f"its {MANIFEST} cannot be read: {_reason(error)}") from None
+    if found.sketch not in files or found.sketch == MANIFEST:
+        raise DataError(f"says that it opens '{_plain(found.sketch)}', and does not hold it")
+    return found
+
+
+def _unpack(pack: Pack, target: Path, *, strip: bool = False) -> None:
+    """Write the files into a new folder, all or none; ``strip``: without the zip's own top folder."""
+    scratch = target.with_name(f".{target.name[:40]}.{secrets.token_hex(6)}.part")
+    try:
+        scratch.mkdir(parents=True)
+        with zipfile.ZipFile(pack.path) as archive:
+            for name, entry in pack.files.items():
+                place = scratch / (name.partition("/")[2] if strip and "/" in name else name)
+                place.parent.mkdir(parents=True, exist_ok=True)
+                with archive.open(entry) as source, place.open("xb") as file:
+                    shutil.copyfileobj(source, file, 1 << 20)
+        (scratch / _STAMP).write_text(pack.digest + "\n", encoding="utf-8")
+        scratch.replace(target)
+    except (OSError, zipfile.BadZipFile, zlib.error, EOFError) as error:
+        shutil.rmtree(scratch, ignore_errors=True)
+        if _is_whole(pack, target):
+            return  # another process was faster
+        raise DataError(f"cannot be unpacked into {target}: {_reason(error)}", file=pack.path) from None
+    except BaseException:
+        shutil.rmtree(scratch, ignore_errors=True)
+        raise
+
+
+def _is_whole(pack: Pack, target: Path) -> bool:
+    """Return whether a folder holds every file of a pack, unchanged."""
+    if _stamp_of(target) != pack.digest:
+        return False
+    try:
+        return all(
+            (target / name).stat().st_size == entry.file_size and _crc(target / name) == entry.CRC
+            for name, entry in pack.files.items()
+        )
+    except OSError:
+        return False
+
+
+def _crc(path: Path) -> int:
+    found = 0
+    with open_regular(path) as file:
+        while block := file.read(1 << 20):
+            found = zlib.crc32(block, found)
+    return found
+
+
+def _digest(path: Path) -> str:
+    with open_regular(path) as file:
+        return hashlib.file_digest(file, lambda: hashlib.blake2b(digest_size=12)).hexdigest()
+
+
+def _stamp_of(folder: Path) -> str:
+    try:
+        return (folder / _STAMP).read_text(encoding="utf-8").strip()
+    except (OSError, UnicodeDecodeError):
+        return ""
+
+
+def _can_make(target: Path) -> bool:
+    try:
+        target.mkdir(parents=True)
+        target.rmdir()
+    except OSError:
+        return False
+    return True
+
+
+def _drop_oldest(home: Path, but: Path) -> None:
+    packs = sorted((p for p in home.iterdir() if p.is_dir() and p != but), key=lambda p: p.stat().st_mtime)
+    for old in packs[: max(len(packs) + 1 - _MOST_PACKS, 0)]:
+        shutil.rmtree(old, ignore_errors=True)
+
+
+def _reason(error: BaseException) -> str:
+    text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return " ".join(text.split()).rstrip(".") or type(error).__name__
+
+
+def summary(pack: Pack) -> str:
+    """Return how many files and bytes a pack holds."""
+    return f"{counted(len(pack.files), 'file')}, {sum(e.file_size for e in pack.files.values())} bytes"
 
 
 def find(name: str | Path) -> Path:
@@ -35,7 +313,7 @@ def find(name: str | Path) -> Path:
     if is_folder and is_file(path / "sketch.toml"):
         return path / "sketch.toml"
     if is_folder:
-        from playground.sketch.dialects.shadertoy_folder import image_of
+        from playground.shader.dialects.shadertoy_files import image_of
 
         if (image := image_of(path)) is not None:
             return image

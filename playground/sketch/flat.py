@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from playground.errors import SketchError, nearest
-from playground.sketch.expressions import is_accepted, nearest_accepted
+from playground.shader.expressions import is_accepted, nearest_accepted
 from playground.sketch.follows import Rule
 from playground.sketch.model import Graph, Kernel, PassSpec, Value
 

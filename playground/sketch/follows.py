@@ -10,10 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from playground.errors import ShaderError, nearest
 from playground.sketch.assign import resolve
-from playground.sketch.model import Follows, Graph, Kernel, Parameter, Value
-from playground.sketch.source import Line
+from playground.sketch.model import Graph, Kernel, Parameter, Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,34 +23,6 @@ class Rule:
     direction: str
     menu: str  # "" where it always follows
     choice: int
-
-
-def read_follows(
-    parameter: Parameter, words: Sequence[str], known: Iterable[Parameter], line: Line
-) -> Follows:
-    """Return what an annotation's ``follows(…)`` says; raise ``ShaderError`` where it cannot be."""
-
-    def wrong(message: str) -> ShaderError:
-        return line.error(f"follows of '{parameter.name}': {message}")
-
-    if parameter.widget.kind != "angle" or len(words) not in (1, 3):
-        raise wrong(
-            'an angle follows a direction, as follows("sun"), '
-            'or while a menu has a choice, as follows("sun", "form", "near")'
-        )
-    by_name = {p.name: p for p in known}
-    directions = [name for name, p in by_name.items() if p.widget.kind == "direction"]
-    if words[0] not in directions:
-        raise wrong(f"no direction '{words[0]}' here{nearest(words[0], directions)}")
-    if len(words) == 1:
-        return Follows(words[0])
-    menus = {name: p.widget.choices for name, p in by_name.items() if p.widget.kind == "menu"}
-    if words[1] not in menus:
-        raise wrong(f"no menu '{words[1]}' here{nearest(words[1], menus)}")
-    choices = menus[words[1]]
-    if words[2] not in choices:
-        raise wrong(f"'{words[1]}' has no choice '{words[2]}'{nearest(words[2], choices)}")
-    return Follows(words[0], words[1], choices.index(words[2]))
 
 
 def rules_of(graphs: Mapping[str, Graph]) -> tuple[Rule, ...]:

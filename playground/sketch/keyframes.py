@@ -22,11 +22,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
+from playground.shader.kernel import Graph
+from playground.shader.parameter import Parameter, Value, is_whole
 from playground.sketch.assign import resolve
 from playground.sketch.identity import Identity
-from playground.sketch.parameter import Parameter, Value
-from playground.sketch.technique import Graph
-from playground.sketch.values import is_whole
 
 EASES = ("smooth", "linear", "hold")
 """How values go from a keyframe to the next; the first where it does not say."""

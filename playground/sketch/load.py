@@ -1,17 +1,20 @@
 """Load a sketch: the way in.
 
+It is a text, so that it can be saved as it is and edited. What the file tells, the sketch leaves to it: the
+extent, the relief, the height above the sea.
+
 A sketch is data: nothing in it is run, and the files it names lie in its own folder or
 in ``glsl/``.
 """
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from playground.errors import SketchError
-from playground.paths import DEFAULT_SKETCH, GLSL, PLAIN_SKETCH, SKETCHES, shown
-from playground.sketch.allowed_files import (
+from playground.allowed_files import (
     SHADERS,
     is_absolute,
     is_elevation,
@@ -21,9 +24,10 @@ from playground.sketch.allowed_files import (
     named_root,
     root_of,
 )
+from playground.errors import SketchError
+from playground.paths import DEFAULT_SKETCH, GLSL, PLAIN_SKETCH, SKETCHES, shown
+from playground.shader.dialects import EXPORT, check_name
 from playground.sketch.assign import effective_values, shown_parameters
-from playground.sketch.dialects import EXPORT, check_name
-from playground.sketch.elevation_sketch import elevation_sketch
 from playground.sketch.find import find
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value
@@ -38,7 +42,33 @@ from playground.sketch.techniques import (
 from playground.sketch.toml_graph import TECHNIQUE_KEYS
 from playground.sketch.toml_sketch import SKETCH_KEYS, read_sketch
 from playground.sketch.toml_table import TomlFile
+from playground.sketch.toml_text import text_of
 from playground.sketch.wiring import output_names
+
+_TEXT = Path(__file__).with_name("elevation_sketch.toml")
+
+
+def elevation_text(path: Path, file: str) -> str:
+    """Return the TOML of a sketch around an elevation file, which it names ``file``."""
+    name = re.sub(r"[^ -~]|`", "_", path.name)
+    words = {
+        "@TITLE@": name,
+        "@NAME@": name,
+        '"@TITLE_TEXT@"': text_of(path.stem),
+        '"@FILE@"': text_of(file),
+    }
+    return re.sub("|".join(words), lambda found: words[found[0]], _TEXT.read_text(encoding="utf-8"))
+
+
+def elevation_sketch(path: Path, techniques: Techniques) -> Sketch:
+    """Return the sketch around an elevation file; the file itself is not read yet."""
+    sketch = read_sketch(TomlFile(path, path.parent, elevation_text(path, path.name)), techniques.read)
+    # No line of the file itself says any of it.
+    return replace(sketch, graph=replace(sketch.graph, passes=_without_lines(sketch.graph.passes)))
+
+
+def _without_lines(passes: Sequence[PassSpec]) -> tuple[PassSpec, ...]:
+    return tuple(replace(spec, line=0) for spec in passes)
 
 
 def load(name: str | Path = "", *, dialect: str = "") -> Sketch:

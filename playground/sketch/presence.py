@@ -17,9 +17,9 @@ from functools import lru_cache
 from itertools import product
 
 from playground.errors import SketchError
+from playground.shader.kernel import NOT, Export, Graph, PassSpec, Technique, Variant
 from playground.sketch.assign import find_targets, unmet
 from playground.sketch.identity import Identity
-from playground.sketch.technique import NOT, Export, Graph, PassSpec, Technique, Variant
 from playground.sketch.wiring import check_graph, inner, input_names, is_optional, output_names, takes_input
 
 _ALL_FORMS = 4

@@ -1,43 +1,138 @@
-"""Write what was set by the user back into a sketch's own TOML, and touch nothing else in it.
+"""Write a user's changes back into a sketch's own TOML: values, camera, wiring, keyframes.
 
 Values go to the ``set`` of their pass, the camera to ``[view]``, a technique to ``use``. A
 value that is in the file already is written over in its place; what the file does not hold
 yet is added at the end of its table. The result is loaded before it replaces the file:
 it says exactly what was set, or nothing is written.
+
+A ``[[keyframe]]`` with the comments right above it is a block. What changes in a block is
+written over in its place; a block that moves in time takes its comments along to its new
+place among the others; a new one comes after the last, or at the end of the file.
 """
 
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import stat
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, replace
+from itertools import pairwise
+from operator import attrgetter
 from pathlib import Path
 
+from playground.allowed_files import is_elevation, leads_outside, sidecars
 from playground.errors import DataError, PlaygroundError, SketchError
 from playground.partial import partial_file
-from playground.paths import GLSL
+from playground.paths import GLSL, shown
 from playground.regular_file import read_regular
-from playground.sketch.allowed_files import is_elevation, leads_outside
-from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
+from playground.shader.kernel import ARRAY
+from playground.shader.parameter import is_whole, parse_hex, shortest, to_hex
+from playground.shader.source import normalised
+from playground.sketch.assign import TERRAIN_KEYS, current_path, resolve, values_of
+from playground.sketch.keyframes import EASES
 from playground.sketch.load import load, load_with
-from playground.sketch.model import Camera, PassSpec, Sketch, Value
-from playground.sketch.save_values import (
-    with_current_names,
-    written_number,
-    written_so_far,
-    written_terrain_value,
-    written_value,
-)
-from playground.sketch.sidecars import sidecars
-from playground.sketch.source import normalised
-from playground.sketch.technique import ARRAY
+from playground.sketch.model import Camera, Keyframe, Parameter, PassSpec, Sketch, Technique, Value
 from playground.sketch.techniques import Techniques
-from playground.sketch.toml_edit import append, drop, key_text, put, text_of
-from playground.sketch.toml_places import Place
-from playground.sketch.values import shortest
+from playground.sketch.toml_text import Place, TomlPlaces, append, drop, key_text, newline_of, put, text_of
+
+_QUOTED = re.compile(r"(?<=[\"'])[\w.]+(?=[\"'])")
+
+
+def written_value(sketch: Sketch, path: str, value: Value, before: str) -> str:
+    """Return a value as TOML writes it, in the fewest digits that a shader reads as the same number.
+
+    A direction is written in braces where ``before``, the text that it replaces, has them.
+    """
+    if path in TERRAIN_KEYS:
+        return written_terrain_value(value)
+    value = shortest(value)
+    parameter: Parameter = resolve(sketch.graph, path)[0].parameter
+    kind = parameter.widget.kind
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return text_of(value)
+    if kind == "menu" and isinstance(value, int):
+        return text_of(parameter.widget.choices[value])
+    if kind == "colour" and isinstance(value, tuple):
+        raw = parameter.widget.raw
+        text = to_hex(value, raw=raw)
+        if shortest((*parse_hex(text, raw=raw), 1.0)[: len(value)]) == value:
+            return text_of(text)
+    if kind == "direction" and isinstance(value, tuple) and before.startswith("{"):
+        return f"{{ azimuth = {written_number(value[0])}, elevation = {written_number(value[1])} }}"
+    whole = is_whole(parameter.type) or before.lstrip("+-").isdigit()
+    if whole or isinstance(value, int | tuple):
+        return written_number(value)
+    return repr(float(value))
+
+
+def written_number(value: float | tuple[float, ...]) -> str:
+    """Return a number without a point where it is whole; several in square brackets."""
+    if isinstance(value, tuple):
+        return f"[{', '.join(map(written_number, value))}]"
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        return str(int(value))
+    return repr(value)
+
+
+def written_terrain_value(value: Value) -> str:
+    """Return one of the terrain's own values as TOML writes it: two equal sides as one number."""
+    if isinstance(value, tuple) and len(set(value)) == 1:
+        value = value[0]
+    return str(value) if isinstance(value, str) else written_number(value)
+
+
+def with_current_names(text: str, sketch: Sketch) -> str:
+    """Return a sketch's text with the present names of what it sets, or lists in ``main``, by former ones."""
+    while (span := _former_name(text, sketch)) is not None:
+        start, end, name = span
+        text = text[:start] + name + text[end:]
+    main = TomlPlaces(text).pairs.get(("main",))
+    if main is None:
+        return text
+    listed = _QUOTED.sub(lambda path: current_path(sketch.graph, path.group()), text[main.value : main.end])
+    return text[: main.value] + listed + text[main.end :]
+
+
+def _former_name(text: str, sketch: Sketch) -> tuple[int, int, str] | None:
+    """Return where the text has a former name, and the present one; None where it has none."""
+    places = TomlPlaces(text)
+    for place, pair in places.pairs.items():
+        at = next((n for n, part in enumerate(place) if part == "set"), 0)
+        path = ".".join(map(str, place[at + 1 :]))
+        technique = _set_at(sketch, place[:at])
+        if technique is None or current_path(technique, path) == path:
+            continue
+        former, name = (some.rpartition(".")[2] for some in (path, current_path(technique, path)))
+        start = text.rindex(former, pair.key, pair.value)
+        return start, start + len(former), name
+    return None
+
+
+def _set_at(sketch: Sketch, table: Place) -> Technique | None:
+    """Return the technique, or the sketch's graph, whose parameters a table sets; None for other tables."""
+    if table == ("view",):
+        view = sketch.graph.find("view")
+        return view.technique if view else None
+    if len(table) == 2 and table[0] == "pass":
+        return sketch.graph.passes[int(table[1])].technique
+    return sketch.graph if len(table) == 2 and table[0] in ("preset", "shot", "keyframe") else None
+
+
+def written_so_far(text: str, table: Place, key: str) -> str:
+    """Return how a text writes the value of a key so far; "" where it does not."""
+    places = TomlPlaces(text)
+    place = places.find(table, key)
+    if place is None:
+        # Azimuth and elevation may also be set by two dotted keys; then the key itself has no value.
+        return ""
+    pair = places.pairs[place]
+    return text[pair.value : pair.end]
+
 
 _CHANGED = "the file has changed meanwhile: save again once it shows"
 
@@ -382,3 +477,144 @@ def _own_files(file: Sketch, wanted: Sketch) -> list[str]:
         if path.is_file() and path.is_relative_to(folder) and str(path) != file.file:
             found[path.relative_to(folder).as_posix()] = None
     return list(found)
+
+
+def save_keyframes(file: Sketch, wanted: Sequence[Keyframe]) -> None:
+    """Write keyframes into the file that ``file`` was loaded from, in place of those that it has.
+
+    They are written by time. Raises ``ReadOnlySketch`` and ``SketchError`` as ``save.save``
+    does; of times that are the same, and of keyframes that do not fit each other, too.
+    """
+    frames = tuple(sorted(wanted, key=lambda keyframe: keyframe.time))
+    for one, other in pairwise(frames):
+        if one.time == other.time:
+            raise SketchError(f"there is a keyframe at {one.time:g} s already", file=shown(file.file))
+    says_the_rest = says_same_as(file)
+
+    def is_right(found: Sketch) -> bool:
+        shots = [replace(shot, line=0) for shot in file.shots]
+        return (
+            _plain(found.keyframes) == _plain(frames)
+            and says_the_rest(found)
+            and found.presets == file.presets
+            and [replace(shot, line=0) for shot in found.shots] == shots
+        )
+
+    write_over(Path(file.file), file, lambda text: with_keyframes(text, file, frames), is_right)
+
+
+def with_keyframes(text: str, file: Sketch, wanted: Sequence[Keyframe]) -> str:
+    """Return a sketch's text, which says what ``file`` does, with these keyframes; they are by time."""
+    if len(_blocks(text)) != len(file.keyframes):
+        message = "its keyframes are written as one list; write each as a [[keyframe]] to change them here"
+        raise SketchError(message, file=shown(file.file))
+    before = _matched(file.keyframes, wanted)
+    for keyframe, index in zip(wanted, before, strict=True):
+        if index is not None:
+            text = _changed(text, file, ("keyframe", index), file.keyframes[index], keyframe)
+    spans = _blocks(text)
+    blocks = [text[start:end] for start, end in spans]
+    newline = newline_of(text)
+    made = [
+        blocks[index] if index is not None else _new_block(file, keyframe, newline)
+        for keyframe, index in zip(wanted, before, strict=True)
+    ]
+    if spans:
+        return _placed(text, spans, made, newline)
+    for block in made:
+        text = append(text, block.splitlines())
+    return text
+
+
+def _placed(text: str, spans: list[tuple[int, int]], made: list[str], newline: str) -> str:
+    """Return the text with blocks in the places of its own: one each, what is left after the last."""
+    found, at = "", 0
+    for number, (start, end) in enumerate(spans):
+        found += text[at:start]
+        at = end
+        here = made[number:] if number == len(spans) - 1 else made[number : number + 1]
+        for further, block in enumerate(here):
+            found += newline if further else ""
+            found += block if block.endswith("\n") else block + newline
+        if not here and found.endswith(newline * 2):
+            # No two empty lines where a block was, and none at the end.
+            if text[at:].startswith(newline):
+                at += len(newline)
+            elif not text[at:].strip():
+                found = found[: -len(newline)]
+    return found + text[at:]
+
+
+def _blocks(text: str) -> list[tuple[int, int]]:
+    """Return where each keyframe's block begins and ends, without the empty lines after it."""
+    headers = [(text.rfind("\n", 0, h.start) + 1, h) for h in TomlPlaces(text).headers]
+    found = []
+    for number, (start, header) in enumerate(headers):
+        if not header.is_list or header.keys != ["keyframe"]:
+            continue
+        following = (s for s, h in headers[number + 1 :] if h.keys[0] != "keyframe" or len(h.keys) == 1)
+        end = next((_above(text, s) for s in following), len(text))
+        last = start + len(text[start:end].rstrip())  # the end of the last line that is not empty
+        line_end = text.find("\n", last, end)
+        found.append((_above(text, start), line_end + 1 if line_end >= 0 else end))
+    return found
+
+
+def _above(text: str, start: int) -> int:
+    """Return where the comments right above a line begin; the line itself, where there are none."""
+    while start > 0:
+        before = text.rfind("\n", 0, start - 1) + 1
+        if not text[before:start].lstrip().startswith("#"):
+            break
+        start = before
+    return start
+
+
+def _matched(known: Sequence[Keyframe], wanted: Sequence[Keyframe]) -> list[int | None]:
+    """Return which known keyframe each wanted one was: the same, else at its time, else with its values."""
+    left = dict(enumerate(_plain(known)))
+    found: list[int | None] = [None] * len(wanted)
+    for names in (["time", "camera", "values", "ease"], ["time"], ["camera", "values"]):
+        key = attrgetter(*names)
+        for number, keyframe in enumerate(_plain(wanted)):
+            if found[number] is None:
+                hit = next((i for i, other in left.items() if key(other) == key(keyframe)), None)
+                if hit is not None:
+                    found[number] = hit
+                    del left[hit]
+    return found
+
+
+def _plain(keyframes: Sequence[Keyframe]) -> list[Keyframe]:
+    """Return keyframes without their lines, camera fields and values in one order."""
+
+    def values(keyframe: Keyframe) -> tuple[tuple[str, Value], ...]:
+        return tuple(sorted(((p, shortest(v)) for p, v in keyframe.values), key=lambda v: v[0]))
+
+    return [replace(k, line=0, camera=tuple(sorted(k.camera)), values=values(k)) for k in keyframes]
+
+
+def _changed(text: str, file: Sketch, place: Place, was: Keyframe, now: Keyframe) -> str:
+    """Return the text with what differs between two keyframes written over in the first one's table."""
+    if now.time != was.time:
+        text = put(text, place, "time", repr(float(now.time)))
+    cameras, values = dict(was.camera), dict(was.values)
+    order = [part.name for part in fields(Camera)]
+    for name, number in sorted(now.camera, key=lambda pair: order.index(pair[0])):
+        if name not in cameras or cameras[name] != number:
+            text = put(text, (*place, "camera"), name, written_number(number))
+    for name, value in now.values:
+        if name not in values or values[name] != value:
+            table = (*place, "set")
+            text = put(text, table, name, written_value(file, name, value, written_so_far(text, table, name)))
+    for name in cameras.keys() - dict(now.camera).keys():
+        text = drop(text, (*place, "camera"), name)
+    for name in values.keys() - dict(now.values).keys():
+        text = drop(text, (*place, "set"), name)
+    return text if now.ease == was.ease else put(text, place, "ease", text_of(now.ease))
+
+
+def _new_block(file: Sketch, keyframe: Keyframe, newline: str) -> str:
+    """Return a new keyframe as TOML writes it."""
+    empty = Keyframe(-1.0, ease=EASES[0])
+    return _changed(f"[[keyframe]]{newline}", file, ("keyframe", 0), empty, keyframe)

@@ -16,17 +16,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from playground.allowed_files import Signature, note_again, noting_part, signature_in_load, texts_of_load
 from playground.errors import PlaygroundError
 from playground.paths import GLSL
-from playground.sketch.allowed_files import (
-    Signature,
-    note_again,
-    noting_part,
-    signature_in_load,
-    texts_of_load,
-)
+from playground.shader.source import read_text
 from playground.sketch.model import Technique
-from playground.sketch.source import read_text
 from playground.sketch.techniques import Techniques
 
 RESTED = 3.0  # [s] from a file's last change to its reading, at least; FAT counts in steps of two seconds

@@ -5,10 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from playground.errors import PlaygroundError, ShaderError, SketchError, nearest
-from playground.paths import GLSL, shown
-from playground.regular_file import irregularity
-from playground.sketch.allowed_files import (
+from playground.allowed_files import (
     FAST,
     TECHNIQUES,
     canonical_of,
@@ -22,18 +19,18 @@ from playground.sketch.allowed_files import (
     real,
     root_of,
 )
-from playground.sketch.canonical import content_of
+from playground.errors import PlaygroundError, ShaderError, SketchError, nearest
+from playground.paths import GLSL, shown
+from playground.regular_file import irregularity
+from playground.shader.dialects import EXPORT, OWN, is_export, read_foreign
+from playground.shader.kernel_cache import parsed_kernel, replaced
+from playground.shader.source import EncodingError
 from playground.sketch.composed import composed, parts_of
-from playground.sketch.dialects import EXPORT, OWN, is_export, read_foreign
 from playground.sketch.find import shipped_names
-from playground.sketch.kernel_cache import parsed_kernel, replaced
 from playground.sketch.model import Graph, Kernel, Technique, Variant
-from playground.sketch.source import EncodingError
 from playground.sketch.toml_graph import read_graph
 from playground.sketch.toml_table import TomlFile
-from playground.sketch.variant_check import check_shape
-from playground.sketch.variant_record import verified
-from playground.sketch.variants import without_variants
+from playground.sketch.variants import check_shape, content_of, verified, without_variants
 from playground.sketch.wiring import outputs_with_formats
 
 _MAX_NESTING = 16

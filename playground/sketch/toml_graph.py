@@ -9,11 +9,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from playground.allowed_files import is_variant, leads_outside
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
-from playground.sketch import toml_keys, wiring
-from playground.sketch.agreement import read_agreement
-from playground.sketch.allowed_files import is_variant, leads_outside
+from playground.shader.kernel import NOT, read_agreement
+from playground.shader.parameter import coerce, spell
+from playground.sketch import toml_table, wiring
 from playground.sketch.assign import (
     TERRAIN_KEYS,
     check_value,
@@ -27,12 +28,10 @@ from playground.sketch.assign import (
 )
 from playground.sketch.model import Export, Graph, PassSpec, Sketch, Technique, Value
 from playground.sketch.presence import check_forms, is_conditional
-from playground.sketch.technique import NOT
-from playground.sketch.toml_places import Place
 from playground.sketch.toml_table import TomlFile
-from playground.sketch.values import coerce, spell
+from playground.sketch.toml_text import Place
 
-TECHNIQUE_KEYS = tuple(key for key in toml_keys.TECHNIQUE if key not in toml_keys.SKETCH)
+TECHNIQUE_KEYS = tuple(key for key in toml_table.TECHNIQUE if key not in toml_table.SKETCH)
 """What a technique's TOML may hold and a sketch's may not."""
 
 Read = Callable[[str, Path, Path], Technique]
@@ -44,8 +43,8 @@ _ALL = "*"
 
 def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
     """Return a technique of several passes; raise ``SketchError`` at the line that is wrong."""
-    more = toml_keys.VARIANT if is_variant(file.path) else ()
-    file.only(file.table, (*toml_keys.TECHNIQUE, *more))
+    more = toml_table.VARIANT if is_variant(file.path) else ()
+    file.only(file.table, (*toml_table.TECHNIQUE, *more))
     file.version(required=False)
     try:
         stated = file.take(file.table, "agrees", str, "")
@@ -89,7 +88,7 @@ def read_passes(file: TomlFile, read: Read, inside: Sequence[str] | None = None)
     found: dict[str, PassSpec] = {}
     for index, table in enumerate(tables):
         place = ("pass", index)
-        file.only(table, toml_keys.PASS, *place)
+        file.only(table, toml_table.PASS, *place)
         name = file.take(table, "name", str, "", *place)
         wrong = ""
         if not name.isidentifier():

@@ -1,14 +1,17 @@
-"""Read a whole sketch from its TOML: the terrain, the passes, the view, shots and presets."""
+"""Read a whole sketch from its TOML: the terrain, the passes, the view, shots, presets, keyframes."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
-from playground.errors import ParameterError, nearest
+from playground.allowed_files import is_absolute, leads_outside
+from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, shown
-from playground.sketch import toml_keys
+from playground.shader.parameter import spell
+from playground.sketch import toml_table
 from playground.sketch.assign import (
     TERRAIN_KEYS,
     check_value,
@@ -19,26 +22,199 @@ from playground.sketch.assign import (
 )
 from playground.sketch.flat import repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
+from playground.sketch.keyframes import EASES
 from playground.sketch.model import (
     LARGEST_SIDE,
     MOST_SUPERSAMPLE,
     Camera,
     Graph,
+    Keyframe,
     PassSpec,
     Preset,
     Shot,
     Sketch,
+    Tolerance,
+    tolerance_of,
 )
-from playground.sketch.toml_camera import read_camera
-from playground.sketch.toml_comparison import read_comparison
 from playground.sketch.toml_graph import Read, read_pass, read_passes, read_set
-from playground.sketch.toml_keyframes import read_keyframes
-from playground.sketch.toml_places import Place
-from playground.sketch.toml_table import TomlFile
-from playground.sketch.values import spell
+from playground.sketch.toml_table import CAMERA, KEYFRAME, TomlFile
+from playground.sketch.toml_text import Place
 from playground.sketch.wiring import check_graph
 
-SKETCH_KEYS = frozenset(toml_keys.SKETCH.keys() - toml_keys.TECHNIQUE.keys())
+_LIMITS = {
+    "azimuth": (-720, 720),
+    "elevation": (-89, 89),
+    "distance": (0, 1e9),
+    "field_of_view": (5, 120),
+}  # degrees, degrees, metres, degrees
+_FARTHEST = 1e9  # [m] of a camera's target from the origin
+
+
+def read_camera(file: TomlFile, table: Mapping[str, Any], default: Camera, place: Place) -> Camera:
+    """Return what a table's ``camera`` says, and of the rest what ``default`` has; raise ``SketchError``."""
+    given = file.take(table, "camera", dict, None, *place)
+    if given is None:
+        return default
+    here = (*place, "camera")
+    file.only(given, CAMERA, *here)
+    numbers = {key: file.take(given, key, float, None, *here) for key in _LIMITS if key in given}
+    return camera_of({**given, **numbers}, default, lambda key, message: file.error(message, *here, key))
+
+
+def camera_of(
+    given: Mapping[str, Any], default: Camera, error: Callable[[str, str], PlaygroundError]
+) -> Camera:
+    """Return a camera of some values by key, and of the rest what ``default`` has.
+
+    Raises what ``error`` makes of a key and a message where a value is none or out of its range.
+    """
+    values: dict[str, Any] = {}
+    for key, (low, high) in _LIMITS.items():
+        number = given.get(key, getattr(default, key))
+        if type(number) not in (int, float) or not low <= number <= high:
+            number = f"{number:g}" if isinstance(number, float) else spell(number)
+            raise error(key, f"{key} = {number}: expected {low:g} to {high:g}")
+        values[key] = float(number)
+    values["target"] = default.target
+    if (target := given.get("target")) is not None:
+        numbers = target if isinstance(target, list) else []
+        good = len(numbers) == 3 and all(type(v) in (int, float) and abs(v) <= _FARTHEST for v in numbers)
+        if not good:
+            raise error("target", f"target = {spell(target)}: expected [east, north, up] in metres")
+        values["target"] = tuple(float(v) for v in numbers)
+    return Camera(**values)
+
+
+MASK_ENDING = ".png"
+"""A mask's text that ends so is an image; another names a texture."""
+
+Mask = tuple[tuple[int, int, int, int] | str, ...]
+
+
+def read_comparison(file: TomlFile, sketch: Sketch, table: Mapping[str, Any], place: Place) -> dict[str, Any]:
+    """Return the fields of a shot that say how it is compared; raise ``SketchError``."""
+    return {
+        "tolerance": _tolerance(file, table, place),
+        "mask": _mask(file, sketch, table, place),
+        "allow_blank": file.take(table, "allow_blank", bool, False, *place),
+    }
+
+
+def _tolerance(file: TomlFile, table: Mapping[str, Any], place: Place) -> Tolerance | None:
+    reason = file.take(table, "reason", str, "", *place)
+    if "tolerance" not in table and "reason" not in table:
+        return None
+    given = table.get("tolerance")
+    if not isinstance(given, str | int | dict | None) or isinstance(given, bool):
+        raise file.error(
+            f"tolerance = {spell(given)}: expected a tier, levels, or a table", *place, "tolerance"
+        )
+    try:
+        return tolerance_of(given, reason)
+    except ValueError as error:
+        raise file.error(str(error), *place, "tolerance" if "tolerance" in table else "reason") from None
+
+
+def _mask(file: TomlFile, sketch: Sketch, table: Mapping[str, Any], place: Place) -> Mask:
+    given = table.get("mask", [])
+    items = given if isinstance(given, list) and not _is_rectangle(given) else [given]
+    found: list[tuple[int, int, int, int] | str] = []
+    for item in items:
+        if _is_rectangle(item):
+            found.append((item[0], item[1], item[2], item[3]))
+        elif isinstance(item, str) and item.endswith(MASK_ENDING):
+            _refuse_outside(file, sketch, item, place)
+            found.append(item)
+        elif isinstance(item, str):
+            try:
+                flatten(sketch).ref(item, sketch.name)
+            except SketchError as error:
+                raise file.error(f"mask: {error.diagnostics[0].message}", *place, "mask") from None
+            found.append(item)
+        else:
+            message = (
+                f"mask = {spell(item)}: expected [x, y, width, height] in pixels from the top left, "
+                f'an image as "sky.png", a texture as "water:foam", or a list of such'
+            )
+            raise file.error(message, *place, "mask")
+    return tuple(found)
+
+
+def _is_rectangle(item: object) -> bool:
+    numbers = isinstance(item, list) and len(item) == 4 and all(type(v) is int for v in item)
+    return numbers and item[2] > 0 and item[3] > 0  # type: ignore[index]
+
+
+def _refuse_outside(file: TomlFile, sketch: Sketch, text: str, place: Place) -> None:
+    if is_absolute(text) or leads_outside(text, Path(sketch.folder)):
+        raise file.error(f"mask = {spell(text)}: it leads outside the sketch's folder", *place, "mask")
+
+
+_LATEST = 1e6  # [s]
+
+
+def read_keyframes(file: TomlFile, sketch: Sketch) -> tuple[Keyframe, ...]:
+    """Return what the ``[[keyframe]]`` tables say; raise ``SketchError`` at the line that is wrong."""
+    found: list[Keyframe] = []
+    names: dict[str, str] = {}  # the path that a parameter inside was set by, by its own path
+    for index, table in enumerate(file.tables("keyframe")):
+        place: Place = ("keyframe", index)
+        file.only(table, KEYFRAME, *place)
+        time = _time(file, table, place, found)
+        who = f"keyframe at {time:g} s"
+        values = read_set(file, sketch, table, place, who)
+        for path, _ in values:
+            if path in TERRAIN_KEYS:
+                message = f"'{path}' is the terrain's; keyframes set parameters and the camera"
+                raise file.error(f"{who}: {message}", *place, "set", path)
+            for target in resolve(sketch.graph, path):
+                other = names.setdefault(target.path, path)
+                if other != path:
+                    message = f"'{path}' is what '{other}' sets in another keyframe"
+                    raise file.error(f"{who}: {message}", *place, "set", path)
+        camera = _camera(file, table, place)
+        if not values and not camera:
+            raise file.error(f"{who}: it sets nothing; expected camera = {{ … }} or set = {{ … }}", *place)
+        ease = file.take(table, "ease", str, EASES[0], *place)
+        if ease not in EASES:
+            raise file.error(f"ease = {spell(ease)}: expected {', '.join(EASES)}", *place, "ease")
+        found.append(Keyframe(time, camera, values, ease, file.line(*place)))
+    _check_distances(file, found)
+    return tuple(found)
+
+
+def _time(file: TomlFile, table: Mapping[str, Any], place: Place, before: list[Keyframe]) -> float:
+    if "time" not in table:
+        raise file.error("a keyframe needs time = …, in seconds", *place)
+    time: float = file.take(table, "time", float, 0.0, *place)
+    if not 0.0 <= time <= _LATEST:
+        raise file.error(f"time = {time:g}: expected seconds from 0 to {_LATEST:g}", *place, "time")
+    if before and time <= before[-1].time:
+        last = before[-1]
+        what = "there is one at that time" if time == last.time else f"the one before is at {last.time:g} s"
+        raise file.error(f"time = {time:g}: {what}, on line {last.line}; times must increase", *place, "time")
+    return time
+
+
+def _camera(
+    file: TomlFile, table: Mapping[str, Any], place: Place
+) -> tuple[tuple[str, float | tuple[float, ...]], ...]:
+    if "camera" not in table:
+        return ()
+    camera = read_camera(file, table, Camera(), place)
+    return tuple((name, getattr(camera, name)) for name in table["camera"])
+
+
+def _check_distances(file: TomlFile, found: list[Keyframe]) -> None:
+    """Raise ``SketchError`` where the distance is metres in one keyframe and 0, automatic, in another."""
+    far = {bool(dict(k.camera)["distance"]) for k in found if "distance" in dict(k.camera)}
+    for index, keyframe in enumerate(found):
+        if len(far) > 1 and dict(keyframe.camera).get("distance") == 0.0:
+            message = "distance = 0 shows the whole terrain and cannot be mixed with metres; give metres"
+            raise file.error(message, "keyframe", index, "camera", "distance")
+
+
+SKETCH_KEYS = frozenset(toml_table.SKETCH.keys() - toml_table.TECHNIQUE.keys())
 """What a sketch's TOML may hold and a technique's may not."""
 
 _PAIRS = {"size": "a whole number of texels, or [x, y]", "extent": "metres, or [east, north]"}
@@ -49,7 +225,7 @@ _PLAIN_VIEW = "view/map"  # of a sketch without [view]: its last pass from above
 
 def read_sketch(file: TomlFile, read: Read) -> Sketch:
     """Return a sketch, wired once to see that it can be; raise ``SketchError`` at the line that is wrong."""
-    file.only(file.table, toml_keys.SKETCH)
+    file.only(file.table, toml_table.SKETCH)
     file.version(required=True)
     passes = read_passes(file, read)
     view, camera, samples = _view(file, passes, read)
@@ -111,7 +287,7 @@ def _view(file: TomlFile, passes: tuple[PassSpec, ...], read: Read) -> tuple[Pas
         technique = read(_PLAIN_VIEW, GLSL, GLSL)
         inputs = (("shown", passes[-1].name),)
         return PassSpec("view", _PLAIN_VIEW, technique, inputs, file=shown(file.path)), Camera(), 4
-    file.only(table, toml_keys.VIEW, "view")
+    file.only(table, toml_table.VIEW, "view")
     spec = read_pass(file, {"use": DEFAULT_VIEW, **table}, ("view",), "view", read)
     return spec, read_camera(file, table, Camera(), ("view",)), _samples(file, table, 4, ("view",))
 
@@ -162,7 +338,7 @@ def _presets(file: TomlFile, sketch: Sketch) -> tuple[Preset, ...]:
     found: list[Preset] = []
     for index, table in enumerate(file.tables("preset")):
         place = ("preset", index)
-        file.only(table, toml_keys.PRESET, *place)
+        file.only(table, toml_table.PRESET, *place)
         name = file.take(table, "name", str, "", *place)
         if not name or name in [p.name for p in found]:
             raise file.error(f"name = {spell(name)}: a preset needs a name of its own", *place, "name")
@@ -177,7 +353,7 @@ def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
     presets = [preset.name for preset in sketch.presets]
     for index, table in enumerate(file.tables("shot")):
         place = ("shot", index)
-        file.only(table, toml_keys.SHOT, *place)
+        file.only(table, toml_table.SHOT, *place)
         name = file.take(table, "name", str, "", *place)
         if not name.replace("-", "_").isidentifier():
             message = f"name = {spell(name)}: a shot needs a name of letters, digits, _ and -"

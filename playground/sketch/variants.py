@@ -1,23 +1,126 @@
-"""Fast variants: which of them may run in place of a technique, and why another may not.
+"""Fast variants: which may run in place of a technique, what they must share, and their record.
+
+The text of a kernel counts as the compiler takes it: with its includes, without comments,
+with any white space. Of a technique of several passes each pass counts, and how they are
+wired. What a person reads besides (titles, labels, tooltips, units) does not; nor do names of
+files, nor fast variants.
 
 A technique's canonical form is its plain text. A fast variant of it, a ``.comp`` or the
 passes of a ``.fast.toml``, runs only while both texts are those that were found to agree:
 their contents (see ``canonical``) are in a record (see ``variant_record``). Techniques are
 compared as they are in memory, so a text that replaces a file's counts as well.
+
+One generated file, ``glsl/fast_variants.json``, is for all that ships; a user's own variants
+have one in their folder. It holds the contents of both forms (see ``canonical``) by the variant's
+path from the record's folder. ``playground variants renew`` writes it, after the two forms were
+drawn and compared; nothing else does.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+import hashlib
+import json
+import re
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from shlex import quote
+from typing import Any
 
-from playground.paths import shown
-from playground.sketch.canonical import content_of
+from playground.allowed_files import is_file
+from playground.errors import SketchError, nearest
+from playground.json_text import read_json
+from playground.paths import GLSL, shown
+from playground.shader.kernel import Bound
+from playground.shader.source import read_text
 from playground.sketch.identity import Identity
-from playground.sketch.model import VARIANTS, Graph, Sketch, Technique, Variant, with_inner
+from playground.sketch.model import (
+    VARIANTS,
+    Graph,
+    Kernel,
+    Output,
+    Parameter,
+    Sketch,
+    Technique,
+    Variant,
+    with_inner,
+)
+from playground.sketch.wiring import initial_names, outputs_with_formats
+
+_TOKEN = re.compile(
+    r"[A-Za-z_]\w*"
+    r"|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\w*"
+    r"|<<=|>>=|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||\^\^|[-+*/%&|^]="
+    r"|\S"
+)
+
+
+def content_of(technique: Technique) -> str:
+    """Return the hash of a technique's canonical text; worked out once for each object."""
+    return _content_of(Identity(technique))
+
+
+@lru_cache(maxsize=2048)
+def _content_of(key: Identity[Technique]) -> str:
+    technique = key.object
+    parts = _of_graph(technique) if isinstance(technique, Graph) else _of_kernel(technique)
+    return hashlib.blake2b(repr(parts).encode(), digest_size=16).hexdigest()
+
+
+def _of_graph(graph: Graph) -> list[Any]:
+    graph = graph.written
+    exports = [[(e.name, e.targets) for e in some] for some in (graph.parameters, graph.inputs)]
+    passes = [
+        (p.name, content_of(p.technique), p.inputs, p.values, p.size, p.repeat, p.feedback)
+        for p in graph.passes
+    ]
+    # Only where it is there: hashes of others in records stay valid.
+    more = [[p.when, p.choices] for p in graph.passes if p.when or p.choices]
+    return [*exports, graph.outputs, passes, graph.agrees, *more]
+
+
+def _of_kernel(kernel: Kernel) -> list[Any]:
+    header: list[Any] = [kernel.kind, kernel.registry, kernel.blend, kernel.depth, kernel.samples]
+    header += [kernel.repeat, kernel.accepts, kernel.visits, kernel.stride, kernel.at_once, kernel.count]
+    header += [kernel.groups, kernel.local, kernel.aligned, kernel.stages, kernel.overwrites]
+    header += [(b.name, b.type, b.count) for b in kernel.buffers]
+    header += [(o.name, o.format) for o in kernel.outputs]
+    header += [(i.name, _sampling(i), i.fallback) for i in kernel.inputs]
+    header += [_parameter(p) for p in kernel.parameters]
+    # Only where it is there, as in ``_of_graph``.
+    more = [kernel.own_accepts] if kernel.own_accepts else []
+    more += [kernel.instances] if kernel.instances else []
+    more += [f"in place: {kernel.in_place}"] if kernel.in_place else []
+    more += [f"active: {kernel.active}"] if kernel.active else []
+    more += [f"over: {kernel.over}"] if kernel.over else []
+    return [header, kernel.agrees, compiled_text(kernel.source.code), *more]
+
+
+def _parameter(parameter: Parameter) -> tuple[Any, ...]:
+    widget = parameter.widget
+    what: tuple[Any, ...] = (widget.kind, widget.low, widget.high, widget.choices)
+    more = (widget.values, widget.axes, widget.raw)
+    what += more if any(more) else ()  # as in ``_of_kernel``
+    return parameter.name, parameter.type, parameter.default, what, _sampling(parameter)
+
+
+def _sampling(read: Any) -> tuple[Any, ...]:
+    return read.sampling.filter, read.sampling.wrap, read.sampling.mipmap
+
+
+def compiled_text(code: str) -> str:
+    """Return a text without comments as a compiler takes it: tokens, one space between each two.
+
+    A line of the preprocessor stays a line, with its spaces: they can mean something there.
+    """
+    found: list[str] = []
+    for line in code.split("\n"):
+        if line.lstrip().startswith("#"):
+            found.append(f"\n{' '.join(line.split())}\n")
+        else:
+            found += _TOKEN.findall(line)
+    return " ".join(found)
 
 
 def active_variant(technique: Technique, kinds: Collection[str]) -> Variant | None:
@@ -92,3 +195,108 @@ def any_variants(technique: Technique) -> bool:
     if technique.variants:
         return True
     return isinstance(technique, Graph) and any(any_variants(spec.technique) for spec in technique.passes)
+
+
+INSIDE = "fast"
+"""Name of the place, inside a technique, that the passes of its fast variant are in."""
+
+_HELD = {1: ("float", "vec4"), 2: ("vec2", "vec4"), 4: ("vec4",)}  # types of a buffer that is an output
+
+
+def check_shape(variant: Technique, of: Technique) -> None:
+    """Raise ``SketchError`` or ``ShaderError`` where a fast variant has what its technique has not."""
+    starts = initial_names(of) if isinstance(of, Kernel) and of.kind == "draw" else ()
+    names = [one.name for one in of.parameters], [*(one.name for one in of.inputs), *starts]
+    for declared, valid in zip((variant.parameters, variant.inputs), names, strict=True):
+        for one in declared:
+            if one.name not in valid:
+                message = f"'{one.name}' is not among the parameters and inputs of {of.name}"
+                raise SketchError(
+                    f"{message}{nearest(one.name, valid)}", file=shown(variant.path), line=one.line
+                )
+    outputs = of.outputs if isinstance(of, Kernel) else outputs_with_formats(of)
+    if isinstance(variant, Graph):
+        _check_passes(variant, of, outputs)
+    else:
+        _check_compute(variant, outputs)
+    if wrong := _unbound(variant.agrees, outputs):
+        raise variant.error(wrong)
+
+
+def _check_compute(variant: Kernel, outputs: tuple[Output, ...]) -> None:
+    written = [*(o.name for o in outputs), *(b.name for b in variant.buffers)]
+    for name in variant.overwrites:
+        if name not in written:
+            raise variant.error(f"overwrites: no output or buffer '{name}'{nearest(name, written)}")
+    if variant.in_place and len(outputs) != 1:
+        raise variant.error(f"in_place: one output was expected, not {', '.join(o.name for o in outputs)}")
+    for output in outputs:
+        buffer = variant.buffer_of(output.name)
+        held = buffer.type if buffer else ""
+        if held and not (output.format.endswith("32f") and held in _HELD[output.components]):
+            raise variant.error(f"a buffer of {held} cannot be the output {output.name}:{output.format}")
+
+
+def _check_passes(variant: Graph, of: Technique, wanted: tuple[Output, ...]) -> None:
+    found = outputs_with_formats(variant)
+    if {(o.name, o.format) for o in found} != {(o.name, o.format) for o in wanted}:
+        one, other = (", ".join(f"{o.name}:{o.format}" for o in some) for some in (found, wanted))
+        raise variant.error(f"gives {one}; {of.name} gives {other}")
+    if isinstance(of, Graph) and of.find(INSIDE):
+        message = f"with a fast variant no pass is named '{INSIDE}': that is where the variant's passes are"
+        raise of.error(message)
+
+
+def _unbound(agrees: tuple[Bound, ...], outputs: tuple[Output, ...]) -> str:
+    """Return what is wrong with the bounds: an output without one, or one of no output."""
+    names, bounds = [o.name for o in outputs], {bound.output for bound in agrees}
+    for name in sorted(bounds - {"", *names}):
+        return f"agrees: there is no output '{name}'{nearest(name, names)}"
+    missing = [name for name in names if agrees and name not in bounds and "" not in bounds]
+    return f"agrees: no bound for the output '{missing[0]}'" if missing else ""
+
+
+NAME = "fast_variants.json"
+
+Verified = tuple[str, str]
+"""Contents of a canonical form and of its fast variant."""
+
+
+def record_of(variant: Path) -> tuple[Path, str]:
+    """Return the record that a variant's file belongs to, and its name there."""
+    folder = GLSL if variant.is_relative_to(GLSL) else variant.parent
+    return folder / NAME, variant.relative_to(folder).as_posix()
+
+
+def verified(variant: Path) -> tuple[Verified | None, str]:
+    """Return what the record says of a variant's file, and the record's absolute path.
+
+    The path is "" where there is none, and for the library's: that is no part of a sketch.
+    Raises ``SketchError`` for a record that is not one.
+    """
+    record, name = record_of(variant)
+    if not is_file(record):
+        return None, ""
+    found = _read(read_text(record), shown(record)).get(name)
+    return found, "" if record.parent == GLSL else str(record)
+
+
+def written(entries: Mapping[str, Verified]) -> str:
+    """Return a record's text: the same for the same entries."""
+    table = {name: {"canonical": found[0], "variant": found[1]} for name, found in sorted(entries.items())}
+    return json.dumps({"format": 1, "variants": table}, indent=1) + "\n"
+
+
+def read(record: Path) -> dict[str, Verified]:
+    """Return what a record says, by the variants' names; raise ``SketchError`` for one that is not one."""
+    return dict(_read(read_text(record), shown(record))) if record.is_file() else {}
+
+
+@lru_cache(maxsize=16)
+def _read(text: str, name: str) -> Mapping[str, Verified]:
+    try:
+        table = read_json(text)["variants"]
+        return {key: (str(one["canonical"]), str(one["variant"])) for key, one in table.items()}
+    except (ValueError, TypeError, KeyError, AttributeError):
+        message = "not a record of fast variants; remove it, then `playground variants renew` writes it again"
+        raise SketchError(message, file=name) from None

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from playground.errors import SketchError, nearest
-from playground.sketch import expressions
+from playground.shader import expressions
+from playground.shader.expressions import ExpressionError
+from playground.shader.kernel import Export, Graph, Kernel, Output, PassSpec, Technique
+from playground.shader.parameter import SCALARS
 from playground.sketch.assign import find_targets, resolve
-from playground.sketch.expressions import ExpressionError
-from playground.sketch.technique import Export, Graph, Kernel, Output, PassSpec, Technique
-from playground.sketch.widgets import SCALARS
 
 _GIVEN = (*expressions.CLOCKS, *expressions.COUNTERS, "compute", "size.x", "size.y")
 """What every expression may name."""

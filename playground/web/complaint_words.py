@@ -11,8 +11,9 @@ import re
 import unicodedata
 from pathlib import Path
 
-from playground.gpu import driver_log, name_suggestions, program
-from playground.sketch.reserved_names import FETCHES, GIVEN, GIVEN_INSTEAD, GLSL_WORDS
+from playground.engine import programs
+from playground.shader import driver_log
+from playground.shader.reserved_names import FETCHES, GIVEN, GIVEN_INSTEAD, GLSL_WORDS
 
 FILE = Path(__file__).parent / "runtime" / "complaint_words.js"
 
@@ -81,7 +82,7 @@ _WIDTH = 108
 
 def words() -> dict[str, object]:
     """Return the patterns, as ``[source, flags]`` of a JavaScript ``RegExp``, and the sentences."""
-    log, names = driver_log, name_suggestions
+    log, names = driver_log, driver_log
     return {
         "formats": [_pattern(one) for one in log.FORMATS if any(map(one.fullmatch, _IN_BROWSERS))],
         "benign": _pattern(log.BENIGN),
@@ -103,8 +104,8 @@ def words() -> dict[str, object]:
         "define": _pattern(names.DEFINE),
         "definition": _pattern(names.DEFINITION),
         "runs": _pattern(names.RUNS),
-        "defined": _pattern(program.DEFINED),
-        "chain": _pattern(program.CHAIN),
+        "defined": _pattern(programs.DEFINED),
+        "chain": _pattern(programs.CHAIN),
         "cast": _pattern(names.CAST),
         "types": list(names.TYPES),
         "near": names.NEAR,
@@ -114,10 +115,10 @@ def words() -> dict[str, object]:
         "given": list(GIVEN),
         "known": " ".join(sorted(GLSL_WORDS)),
         "fetches": FETCHES,
-        "foreign": program.FOREIGN,
-        "nameless": program.NAMELESS,
-        "characters": {c: unicodedata.name(c, program.NAMELESS) for c in map(chr, _COPIED)},
-        "pastEnd": program.PAST_END,
+        "foreign": programs.FOREIGN,
+        "nameless": programs.NAMELESS,
+        "characters": {c: unicodedata.name(c, programs.NAMELESS) for c in map(chr, _COPIED)},
+        "pastEnd": programs.PAST_END,
     }
 
 

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable
 from typing import Any
 
-from playground.sketch.expressions import parsed, split_at_commas
+from playground.shader.expressions import parsed, split_at_commas
 from playground.sketch.model import LARGEST_SIDE
 
 Tree = Any

@@ -15,10 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.images.content_hash import content_hash
-from playground.images.files import read_image
-from playground.images.tiff_pictures import MAX_HALF
-from playground.sketch.colour import srgb_to_linear
+from playground.data.content_hash import content_hash
+from playground.data.image_files import MAX_HALF, read_image
+from playground.shader.parameter import srgb_to_linear
 from playground.web.blobs import Blobs
 
 _LARGEST_WEBP = 16_383

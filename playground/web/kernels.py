@@ -7,12 +7,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from playground.gpu.textures import split_format
-from playground.gpu.wrap import FRAGMENT, previous_name, recipes_of
-from playground.sketch.expressions import counts_frames, follows_time
+from playground.engine.meshes import mesh_parameters
+from playground.engine.textures import split_format
+from playground.shader.expressions import counts_frames, follows_time
+from playground.shader.wrap import FRAGMENT, previous_name, recipes_of
 from playground.sketch.model import Kernel, Parameter, Sampling
 from playground.sketch.wiring import initial_names
-from playground.terrain.meshes import mesh_parameters
 from playground.web.es_lacks import lacking
 from playground.web.expression_trees import accepted, tree
 from playground.web.stages import stage_data

@@ -9,15 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from playground.engine import sizes
 from playground.engine.plan import Plan
-from playground.sketch import named_numbers
-from playground.sketch.expressions import names_in
+from playground.engine.sizes import FRAME, TERRAIN, base_of, counting, named
+from playground.engine.sources import source_kind
+from playground.shader.expressions import names_in
 from playground.sketch.flat import Fed, Leaf, Loop, Ref, Source
 from playground.sketch.flatten import is_exported
 from playground.sketch.model import Graph
-from playground.sketch.named_numbers import FRAME, TERRAIN, base_of, counting, named
-from playground.sketch.variant_check import INSIDE
-from playground.terrain.sources import source_kind
+from playground.sketch.variants import INSIDE
 
 _METRES = {
     "extent": ("extent", "spacing"),
@@ -189,16 +189,16 @@ class Locks:
         """Note what an expression of the pass at a path depends on: its size, or its ``repeat``."""
         for word in sorted(names_in(text)):
             kind, where, _, _ = named(self.flat, path, word, repeat=repeat)
-            if kind == named_numbers.SIZE:
+            if kind == sizes.SIZE:
                 self._note(where, source, known)
-            elif kind == named_numbers.VALUE:
+            elif kind == sizes.VALUE:
                 self._needed_by.setdefault(self.flat.shape.copied.get(where, where), source)
-            elif where in counting(self.flat) and kind in (named_numbers.COUNTER, named_numbers.FED):
+            elif where in counting(self.flat) and kind in (sizes.COUNTER, sizes.FED):
                 message = (
                     f"pass '{source}' has a size for each iteration of '{where}', and a page has one of it"
                 )
                 raise self.flat.user(source).error(message)
-            elif kind == named_numbers.COUNTER and where:
+            elif kind == sizes.COUNTER and where:
                 self._note_names(where, self.flat.specs[where].repeat, source, known, repeat=True)
 
 

@@ -14,17 +14,17 @@ from pathlib import Path
 from typing import Any
 
 from playground._version import __version__
+from playground.allowed_files import TEXTS
 from playground.engine.packed_files import contents, folder_of
 from playground.errors import PlaygroundError
 from playground.paths import GLSL, SKETCHES
 from playground.regular_file import read_regular
-from playground.sketch.allowed_files import TEXTS
-from playground.sketch.libraries import libraries_of
+from playground.shader.libraries import libraries_of
+from playground.shader.source import normalised, read_text
+from playground.sketch.find import FORMAT, MANIFEST
 from playground.sketch.load import is_technique, load
 from playground.sketch.model import Graph, Sketch, Technique
 from playground.sketch.save import saved_text
-from playground.sketch.source import normalised, read_text
-from playground.sketch.unpack import FORMAT, MANIFEST
 from playground.web.blobs import Blobs
 from playground.web.toml_template import Piece, page_name, sketch_pieces, technique_pieces
 

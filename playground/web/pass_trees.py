@@ -6,10 +6,10 @@ that a page needs to know nothing of how techniques are nested.
 
 from __future__ import annotations
 
-from playground.sketch import named_numbers
-from playground.sketch.expressions import ITERATIONS
+from playground.engine import sizes
+from playground.engine.sizes import FED
+from playground.shader.expressions import ITERATIONS
 from playground.sketch.flat import Flat
-from playground.sketch.named_numbers import FED
 from playground.web.expression_trees import Tree, tree
 
 
@@ -18,24 +18,24 @@ def pass_tree(text: str, flat: Flat, path: str, *, repeat: bool = False) -> Tree
     spec = flat.specs[path]
 
     def name(word: str) -> Tree:
-        kind, where, axis, what = named_numbers.named(flat, path, word, repeat=repeat)
-        if kind == named_numbers.CLOCK:
+        kind, where, axis, what = sizes.named(flat, path, word, repeat=repeat)
+        if kind == sizes.CLOCK:
             return what
-        if kind == named_numbers.COMPUTE:  # there is none in a page
+        if kind == sizes.COMPUTE:  # there is none in a page
             return 0
-        if kind == named_numbers.UNWIRED:
+        if kind == sizes.UNWIRED:
             return 1
-        if kind == named_numbers.COUNTER:  # what is in no loop is in iteration 0 of 1
+        if kind == sizes.COUNTER:  # what is in no loop is in iteration 0 of 1
             return [what, where] if where else int(what == ITERATIONS)
         if kind == FED:
-            if where in named_numbers.counting(flat):
+            if where in sizes.counting(flat):
                 return [FED, where, what, axis]
             output = dict(flat.specs[where].feedback)[what]
             return ["size", flat.outputs[where][output].path, axis]
-        if kind == named_numbers.SIZE:
+        if kind == sizes.SIZE:
             return ["size", where, axis]
         where = flat.shape.copied.get(where, where)
-        return ["value", where] if kind == named_numbers.VALUE else ["picture", where, axis]
+        return ["value", where] if kind == sizes.VALUE else ["picture", where, axis]
 
     try:
         return tree(text, name)

@@ -15,24 +15,24 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from playground.allowed_files import is_elevation
 from playground.engine.engine import Engine
 from playground.engine.files import find_file
 from playground.engine.plan import Plan, Step
 from playground.engine.planner import Planner
+from playground.engine.sizes import base_of, counting
 from playground.engine.source_facts import extent_follows_size
+from playground.engine.sources import source_kind
 from playground.engine.view_inputs import view_height
 from playground.paths import GLSL, shown
-from playground.sketch.allowed_files import is_elevation
+from playground.shader.expressions import counts_frames, follows_time
+from playground.shader.source import read_text
 from playground.sketch.assign import Shown, values_of
-from playground.sketch.elevation_sketch import elevation_text
-from playground.sketch.expressions import counts_frames, follows_time
 from playground.sketch.flat import Fed, Leaf, Loop, Node, Source
+from playground.sketch.load import elevation_text
 from playground.sketch.map_sketch import map_kernel, refs_of
 from playground.sketch.model import DEFAULT_PICTURE, Sketch, Value
-from playground.sketch.named_numbers import base_of, counting
-from playground.sketch.source import read_text
 from playground.sketch.traits import is_animated
-from playground.terrain.sources import source_kind
 from playground.web.kernels import Kernels
 from playground.web.locks import Locks, made_by
 from playground.web.pass_trees import pass_tree

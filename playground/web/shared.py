@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from playground.gpu.own_shaders import own_shader
-from playground.sketch.reserved_names import GIVEN
+from playground.shader.own_shaders import own_shader
+from playground.shader.reserved_names import GIVEN
 from playground.web.blobs import Blobs
 from playground.web.images import Images
 from playground.web.texts import Texts

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from playground.sketch.assign import Shown, check_value, current_path, find_targets, resolve, shown_parameters
-from playground.sketch.described_parameter import described
+from playground.sketch.catalogue import described
 from playground.sketch.flat import Flat
 from playground.sketch.keyframes import Track, tracks_of
 from playground.sketch.model import Sketch, Value

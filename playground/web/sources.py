@@ -13,12 +13,11 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from playground.data.live_inputs import LiveInputs, Now
 from playground.engine.plan import Step
-from playground.gpu.textures import texels_in
-from playground.media.live_inputs import LiveInputs
-from playground.media.now import Now
-from playground.terrain.source_kinds import Recording
-from playground.terrain.sources import source_kind
+from playground.engine.source_kinds import Recording
+from playground.engine.sources import source_kind
+from playground.engine.textures import texels_in
 from playground.web.blobs import Blobs
 
 MOST_BYTES = 3 * 2**20

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from playground.gpu.stage_recipe import Recipe
+from playground.shader.stage_recipe import Recipe
 
 
 def stage_data(recipe: Recipe, file: str = "") -> dict[str, Any]:

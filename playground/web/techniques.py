@@ -7,11 +7,11 @@ from itertools import product
 from math import prod
 from typing import Any
 
+from playground.allowed_files import looking_once
 from playground.engine.planner import Planner
 from playground.errors import ParameterError, PlaygroundError, SketchError
-from playground.sketch.allowed_files import looking_once
+from playground.shader.parameter import label_of
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
-from playground.sketch.parameter import label_of
 from playground.sketch.replace_technique import choices, fits, nearest_fitting, with_technique
 from playground.web.plan import KINDS
 

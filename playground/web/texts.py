@@ -11,8 +11,8 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError
 from playground.paths import GLSL, PART_OF_FILE
-from playground.sketch.libraries import libraries, library_around
-from playground.sketch.source import Line, SourceText, read_source
+from playground.shader.libraries import libraries, library_around
+from playground.shader.source import Line, SourceText, read_source
 
 
 class Texts:

@@ -13,13 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from playground.paths import GLSL
+from playground.shader.source import normalised
 from playground.sketch.assign import TERRAIN_KEYS, resolve, shown_parameters
 from playground.sketch.composed import parts_of
 from playground.sketch.model import Camera, Graph, Sketch, Technique
 from playground.sketch.save import table_of, with_view
-from playground.sketch.source import normalised
-from playground.sketch.toml_edit import key_text
-from playground.sketch.toml_places import Place, TomlPlaces
+from playground.sketch.toml_text import Place, TomlPlaces, key_text
 
 Piece = str | dict[str, Any]
 """A part of the text, or a hole: ``{path, was}`` a parameter's value, ``{camera, was}`` and ``{terrain,

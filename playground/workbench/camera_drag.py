@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from playground.engine.camera import Eye, orbit, pan, zoom
 from playground.sketch.model import Camera
-from playground.terrain.camera import Eye, orbit, pan, zoom
 
 HALF_TURN = 180.0
 """[degrees] that a drag over the picture's whole height turns the terrain."""

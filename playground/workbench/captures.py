@@ -22,8 +22,8 @@ from playground.capture.sweep import read_sweep, swept
 from playground.capture.video import QUALITY, check_video
 from playground.errors import DataError, ParameterError, PlaygroundError, counted
 from playground.paths import shown
+from playground.shader.parameter import is_whole, length_of
 from playground.sketch.model import LARGEST_PICTURE, LARGEST_SIDE, Parameter, Sketch
-from playground.sketch.values import is_whole, length_of
 from playground.workbench.notices import Notices
 from playground.workbench.session import Session
 from playground.workbench.snapshot import save_new

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from playground.media.pyav import SOUND_FILES, VIDEO_FILES
+from playground.data.media import SOUND_FILES, VIDEO_FILES
 from playground.paths import GLSL
-from playground.sketch.channels import Channel, channels, is_technique, sources
 from playground.sketch.model import Kernel, Parameter, Sketch, Technique
 from playground.sketch.techniques import read_technique
+from playground.workbench.channels import Channel, channels, is_technique, sources
 
 PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff")
 """Endings of what is read as a picture."""

@@ -10,9 +10,9 @@ from playground.errors import PlaygroundError, counted
 from playground.paths import GLSL, shown
 from playground.regular_file import read_regular
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
-from playground.sketch.channels import source_of
 from playground.sketch.model import Camera, Value
 from playground.sketch.save import save, save_copy, save_preset, saved_text
+from playground.workbench.channels import source_of
 from playground.workbench.edits import Draft
 from playground.workbench.history import History, Key
 from playground.workbench.notices import Notices

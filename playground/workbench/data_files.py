@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from playground.data.content_hash import content_hash
 from playground.errors import PlaygroundError
-from playground.images.content_hash import content_hash
 from playground.sketch.model import Sketch
 from playground.workbench.dependencies import data_files
 

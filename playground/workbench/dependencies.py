@@ -7,13 +7,12 @@ from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from pathlib import Path
 
+from playground.allowed_files import Signature, sidecar_places
 from playground.engine.files import find_file
 from playground.errors import DataError, PlaygroundError
 from playground.paths import GLSL, current_folder, without_part
-from playground.sketch.allowed_files import Signature
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
-from playground.sketch.sidecars import sidecar_places
 from playground.sketch.traits import traits_of
 
 

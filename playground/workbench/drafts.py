@@ -20,20 +20,20 @@ from dataclasses import replace
 from functools import reduce
 from pathlib import Path
 
+from playground.allowed_files import Signature, noting_places
 from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ParameterError, PlaygroundError
 from playground.paths import shown as shown_path
-from playground.sketch.allowed_files import Signature, noting_places
+from playground.shader.parameter import shortest
 from playground.sketch.assign import TERRAIN_KEYS
 from playground.sketch.find import find
 from playground.sketch.flatten import withheld
 from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
-from playground.sketch.shadowed import newly_shadowed
+from playground.sketch.replace_technique import with_texts
 from playground.sketch.technique_cache import TechniqueCache
-from playground.sketch.text_overrides import with_texts
-from playground.sketch.values import shortest
 from playground.sketch.variants import left_out
+from playground.sketch.warnings import newly_shadowed
 from playground.workbench.checks import Checks, DrawnState
 from playground.workbench.dependencies import watched
 from playground.workbench.edits import Draft, Edits, reload_draft, taken

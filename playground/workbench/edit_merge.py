@@ -10,11 +10,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from playground.data.content_hash import content_key
 from playground.errors import DataError, ParameterError
-from playground.images.content_hash import content_key
+from playground.shader.parameter import write
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.model import Sketch, Value
-from playground.sketch.values import write
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,11 +30,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from playground.errors import ParameterError, PlaygroundError
+from playground.shader.parameter import is_whole, write
 from playground.sketch.assign import TERRAIN_KEYS, check_value, current_path, resolve, values_of
-from playground.sketch.channels import channels, find_channel, in_order, with_source
 from playground.sketch.model import Camera, Parameter, Sketch, Value
 from playground.sketch.replace_technique import with_technique
-from playground.sketch.values import is_whole, write
+from playground.workbench.channels import channels, find_channel, in_order, with_source
 from playground.workbench.edit_merge import file_values, newer_value, notice
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from playground.gpu.own_shaders import own_part
-from playground.gpu.textures import make_texture
+from playground.engine.textures import make_texture
+from playground.shader.own_shaders import own_part
 from playground.workbench.full_screen import FullScreen
 
 if TYPE_CHECKING:

@@ -20,10 +20,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.allowed_files import root_of
 from playground.engine.on_arrays import OnArrays
+from playground.engine.textures import split_format
 from playground.errors import ParameterError
-from playground.gpu.textures import split_format
-from playground.sketch.allowed_files import root_of
 from playground.sketch.model import Kernel, Technique
 from playground.sketch.techniques import read_technique
 from playground.sketch.wiring import input_names, output_names, outputs_with_formats

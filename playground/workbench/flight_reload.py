@@ -10,9 +10,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
 
+from playground.allowed_files import Signature, noting_places
 from playground.engine.sandbox import TrySketch
 from playground.errors import PlaygroundError
-from playground.sketch.allowed_files import Signature, noting_places
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.workbench.dependencies import watched

@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from playground.engine.camera import Eye
 from playground.sketch.model import Camera, Sketch
-from playground.terrain.camera import Eye
 from playground.workbench.camera_drag import Gesture, steered
 
 WIDEST = 100.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from playground.gpu.own_shaders import TRIANGLE
+from playground.shader.own_shaders import TRIANGLE
 
 if TYPE_CHECKING:
     import moderngl

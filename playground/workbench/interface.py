@@ -12,9 +12,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from playground.data.image_files import replacing
 from playground.errors import PlaygroundError
 from playground.folders import state_folder
-from playground.images.files import replacing
 from playground.json_text import read_json
 from playground.regular_file import read_regular
 from playground.workbench.notices import Notices

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from playground.engine.frame import Frame
-from playground.gpu.own_shaders import own_shader
-from playground.gpu.textures import make_framebuffer, make_texture
+from playground.engine.textures import make_framebuffer, make_texture
+from playground.shader.own_shaders import own_shader
 from playground.workbench.enlarged import Enlarger
 from playground.workbench.full_screen import FullScreen
 

@@ -16,8 +16,8 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import IO, Any
 
+from playground.data.image_files import replacing
 from playground.errors import DataError
-from playground.images.files import replacing
 from playground.json_text import read_json
 from playground.regular_file import read_regular
 from playground.sketch.model import Camera, Value

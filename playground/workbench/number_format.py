@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
+from playground.shader.parameter import WIDGETS, is_whole
 from playground.sketch.model import Parameter
-from playground.sketch.values import is_whole
-from playground.sketch.widgets import WIDGETS
 
 
 def decimals(parameter: Parameter) -> int:

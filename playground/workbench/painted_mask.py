@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.images.files import read_image, write_png
-from playground.terrain.masks import resized, weights_of
+from playground.data.image_files import read_image, write_png
+from playground.engine.file_sources import resized, weights_of
 from playground.workbench.brush import Brush, reached, stroke
 from playground.workbench.canvas import Canvas, Patch
 

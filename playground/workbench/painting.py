@@ -17,16 +17,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.engine.camera import Eye, ground_under, seen_from
 from playground.engine.files import find_file
 from playground.engine.plan import Step
+from playground.engine.sources import source_kind
+from playground.engine.textures import split_format
 from playground.engine.view_inputs import view_height
 from playground.errors import DataError, PlaygroundError
-from playground.gpu.textures import split_format
 from playground.sketch.assign import resolve, shown_parameters, value_of, values_of
 from playground.sketch.model import Parameter, Sketch
-from playground.terrain.camera import Eye
-from playground.terrain.pick import ground_under, seen_from
-from playground.terrain.sources import source_kind
 from playground.workbench.brush import TOOLS, Brush, Tool
 from playground.workbench.canvas import MOST_TEXELS, Canvas
 from playground.workbench.erode_tool import ErodeTool, technique_at

@@ -10,11 +10,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import groupby
 
+from playground.shader.parameter import label_of, write
 from playground.sketch.assign import Shown, resolve, shown_parameters, values_of
 from playground.sketch.identity import Identity
 from playground.sketch.model import Parameter, Sketch, Value
-from playground.sketch.parameter import label_of
-from playground.sketch.values import write
 from playground.workbench.edits import Draft
 
 

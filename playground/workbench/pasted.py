@@ -13,12 +13,12 @@ from contextlib import suppress
 from itertools import count
 from pathlib import Path
 
+from playground.allowed_files import TEXTS
 from playground.errors import DataError, SketchError
 from playground.folders import state_folder
 from playground.partial import partial_file
 from playground.regular_file import read_regular
-from playground.sketch.allowed_files import TEXTS
-from playground.sketch.dialects import OWN, dialect_of, names
+from playground.shader.dialects import OWN, dialect_of, names
 
 LARGEST = 4 * 2**20
 """Bytes that a text may have."""

@@ -14,10 +14,10 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
+from playground.engine.meshes import mesh_parameters
 from playground.sketch.assign import values_of
 from playground.sketch.model import Kernel, Parameter, Sketch, Value
 from playground.sketch.traits import traits_of
-from playground.terrain.meshes import mesh_parameters
 
 Size = tuple[int, int]
 

@@ -16,7 +16,7 @@ from typing import Any
 
 from playground.engine.engine import Engine
 from playground.engine.plan import LoopStep, Plan, every_node, walk
-from playground.sketch.expressions import follows_time
+from playground.shader.expressions import follows_time
 from playground.sketch.model import Sketch
 from playground.workbench.pass_costs import PassCosts
 

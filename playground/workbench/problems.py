@@ -10,14 +10,14 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 
+from playground.allowed_files import root_of
+from playground.data.content_hash import content_hash
+from playground.data.live_inputs import LiveInputs
 from playground.engine.plan import Plan
 from playground.engine.plan_warnings import source_warnings
 from playground.errors import Diagnostic, PlaygroundError, counted
-from playground.images.content_hash import content_hash
-from playground.media.live_inputs import LiveInputs
 from playground.paths import GLSL, without_part
 from playground.regular_file import read_regular
-from playground.sketch.allowed_files import root_of
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.techniques import Techniques
 from playground.sketch.warnings import former_names_used, warnings_of_kernel

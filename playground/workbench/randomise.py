@@ -11,9 +11,8 @@ import math
 from collections.abc import Iterable, Mapping
 from random import Random
 
-from playground.sketch.colour import linear_to_srgb, srgb_to_linear
+from playground.shader.parameter import is_whole, linear_to_srgb, srgb_to_linear, tidied
 from playground.sketch.model import Parameter, Value
-from playground.sketch.values import is_whole, tidied
 from playground.workbench.number_format import snapped
 
 HEIGHTS = (5.0, 85.0)

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 
 from playground.errors import PlaygroundError
 from playground.sketch.assign import current_path
-from playground.sketch.channels import in_order
 from playground.sketch.model import Camera, Sketch, Value
+from playground.workbench.channels import in_order
 from playground.workbench.edit_merge import FileValue, file_values, newer_value, notice
 from playground.workbench.edits import Draft, Edits, with_camera_of
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.terrain.numbers import read_numbers, write_numbers
-from playground.terrain.resample import resample
+from playground.data.resample import resample
+from playground.engine.file_sources import read_numbers, write_numbers
 from playground.workbench.brush import Brush, reached
 from playground.workbench.canvas import Canvas
 from playground.workbench.erode_tool import ErodeTool

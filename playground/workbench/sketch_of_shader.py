@@ -11,18 +11,16 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+from playground.allowed_files import TECHNIQUES, is_elevation
+from playground.data.image_files import new_name
 from playground.errors import DataError
-from playground.images.files import new_name
 from playground.paths import GLSL
-from playground.sketch.allowed_files import TECHNIQUES, is_elevation
 from playground.sketch.assign import TERRAIN_KEYS, find_targets
-from playground.sketch.channels import Channel, channels, in_order, source_of
-from playground.sketch.elevation_sketch import elevation_text
-from playground.sketch.load import load
+from playground.sketch.load import elevation_text, load
 from playground.sketch.model import PassSpec, Sketch, kernels_of
-from playground.sketch.save import save, written_size
-from playground.sketch.save_values import written_terrain_value, written_value
-from playground.sketch.toml_edit import key_text, text_of
+from playground.sketch.save import save, written_size, written_terrain_value, written_value
+from playground.sketch.toml_text import key_text, text_of
+from playground.workbench.channels import Channel, channels, in_order, source_of
 from playground.workbench.edits import Draft, Edits
 
 

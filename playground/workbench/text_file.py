@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
+from playground.data.image_files import reason
 from playground.errors import DataError
-from playground.images.files import reason
 from playground.partial import partial_file
 from playground.paths import shown
 from playground.regular_file import read_regular

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from playground.errors import ParameterError
-from playground.sketch.expressions import ExpressionError, evaluate_numbers
+from playground.shader.expressions import ExpressionError, evaluate_numbers
+from playground.shader.parameter import coerce, is_whole
 from playground.sketch.model import Parameter, Value
-from playground.sketch.values import coerce, is_whole
 
 NAMES = {"pi": math.pi, "tau": math.tau}
 """What an expression may name."""

@@ -13,8 +13,8 @@ import tempfile
 import time
 from pathlib import Path
 
+from playground.engine.context import open_context
 from playground.engine.engine import Engine
-from playground.gpu.context import open_context
 from playground.sketch.load import load
 
 SIZES = (257, 513, 1025)

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from playground.images.files import read_png, write_png
+from playground.data.image_files import read_png, write_png
 from playground.shots.fingerprint import Fingerprint
 from playground.shots.flip import flip
 from playground.shots.judge import judge

@@ -11,10 +11,10 @@ import statistics
 import sys
 import time
 
+from playground.engine.context import open_context
 from playground.engine.engine import Engine
 from playground.flight.craft import Controls
 from playground.flight.flight import CACHE_BYTES, Flight
-from playground.gpu.context import open_context
 from playground.sketch.load import load
 
 SIZE = (640, 360)

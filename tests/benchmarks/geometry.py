@@ -25,9 +25,9 @@ from rich.console import Console
 from rich.table import Table
 
 import playground
+from playground.engine.camera import look
 from playground.engine.engine import Engine
 from playground.sketch.model import Sketch
-from playground.terrain.camera import look
 
 SIZE = (1280, 720)
 TOLERANCES = (1.0, 2.0)

@@ -22,8 +22,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from playground.engine.context import open_context
 from playground.engine.engine import Engine
-from playground.gpu.context import open_context
 from playground.workbench.parameter_list import Filter
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "live"))

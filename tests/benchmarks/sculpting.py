@@ -16,8 +16,8 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from playground.engine.context import open_context
 from playground.engine.engine import Engine
-from playground.gpu.context import open_context
 from playground.workbench.brush import TOOLS, Brush
 from playground.workbench.erode_tool import STAMP
 from playground.workbench.painting import Painting

@@ -21,8 +21,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from playground.engine.context import open_context
 from playground.engine.engine import Engine
-from playground.gpu.context import open_context
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 

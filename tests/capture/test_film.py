@@ -17,10 +17,10 @@ import playground.capture.video as video_module
 from playground.capture.film import Film, film_of, frames, render_video, write_film
 from playground.capture.sequence import render_sequence, write_sequence
 from playground.capture.video import QUALITIES, Stopped, Video, count_pictures
+from playground.data.image_files import read_png, write_png
 from playground.engine.engine import Engine
 from playground.errors import ContextError, DataError, ParameterError, PlaygroundWarning
 from playground.extras import install_command
-from playground.images.files import read_png, write_png
 
 from ..loading import load
 from ..sketch_texts import LIT_NOISE, SMALL_VIEW

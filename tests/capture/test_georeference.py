@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from playground.capture.export import export
-from playground.terrain import gis
-from playground.terrain.elevation import read_elevation
+from playground.data import gis
+from playground.data.elevation import read_elevation
 
 rasterio = pytest.importorskip("rasterio")  # of the extra gis
 from rasterio.crs import CRS  # noqa: E402

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from playground.capture.large import TILE, count_tiles, is_large, strips, tiles_of, write_large
+from playground.data.image_files import read_png
 from playground.engine.engine import Engine
 from playground.engine.plan import Window
+from playground.engine.textures import read_picture, read_texture
 from playground.errors import DataError, ParameterError, SketchError
-from playground.gpu.textures import read_picture, read_texture
-from playground.images.files import read_png
 
 from ..loading import load
 from ..sketch_texts import passes

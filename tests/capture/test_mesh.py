@@ -16,8 +16,8 @@ from playground import Sketch
 from playground.capture.gltf import encode_glb
 from playground.capture.mesh import sampled, terrain_mesh
 from playground.capture.obj import encode_obj
+from playground.data.grid import fitted
 from playground.engine.engine import Engine
-from playground.terrain.grid import fitted
 
 from .conftest import metres
 

@@ -12,18 +12,17 @@ import pytest
 
 from playground import cli
 from playground.capture.pack import pack
-from playground.engine.check import find_files
+from playground.data.values import write_values
 from playground.engine.engine import Engine
 from playground.engine.packed_files import contents
 from playground.errors import DataError
-from playground.images.values import write_values
 from playground.live.drops import Drops, opened_from
 from playground.paths import GLSL
-from playground.sketch import unpack
+from playground.sketch import find as unpack
+from playground.sketch.find import unpacked, unpacked_beside
 from playground.sketch.model import VARIANTS
-from playground.sketch.unpack import unpacked, unpacked_beside
-from playground.sketch.variant_record import NAME
-from playground.sketch.variants import active_variant, left_out
+from playground.sketch.variants import NAME, active_variant, left_out
+from playground.verify.check import find_files
 
 from ..loading import load
 from ..sketch_texts import passes

@@ -12,9 +12,9 @@ import pytest
 from numpy.typing import NDArray
 
 from playground.capture.export import export
+from playground.data.image_files import read_image
 from playground.engine.engine import Engine
 from playground.errors import DataError, PlaygroundError
-from playground.images.files import read_image
 
 from ..loading import load
 from ..sketch_texts import map_of, passes
@@ -381,7 +381,7 @@ vec4 kernel(ivec2 texel) { return textureLod(bark, vec2(texel) / 37.0, 0.0); }
 
 
 def test_an_image_goes_with_an_isf(folder: Path, any_engine: Engine, ctx: moderngl.Context) -> None:
-    from playground.images.files import write_png
+    from playground.data.image_files import write_png
 
     random = np.random.default_rng(5)
     pixels = random.integers(0, 256, (7, 11, 4)).astype(np.uint8)

@@ -10,9 +10,9 @@ import pytest
 
 from playground.capture.sheet import pictures, render_sweep, sheet, write_sheet, write_sweep_film
 from playground.capture.sweep import columns_of, read_sweep, swept
+from playground.data.image_files import read_png
 from playground.engine.engine import Engine
 from playground.errors import ParameterError
-from playground.images.files import read_png
 
 from ..loading import load
 from ..sketch_texts import LIT_NOISE, SMALL_VIEW

@@ -16,9 +16,9 @@ import playground
 from playground import Sketch
 from playground.capture.export import Exported
 from playground.capture.values import encode_picture
+from playground.data.elevation import read_elevation
+from playground.data.image_files import read_samples
 from playground.engine.engine import Engine
-from playground.images.files import read_samples
-from playground.terrain.elevation import read_elevation
 
 LOW, HIGH = 50.0 + 1000.0 * 0.125, 50.0 + 1000.0 * 0.875  # the south-western corner; the north-western
 STEP = (HIGH - LOW) / 65535.0  # [m] of 16 bits

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from playground import cli
+from playground.data.image_files import read_png
 from playground.engine.engine import Engine
-from playground.images.files import read_png
 from playground.sketch.model import Sketch
 
 from ..sketch_texts import passes

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from playground import cli
-from playground.images.files import read_png
+from playground.data.image_files import read_png
 
 from ..sketch_texts import LIT_NOISE, SMALL_VIEW, map_of_height
 

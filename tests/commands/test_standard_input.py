@@ -9,8 +9,8 @@ import pytest
 
 from playground import cli
 from playground.commands.standard_input import kept
+from playground.data.image_files import read_png
 from playground.errors import ParameterError
-from playground.images.files import read_png
 
 SHADER = "// Half red\nvoid mainImage(out vec4 c, in vec2 p) { c = vec4(0.5, 0.0, 0.0, 1.0); }\n"
 

@@ -168,7 +168,7 @@ FAST = 'agrees = "exact"\n[[pass]]\nname = "height"\nuse = "./twin"\n'
 def furnish(folder: Path, command: str) -> None:
     """Put there what a command speaks of and does not make itself."""
     from playground.sketch.techniques import read_kernel
-    from playground.templates import make_sketch
+    from playground.sketch.templates import make_sketch
 
     words = arguments(command)
     for title in files():

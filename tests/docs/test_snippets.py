@@ -16,7 +16,7 @@ from PIL import Image
 
 from playground.engine.engine import Engine
 from playground.sketch.load import load
-from playground.templates import make_sketch
+from playground.sketch.templates import make_sketch
 
 from .pages import PAGES, ROOT, Block, blocks, blocks_of, files, write_files
 

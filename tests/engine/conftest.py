@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
-from playground.gpu.context import ContextInfo
 from playground.sketch.model import Sketch
 
 from ..loading import load

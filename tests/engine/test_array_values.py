@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 
 import playground
+from playground.engine.sources import SOURCES
 from playground.sketch.arrays import GRIDS, PICTURES
 from playground.sketch.save import save_copy
-from playground.terrain.sources import SOURCES
 from playground.web.page_data import page_data
 
 # Every corner differs, and no row is another backwards.

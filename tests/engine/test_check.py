@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from playground.engine.check import check_file, find_files
 from playground.engine.sandbox import Sandbox
 from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import GLSL
+from playground.verify.check import check_file, find_files
 
 from ..loading import load
 
@@ -134,7 +134,7 @@ def test_a_file_that_the_child_does_not_survive_is_not_read_here(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """2 GiB of holes, by columns, so that they are not read by rows: more than the child may take."""
-    from playground.terrain import elevation_source
+    from playground.engine import file_sources
 
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("read by the parent")
@@ -148,7 +148,7 @@ def test_a_file_that_the_child_does_not_survive_is_not_read_here(
         'set = { elevation = "heights.npy" }\n[view]\nuse = "view/map"\ninputs = { shown = "height" }\n',
         encoding="utf-8",
     )
-    monkeypatch.setattr(elevation_source, "open_elevation", refuse)
+    monkeypatch.setattr(file_sources, "open_elevation", refuse)
     with Sandbox(memory_bytes=2**30) as small:
         found = wrong(tmp_path / "sketch.toml", small)
     assert "not enough memory to read it" in found.message and "heights.npy" in found.message

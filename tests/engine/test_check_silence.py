@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine.check import FileReport, check_file, find_files
 from playground.engine.sandbox import Sandbox
 from playground.errors import DataError, Diagnostic, ShaderError
+from playground.verify.check import FileReport, check_file, find_files
 
 from ..loading import load
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
-from playground.gpu.context import ContextInfo
 
 from .conftest import Folder
 

@@ -8,20 +8,20 @@ import numpy as np
 import pytest
 
 from playground.capture.large import strips
-from playground.engine.check import check_file
+from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import Planner
 from playground.engine.sandbox import Sandbox
 from playground.errors import ParameterError, PlaygroundError, ShaderError, SketchError
-from playground.gpu.wrap import FRAGMENT, wrap
-from playground.images.files import write_png
 from playground.reduce.inline import inline_sketch
-from playground.sketch.dialects.foreign import unfed_warnings
+from playground.shader.dialects.foreign import unfed_warnings
+from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.load import load
 from playground.sketch.model import kernels_of
-from playground.sketch.text_overrides import with_texts
+from playground.sketch.replace_technique import with_texts
 from playground.sketch.traits import traits_of
+from playground.verify.check import check_file
 from tests.dialect_texts import TEXTS, with_mistake
 
 SIZE = (32, 18)

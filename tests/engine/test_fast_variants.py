@@ -9,13 +9,11 @@ import pytest
 
 from playground.api import headless
 from playground.engine.engine import Engine
-from playground.engine.verify import verify
-from playground.engine.verify_targets import recorded, subjects
 from playground.errors import PlainFormWarning, PlaygroundError, SketchError
 from playground.sketch.flatten import withheld
 from playground.sketch.model import VARIANTS, Sketch
-from playground.sketch.variant_record import NAME
-from playground.sketch.variants import left_out
+from playground.sketch.variants import NAME, left_out
+from playground.verify.variants import recorded, subjects, verify
 
 from ..loading import load
 from ..sketch_texts import passes

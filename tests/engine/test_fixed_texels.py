@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from playground.engine import results
+from playground.engine.choices import with_choices
+from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
 from playground.engine.results import Result
-from playground.gpu.choices import with_choices
-from playground.gpu.context import ContextInfo
-from playground.gpu.wrap import FRAGMENT, wrap
-from playground.sketch.fixed_texels import fixed_texels
-from playground.sketch.reserved_names import FIXED
+from playground.shader.fixed_texels import fixed_texels
+from playground.shader.reserved_names import FIXED
+from playground.shader.wrap import FRAGMENT, wrap
 
 from .conftest import Folder, on_both_kinds
 

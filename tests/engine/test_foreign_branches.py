@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from playground.sketch.dialects import dialect_of
+from playground.shader.dialects import dialect_of
 from playground.sketch.load import load
 from playground.sketch.model import kernels_of
 

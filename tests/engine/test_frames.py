@@ -7,7 +7,7 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.errors import ShaderError
-from playground.sketch.reserved_names import CLOCKED
+from playground.shader.reserved_names import CLOCKED
 from playground.sketch.traits import has_moving_counts, is_animated
 
 from ..loading import load

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from tests.media.films import colour, own_film
+from tests.data.films import colour, own_film
 
 from ..loading import load
 

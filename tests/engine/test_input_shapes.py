@@ -7,12 +7,12 @@ import gc
 import numpy as np
 import pytest
 
+from playground.data.image_files import write_png
 from playground.engine import binder
 from playground.engine.engine import Engine
 from playground.engine.planner import Planner
+from playground.engine.textures import copied
 from playground.errors import SketchError
-from playground.gpu.shapes import copied
-from playground.images.files import write_png
 from tests.cube_maps import directions, face_and_place
 
 from ..loading import load

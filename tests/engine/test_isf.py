@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from playground.capture.large import strips
+from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError, ShaderError
-from playground.gpu.wrap import FRAGMENT, wrap
-from playground.images.files import write_png
+from playground.shader.wrap import FRAGMENT, wrap
 from tests.engine.test_dialects import DEPRECATED, colours
 from tests.isf_texts import STATEFUL, TEXTS, VERTEX, with_mistake
 

@@ -20,9 +20,9 @@ import pytest
 from numpy.typing import NDArray
 
 from playground.api import headless
+from playground.data.image_files import write_png
+from playground.engine.context import open_context
 from playground.engine.engine import Engine
-from playground.gpu.context import open_context
-from playground.images.files import write_png
 
 from ..sketch_texts import passes
 
@@ -171,7 +171,7 @@ import moderngl
 import numpy as np
 import playground
 from playground.engine.engine import Engine
-from playground.gpu.context import open_context
+from playground.engine.context import open_context
 sketch = playground.load(sys.argv[1])
 one = playground.headless()
 first = one.render(sketch, size=(64, 36)).array

@@ -10,10 +10,10 @@ from playground.engine.engine import Engine
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import Planner
 from playground.errors import ShaderError, SketchError
-from playground.gpu.wrap import FRAGMENT, wrap
 from playground.reduce.inline import inline_sketch
+from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.model import kernels_of
-from playground.sketch.text_overrides import with_texts
+from playground.sketch.replace_technique import with_texts
 from playground.sketch.warnings import warnings_of_kernel
 from tests.dialect_texts import with_mistake
 from tests.engine.test_dialects import DEPRECATED

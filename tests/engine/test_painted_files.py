@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from playground.data import content_hash as hashes
 from playground.engine.painted_images import PaintedFiles
-from playground.images import content_hash as hashes
 
 
 def test_a_file_of_many_gigabytes_is_not_read_to_tell_whether_a_texture_is_stale(

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
-from playground.images.files import write_png
 
 from ..loading import load
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from playground.data.image_files import write_png
 from playground.errors import PlaygroundError, ShaderError
-from playground.images.files import write_png
 from playground.sketch.warnings import warnings_of_kernel
 
 from ..loading import load

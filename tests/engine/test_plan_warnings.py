@@ -13,9 +13,9 @@ import tifffile
 import playground
 from playground import cli
 from playground.engine import sandbox as sandbox_module
-from playground.engine.check import check_file
 from playground.engine.sandbox import Sandbox
 from playground.errors import PlaygroundError
+from playground.verify.check import check_file
 from playground.workbench.problems import Warnings
 
 from ..loading import load

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.data.values import write_values
 from playground.engine import planner as planner_module
 from playground.engine.cache import Cache
 from playground.engine.engine import Engine
 from playground.engine.plan import Plan, every_node
 from playground.engine.planner import Planner
 from playground.errors import DataError
-from playground.images.values import write_values
 from playground.sketch.assign import resolve, shown_parameters
 from playground.sketch.model import Sketch, Value
 

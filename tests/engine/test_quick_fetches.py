@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from playground.engine.choices import quicker_choices, with_choices
+from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
 from playground.errors import ShaderError
-from playground.gpu.choices import quicker_choices, with_choices
-from playground.gpu.context import ContextInfo
-from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
-from playground.sketch.reserved_names import NEAREST, OWN_SIZE, PLACE, UNWIRED
+from playground.shader.reserved_names import NEAREST, OWN_SIZE, PLACE, UNWIRED
+from playground.shader.wrap import COMPUTE, FRAGMENT, wrap
 
 from .conftest import Folder, on_both_kinds
 

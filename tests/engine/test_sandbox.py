@@ -16,8 +16,8 @@ from pathlib import Path
 import pytest
 
 from playground import cli
-from playground.engine.accepted_sizes import smallest_terrain
 from playground.engine.sandbox import Sandbox, SandboxReport, TryLibrary, TrySketch, reading_seconds
+from playground.engine.sizes import smallest_terrain
 from playground.errors import SandboxCrash, SandboxTimeout, ShaderError
 
 from ..loading import load
@@ -410,7 +410,7 @@ SCRIPT = """
 from dataclasses import replace
 from playground import cli
 from playground.engine.sandbox import Sandbox, TrySketch
-from playground.process import worker
+from playground.engine.process import worker
 from playground.sketch.load import load
 with Sandbox(limit_seconds=90.0) as sandbox:
     workers = sandbox._workers

@@ -10,17 +10,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.data.image_files import write_png
+from playground.engine import sources
 from playground.engine.disk_cache import DiskCache
 from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
+from playground.engine.process.messages import Cancelled
 from playground.engine.sandbox import Sandbox, TrySketch
+from playground.engine.source_kinds import Material, SourceKind, Terrain
 from playground.engine.source_works import SourceUnfinished, SourceWorks
 from playground.errors import DataError, PlaygroundError
-from playground.images.files import write_png
-from playground.process.messages import Cancelled
-from playground.terrain import sources
-from playground.terrain.known import Terrain
-from playground.terrain.source_kinds import Material, SourceKind
 
 from ..loading import load
 

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from playground.data.image_files import write_png
 from playground.engine.engine import Engine
-from playground.images.files import write_png
 from playground.sketch.model import Camera
 
 from ..sketch_texts import passes

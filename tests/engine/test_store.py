@@ -17,7 +17,9 @@ import moderngl
 import numpy as np
 import pytest
 
+from playground.data.image_files import write_png
 from playground.engine import disk_cache as store_module
+from playground.engine.context import ContextInfo
 from playground.engine.disk_cache import (
     CachedTextures,
     DiskCache,
@@ -30,11 +32,9 @@ from playground.engine.disk_cache import (
 )
 from playground.engine.disk_caching import MIPMAPS, DiskCaching
 from playground.engine.engine import Engine
+from playground.engine.gl_calls import read_mipmap
+from playground.engine.textures import levels_of, read_raw
 from playground.errors import ParameterError
-from playground.gpu.context import ContextInfo
-from playground.gpu.gl_calls import read_mipmap
-from playground.gpu.textures import levels_of, read_raw
-from playground.images.files import write_png
 
 ROOT = Path(__file__).resolve().parents[2]
 ALWAYS = float("-inf")  # a floor that every pass's cost is above
@@ -409,10 +409,10 @@ def test_what_made_it_is_part_of_the_key(cached, worn, monkeypatch):
         replace(ours, version_code=410),
     ):
         assert names(disk_cache_for(other, 1, cached.folder)) != names(disk_cache_for(ours, 1, cached.folder))
-    monkeypatch.setattr("playground.gpu.build.processor", lambda: ("Other", "avx"))
+    monkeypatch.setattr("playground.engine.context.processor", lambda: ("Other", "avx"))
     software = ContextInfo(450, "llvmpipe", "Mesa", "4.5", 4)
     one = names(disk_cache_for(software, 1, cached.folder))
-    monkeypatch.setattr("playground.gpu.build.processor", lambda: ("Other", "avx fma"))
+    monkeypatch.setattr("playground.engine.context.processor", lambda: ("Other", "avx fma"))
     assert names(disk_cache_for(software, 1, cached.folder)) != one
     card = replace(software, renderer="NVIDIA H200")
     one = names(disk_cache_for(card, 1, cached.folder))

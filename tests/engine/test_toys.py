@@ -10,14 +10,14 @@ import pytest
 import tifffile
 
 from playground.capture.large import strips
+from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import Planner
 from playground.errors import PlaygroundError, ShaderError
-from playground.images.files import write_png
 from playground.reduce.inline import inline_sketch
-from playground.sketch.channels import with_source
 from playground.sketch.warnings import former_names_used
+from playground.workbench.channels import with_source
 from tests.toy_texts import (
     CUBE,
     EXPORTS,

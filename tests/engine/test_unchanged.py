@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from playground.data.image_files import write_png
 from playground.engine import cache_keys
 from playground.engine.cache_keys import KeyMaker, Keys
 from playground.engine.engine import Engine
 from playground.engine.plan import Plan, every_version
 from playground.engine.planner import Planner
-from playground.images.files import write_png
 
 from ..sketch_texts import SMALL_VIEW, passes
 

@@ -9,8 +9,8 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.errors import ShaderError
-from playground.gpu.wrap import FRAGMENT, wrap
-from playground.gpu.zero_values import with_zeros
+from playground.shader.wrap import FRAGMENT, wrap
+from playground.shader.zero_values import with_zeros
 from playground.sketch.load import load
 
 SIZE = (32, 18)

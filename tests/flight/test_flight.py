@@ -10,15 +10,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.data.image_files import read_png
 from playground.engine.engine import Engine
+from playground.engine.textures import read_picture
 from playground.errors import DataError
 from playground.flight.craft import STEP, Controls
 from playground.flight.flight import Flight
 from playground.flight.frames import count_frames, fly_again, write_frames
 from playground.flight.record import Header, Moment, Record, Recorder, read_record
 from playground.flight.scene import visibility_range
-from playground.gpu.textures import read_picture
-from playground.images.files import read_png
 
 from ..loading import load
 

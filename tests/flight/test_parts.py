@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
+from playground.engine.textures import read_texture
 from playground.errors import SketchError
 from playground.flight.layout import plot_of
 from playground.flight.parts import Parts
-from playground.gpu.textures import read_texture
 
 from ..loading import load
 

@@ -11,11 +11,11 @@ from pathlib import Path
 import moderngl
 import pytest
 
+from playground.data.image_files import read_png
 from playground.engine.engine import Engine
 from playground.flight.flight import CACHE_BYTES
 from playground.flight.frames import fly_again
 from playground.flight.record import read_record
-from playground.images.files import read_png
 from playground.shots.compare import compare
 
 from ..loading import load

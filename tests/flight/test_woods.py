@@ -12,13 +12,13 @@ import pytest
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
+from playground.engine.textures import read_picture
 from playground.errors import SketchError
 from playground.flight import programs
 from playground.flight.flight import Flight
 from playground.flight.groves import Planter, cells_of
 from playground.flight.layout import plot_of
 from playground.flight.parts import Parts
-from playground.gpu.textures import read_picture
 
 from ..loading import load
 

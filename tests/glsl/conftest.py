@@ -12,8 +12,8 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.paths import GLSL
+from playground.shader.source import read_source
 from playground.sketch.model import Sketch
-from playground.sketch.source import read_source
 
 from ..loading import load
 from .terrains import toml_value

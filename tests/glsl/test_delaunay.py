@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from scipy.interpolate import LinearNDInterpolator
 
+from playground.engine.delaunay import Rules, Triangulation, triangulate
 from playground.engine.engine import Engine
 from playground.errors import DataError
 from playground.paths import GLSL
 from playground.sketch.model import kernels_of
 from playground.sketch.techniques import read_technique
-from playground.terrain.delaunay import Rules, Triangulation, triangulate
 
 from ..loading import load
 

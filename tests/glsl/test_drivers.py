@@ -8,7 +8,7 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.paths import GLSL
-from playground.sketch.expressions import accepted_sizes
+from playground.shader.expressions import accepted_sizes
 from playground.sketch.model import Graph, Kernel, kernels_of
 from playground.sketch.wiring import input_names, outputs_with_formats
 

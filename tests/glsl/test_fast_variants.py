@@ -5,19 +5,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.allowed_files import is_variant
 from playground.engine.engine import Engine
-from playground.engine.verify import compared, places_in, verify
-from playground.engine.verify_targets import subjects
 from playground.paths import GLSL
-from playground.sketch.allowed_files import is_variant
-from playground.sketch.canonical import content_of
 from playground.sketch.find import shipped_sketches
 from playground.sketch.flat import leaves_of
 from playground.sketch.flatten import flatten
 from playground.sketch.model import VARIANTS, Graph, PassSpec, Sketch, kernels_of
-from playground.sketch.text_overrides import with_texts
-from playground.sketch.variant_record import NAME, read, written
-from playground.sketch.variants import is_verified, why_not
+from playground.sketch.replace_technique import with_texts
+from playground.sketch.variants import NAME, content_of, is_verified, read, why_not, written
+from playground.verify.variants import compared, places_in, subjects, verify
 
 from ..loading import load
 

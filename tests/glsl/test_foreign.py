@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from playground.images.files import write_png
+from playground.data.image_files import write_png
 from tests.cube_maps import directions
 
 from ..loading import load

@@ -10,11 +10,9 @@ import time
 import numpy as np
 import pytest
 
+from playground.data.live_inputs import Keyboard, KeysNow, camera, microphone
 from playground.engine.plan_warnings import source_warnings
 from playground.extras import install_command
-from playground.media.camera import camera
-from playground.media.live_inputs import Keyboard, KeysNow
-from playground.media.microphone import microphone
 from playground.sketch.traits import traits_of
 
 from ..loading import load

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from playground.capture.film import film_of, frames
+from playground.data import media
 from playground.engine.disk_cache_choice import passing
 from playground.errors import ContextError, DataError, ShaderError
 from playground.extras import install_command
-from playground.media import analysis
 from playground.sketch.traits import is_animated
-from tests.media.films import RATE, colour, own_film, sound, uneven_film
+from tests.data.films import RATE, colour, own_film, sound, uneven_film
 
 from ..loading import load
 
@@ -117,7 +117,7 @@ def test_a_film_of_a_film_is_the_same_twice(any_engine, sketch, tmp_path):
 
 
 def test_a_sound_s_texture_is_shadertoy_s(any_engine, sketch, tmp_path):
-    tone = 0.02 * np.sin(2 * np.pi * 100 / analysis.WINDOW * np.arange(2 * RATE))
+    tone = 0.02 * np.sin(2 * np.pi * 100 / media.WINDOW * np.arange(2 * RATE))
     tone[:RATE] = 0.0
     sound(tmp_path / "s.wav", tone[None])
     made = sketch("sound", 'sound = "s.wav", loop = false')
@@ -132,7 +132,7 @@ def test_a_sound_s_texture_is_shadertoy_s(any_engine, sketch, tmp_path):
 
 
 def test_a_sound_as_waves_and_as_a_spectrum(any_engine, sketch, tmp_path):
-    both = 0.02 * np.sin(2 * np.pi * np.outer([50, 400], np.arange(RATE)) / analysis.WINDOW)
+    both = 0.02 * np.sin(2 * np.pi * np.outer([50, 400], np.arange(RATE)) / media.WINDOW)
     sound(tmp_path / "s.flac", both)
     waves = any_engine.read(sketch("sound", 'sound = "s.flac", content = "waves"', "[256, 2]"), "a", time=0.5)
     end = RATE // 2

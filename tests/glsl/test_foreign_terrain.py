@@ -9,11 +9,10 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
+from playground.shader.parameter import srgb_to_linear
 from playground.sketch.assign import value_of, values_of
-from playground.sketch.colour import srgb_to_linear
-from playground.sketch.replace_technique import choices, with_technique
+from playground.sketch.replace_technique import choices, with_technique, with_texts
 from playground.sketch.save import save, save_copy
-from playground.sketch.text_overrides import with_texts
 
 from ..loading import load
 from ..sketch_texts import map_of, passes

@@ -10,7 +10,7 @@ import scipy.fft
 from playground.engine.engine import Engine
 from playground.errors import SketchError
 from playground.paths import GLSL
-from playground.sketch.source import read_source
+from playground.shader.source import read_source
 
 from .drawing import salt
 

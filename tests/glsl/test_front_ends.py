@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.gpu.wrap import wrap
+from playground.shader.wrap import wrap
 from playground.sketch.model import kernels_of
 
 from ..loading import library

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from playground.paths import GLSL
-from playground.sketch.expressions import evaluate_pair
+from playground.shader.expressions import evaluate_pair
 from playground.sketch.techniques import read_technique
 
 from .drawing import salt

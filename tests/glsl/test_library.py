@@ -7,8 +7,8 @@ import moderngl
 import pytest
 
 from playground.paths import GLSL, SKETCHES
-from playground.sketch.header import parse_kernel
-from playground.sketch.source import read_source
+from playground.shader.header import parse_kernel
+from playground.shader.source import read_source
 
 from ..cases import each
 

@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
+from playground.data.model_files import read_model
 from playground.paths import GLSL
-from playground.terrain.model_files import read_model
 
 from ..terrain.test_model_files import PLACES, with_blob
 

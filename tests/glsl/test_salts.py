@@ -7,9 +7,9 @@ from zlib import crc32
 import numpy as np
 import pytest
 
+from playground.engine import delaunay
 from playground.paths import GLSL
-from playground.sketch.source import read_source
-from playground.terrain import delaunay
+from playground.shader.source import read_source
 
 SALT = re.compile(r'^const uint \w*SALT = 0x([0-9a-f]{8})u;  // CRC-32 of "([^"]+)"$', re.M)
 DRAWS = re.compile(

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from playground.engine.plan import Window
+from playground.engine.textures import read_picture
 from playground.errors import SketchError
-from playground.gpu.textures import read_picture
 from playground.sketch.model import Camera
 
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from playground.engine.plan import Window
-from playground.gpu.textures import read_picture
+from playground.engine.textures import read_picture
 from playground.paths import GLSL
+from playground.shader.source import read_source
 from playground.sketch.model import Camera
-from playground.sketch.source import read_source
 
 from .test_scene import EXTENT, LOOK, PASSES, PLANE, RELIEF, SIZE, all_pixels, on_plane, rays
 from .test_water_surface import fresnel

@@ -13,7 +13,7 @@ import pytest
 from scipy.ndimage import binary_dilation, map_coordinates, maximum_filter
 
 from playground.engine.engine import Engine
-from playground.sketch.parameter import LARGEST_SIDE
+from playground.shader.parameter import LARGEST_SIDE
 
 from .terrains import HILLS, toml_value
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from playground.engine.file_sources import read_mask
 from playground.errors import DataError
-from playground.terrain.masks import read_mask
 
 ROOT = Path(__file__).resolve().parents[2]
 PASS = '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map_file"\nset = {{ image = "{}"{} }}\n{}'

@@ -8,8 +8,8 @@ import moderngl
 import numpy as np
 import pytest
 
+from playground.engine.camera import look
 from playground.engine.engine import Engine
-from playground.terrain.camera import look
 
 from ..loading import load
 

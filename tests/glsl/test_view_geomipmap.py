@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
+from playground.engine import lod
+from playground.engine import lod as sight
+from playground.engine.camera import look
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError, SketchError
 from playground.sketch.model import Camera
-from playground.terrain import lod, tiles
-from playground.terrain import visibility as sight
-from playground.terrain.camera import look
 
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
 ROUGH = (
@@ -71,9 +71,9 @@ def weights(level: int, coarser: int, cells: tuple[int, int] = (16, 16)) -> np.n
 
     Nodes beyond the cells that a tile has, east and north, lie on its edge.
     """
-    nodes = np.minimum(tiles.vertices()[:289, :2].astype(np.float64), cells)
+    nodes = np.minimum(lod.vertices()[:289, :2].astype(np.float64), cells)
     found = np.full((289, 289), np.nan)
-    for corners in tiles.pieces()["fans", level, coarser].reshape(-1, 3):
+    for corners in lod.pieces()["fans", level, coarser].reshape(-1, 3):
         system = np.c_[nodes[corners], np.ones(3)]
         if abs(np.linalg.det(system)) < 0.5:
             continue
@@ -109,14 +109,14 @@ def tiles_of(nodes: np.ndarray) -> np.ndarray:
 
 def own_nodes(coarser: int, cells: tuple[int, int]) -> np.ndarray:
     """Say which nodes are the tile's to answer for: not those on the side of a coarser neighbour."""
-    east, north = np.minimum(tiles.vertices()[:289, :2], cells).T
+    east, north = np.minimum(lod.vertices()[:289, :2], cells).T
     away = {
-        tiles.SOUTH: north == 0,
-        tiles.EAST: east == cells[0],
-        tiles.NORTH: north == cells[1],
-        tiles.WEST: east == 0,
+        lod.SOUTH: north == 0,
+        lod.EAST: east == cells[0],
+        lod.NORTH: north == cells[1],
+        lod.WEST: east == 0,
     }
-    return ~np.any([away[side] for side in tiles.SIDES if coarser & side] or [np.zeros(289, bool)], axis=0)
+    return ~np.any([away[side] for side in lod.SIDES if coarser & side] or [np.zeros(289, bool)], axis=0)
 
 
 def true_errors(heights: np.ndarray, level: int) -> np.ndarray:
@@ -147,11 +147,11 @@ def test_an_error_is_the_largest_height_between_a_level_s_triangles_and_the_terr
     any_engine, errors_of, text, size
 ):
     heights, spans, errors = errors_of(any_engine, text, size)
-    tiles = tiles_of(nodes_of(heights))
+    lod = tiles_of(nodes_of(heights))
     truth = np.stack([true_errors(heights, level) for level in range(1, 5)], axis=-1)
     np.testing.assert_allclose(errors, np.maximum.accumulate(truth, axis=-1), atol=3e-6)
-    np.testing.assert_allclose(spans[..., 0], tiles.min(axis=-1), atol=1e-6)
-    np.testing.assert_allclose(spans[..., 1], tiles.max(axis=-1), atol=1e-6)
+    np.testing.assert_allclose(spans[..., 0], lod.min(axis=-1), atol=1e-6)
+    np.testing.assert_allclose(spans[..., 1], lod.max(axis=-1), atol=1e-6)
     assert true_errors(heights, 0).max() < 1e-12
     ends = [places_of(n)[16::16] / (n - 1) for n in heights.shape]
     np.testing.assert_allclose(spans[..., 2], np.broadcast_to(ends[1], spans.shape[:2]), atol=1e-7)
@@ -301,7 +301,7 @@ def test_a_change_of_level_keeps_the_tolerance(engine, shown, tolerance, size):
     sketch = shown(size=size)
     tables = tables_of(engine, sketch)
     heights = engine.read(sketch, "height")
-    tiles = tiles_of(nodes_of(heights))
+    lod = tiles_of(nodes_of(heights))
     cameras = list(flight(40))[:20]
     changed, worst, before = 0, 0.0, None
 
@@ -314,7 +314,7 @@ def test_a_change_of_level_keeps_the_tolerance(engine, shown, tolerance, size):
         levels = lod.levels_of(tables["errors"], boxes, view, tolerance)
         now = surfaces(levels, lod.coarser_of(levels), heights)
         # In both pictures a place is as far from the terrain as is allowed, whatever the level.
-        away = np.linalg.norm(where(now, view) - where(tiles, view), axis=-1)
+        away = np.linalg.norm(where(now, view) - where(lod, view), axis=-1)
         assert np.nanmax(away) <= tolerance * 1.0001
         if before is not None:
             old_levels, old, old_view = before

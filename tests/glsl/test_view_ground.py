@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from playground.gpu.textures import read_texture
+from playground.engine.textures import read_texture
 from playground.sketch.model import Camera
 
 from .test_splat_view import BILINEAR, COLOUR, FLAT, HEIGHT, HILLS, SUN, TERRAIN, VIEW, WEIGHTS, real_terrain

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
+from playground.engine import lod
+from playground.engine import lod as sight
+from playground.engine.camera import look
 from playground.paths import GLSL
 from playground.sketch.model import Camera
-from playground.terrain import morph, tiles
-from playground.terrain import visibility as sight
-from playground.terrain.camera import look
 
 from ..elevations import spans_of_tiles
 
@@ -108,7 +108,7 @@ def all_seen(monkeypatch):
 # ── the choice ───────────────────────────────────────────────────────────────
 
 
-def level_map(chosen: tiles.Chosen, cells: tuple[int, int]) -> np.ndarray:
+def level_map(chosen: lod.Chosen, cells: tuple[int, int]) -> np.ndarray:
     """Return the level drawn in each tile of a terrain of so many cells; each is drawn once."""
     times = np.zeros((cells[1] // 16, cells[0] // 16), int)
     levels = np.zeros_like(times)
@@ -131,7 +131,7 @@ def level_map(chosen: tiles.Chosen, cells: tuple[int, int]) -> np.ndarray:
 def test_vertices_begin_to_slide_where_the_choice_of_levels_says():
     text = (GLSL / "view" / "vertices.glsl").read_text("utf-8")
     found = re.search(r"const float MORPH_START = ([\d.]+);", text)
-    assert found is not None and float(found.group(1)) == morph.START
+    assert found is not None and float(found.group(1)) == lod.START
 
 
 @pytest.mark.parametrize("size", [[257, 257], [300, 130], [129, 500]])
@@ -143,9 +143,9 @@ def test_levels_meet_where_one_has_morphed_and_the_other_not_begun(engine, shown
     for camera in flight(10):
         for tolerance in (0.5, 4.0):
             view = view_of(camera)
-            squares = morph.pyramid(tables["spans"])
-            reach = morph.level_distances(tables, squares, view, tolerance)
-            levels = level_map(morph.morph({"tolerance": tolerance}, tables, view), tuple(cells))
+            squares = lod.pyramid(tables["spans"])
+            reach = lod.level_distances(tables, squares, view, tolerance)
+            levels = level_map(lod.morph({"tolerance": tolerance}, tables, view), tuple(cells))
             seen |= set(levels.ravel().tolist())
             boxes = sight.boxes_of(tables["spans"], view)
             for axis in (0, 1):
@@ -159,7 +159,7 @@ def test_levels_meet_where_one_has_morphed_and_the_other_not_begun(engine, shown
                         away = np.linalg.norm(edge_of(boxes, before, after, axis) - view.eye, axis=1)
                         level = int(fine[j, i])
                         assert away.min() >= 0.99 * reach[level]
-                        assert away.max() <= morph.START * reach[level + 1]
+                        assert away.max() <= lod.START * reach[level + 1]
     assert len(seen) >= 3
 
 
@@ -174,7 +174,7 @@ def edge_of(boxes: sight.Boxes, before: np.ndarray, after: np.ndarray, axis: int
 
 def test_a_pyramid_holds_the_least_and_the_most_of_its_squares():
     spans = spans_of_tiles(np.sort(np.random.default_rng(3).uniform(0, 1, (11, 5, 2)), axis=-1))
-    found = morph.pyramid(spans)
+    found = lod.pyramid(spans)
     assert [s.shape[:2] for s in found] == [(11, 5), (6, 3), (3, 2), (2, 1), (1, 1)]
     for level, squares in enumerate(found):
         for j, i in np.ndindex(squares.shape[:2]):
@@ -217,9 +217,9 @@ def test_no_background_shows_through_on_a_flight(engine, shown, tolerance, size)
 
 
 def test_the_background_would_show_if_levels_met_too_early(engine, shown, monkeypatch):
-    right = morph.level_distances
+    right = lod.level_distances
     monkeypatch.setattr(
-        morph,
+        lod,
         "level_distances",
         lambda *given: right(*given) * (1.0, 0.4, 1.0, 0.4, 1.0)[: len(right(*given))],
     )

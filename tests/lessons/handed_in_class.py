@@ -17,8 +17,8 @@ from playground.lessons.handout.exercise_files import Assignment, assignments_of
 from playground.lessons.handout.student_sketch import student_files
 from playground.lessons.read import read_lesson
 from playground.lessons.tasks.texts import answer_text, starter_text
-from playground.sketch.save_values import written_value
-from playground.sketch.toml_edit import put
+from playground.sketch.save import written_value
+from playground.sketch.toml_text import put
 
 _KERNEL = re.compile(r"^(\w+) kernel\((ivec2|vec2) (\w+)\) \{", re.MULTILINE)
 

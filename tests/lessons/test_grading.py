@@ -19,9 +19,9 @@ import numpy as np
 import pytest
 
 from playground.cli import main
+from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.errors import DataError
-from playground.images.files import write_png
 from playground.lessons.grading import handler
 from playground.lessons.grading.duplicates import alike
 from playground.lessons.grading.entries import _TOO_MANY

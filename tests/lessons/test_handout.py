@@ -16,7 +16,7 @@ from playground.lessons.handout.student_sketch import student_files
 from playground.lessons.read import read_lesson, read_lessons
 from playground.lessons.tasks.texts import answer_text
 from playground.lessons.tasks.work import Work, scene_of
-from playground.sketch.unpack import unpacked_beside
+from playground.sketch.find import unpacked_beside
 
 from ..loading import load
 

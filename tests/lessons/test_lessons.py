@@ -17,7 +17,7 @@ from playground.lessons.read import read_lesson, read_lessons, summaries
 from playground.lessons.rules import MOST_MINUTES, broken_rules, wrong_pictures
 from playground.lessons.status import status_of
 from playground.paths import GLSL
-from playground.sketch.source import read_text
+from playground.shader.source import read_text
 
 from .conftest import SKETCHES
 

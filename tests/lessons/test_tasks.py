@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from playground.errors import SketchError
-from playground.images.picture_difference import LEVELS, SHARE, share_differing
 from playground.lessons.measures import MEASURES
 from playground.lessons.model import Check
+from playground.lessons.picture_difference import LEVELS, SHARE, share_differing
 from playground.lessons.rules import wrong_pictures
 from playground.lessons.tasks import texts
 from playground.lessons.tasks.judge import Wanted, answers, compare, judge
@@ -21,7 +21,7 @@ from playground.lessons.tasks.sentences import points_of, sentences, task_labels
 from playground.lessons.tasks.tasks import tasks_of
 from playground.lessons.tasks.work import Work, answer, scene_of, starter
 from playground.paths import GLSL
-from playground.sketch.source import read_text
+from playground.shader.source import read_text
 
 FILE = "generation/diamond_square/raw.glsl"
 RAW = read_text(GLSL / FILE)

@@ -12,10 +12,10 @@ import pytest
 
 from playground.api import headless
 from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, do
+from playground.data.image_files import read_png
 from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
 from playground.extras import install_command
-from playground.images.files import read_png
 from playground.sketch.assign import resolve
 from playground.workbench import captures as capturing
 from playground.workbench.bench import Bench

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from imgui_bundle import imgui
 
+from playground.data.image_files import write_png
 from playground.engine.engine import Engine
-from playground.images.files import write_png
 from playground.paths import SKETCHES
 from playground.workbench.problems import Warnings
 

@@ -13,9 +13,9 @@ import pytest
 from imgui_bundle import imgui
 from numpy.typing import NDArray
 
+from playground.data.image_files import write_png
 from playground.engine.engine import Engine
-from playground.gpu.textures import make_framebuffer, make_texture, read_picture, write_texture
-from playground.images.files import write_png
+from playground.engine.textures import make_framebuffer, make_texture, read_picture, write_texture
 from playground.live.inspect.ab import drag_line, shows_first
 from playground.workbench.inspect.blend import Blend
 from playground.workbench.inspect.compare import PERIOD, Compare, Mode

@@ -119,7 +119,7 @@ def test_programs_are_listed_with_what_they_took(bare: Bare) -> None:
 
 def _triangles(engine: Engine, side: int) -> int:
     """Return what a grid has: its squares, and its skirt's, as its mesh is built."""
-    from playground.terrain.meshes import build_mesh
+    from playground.engine.meshes import build_mesh
 
     return build_mesh("grid", (("grid", side),)).indices.size // 3
 

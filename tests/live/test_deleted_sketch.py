@@ -118,7 +118,7 @@ def test_the_current_folder_may_be_deleted_under_a_session(tmp_path: Path) -> No
 import os, shutil, sys
 from pathlib import Path
 from playground.engine.engine import Engine
-from playground.gpu.context import open_context
+from playground.engine.context import open_context
 from playground.workbench.session import Session
 from playground.workbench.problems import Problems
 with Engine(open_context()) as engine:

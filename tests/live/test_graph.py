@@ -9,7 +9,7 @@ import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.gpu.textures import read_raw
+from playground.engine.textures import read_raw
 from playground.paths import SKETCHES
 from playground.workbench.inspect.pass_graph import placed, wiring_of
 from playground.workbench.inspect.thumbnails import APART, SIDE, Thumbnails, picture_of

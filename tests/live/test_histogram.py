@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.gpu.textures import make_texture, write_texture
+from playground.engine.textures import make_texture, write_texture
 from playground.sketch.map_sketch import Map
 from playground.workbench.inspect import histogram
 from playground.workbench.inspect.histogram import BINS, Counter, Histogram, count

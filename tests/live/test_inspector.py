@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from imgui_bundle import imgui
 
+from playground.engine.camera import ground_under
 from playground.engine.engine import Engine
-from playground.gpu.textures import read_picture, read_texels, read_texture
+from playground.engine.textures import read_picture, read_texels, read_texture
 from playground.live.inspect.tooltip import lines_of
-from playground.terrain.pick import ground_under
 from playground.workbench.inspect.inspector import Inspector
 from playground.workbench.session import Session
 
@@ -74,7 +74,7 @@ def inspector(session: Session) -> Iterator[Inspector]:
 
 @pytest.mark.parametrize("form", ["r8", "rg16", "rgba16f", "rgba32f", "r32f"])
 def test_a_texel_is_the_one_of_a_whole_reading(any_engine: Engine, form: str) -> None:
-    from playground.gpu.textures import make_texture, write_texture
+    from playground.engine.textures import make_texture, write_texture
 
     any_engine.ctx.detect_framebuffer(0).use()  # nothing is bound that another test has taken away
     texture = make_texture(any_engine.ctx, (7, 5), form)

@@ -202,7 +202,7 @@ def test_lessons_are_read_only_when_they_are_opened(desk, monkeypatch):
 
 def test_the_command_without_arguments_shows_lessons_in_its_window(monkeypatch):
     given: list[dict[str, object]] = []
-    monkeypatch.setattr("playground.gpu.doctor.where_to_show", lambda *_: ":0")
+    monkeypatch.setattr("playground.doctor.where_to_show", lambda *_: ":0")
     monkeypatch.setattr(cli.live, "open_window", lambda *_, **rest: given.append(rest))
     assert cli.main([]) == 0
     assert given == [{"show_lessons": True}]

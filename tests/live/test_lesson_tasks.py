@@ -11,7 +11,7 @@ from playground.lessons.tasks.texts import answer_text
 from playground.live.lesson.host import Lessons
 from playground.live.lesson.page import Page
 from playground.paths import GLSL
-from playground.sketch.source import read_text
+from playground.shader.source import read_text
 from playground.workbench.lesson.progress import (
     Attempt,
     Progress,

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from imgui_bundle import imgui
 
+from playground.data.image_files import write_png
 from playground.engine.engine import Engine
-from playground.images.files import write_png
 from playground.live import panel_rows
 from playground.live.draw import tooltip_waits
 from playground.live.panel_rows import fitting_path

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.engine.camera import look
 from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.live.dome import direction_at, dot_of
 from playground.live.widgets import CONTROLS
+from playground.shader.parameter import WIDGETS
 from playground.sketch.model import Camera, Parameter, Widget
-from playground.sketch.widgets import WIDGETS
-from playground.terrain.camera import look
 from playground.workbench.camera_drag import Gesture, steered
 from playground.workbench.error_excerpt import numbered, short_place
 from playground.workbench.number_format import decimals, format_of, snapped

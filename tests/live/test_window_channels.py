@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from playground.images.files import write_png
-from playground.sketch.channels import channels
+from playground.data.image_files import write_png
 from playground.sketch.load import load
+from playground.workbench.channels import channels
 
 from .screen import ON_LINUX, Program, Screen
 

@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from playground.engine.check import check_file
 from playground.engine.sandbox import Sandbox
 from playground.lsp.server import Server, guarded
 from playground.paths import GLSL
+from playground.verify.check import check_file
 
 from .client import Editor
 from .conftest import KERNEL, LIBRARY, SKETCH, written

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from playground.gpu.name_suggestions import library
 from playground.paths import GLSL
-from playground.sketch import toml_keys
+from playground.shader.driver_log import library
+from playground.shader.reserved_names import GIVEN
+from playground.sketch import toml_table
 from playground.sketch.load import load
-from playground.sketch.reserved_names import GIVEN
 
 from .client import Editor, Refusal
 from .conftest import KERNEL, LIBRARY, SKETCH
@@ -169,9 +169,9 @@ def test_symbols_are_what_a_file_declares(editor: Editor, folder: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        (SKETCH + "\n[[pass]]\n|", set(toml_keys.PASS)),
-        (SKETCH + "\n[view]\n|", set(toml_keys.VIEW)),
-        (SKETCH + "\n[view]\ncamera = { | }", set(toml_keys.CAMERA)),
+        (SKETCH + "\n[[pass]]\n|", set(toml_table.PASS)),
+        (SKETCH + "\n[view]\n|", set(toml_table.VIEW)),
+        (SKETCH + "\n[view]\ncamera = { | }", set(toml_table.CAMERA)),
         (SKETCH.replace("size = 33", "|"), {"relief", "main"}),
         (SKETCH + "\n[|", {"pass", "shot", "view"}),
         (SKETCH + '\n[[pass]]\nname = "a"\nuse = "|"', {"./hill", "generation/mixed", "lighting/l_dot_n"}),
@@ -201,8 +201,8 @@ def test_a_sketch_is_completed(editor: Editor, folder: Path, text: str, expected
 @pytest.mark.parametrize(
     ("word", "expected"),
     [
-        ("relief =", toml_keys.SKETCH["relief"]),
-        ("preset]]", toml_keys.SKETCH["preset"]),
+        ("relief =", toml_table.SKETCH["relief"]),
+        ("preset]]", toml_table.SKETCH["preset"]),
         ("./hill", "One hill, as high as its size"),
         ("rounds = 2", "How often"),
         ('height.shape" =', "Form of the hill"),

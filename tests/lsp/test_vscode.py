@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.sketch.allowed_files import SHADERS
+from playground.allowed_files import SHADERS
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "editors" / "vscode"
 PACKAGE = json.loads((FOLDER / "package.json").read_text(encoding="utf-8"))

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from playground.cli import main
+from playground.data.image_files import write_png
 from playground.errors import PlaygroundError, SketchError
-from playground.images.files import write_png
 from playground.reduce import initial_case
 from playground.reduce.candidate_process import CandidateProcess
 from playground.reduce.draw_handler import DrawResult, DrawTask
@@ -26,7 +26,7 @@ from playground.reduce.probe import Probe
 from playground.reduce.search import Search
 from playground.reduce.variant import record_text
 from playground.shots.references import reference_path
-from playground.sketch.variant_record import NAME
+from playground.sketch.variants import NAME
 
 from ..loading import load
 from ..shipped import of_each_kind

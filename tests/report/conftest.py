@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from playground.images.files import encode_png
+from playground.data.image_files import encode_png
 from playground.shots.compare import compare, difference_picture
 from playground.shots.references import accepted_in
 from playground.shots.results import Record, digests_of, write_result

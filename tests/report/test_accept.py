@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from playground.cli import main
+from playground.data.image_files import encode_png, read_png
 from playground.errors import DataError, ParameterError
-from playground.images.files import encode_png, read_png
 from playground.shots.accept import accept, choose, undo
 from playground.shots.results import Record, read_results
 

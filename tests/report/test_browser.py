@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from playground.images.files import read_png
+from playground.data.image_files import read_png
 from playground.shots.report import write_report
 from playground.shots.review import Review
 

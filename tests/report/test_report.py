@@ -15,8 +15,8 @@ import numpy as np
 import PIL.Image
 import pytest
 
+from playground.data.image_files import read_png
 from playground.errors import DataError
-from playground.images.files import read_png
 from playground.markup import Markup, tag
 from playground.shots.page.labels import MEANINGS
 from playground.shots.page.shot import CAPTIONS

@@ -17,8 +17,8 @@ import pytest
 
 from playground import local_server
 from playground.cli import main
+from playground.data.image_files import encode_png, read_png
 from playground.errors import DataError
-from playground.images.files import encode_png, read_png
 from playground.shots.page.document import policy_of
 from playground.shots.results import Record, read_results, write_result
 from playground.shots.review import Review

@@ -29,6 +29,7 @@ from playground.api import headless
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
 from playground.errors import PlaygroundError
+from playground.shader.source import read_text
 from playground.shots.compare import compare
 from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.model import DoesNotApply, Rendering
@@ -37,8 +38,7 @@ from playground.shots.mutants.suite import ROUNDING
 from playground.shots.suite import RenderedShot, ShotCase, render_shot, shots_of
 from playground.sketch.find import shipped_sketches
 from playground.sketch.model import Shot, Sketch, kernels_of
-from playground.sketch.source import read_text
-from playground.sketch.text_overrides import with_texts
+from playground.sketch.replace_technique import with_texts
 
 EACH = 2
 """Changes of one shader file."""

@@ -12,14 +12,13 @@ import numpy as np
 import pytest
 
 from playground._version import __version__
+from playground.data.image_files import write_png
+from playground.engine.context import ContextInfo, processor_in
 from playground.engine.engine import Engine
 from playground.engine.picture_hash import rounded
-from playground.gpu.build import processor_in
-from playground.gpu.context import ContextInfo
-from playground.images.files import write_png
 from playground.shots.fingerprint import Fingerprint, fingerprint_of, read_fingerprint
 from playground.shots.references import read_reference, write_reference_in
-from playground.sketch.canonical import compiled_text
+from playground.sketch.variants import compiled_text
 
 from ..loading import load
 from ..sketch_texts import passes

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.images.files import read_png
+from playground.data.image_files import read_png
 
 Run = Callable[..., pytest.RunResult]
 Edit = Callable[[str, str, str], None]

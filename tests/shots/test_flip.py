@@ -8,8 +8,8 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+from playground.data.image_files import read_png
 from playground.errors import DataError
-from playground.images.files import read_png
 from playground.shots.flip import Flip, coloured, flip, flip_picture, ramp
 
 SCREENSHOTS = Path(__file__).resolve().parent.parent.parent / "screenshots"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.images.files import read_png
+from playground.data.image_files import read_png
 
 pytestmark = pytest.mark.slow  # each run of pytest is a process of its own, as a user's
 

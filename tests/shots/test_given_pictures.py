@@ -11,9 +11,9 @@ import numpy as np
 import PIL.Image
 import pytest
 
+from playground.data.image_files import read_png
+from playground.engine.context import open_context
 from playground.errors import DataError
-from playground.gpu.context import open_context
-from playground.images.files import read_png
 from playground.shots.adapters import taken
 from playground.shots.levels import levels_of
 from playground.shots.names import LONGEST, name_of_test, one_spelling, why_no_name

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from playground.images.files import read_png
+from playground.data.image_files import read_png
 from playground.shots.fingerprint import Fingerprint
 from playground.shots.judge import (
     CROWD,

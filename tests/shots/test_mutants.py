@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from playground import cli
+from playground.data.image_files import read_png
 from playground.engine.engine import Engine
 from playground.errors import DataError
-from playground.images.files import read_png
 from playground.paths import PLAIN_SKETCH
 from playground.shots import judge
 from playground.shots.compare import compare

@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.data.image_files import read_png
+from playground.engine.context import ContextInfo
 from playground.errors import SandboxCrash, SandboxTimeout
-from playground.gpu.context import ContextInfo
-from playground.images.files import read_png
 from playground.shots.references import write_reference
 
 from ..loading import load

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from playground import paths
+from playground.engine.context import ContextInfo
 from playground.errors import DataError
-from playground.gpu.context import ContextInfo
 from playground.shots.fingerprint import fingerprint_of
 from playground.shots.references import (
     accepted,

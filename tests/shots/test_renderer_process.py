@@ -170,8 +170,8 @@ if Path("cannot start").exists():
     os.abort()
 
 import numpy as np
-from playground.gpu.context import ContextInfo
-from playground.process.child import Service
+from playground.engine.context import ContextInfo
+from playground.engine.process.child import Service
 from playground.shots.suite import RenderedShot
 
 def open_service(parent, renderer):

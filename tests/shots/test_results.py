@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.data.image_files import read_png
 from playground.errors import DataError
-from playground.images.files import read_png
 from playground.shots.results import (
     PICTURES,
     Record,

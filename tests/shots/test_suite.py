@@ -9,11 +9,11 @@ import moderngl
 import numpy as np
 import pytest
 
+from playground.data.image_files import write_png
+from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import ContextError, OpenGLFault
-from playground.gpu.context import ContextInfo
-from playground.images.files import write_png
 from playground.shots.fingerprint import fingerprint_of
 from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, WORDS
 from playground.shots.references import read_reference, reference_path, write_reference

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from playground.data.image_files import read_png, write_png
 from playground.errors import DataError, SketchError
-from playground.images.files import read_png, write_png
 from playground.shots.judge import Judgement, Rule, judge
 from playground.shots.masking import Light, mask_of
 from playground.shots.references import Reference
 from playground.shots.results import read_result
-from playground.sketch.tolerance import TIERS, Tolerance, tolerance_of
+from playground.sketch.model import TIERS, Tolerance, tolerance_of
 
 from ..loading import load
 from .conftest import OURS

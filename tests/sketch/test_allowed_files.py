@@ -8,10 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.errors import ShaderError
-from playground.paths import GLSL
-from playground.sketch import source
-from playground.sketch.allowed_files import (
+from playground.allowed_files import (
     is_file,
     looking_once,
     noting_part,
@@ -20,8 +17,11 @@ from playground.sketch.allowed_files import (
     root_of,
     signature,
 )
+from playground.errors import ShaderError
+from playground.paths import GLSL
+from playground.shader import source
+from playground.shader.source import read_text
 from playground.sketch.load import load
-from playground.sketch.source import read_text
 
 KERNEL = """#include "../lib.glsl"
 #pragma kernel(output = "height:r32f")

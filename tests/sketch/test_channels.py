@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
-from playground.images.files import write_png
 from playground.paths import GLSL
-from playground.sketch.channels import channels, source_of, sources, with_source
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
-from tests.media.films import own_film
+from playground.workbench.channels import channels, source_of, sources, with_source
+from tests.data.films import own_film
 
 TWO = """void mainImage(out vec4 c, in vec2 p) {
     c = texelFetch(iChannel0, ivec2(0), 0) + texelFetch(iChannel1, ivec2(0), 0);

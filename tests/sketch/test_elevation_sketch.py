@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 import tifffile
 
+from playground.allowed_files import ELEVATIONS
 from playground.errors import SketchError
-from playground.sketch.allowed_files import ELEVATIONS
-from playground.sketch.elevation_sketch import elevation_text
 from playground.sketch.find import find
-from playground.sketch.load import load
+from playground.sketch.load import elevation_text, load
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from playground.sketch.fetched_alone import fetched_alone
-from playground.sketch.source import SourceText, read_source
+from playground.shader.fetched_alone import fetched_alone
+from playground.shader.source import SourceText, read_source
 
 HEAD = """uniform sampler2D sun;
 uniform sampler2D moon;

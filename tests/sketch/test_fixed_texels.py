@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from playground.sketch.fixed_texels import fixed_texels, read_by_texels_alone
-from playground.sketch.source import read_source
+from playground.shader.fixed_texels import fixed_texels, read_by_texels_alone
+from playground.shader.source import read_source
 
 HEAD = """uniform sampler2D sun;
 uniform sampler2D moon;

@@ -7,8 +7,8 @@ import time
 import pytest
 
 from playground.errors import PlaygroundError
-from playground.gpu.wrap import FRAGMENT, wrap
-from playground.gpu.zero_values import with_zeros
+from playground.shader.wrap import FRAGMENT, wrap
+from playground.shader.zero_values import with_zeros
 from playground.sketch.load import load
 from playground.sketch.warnings import warnings_of_kernel
 

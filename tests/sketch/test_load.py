@@ -13,11 +13,11 @@ import pytest
 
 from playground.errors import DataError, ParameterError, PlaygroundError, ShaderError, SketchError
 from playground.paths import SKETCHES
+from playground.shader.parameter import coerce
 from playground.sketch.find import find, shipped_names, shipped_sketches
 from playground.sketch.load import is_technique, load, load_with
 from playground.sketch.model import Camera, Kernel
 from playground.sketch.techniques import Techniques, WithLibrary, shipped_techniques
-from playground.sketch.values import coerce
 
 from ..cases import each
 from ..loading import library

@@ -9,8 +9,7 @@ from playground.sketch.assign import values_of
 from playground.sketch.keyframes import Keyframe
 from playground.sketch.load import load
 from playground.sketch.replace_technique import with_technique
-from playground.sketch.save import save, save_preset
-from playground.sketch.save_keyframes import save_keyframes
+from playground.sketch.save import save, save_keyframes, save_preset
 from playground.sketch.warnings import former_names_used
 
 from .conftest import TAIL

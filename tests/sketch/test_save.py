@@ -15,16 +15,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from playground.data.image_files import write_png
 from playground.errors import DataError, SketchError
-from playground.images.files import write_png
 from playground.paths import GLSL, SKETCHES
 from playground.sketch.assign import values_of
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch
 from playground.sketch.replace_technique import with_technique
 from playground.sketch.save import ReadOnlySketch, save, save_copy, save_preset, saved_text
-from playground.sketch.toml_edit import append, drop, put
-from playground.sketch.toml_places import Place, TomlPlaces
+from playground.sketch.toml_text import Place, TomlPlaces, append, drop, put
 
 from ..cases import each
 

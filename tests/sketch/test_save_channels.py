@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from playground.images.files import write_png
+from playground.data.image_files import write_png
 from playground.sketch.assign import values_of
-from playground.sketch.channels import channels, with_source
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.sketch.save import save
+from playground.workbench.channels import channels, with_source
 
 TWO = """void mainImage(out vec4 c, in vec2 p) {
     c = texelFetch(iChannel0, ivec2(0), 0) + texelFetch(iChannel1, ivec2(0), 0);

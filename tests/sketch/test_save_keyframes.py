@@ -11,7 +11,7 @@ import pytest
 from playground.errors import PlaygroundError, SketchError
 from playground.sketch.load import load
 from playground.sketch.model import Keyframe, Sketch
-from playground.sketch.save_keyframes import _plain, save_keyframes, with_keyframes
+from playground.sketch.save import _plain, save_keyframes, with_keyframes
 
 SKETCH = """format = 1  # ours
 size = 33

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from playground.errors import ShaderError
-from playground.sketch.header import parse_kernel
+from playground.shader.header import parse_kernel
+from playground.shader.source import read_source
 from playground.sketch.model import Kernel
-from playground.sketch.source import read_source
 from playground.sketch.warnings import unread
 
 PRAGMA = '#pragma kernel(output = "height:r32f")\n'

@@ -7,14 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from playground.allowed_files import leads_outside, sidecar_places, sidecars
+from playground.data.content_hash import content_hash, content_key
 from playground.engine.files import find_file
 from playground.engine.packed_files import contents
 from playground.errors import DataError, PlaygroundError
-from playground.images.content_hash import content_hash, content_key
-from playground.sketch.allowed_files import leads_outside
 from playground.sketch.load import load
 from playground.sketch.save import save, save_copy
-from playground.sketch.sidecars import sidecar_places, sidecars
 from playground.workbench.dependencies import data_files
 
 KERNEL = """// k.glsl -- a picture
@@ -84,7 +83,7 @@ def test_small_letters_come_first_and_what_is_not_there_is_none(tmp_path: Path) 
 @pytest.mark.parametrize("large", [False, True])
 def test_the_contents_change_with_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, large: bool) -> None:
     if large:
-        monkeypatch.setattr("playground.images.content_hash._LARGE", 1)
+        monkeypatch.setattr("playground.data.content_hash._LARGE", 1)
     path = grid(tmp_path / "a.flt", ".hdr")
     seen = [(content_hash(path), content_key(path))]
     for ending, text in ((".hdr", "other"), (".prj", "new"), (".prj", "newer")):

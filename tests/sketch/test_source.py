@@ -13,7 +13,7 @@ import pytest
 
 from playground.errors import PlaygroundError, ShaderError, SketchError
 from playground.paths import GLSL
-from playground.sketch.source import SourceText, read_source
+from playground.shader.source import SourceText, read_source
 
 
 @pytest.fixture

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from playground.allowed_files import noting_places
 from playground.errors import PlaygroundError, SketchError
-from playground.sketch.allowed_files import noting_places
 from playground.sketch.load import load, load_with
 from playground.sketch.model import kernels_of
 from playground.sketch.technique_cache import TechniqueCache

@@ -8,7 +8,7 @@ import pytest
 
 from playground.errors import DataError, ShaderError
 from playground.sketch.model import VARIANTS, kernels_of
-from playground.sketch.text_overrides import with_texts
+from playground.sketch.replace_technique import with_texts
 from playground.sketch.variants import active_variant, trusted
 
 from .conftest import TERRAIN, VIEW

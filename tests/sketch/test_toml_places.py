@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from playground.sketch.toml_places import TomlPlaces
+from playground.sketch.toml_text import TomlPlaces
 
 TEXT = '''\
 # a comment = 1

@@ -9,7 +9,7 @@ import pytest
 
 from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import GLSL
-from playground.sketch.source import read_source
+from playground.shader.source import read_source
 from playground.sketch.techniques import read_kernel
 from playground.sketch.warnings import unheeded, unread, unwritten, whole_divisions
 

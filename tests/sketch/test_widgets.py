@@ -7,10 +7,10 @@ import pytest
 
 from playground.errors import ParameterError, ShaderError
 from playground.reduce.inline import inline_sketch
+from playground.shader.parameter import coerce, expected, write
 from playground.sketch.catalogue import Choice
 from playground.sketch.load import load
 from playground.sketch.save import saved_text
-from playground.sketch.values import coerce, expected, write
 from playground.workbench.captures import parts_of, sweep_text
 from playground.workbench.randomise import at_random, mutated
 

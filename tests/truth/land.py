@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.data.elevation import read_elevation
 from playground.paths import SKETCHES
-from playground.terrain.elevation import read_elevation
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 import playground.web
-from playground.images.files import encode_png
+from playground.data.image_files import encode_png
 
 HERE = Path(__file__).parent
 WEB = Path(playground.web.__file__).parent

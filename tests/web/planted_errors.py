@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from playground.gpu.wrap import FRAGMENT, Wrapped, wrap
+from playground.shader.wrap import FRAGMENT, Wrapped, wrap
 from playground.sketch.techniques import read_kernel
 
 HEAD = """\

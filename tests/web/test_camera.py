@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from playground.engine import camera as cameras
+from playground.engine.camera import cos_sin, unit_vector
 from playground.sketch.model import Camera
-from playground.terrain import camera as cameras
-from playground.terrain.directions import cos_sin, unit_vector
 
 from .node import Node
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from playground.engine.choices import with_choices
 from playground.engine.engine import Engine
-from playground.gpu.choices import with_choices
-from playground.gpu.wrap import FRAGMENT, wrap
+from playground.shader.wrap import FRAGMENT, wrap
 from playground.web.page_data import page_data
 
 from ..cases import each

@@ -8,12 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from playground.engine.programs import explain
 from playground.errors import Diagnostic
-from playground.gpu.driver_log import hint, parse_log
-from playground.gpu.name_suggestions import library
-from playground.gpu.program import explain
-from playground.gpu.wrap import ShaderStage, Wrapped
 from playground.paths import shown
+from playground.shader.driver_log import hint, library, parse_log
+from playground.shader.wrap import ShaderStage, Wrapped
 from playground.web import complaint_words
 
 from ..gpu.test_logs import EXPECTED

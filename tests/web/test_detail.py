@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from playground.engine import camera as cameras
+from playground.engine import lod
 from playground.sketch.model import Camera
-from playground.terrain import camera as cameras
-from playground.terrain import lod, tiles, visibility
 
 from ..elevations import spans_of_tiles
 from .node import Node, NodeError
 
-FAR = visibility.FAR
+FAR = lod.FAR
 CHOOSE = """async (cases, load) => {
   const { choose } = await load("detail.js");
   return cases.map(({ detail, tolerance, spans, errors, view }) =>
@@ -35,10 +35,10 @@ class Case:
     size: tuple[int, int]
 
     @property
-    def view(self) -> visibility.View:
+    def view(self) -> lod.View:
         eye = cameras.look(self.camera, self.extent, self.relief, self.size)
         matrix = eye.clip_from_world.astype(np.float64)
-        return visibility.View(matrix, eye.position, self.extent, self.relief, self.size)
+        return lod.View(matrix, eye.position, self.extent, self.relief, self.size)
 
     @property
     def given(self) -> dict[str, Any]:
@@ -49,7 +49,7 @@ class Case:
         return {"detail": self.detail, "tolerance": self.tolerance, "view": view, **tables}
 
     @property
-    def expected(self) -> tiles.Chosen:
+    def expected(self) -> lod.Chosen:
         values = {"detail": self.detail, "tolerance": self.tolerance}
         with np.errstate(all="ignore"):
             return lod.choose_terrain(values, lambda: {"spans": self.spans, "errors": self.errors}, self.view)
@@ -90,7 +90,7 @@ def coming_in(rng: np.random.Generator, case: Case) -> Case:
     """Return a case with one error for all, at whose distance, or a little nearer, its nearest tile is."""
     error, view = 10 ** rng.uniform(-6, 0), case.view
     with np.errstate(all="ignore"):
-        nearest = visibility.boxes_of(case.spans, view).distances(view.eye)[0].min()
+        nearest = lod.boxes_of(case.spans, view).distances(view.eye)[0].min()
     length = error * abs(case.relief) * view.pixels * view.stretch
     tolerance = float(length / (rng.uniform(0.75, 1.0) * nearest)) if nearest else 1.0
     return replace(case, errors=np.full_like(case.errors, error), tolerance=tolerance)

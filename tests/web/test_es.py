@@ -7,7 +7,7 @@ from pathlib import Path
 import moderngl
 import pytest
 
-from playground.gpu.wrap import wrap
+from playground.shader.wrap import wrap
 from playground.sketch.find import shipped_sketches
 from playground.sketch.flat import leaves_of
 from playground.sketch.flatten import flatten

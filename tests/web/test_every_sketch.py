@@ -11,10 +11,10 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.engine.planner import Planner
+from playground.engine.sources import source_kind
 from playground.errors import PlaygroundError
 from playground.sketch.catalogue import shipped_sketches
 from playground.sketch.model import Sketch
-from playground.terrain.sources import source_kind
 from playground.web.page_data import page_data
 from playground.web.plan import KINDS
 

@@ -12,13 +12,13 @@ import numpy as np
 import PIL.Image
 import pytest
 
+from playground.data.image_files import read_image, write_png
 from playground.engine.engine import Engine
 from playground.engine.planner import Planner
-from playground.gpu.textures import split_format
-from playground.images.files import read_image, write_png
+from playground.engine.textures import split_format
 from playground.paths import SKETCHES
+from playground.shader.parameter import srgb_to_linear
 from playground.sketch.assign import shown_parameters
-from playground.sketch.colour import srgb_to_linear
 from playground.sketch.model import Sketch
 from playground.web.page_data import page_data
 from playground.web.plan import KINDS
@@ -83,7 +83,7 @@ def test_an_image_has_the_texels_of_its_file(tmp_path: Path, opaque: bool):
 
 
 def test_an_image_of_16_bits_has_the_engines_half_floats(tmp_path: Path):
-    from playground.images.files import encode_samples
+    from playground.data.image_files import encode_samples
 
     samples = np.random.default_rng(4).integers(0, 65_536, (5, 7, 3), np.uint16)
     (tmp_path / "photo.png").write_bytes(encode_samples(samples))

@@ -6,8 +6,8 @@ import random
 
 import pytest
 
-from playground.sketch import expressions
-from playground.sketch.expressions import ExpressionError
+from playground.shader import expressions
+from playground.shader.expressions import ExpressionError
 from playground.web.expression_trees import tree
 
 from .node import Node

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from playground.sketch import expressions
+from playground.shader import expressions
 from playground.sketch.follows import Rule, follow
 from playground.sketch.keyframes import EASES, Track
 from playground.web.expression_trees import accepted

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from playground.engine import lod, meshes
 from playground.errors import SketchError
-from playground.terrain import lod, meshes, tiles
 
 from ..cases import each
 from .node import Node, NodeError
@@ -61,11 +61,11 @@ def test_a_mesh_that_is_not_there_is_named(node: Node):
 
 def test_pieces_of_a_tile_are_joined_as_the_engine_joins_them(node: Node):
     found = node.call("tiles.js", "pieces")
-    assert list(found) == [" ".join(map(str, piece)) for piece in tiles.pieces()]
-    for piece, indices in tiles.pieces().items():
+    assert list(found) == [" ".join(map(str, piece)) for piece in lod.pieces()]
+    for piece, indices in lod.pieces().items():
         assert found[" ".join(map(str, piece))] == indices.tolist(), piece
     ranges = node.call("tiles.js", "ranges")
-    assert ranges == {" ".join(map(str, piece)): list(both) for piece, both in tiles.ranges().items()}
+    assert ranges == {" ".join(map(str, piece)): list(both) for piece, both in lod.ranges().items()}
 
 
 def test_what_is_chosen_from_has_the_inputs_that_the_engine_reads(node: Node):

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
+from playground.sketch.find import unpacked
 from playground.sketch.model import Camera
-from playground.sketch.unpack import unpacked
 from playground.web.page_data import page_data
 
 from ..loading import load

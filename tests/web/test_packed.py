@@ -16,11 +16,11 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.paths import GLSL
+from playground.shader.parameter import shortest
 from playground.sketch.assign import values_of
+from playground.sketch.find import read_pack, unpacked
 from playground.sketch.model import Camera, Sketch, kernels_of
-from playground.sketch.text_overrides import with_texts
-from playground.sketch.unpack import read_pack, unpacked
-from playground.sketch.values import shortest
+from playground.sketch.replace_technique import with_texts
 from playground.web.page_data import page_data
 
 from ..loading import load

@@ -14,9 +14,9 @@ from playground.engine.engine import Engine
 from playground.engine.plan import LoopStep, Plan
 from playground.engine.planner import Planner
 from playground.errors import PlaygroundError
-from playground.gpu.wrap import FRAGMENT, wrap
 from playground.paths import GLSL
-from playground.sketch import expressions
+from playground.shader import expressions
+from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.model import Sketch
 from playground.web.page import page_texts
 from playground.web.page_data import page_data

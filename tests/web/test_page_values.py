@@ -10,13 +10,21 @@ from typing import Any
 import numpy as np
 import pytest
 
+from playground.engine.camera import look
 from playground.live import dome
+from playground.shader.parameter import (
+    coerce,
+    is_whole,
+    length_of,
+    linear_to_srgb,
+    parse_hex,
+    srgb_to_linear,
+    tidied,
+    to_hex,
+)
 from playground.sketch.assign import check_value, resolve, shown_parameters, values_of
-from playground.sketch.colour import linear_to_srgb, parse_hex, srgb_to_linear, to_hex
 from playground.sketch.find import shipped_sketches
 from playground.sketch.model import Camera, Parameter, Sketch, Value
-from playground.sketch.values import coerce, is_whole, length_of, tidied
-from playground.terrain.camera import look
 from playground.web.shown import row, shown_data
 from playground.workbench.camera_drag import Gesture, steered
 from playground.workbench.edits import Draft

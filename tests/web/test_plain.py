@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundWarning
-from playground.images.files import write_png
 from playground.sketch.catalogue import SKETCHES
 from playground.web.page_data import page_data
 

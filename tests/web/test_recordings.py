@@ -11,13 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from playground.media.live_inputs import LiveInputs
-from playground.media.now import Now
+from playground.data.live_inputs import LiveInputs, Now
+from playground.engine.sources import source_kind
 from playground.sketch.model import Sketch
-from playground.terrain.sources import source_kind
 from playground.web import sources
 from playground.web.page_data import page_data
-from tests.media.films import sound, uneven_film
+from tests.data.films import sound, uneven_film
 
 from ..loading import load
 from .node import Node

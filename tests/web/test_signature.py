@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from playground.errors import ShaderError
-from playground.gpu.wrap import FRAGMENT, wrap
-from playground.sketch.header import parse_kernel
+from playground.shader.header import parse_kernel
+from playground.shader.source import read_source
+from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.model import Kernel
-from playground.sketch.source import read_source
 from playground.web.expression_trees import tree
 
 from .node import Node, NodeError

@@ -9,7 +9,7 @@ import pytest
 
 from playground.errors import ShaderError
 from playground.paths import GLSL
-from playground.sketch.source import SourceText, read_source
+from playground.shader.source import SourceText, read_source
 
 from .node import Node, NodeError
 from .texts import kernels, shared_files

@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from playground.paths import GLSL
+from playground.shader.parameter import shortest
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
-from playground.sketch.values import shortest
 from playground.web.page_data import page_data
 from playground.web.toml_template import sketch_pieces
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from playground.shader.parameter import length_of
 from playground.sketch.model import Parameter
-from playground.sketch.values import length_of
 
 from ..cases import each
 from .node import Node, NodeError

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from playground.gpu.stage_recipe import Part, Recipe
-from playground.gpu.wrap import FRAGMENT, recipes_of
 from playground.paths import GLSL
-from playground.sketch.source import read_source
+from playground.shader.source import read_source
+from playground.shader.stage_recipe import Part, Recipe
+from playground.shader.wrap import FRAGMENT, recipes_of
 from playground.web.stages import stage_data
 
 from ..cases import each

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.data.image_files import write_png
 from playground.engine.engine import Engine
-from playground.images.files import write_png
 from playground.sketch.assign import values_of
-from playground.sketch.channels import channels
 from playground.workbench.autosave import Autosave, memory_of
 from playground.workbench.bench import Bench
+from playground.workbench.channels import channels
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 

@@ -10,11 +10,11 @@ import pytest
 from scipy.ndimage import gaussian_filter
 
 from playground.engine.engine import Engine
+from playground.engine.file_sources import read_numbers
 from playground.engine.on_arrays import OnArrays
+from playground.engine.textures import read_texture
 from playground.errors import ParameterError, SketchError
-from playground.gpu.textures import read_texture
 from playground.sketch.techniques import read_technique
-from playground.terrain.numbers import read_numbers
 from playground.workbench.brush import Brush
 from playground.workbench.erode_tool import STAMP, ErodeTool, technique_at
 from playground.workbench.painting import Painting

@@ -10,7 +10,7 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.paths import GLSL
-from playground.sketch.variant_record import NAME
+from playground.sketch.variants import NAME
 from playground.workbench.session import Session
 
 from ..sketch_texts import map_of_height

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.engine.camera import look
 from playground.engine.engine import Engine
 from playground.sketch.find import find
 from playground.sketch.model import DEFAULT_PICTURE, Camera
-from playground.terrain.camera import look
 from playground.workbench.camera_drag import Gesture
 from playground.workbench.framing import WIDEST, field_for, framed, moved
 from playground.workbench.session import Session

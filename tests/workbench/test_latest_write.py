@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.engine.file_sources import read_numbers
 from playground.errors import DataError
-from playground.terrain.numbers import read_numbers
 from playground.workbench.captures import Captures
 from playground.workbench.commands import Commands
 from playground.workbench.latest_write import LatestWrite

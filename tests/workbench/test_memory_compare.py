@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
 from playground.engine.sandbox import SandboxReport, TrySketch
+from playground.engine.textures import read_picture
 from playground.errors import SandboxTimeout
-from playground.gpu.textures import read_picture
 from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.workbench.autosave import Autosave

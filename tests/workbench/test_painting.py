@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.data.image_files import read_image, read_png, write_png
 from playground.engine.engine import Engine
+from playground.engine.file_sources import read_mask
 from playground.errors import DataError, ShaderError
-from playground.images.files import read_image, read_png, write_png
-from playground.terrain.masks import read_mask
 from playground.workbench.brush import ERASER, Brush, covered, stroke
 from playground.workbench.canvas import MOST_TEXELS
 from playground.workbench.painted_mask import Mask

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
 from playground.engine.unfinished import PassesUnfinished
-from playground.gpu.context import ContextInfo
 from playground.workbench import shown_picture
 from playground.workbench.session import Session
 

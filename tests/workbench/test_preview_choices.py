@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
-from playground.gpu.context import ContextInfo
-from playground.gpu.textures import read_picture
+from playground.engine.textures import read_picture
 from playground.sketch.assign import values_of
 from playground.workbench.inspect.compare import Compare
 from playground.workbench.preview import as_preview

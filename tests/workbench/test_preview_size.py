@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
-from playground.gpu.context import ContextInfo
 from playground.workbench.enlarged import Enlarger
 from playground.workbench.inspect.toggles import Inspection
 from playground.workbench.pass_costs import PassCosts

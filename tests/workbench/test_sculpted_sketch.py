@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
+from playground.engine.file_sources import read_numbers, write_numbers
+from playground.engine.textures import read_texture
 from playground.errors import DataError
-from playground.gpu.textures import read_texture
-from playground.terrain.numbers import read_numbers, write_numbers
 from playground.workbench.brush import Brush
 from playground.workbench.painting import CLICK, LONGEST, Painting
 from playground.workbench.sculpture import RISE, Sculpture

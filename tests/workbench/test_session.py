@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.data.image_files import write_png
+from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
 from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ContextError, SandboxTimeout, SketchError
-from playground.gpu.context import ContextInfo
-from playground.images.files import write_png
 from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE, Camera
 from playground.workbench.dependencies import files_of

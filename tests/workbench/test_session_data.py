@@ -9,12 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.data import elevation
+from playground.data.image_files import write_png
+from playground.engine import file_sources
 from playground.engine.engine import Engine
 from playground.engine.sandbox import SandboxReport
 from playground.errors import SandboxCrash
-from playground.images.files import write_png
 from playground.sketch.model import Camera
-from playground.terrain import elevation, elevation_source
 from playground.workbench.inspect.compare import Compare
 from playground.workbench.inspect.inspector import Inspector
 from playground.workbench.inspect.thumbnails import Thumbnails
@@ -43,9 +44,9 @@ def read(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
 
     whole = elevation.ElevationFile.read
     monkeypatch.setattr(elevation.ElevationFile, "read", reading)
-    elevation_source._whole.cache_clear()
+    file_sources._whole.cache_clear()
     yield names
-    elevation_source._whole.cache_clear()
+    file_sources._whole.cache_clear()
 
 
 @pytest.fixture

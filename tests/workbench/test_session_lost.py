@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.engine.context import abandon, open_context
 from playground.engine.engine import Engine
-from playground.gpu.context import abandon, open_context
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
 from playground.workbench.reload_stages import ReloadStage

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.templates import make_sketch
+from playground.sketch.templates import make_sketch
 from playground.workbench.session import Session
 
 SIZE = (32, 18)

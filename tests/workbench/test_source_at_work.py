@@ -9,13 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.engine import sources
 from playground.engine.engine import Engine
+from playground.engine.process.messages import Cancelled
 from playground.engine.sandbox import SandboxReport
+from playground.engine.source_kinds import SourceKind, Terrain
 from playground.live.overlay import behind_text
-from playground.process.messages import Cancelled
-from playground.terrain import sources
-from playground.terrain.known import Terrain
-from playground.terrain.source_kinds import SourceKind
 from playground.workbench.brush import Brush
 from playground.workbench.painting import Painting
 from playground.workbench.session import Session

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.sketch.allowed_files import signature
+from playground.allowed_files import signature
 from playground.workbench.watcher import Watcher
 
 LIMIT = 30.0  # [s]

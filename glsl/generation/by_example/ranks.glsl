@@ -2,11 +2,11 @@
 //
 //   gives    normal: of each texel the number that has its rank in a normal distribution;
 //            sorted: all heights from the lowest on, row by row
-//   needs    nothing; the processor makes it (playground/terrain/ranked.py)
+//   needs    nothing; the processor makes it (playground/engine/by_example.py)
 //   units    heights as the example's
 //   source   Heitz and Neyret 2018, "High-Performance By-Example Noise using a
 //            Histogram-Preserving Blending Operator" (Proc. ACM CGIT 1(2))
-//   tested   tests/terrain/test_ranked.py, against SciPy's ranks and normal distribution
+//   tested   tests/engine/test_ranked.py, against SciPy's ranks and normal distribution
 #pragma source("ranked_heights", output = "normal:r32f, sorted:r32f")
 
 uniform sampler2D example;     //! input

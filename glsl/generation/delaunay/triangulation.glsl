@@ -3,12 +3,12 @@
 //   gives    places (x, y, height), triangles (three points, counter-clockwise), neighbours
 //            (the triangle across from each point, -1 outside) and last (what the last
 //            insertion did): entry k at texel (k % width, k / width)
-//   needs    nothing; the processor triangulates (playground/terrain/delaunay.py)
+//   needs    nothing; the processor triangulates (playground/engine/delaunay.py)
 //   units    places in lattice spacings, 2^24 along the terrain's longer side; heights without
 //            unit; points and triangles by their numbers, the corners first
 //   source   Belaiche 2010, section 1.3.8, its slip 5 fixed; Bowyer 1981 and Watson 1981
 //            (The Computer Journal 24); Lawson 1977 (Software for C1 Surface Interpolation)
-//   tested   tests/glsl/test_delaunay.py and tests/terrain/test_delaunay.py, against SciPy
+//   tested   tests/glsl/test_delaunay.py and tests/engine/test_delaunay.py, against SciPy
 //
 // Four corners make two triangles; each further point goes to the barycentre of the triangle
 // of greatest area. Entry 0 of `last` is (newest point or -1, entries that follow, edges

@@ -1,7 +1,7 @@
 // generation/sculpted/strokes.glsl -- what the brush has painted: a number a texel.
 //
 //   gives    painted; of a sculpture in metres
-//   needs    nothing; the processor reads the file (playground/terrain/numbers.py)
+//   needs    nothing; the processor reads the file (playground/engine/file_sources.py)
 //   units    the file's numbers as they are, of either sign
 //   source   derived here
 //   tested   tests/workbench/test_sculpted_sketch.py, against the file's own numbers

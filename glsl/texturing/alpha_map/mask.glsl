@@ -1,7 +1,7 @@
 // texturing/alpha_map/mask.glsl -- four weights a texel from an image's channels, drawn elsewhere.
 //
 //   gives    mask, four numbers 0..1, of any sum
-//   needs    nothing; the processor reads the file (playground/terrain/masks.py)
+//   needs    nothing; the processor reads the file (playground/engine/file_sources.py)
 //   units    the image's numbers as they are, not decoded to linear light; texels
 //   source   Belaiche 2010, section 2.6: alpha maps loaded from disk, four in one image
 //   tested   tests/glsl/test_splat_mask.py, against the file's own numbers

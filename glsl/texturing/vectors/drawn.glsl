@@ -1,10 +1,10 @@
 // texturing/vectors/drawn.glsl -- points, lines and polygons of a file, as a mask on the terrain.
 //
 //   gives    mask: how much of each texel they cover
-//   needs    nothing; the processor reads both files (playground/terrain/vector_source.py)
+//   needs    nothing; the processor reads both files (playground/engine/file_sources.py)
 //   units    width in metres; mask 0..1
 //   source   made here; GeoJSON is RFC 7946
-//   tested   tests/terrain/test_vectors.py, against masks drawn much finer
+//   tested   tests/data/test_vectors.py, against masks drawn much finer
 //
 // GeoJSON counts degrees on WGS 84; shapes in another reference system than the terrain's are
 // brought into that, by GDAL in the extra gis, which reads the other formats, too. A reference

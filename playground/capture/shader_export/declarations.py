@@ -11,8 +11,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from playground.sketch.include_guards import without_guards
-from playground.sketch.source import Line
+from playground.shader.source import Line, without_guards
 
 _DIRECTIVE = re.compile(r"\s*#\s*(\w+)\s*(\w*)")
 _UNIFORM = re.compile(r"\s*(?:layout\s*\([^)]*\)\s*)?uniform\b")

@@ -22,9 +22,9 @@ from playground.capture.shader_export.texts import (
     size_of,
     text_of,
 )
+from playground.data.image_files import reason
 from playground.engine.plan import Plan
 from playground.errors import DataError
-from playground.images.files import reason
 from playground.regular_file import read_regular
 from playground.sketch.model import Sketch
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from playground.shader.reserved_names import NEUTRAL, SIZES
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import NEUTRAL, SIZES
 
 _COMPONENTS = {"float": 1, "int": 1, "uint": 1, "bool": 1}
 MOUSE = ("mouse", "hover", "drag", "hover_share")

@@ -15,10 +15,10 @@ from playground.capture.shader_export.foreign_given import neutral
 from playground.capture.shader_export.passes import ShaderPass
 from playground.capture.shader_export.texts import Host, PassText, Sampled, variable_of, without_unwired
 from playground.errors import SketchError
-from playground.sketch.dialects.declarations import uniforms
+from playground.shader.declarations import uniforms
+from playground.shader.reserved_names import NEUTRAL, SIZES
+from playground.shader.source import Line
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import NEUTRAL, SIZES
-from playground.sketch.source import Line
 
 _LEFT_OUT = re.compile(r"\s*(?:#\s*(?:version|extension)\b|precision\s)")
 _OUT = re.compile(r"\s*(?:layout\s*\([^)]*\)\s*)?out\s+(?:highp\s+|mediump\s+|lowp\s+)?vec([34])\s+(\w+)\s*;")

@@ -15,13 +15,12 @@ from typing import Any
 from playground.capture.shader_export.declarations import Declaration, joined, made
 from playground.capture.shader_export.passes import Leaving, ShaderPass
 from playground.capture.shader_export.texts import DECODE, DECODING, Host, PassText, is_sampled, variable_of
+from playground.data.image_files import read_image
 from playground.errors import SketchError
-from playground.images.files import read_image
+from playground.shader.parameter import label_of, linear_to_srgb
+from playground.shader.reserved_names import GLSL_WORDS, TOWARDS
 from playground.sketch.assign import resolve, shown_parameters
-from playground.sketch.colour import linear_to_srgb
 from playground.sketch.model import Kernel, Parameter, Value
-from playground.sketch.parameter import label_of
-from playground.sketch.reserved_names import GLSL_WORDS, TOWARDS
 
 WORDS = frozenset(
     """TIME TIMEDELTA FRAMEINDEX PASSINDEX RENDERSIZE DATE isf_FragNormCoord vv_FragNormCoord IMG_PIXEL

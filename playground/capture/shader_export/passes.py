@@ -15,11 +15,11 @@ from playground.capture.shader_export.foreign_given import reason_to_stay
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, needed, sources_of
 from playground.engine.planner import Planner
 from playground.errors import Diagnostic, PlaygroundError, SketchError
-from playground.gpu.wrap import previous_name
-from playground.sketch import expressions
+from playground.shader import expressions
+from playground.shader.reserved_names import GLSL_WORDS
+from playground.shader.wrap import previous_name
 from playground.sketch.flat import Fed, Ref, Source
 from playground.sketch.model import Input, Output, Sketch
-from playground.sketch.reserved_names import GLSL_WORDS
 from playground.sketch.wiring import initial_names
 
 PROBES = ((640, 360), (484, 272))

@@ -10,7 +10,7 @@ from playground.capture.shader_export.passes import ShaderPass
 from playground.capture.shader_export.shadertoy import blocks
 from playground.capture.shader_export.texts import Host, PassText, towards
 from playground.errors import SketchError
-from playground.sketch.annotation import note_at
+from playground.shader.header import note_at
 from playground.sketch.model import Parameter, Value
 
 _HEAD = ("#version 330", "uniform vec3 iResolution;", "uniform float iTime;", "out vec4 fragColor;")

@@ -16,10 +16,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from playground.data.image_files import replacing
+from playground.engine.context import context_info
 from playground.engine.engine import Engine
 from playground.errors import DataError
-from playground.gpu.context import context_info
-from playground.images.files import replacing
 from playground.json_text import read_json
 from playground.lessons.book.blocks import Setting, picture_image
 from playground.lessons.book.gallery import gallery_html

@@ -16,8 +16,8 @@ from playground.lessons.book.live_scenes import Library, Scenes
 from playground.lessons.tasks.texts import answer_text, path_of, starter_text
 from playground.lessons.tasks.work import wanted_scene
 from playground.lessons.values import spelled_at
+from playground.shader.source import read_text
 from playground.sketch.flatten import flatten
-from playground.sketch.source import read_text
 
 LiveData = dict[str, Any]
 

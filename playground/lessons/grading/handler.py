@@ -9,11 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from PIL import Image
 
+from playground.allowed_files import leads_outside
+from playground.engine.context import context_info, open_context
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
+from playground.engine.process.child import Parent, Service
+from playground.engine.textures import is_lost
 from playground.errors import ContextError, DataError, PlaygroundError, SandboxCrash
-from playground.gpu.context import context_info, open_context
-from playground.gpu.textures import is_lost
 from playground.lessons.figure_renders import draw
 from playground.lessons.grading.marks import GRADED, REFUSED, Mark, Pair
 from playground.lessons.grading.values_in_toml import values_in_toml
@@ -28,8 +30,6 @@ from playground.lessons.tasks.verdict import Picture, Verdict
 from playground.lessons.tasks.work import Work, answer, scene_of, wanted_scene
 from playground.lessons.translatable import Said, in_language
 from playground.paths import GLSL, shown
-from playground.process.child import Parent, Service
-from playground.sketch.allowed_files import leads_outside
 from playground.sketch.model import Sketch, kernels_of
 
 PREPARING, JUDGING = "preparing", "judging"

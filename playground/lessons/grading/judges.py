@@ -12,13 +12,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
+from playground.engine.context import ContextInfo
+from playground.engine.process.messages import UnexpectedError
+from playground.engine.process.worker import START_SECONDS, Closing, Launch, Replaceable, WorkerDied
 from playground.errors import PlaygroundError, SandboxCrash, SandboxTimeout
-from playground.gpu.context import ContextInfo
 from playground.lessons.grading.handler import JUDGING, Options, Request
 from playground.lessons.grading.marks import Mark
 from playground.lessons.translatable import Said
-from playground.process.messages import UnexpectedError
-from playground.process.worker import START_SECONDS, Closing, Launch, Replaceable, WorkerDied
 
 Key = TypeVar("Key")
 

@@ -16,8 +16,8 @@ from pathlib import Path
 
 from PIL import Image
 
+from playground.data.image_files import replacing
 from playground.errors import DataError
-from playground.images.files import replacing
 from playground.lessons.grading.marks import Graded
 from playground.lessons.grading.page import Setting, page, table_hash_of
 from playground.lessons.grading.table import table_bytes

@@ -12,10 +12,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import PurePosixPath, PureWindowsPath
 from typing import Any, cast
 
+from playground.allowed_files import is_absolute
 from playground.errors import DataError
 from playground.lessons.grading.entries import printable
 from playground.lessons.translatable import Said
-from playground.sketch.allowed_files import is_absolute
 from playground.sketch.model import Value
 
 _LONGEST = 2**17  # characters of a sketch's TOML

@@ -18,17 +18,17 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from playground._version import __version__
+from playground.data.image_files import checked_file, reading, replacing
 from playground.engine.engine import Engine
 from playground.errors import DataError, SketchError
 from playground.extras import DISTRIBUTION
-from playground.images.files import checked_file, reading, replacing
 from playground.lessons.handout.exercise_files import Assignment, assignments_of
 from playground.lessons.handout.labels import handout_labels
 from playground.lessons.handout.page import handout_page
 from playground.lessons.handout.student_sketch import student_files
 from playground.lessons.measuring import numbers_of
 from playground.lessons.model import Lesson, Task
-from playground.sketch.unpack import FORMAT, MANIFEST
+from playground.sketch.find import FORMAT, MANIFEST
 
 _DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can say
 _PLAIN_FILE = 0o100644 << 16

@@ -13,18 +13,17 @@ import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from playground.data.image_files import reason
 from playground.errors import DataError, PlaygroundError
-from playground.images.files import reason
 from playground.lessons.handout.exercise_files import Assignment
 from playground.lessons.tasks.texts import path_of
 from playground.paths import GLSL, SKETCHES
-from playground.sketch.header import parse_kernel
+from playground.shader.header import parse_kernel
+from playground.shader.source import read_source, read_text
 from playground.sketch.load import load
 from playground.sketch.model import Graph, Sketch, Technique
 from playground.sketch.save import save, save_copy
-from playground.sketch.source import read_source, read_text
-from playground.sketch.toml_edit import drop, put, text_of
-from playground.sketch.toml_places import Place
+from playground.sketch.toml_text import Place, drop, put, text_of
 
 _HEADER = re.compile(r"^\s*\[\[?\s*([A-Za-z_-]+)")
 _LEFT_OUT = ("shot", "preset", "keyframe")

@@ -9,9 +9,9 @@ from playground.lessons.library import Labels
 from playground.lessons.model import Compare, Figure, Scene, Slider, Steps
 from playground.lessons.scenes import with_value
 from playground.lessons.values import spelled_value
+from playground.shader.parameter import is_whole
 from playground.sketch.assign import resolve, value_of, values_of
 from playground.sketch.model import Value
-from playground.sketch.values import is_whole
 
 _STEPS = 200  # positions of a slider whose parameter has no step
 

@@ -11,7 +11,6 @@ from typing import Any
 
 from playground.engine.frame import Frame
 from playground.errors import PlaygroundWarning, SketchError, nearest
-from playground.images.picture_difference import SHARE, share_differing
 from playground.lessons import model
 from playground.lessons.book.live_files import widget_page
 from playground.lessons.bugs import bug_region
@@ -20,6 +19,7 @@ from playground.lessons.library import SOURCE, interface_labels
 from playground.lessons.measuring import measured
 from playground.lessons.notebook.checked import Checked, Matched
 from playground.lessons.notebook.controls import controls_of, scene_at
+from playground.lessons.picture_difference import SHARE, share_differing
 from playground.lessons.read import read_lesson
 from playground.lessons.tasks.judge_process import JudgeProcess
 from playground.lessons.tasks.match import Match
@@ -30,7 +30,7 @@ from playground.markup import tag
 from playground.notebook.engine_thread import on_engine
 from playground.paths import GLSL
 from playground.sketch.model import Value
-from playground.sketch.text_overrides import with_texts
+from playground.sketch.replace_technique import with_texts
 
 
 def open_lesson(name: str, language: str = SOURCE) -> NotebookLesson:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from playground.images.picture_difference import differing
+from playground.lessons.picture_difference import differing
 from playground.lessons.tasks.verdict import Picture
 
 

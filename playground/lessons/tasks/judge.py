@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
-from playground.images.picture_difference import differing, share_differing
 from playground.lessons.figure_renders import draw
 from playground.lessons.measuring import NoNumberError, measured
 from playground.lessons.model import Check, Exercise, Scene
+from playground.lessons.picture_difference import differing, share_differing
 from playground.lessons.tasks.verdict import Picture, Result, Verdict
 from playground.lessons.tasks.work import LackingParameter, Work, scene_of, wanted_scene
 from playground.lessons.translatable import Said

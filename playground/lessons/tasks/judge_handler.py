@@ -5,18 +5,18 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass, field
 
+from playground.engine.context import open_context
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Step
-from playground.gpu.context import open_context
-from playground.gpu.textures import is_lost
+from playground.engine.process.child import Parent, Service
+from playground.engine.textures import is_lost
 from playground.lessons.model import Challenge, Exercise
 from playground.lessons.tasks.judge import Wanted, answers, judge
 from playground.lessons.tasks.judge_process import Request
 from playground.lessons.tasks.match import Ends, Match, ends_of, match
 from playground.lessons.tasks.texts import answer_text
 from playground.lessons.tasks.verdict import Verdict
-from playground.process.child import Parent, Service
 
 _KNOWN = 16  # tasks whose answers are kept
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from playground.engine.process.messages import summary_of
+from playground.engine.process.worker import START_SECONDS, Closing, Launch, Replaceable, Worker, WorkerDied
 from playground.errors import Diagnostic, PlaygroundError, SandboxCrash, SandboxTimeout
 from playground.lessons.model import Challenge, Exercise
 from playground.lessons.tasks.judge import SIDE
 from playground.lessons.tasks.match import Ends, Match
 from playground.lessons.tasks.verdict import Verdict
 from playground.lessons.tasks.work import Work
-from playground.process.messages import summary_of
-from playground.process.worker import START_SECONDS, Closing, Launch, Replaceable, Worker, WorkerDied
 
 LIMIT_SECONDS = 10.0
 """[s] that a pass of a work may take."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from playground.images.picture_difference import SHARE, mean_difference, share_differing
+from playground.lessons.picture_difference import SHARE, mean_difference, share_differing
 from playground.lessons.tasks.verdict import Picture
 
 

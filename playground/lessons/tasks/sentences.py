@@ -12,7 +12,7 @@ from playground.lessons.measuring import spelled
 from playground.lessons.tasks.match import Match
 from playground.lessons.tasks.verdict import Result, Verdict
 from playground.lessons.translatable import in_language
-from playground.sketch.values import spell
+from playground.shader.parameter import spell
 
 _BRIGHTER = 1.0  # level of 255, in the mean, from which a picture is called brighter or darker
 

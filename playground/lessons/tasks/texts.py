@@ -7,7 +7,7 @@ from pathlib import Path
 from playground.lessons.library import HERE
 from playground.lessons.model import Task
 from playground.paths import GLSL
-from playground.sketch.source import read_text
+from playground.shader.source import read_text
 
 EXERCISES = HERE / "exercises"
 """Starters and model answers, in a folder for each lesson."""

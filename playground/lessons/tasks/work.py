@@ -11,7 +11,7 @@ from playground.lessons.tasks.texts import answer_text, path_of, starter_text
 from playground.lessons.translatable import Said
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Sketch, Value, kernels_of
-from playground.sketch.text_overrides import with_texts
+from playground.sketch.replace_technique import with_texts
 
 
 class LackingParameter(ParameterError):

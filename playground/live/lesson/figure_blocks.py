@@ -14,8 +14,8 @@ from playground.live import theme
 from playground.live.lesson.page import Page
 from playground.live.parameter_row import Rows
 from playground.live.sliders import slide_whole
+from playground.shader.parameter import write
 from playground.sketch.assign import resolve
-from playground.sketch.values import write
 from playground.workbench.lesson.figure_state import path_of
 from playground.workbench.lesson.reader import BOTH
 

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from playground.capture.video import QUALITY, Video, check_video
+from playground.data.image_files import replacing
 from playground.engine.engine import Engine
-from playground.images.files import replacing
 from playground.lessons.figure_renders import broken
 from playground.lessons.measuring import Number, filled, measured, named_in
 from playground.lessons.model import Break, Compare, Lesson, Scene, Slider

@@ -13,13 +13,13 @@ from typing import Any
 
 from playground.errors import DataError, ParameterError
 from playground.paths import GLSL, shown
+from playground.shader.expressions import follows_time
+from playground.shader.reserved_names import PLAIN_UNIFORMS
+from playground.shader.source import read_text
 from playground.shots.mutants.model import DoesNotApply, Edit, Rendering
 from playground.sketch.assign import resolve, value_of, values_of
-from playground.sketch.expressions import follows_time
 from playground.sketch.model import Camera, Graph, Kernel, PassSpec, Sketch, Technique, kernels_of
-from playground.sketch.reserved_names import PLAIN_UNIFORMS
-from playground.sketch.source import read_text
-from playground.sketch.text_overrides import with_texts
+from playground.sketch.replace_technique import with_texts
 from playground.sketch.wiring import input_names
 
 _CAMERA = "camera."

@@ -8,11 +8,12 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from playground.engine.context import open_context
 from playground.engine.engine import Engine
 from playground.engine.internals import CACHE_BYTES
 from playground.engine.plain_forms import silent
-from playground.gpu.context import open_context
-from playground.process.child import Parent, Service
+from playground.engine.process.child import Parent, Service
+from playground.shader.source import read_text
 from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.harmless import Drawing
 from playground.shots.mutants.model import DoesNotApply
@@ -20,8 +21,7 @@ from playground.shots.mutants.render_mutants import rendering_mutants
 from playground.shots.suite import RenderedShot, ShotCase, render_shot
 from playground.sketch.load import load
 from playground.sketch.model import Shot, Sketch
-from playground.sketch.source import read_text
-from playground.sketch.text_overrides import with_texts
+from playground.sketch.replace_technique import with_texts
 
 _SMALL = (96, 54)
 

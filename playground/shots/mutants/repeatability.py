@@ -10,16 +10,16 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from playground.allowed_files import is_absolute, is_file
+from playground.engine.context import ContextInfo
+from playground.engine.process.messages import UnexpectedError
+from playground.engine.process.worker import Launch, Worker, WorkerDied, WorkerTimeout
 from playground.errors import PlaygroundError
-from playground.gpu.context import ContextInfo
 from playground.paths import GLSL, SKETCHES
-from playground.process.messages import UnexpectedError
-from playground.process.worker import Launch, Worker, WorkerDied, WorkerTimeout
 from playground.shots.mutants.harmless import Drawing, Process, processes
 from playground.shots.mutants.redraw_handler import Subject
 from playground.shots.mutants.tiers import judged
 from playground.shots.suite import RenderedShot
-from playground.sketch.allowed_files import is_absolute, is_file
 from playground.sketch.assign import values_of
 from playground.sketch.model import Shot, Sketch, kernels_of
 from playground.sketch.variants import any_variants

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from playground.gpu.context import ContextInfo
+from playground.engine.context import ContextInfo
 from playground.shots.fingerprint import fingerprint_of
 from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, Judgement, Rule, judge
 from playground.shots.references import Reference

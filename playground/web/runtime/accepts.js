@@ -1,4 +1,4 @@
-// accepts.js -- the sizes that a kernel takes: playground/sketch/expressions.py.
+// accepts.js -- the sizes that a kernel takes: playground/shader/expressions.py.
 
 import { integer, isPlanError } from "./expressions.js";
 

@@ -1,4 +1,4 @@
-// expressions.js -- evaluates the expressions of a plan, exactly as playground/sketch/expressions.py does.
+// expressions.js -- evaluates the expressions of a plan, exactly as playground/shader/expressions.py does.
 
 import { arithmetic, bitLength, compared, float, floor, general, power } from "./exact.js";
 

@@ -1,4 +1,4 @@
-// sizes.js -- texels of every pass of a sketch and counts of its loops: playground/engine/pass_sizes.py.
+// sizes.js -- texels of every pass of a sketch and counts of its loops: playground/engine/sizes.py.
 
 import { integer, isPlanError, planError, textOf } from "./expressions.js";
 import { givenTo, leavesOf, numberOf } from "./values.js";

@@ -30,7 +30,7 @@ import { everyVersion, isLoop, isRef, sourcesOf, stepsOf } from "./plan_nodes.js
 /** The loops around a node, by their paths: the innermost, and the innermost that counts frames.
  *  @typedef {{innermost: string, frames: string}} Around */
 
-/** What belongs to one frame: see CLOCKED in playground/sketch/reserved_names.py. */
+/** What belongs to one frame: see CLOCKED in playground/shader/reserved_names.py. */
 const CLOCKED = new Set([
   "time", "frame", "frame_of_time", "delta", "date", "date_from_1", "mouse", "hover", "hover_share", "drag",
   "buttons", "bands", "moment",

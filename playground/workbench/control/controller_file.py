@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from playground.data.image_files import replacing
 from playground.errors import SketchError
-from playground.images.files import replacing
 from playground.sketch.toml_table import FORMAT, TomlFile
 
 ENDING = ".controllers"

@@ -14,9 +14,9 @@ from typing import Any
 
 from playground.engine.frame import Frame
 from playground.errors import ContextError, ParameterError, PlaygroundError, SketchError, nearest
+from playground.shader.parameter import spell
 from playground.sketch.assign import check_value, current_paths, find_targets, value_of, values_of
 from playground.sketch.model import Sketch, Value
-from playground.sketch.values import spell
 from playground.workbench.bench import Bench
 from playground.workbench.control.described import parameters_of, state_of
 from playground.workbench.edits import Draft, leaves

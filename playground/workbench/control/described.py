@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from playground.shader.parameter import expected, shortest, write
 from playground.sketch.assign import Shown
-from playground.sketch.described_parameter import described, range_of
+from playground.sketch.catalogue import described, range_of
 from playground.sketch.model import Parameter, Value
-from playground.sketch.values import expected, shortest, write
 from playground.workbench.bench import Bench
 from playground.workbench.control.items import items_of, values_of
 from playground.workbench.parameter_list import Item, Values

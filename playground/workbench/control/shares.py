@@ -10,10 +10,9 @@ from __future__ import annotations
 import math
 
 from playground.errors import ParameterError
-from playground.sketch.colour import linear_to_srgb, srgb_to_linear
-from playground.sketch.described_parameter import range_of
+from playground.shader.parameter import is_whole, linear_to_srgb, srgb_to_linear
+from playground.sketch.catalogue import range_of
 from playground.sketch.model import Parameter, Value
-from playground.sketch.values import is_whole
 from playground.workbench.number_format import decimals
 
 HALF = 64 / 127

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from playground.gpu.own_shaders import own_shader
+from playground.shader.own_shaders import own_shader
 from playground.workbench.full_screen import FullScreen
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.gpu.textures import read_texels
+from playground.engine.textures import read_texels
 from playground.workbench.inspect.results import result_of
 from playground.workbench.session import Session
 

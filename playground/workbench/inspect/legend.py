@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from playground.gpu.own_shaders import own_shader
 from playground.paths import GLSL
+from playground.shader.own_shaders import own_shader
 from playground.workbench.inspect.results import TexelShader
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.gpu.textures import make_framebuffer, make_texture
+from playground.engine.textures import make_framebuffer, make_texture
 from playground.workbench.full_screen import FullScreen
 from playground.workbench.session import Session
 

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from playground.gpu.own_shaders import own_shader
-from playground.terrain.camera import Eye
-from playground.terrain.pick import ray_over
+from playground.engine.camera import Eye, ray_over
+from playground.shader.own_shaders import own_shader
 from playground.workbench.inspect.results import TexelShader
 
 if TYPE_CHECKING:

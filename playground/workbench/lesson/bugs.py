@@ -12,14 +12,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from playground.errors import PlaygroundError
-from playground.images.picture_difference import SHARE, share_differing
 from playground.lessons.excerpt import Excerpt, excerpt
 from playground.lessons.figure_renders import Picture, draw, with_bug
 from playground.lessons.model import Break, Code, Scene
+from playground.lessons.picture_difference import SHARE, share_differing
 from playground.paths import GLSL, shown
+from playground.shader.source import read_text
 from playground.sketch.model import kernels_of
-from playground.sketch.source import read_text
-from playground.sketch.text_overrides import with_texts
+from playground.sketch.replace_technique import with_texts
 from playground.workbench.inspect.compare import as_before
 from playground.workbench.lesson.figure_view import FigureView
 from playground.workbench.lesson.shader_copies import Copies, Copy, line_of

@@ -9,10 +9,10 @@ from playground.lessons.figure_renders import with_bug
 from playground.lessons.model import Break, Compare, Exercise, Slider, Steps
 from playground.lessons.present.beat import Beat, Still
 from playground.lessons.tasks.texts import path_of, starter_text
+from playground.shader.parameter import is_whole, write
 from playground.sketch.assign import resolve
-from playground.sketch.described_parameter import range_of
+from playground.sketch.catalogue import range_of
 from playground.sketch.model import Parameter, Value
-from playground.sketch.values import is_whole, write
 from playground.workbench.control.shares import share_of, with_share
 from playground.workbench.lesson.bugs import file_of
 from playground.workbench.lesson.reader import Reader

@@ -13,9 +13,9 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from playground.data.image_files import replacing
 from playground.errors import PlaygroundError
 from playground.folders import state_folder
-from playground.images.files import replacing
 from playground.json_text import read_json
 from playground.regular_file import read_regular
 from playground.sketch.model import Value

@@ -9,7 +9,7 @@ import subprocess
 
 import pytest
 
-from playground.sketch.dialects.conditions import Conditions
+from playground.shader.preprocessor import Conditions
 
 
 def live(text: str, **defined: str) -> list[str]:

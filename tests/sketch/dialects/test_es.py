@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from playground.sketch.dialects.es import rewritten, version_of
-from playground.sketch.source import read_source_and_origin
+from playground.shader.dialects.es import rewritten, version_of
+from playground.shader.source import read_source_and_origin
 
 
 @pytest.fixture

@@ -6,11 +6,11 @@ import pytest
 
 from playground.errors import ShaderError
 from playground.paths import GLSL
-from playground.sketch.dialects import shadertoy
-from playground.sketch.dialects.es import rewritten
-from playground.sketch.dialects.passes import graph_of_shaders
-from playground.sketch.dialects.shader import Channel, Shader
-from playground.sketch.source import read_source_and_origin
+from playground.shader.dialects import shadertoy
+from playground.shader.dialects.es import rewritten
+from playground.shader.dialects.foreign import Channel, Shader
+from playground.shader.dialects.passes import graph_of_shaders
+from playground.shader.source import read_source_and_origin
 from playground.sketch.techniques import Techniques
 from playground.sketch.wiring import check_graph
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from playground.sketch.dialects import dialect_of
-from playground.sketch.dialects.declarations import is_declared, uniforms, vertex_outputs
+from playground.shader.declarations import is_declared, uniforms, vertex_outputs
+from playground.shader.dialects import dialect_of
 from playground.sketch.load import load
 
 

@@ -7,10 +7,9 @@ import itertools
 import pytest
 
 from playground.errors import ParameterError
-from playground.sketch.described_parameter import part_names, range_of
+from playground.shader.parameter import Widget, coerce
+from playground.sketch.catalogue import part_names, range_of
 from playground.sketch.model import Parameter, Value
-from playground.sketch.parameter import Widget
-from playground.sketch.values import coerce
 from playground.workbench.control.shares import check_shares, share_of, with_share
 
 SLIDER = Widget("slider", -2.0, 6.0)

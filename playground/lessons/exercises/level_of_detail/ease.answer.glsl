@@ -26,7 +26,7 @@
 #include "view/geomipmap/tiles.glsl"
 #include "view/surface.glsl"
 
-// START in playground/terrain/morph.py (a test compares the two), which sees to it that no level
+// START in playground/engine/lod.py (a test compares the two), which sees to it that no level
 // begins to slide where the one before ends. What rounds off must not keep a vertex from the end
 // of its way.
 const float MORPH_START = 0.8;

@@ -1,0 +1,219 @@
+"""Read elevations from NumPy's `.npy` and `.npz` files, by their headers first.
+
+Nothing is unpickled, and no memory is taken before a header is judged.
+"""
+
+from __future__ import annotations
+
+import math
+import zipfile
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.data.bounds import refuse_bomb
+from playground.data.geodesy import spacing_from_degrees
+from playground.data.geokeys import GEOGRAPHIC, IS_POINT, MODEL, RASTER
+from playground.data.grid import Found, check_grid, in_memory
+from playground.data.place import Crs, Place
+from playground.data.rows import FileRows
+from playground.errors import DataError
+from playground.regular_file import open_regular
+
+
+@dataclass(frozen=True)
+class _Header:
+    shape: tuple[int, ...]
+    by_columns: bool  # Fortran order
+    dtype: np.dtype[Any]
+
+
+def read_npy(path: Path) -> Found:
+    """Read the one array of an `.npy`; it says nothing of units."""
+    with open_regular(path) as handle:
+        header = _array_header(handle, path)
+        check_grid(header.shape, header.dtype, path, in_turn=not header.by_columns)
+        length = path.stat().st_size
+        if header.by_columns:
+            return in_memory(_array_body(handle, header, length, path)).in_unit(Crs())
+        _refuse_cut(handle, header, length, path)
+        rows = FileRows(path, (header.shape[0], header.shape[1]), header.dtype, handle.tell())
+        return Found(rows).in_unit(Crs())
+
+
+def _array_header(handle: IO[bytes], path: Path) -> _Header:
+    # Read before any memory is taken; objects are refused here, so nothing is ever unpickled.
+    version = np.lib.format.read_magic(handle)
+    if version == (1, 0):
+        header = _Header(*np.lib.format.read_array_header_1_0(handle))
+    elif version == (2, 0):
+        header = _Header(*np.lib.format.read_array_header_2_0(handle))
+    else:
+        raise DataError("holds records, not heights; expected integers or real numbers", file=path)
+    if header.dtype.hasobject:
+        raise DataError("holds Python objects, which are never loaded; expected numbers", file=path)
+    return header
+
+
+def _refuse_cut(handle: IO[bytes], header: _Header, length: int, path: Path) -> int:
+    """Return how many bytes an array takes; raise ``DataError`` where they are not there."""
+    need, have = math.prod(header.shape) * header.dtype.itemsize, length - handle.tell()
+    if need > have:
+        raise DataError(f"is cut short: its header promises {need} bytes, {have} are there", file=path)
+    return need
+
+
+def _array_body(handle: IO[bytes], header: _Header, length: int, path: Path) -> NDArray[Any]:
+    need = _refuse_cut(handle, header, length, path)
+    flat = np.frombuffer(handle.read(need), dtype=header.dtype)
+    return flat.reshape(header.shape[::-1]).T if header.by_columns else flat.reshape(header.shape)
+
+
+class _Archive:
+    # The arrays of an .npz, looked at by header and loaded one by one.
+
+    def __init__(self, archive: zipfile.ZipFile, path: Path) -> None:
+        self.archive, self.path = archive, path
+        self.members = {m.filename.removesuffix(".npy"): m for m in archive.infolist() if not m.is_dir()}
+
+    def header(self, name: str) -> _Header:
+        with self.archive.open(self.members[name]) as handle:
+            return _array_header(handle, self.path)
+
+    def load(self, name: str) -> NDArray[Any]:
+        member = self.members[name]
+        with self.archive.open(member) as handle:
+            header = _array_header(handle, self.path)
+            refuse_bomb(self.path, math.prod(header.shape) * header.dtype.itemsize, member.compress_size)
+            return _array_body(handle, header, member.file_size, self.path)
+
+    def grid(self) -> NDArray[Any]:
+        name = "elevation"
+        if name not in self.members:
+            grids = [name for name in self.members if self._dimensions(name) == 2]
+            if len(grids) != 1:
+                listed = ", ".join(sorted(self.members)[:12]) or "nothing"
+                raise DataError(
+                    f"has no array 'elevation' and {len(grids)} of two dimensions; it holds {listed}",
+                    file=self.path,
+                )
+            name = grids[0]
+        header = self.header(name)
+        check_grid(header.shape, header.dtype, self.path)
+        return self.load(name)
+
+    def _dimensions(self, name: str) -> int:
+        try:
+            return len(self.header(name).shape)
+        except (DataError, ValueError):  # not an array, or one of objects: some other content
+            return -1
+
+    def number(self, name: str) -> float | None:
+        if name not in self.members:
+            return None
+        header = self.header(name)
+        if header.dtype.kind not in "iuf" or math.prod(header.shape) != 1:
+            raise DataError(f"'{name}' is {header.dtype} {header.shape}; expected one number", file=self.path)
+        number = float(self.load(name).reshape(()))
+        if not math.isfinite(number):
+            raise DataError(f"'{name}' is {number}; expected a finite number", file=self.path)
+        return number
+
+    def word(self, name: str) -> str:
+        return self.text(name, 256).lower()
+
+    def text(self, name: str, most: int = 2**16) -> str:
+        if name not in self.members:
+            return ""
+        header = self.header(name)
+        if header.dtype.kind not in "US" or math.prod(header.shape) != 1 or header.dtype.itemsize > most:
+            raise DataError(f"'{name}' is {header.dtype} {header.shape}; expected a word", file=self.path)
+        return str(self.load(name).reshape(()).astype(str)).strip()
+
+
+def read_npz(path: Path) -> Found:
+    """Read the array `elevation` of an `.npz`, or its only grid, and its spacing where it has one."""
+    with zipfile.ZipFile(path) as opened:
+        archive = _Archive(opened, path)
+        values = archive.grid()
+        dx, dy = archive.number("dx"), archive.number("dy")
+        x0, x1, y0, y1 = (archive.number(name) for name in ("xmin", "xmax", "ymin", "ymax"))
+        units, crs, first = archive.word("units"), archive.text("crs"), archive.word("first_row")
+        of_heights = archive.text("height_units", 256)
+    if first not in ("", "north", "south"):
+        raise DataError(f"'first_row' is {first!r}; expected 'north' or 'south'", file=path)
+    found = _placed(path, values, (dx, dy), ((x0, x1), (y0, y1)), units, crs)
+    if not crs and (dx is not None or dy is not None):
+        of_heights = of_heights or "m"  # as of its cells
+    return replace(found.in_unit(Crs(wkt=crs), of_heights), south_first=first == "south" if first else None)
+
+
+def _placed(
+    path: Path,
+    values: NDArray[Any],
+    steps: tuple[float | None, float | None],
+    bounds: tuple[tuple[float | None, float | None], tuple[float | None, float | None]],
+    units: str,
+    crs: str,
+) -> Found:
+    """Return what was found of a grid, with its metres and where it lies, as far as the file says."""
+    (dx, dy), ((x0, x1), (y0, y1)) = steps, bounds
+    if dx is None and dy is None:
+        return in_memory(values)
+    dx, dy = abs(dx or dy or 0.0), abs(dy or dx or 0.0)
+    if not dx or not dy:
+        raise DataError("'dx' and 'dy' are zero; expected the distance between texels", file=path)
+    if crs:
+        size, found = (values.shape[1], values.shape[0]), None
+        if x0 is not None and x1 is not None and y0 is not None and y1 is not None:
+            found = _bounded((x0, x1), (y0, y1), (dx, dy), size, Crs(wkt=crs))
+        spacing, notes = (found or Place(math.nan, math.nan, (dx, dy), size, Crs(wkt=crs))).spacing
+        return in_memory(values, spacing, place=found, notes=notes)
+    if x0 is None or x1 is None or y0 is None or y1 is None:
+        in_degrees = False
+    else:
+        # The names differ from file to file (in some, ymin is the north edge): only the middle counts.
+        in_degrees = max(abs(x0), abs(x1)) <= 360 and max(abs(y0), abs(y1)) <= 90 and max(dx, dy) < 0.05
+    if units in ("m", "metre", "metres", "meter", "meters"):
+        in_degrees = False
+    elif units in ("deg", "degree", "degrees") and y0 is not None and y1 is not None:
+        in_degrees = True
+    elif units:
+        raise DataError(
+            f"'units' is {units!r}; expected 'm', or 'degrees' together with 'ymin' and 'ymax'", file=path
+        )
+    if not in_degrees:
+        return in_memory(values, (dx, dy))
+    assert y0 is not None and y1 is not None
+    spacing, notes = spacing_from_degrees(dx, dy, (y0 + y1) / 2)
+    place = None
+    if x0 is not None and x1 is not None:
+        place = _place((x0, x1), (y0, y1), (dx, dy), (values.shape[1], values.shape[0]))
+    return in_memory(values, spacing, place=place, notes=notes)
+
+
+def _place(
+    x: tuple[float, float], y: tuple[float, float], step: tuple[float, float], size: tuple[int, int]
+) -> Place | None:
+    """Return where the nodes lie, on WGS 84; None where the bounds are neither areas' nor nodes'."""
+    return _bounded(x, y, step, size, Crs(((MODEL, 2), (RASTER, IS_POINT), (GEOGRAPHIC, 4326))))
+
+
+def _bounded(
+    x: tuple[float, float],
+    y: tuple[float, float],
+    step: tuple[float, float],
+    size: tuple[int, int],
+    crs: Crs,
+) -> Place | None:
+    """Return where the nodes lie; None where the bounds are neither areas' nor nodes'."""
+    inside = []
+    for ends, of, count in zip((x, y), step, size, strict=True):
+        more = abs(ends[1] - ends[0]) / of - (count - 1)  # 1 for areas, 0 for nodes
+        if min(abs(more), abs(more - 1.0)) > 0.01:
+            return None
+        inside.append(0.5 * of * round(more))
+    return Place(min(x) + inside[0], max(y) - inside[1], step, size, crs)

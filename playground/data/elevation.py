@@ -1,0 +1,338 @@
+"""Read real terrain from elevation files.
+
+Heights come out as float32 with row 0 in the south
+and NaN where the file has no data. Heights are on nodes: n texels in a row
+are n - 1 spacings long, so the corners of the terrain are the corners of the grid.
+
+Each format has a reader of its own (`geotiff`, `esri`, `arrays`, `raw`, `gis`); this chooses one and
+finishes what it hands over: whole, or at another size without ever having all of it in memory. Raw
+numbers (0..65535) stay raw: which heights they mean is the sketch's choice.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.allowed_files import ELEVATIONS
+from playground.data.arrays import read_npy, read_npz
+from playground.data.esri import read_asc, read_bil, read_flt
+from playground.data.geotiff import read_tiff
+from playground.data.gis import read_netcdf
+from playground.data.grid import Found, Heights, Packing, check_grid, from_channels
+from playground.data.image_files import checked_file, read_samples, read_texts, reason
+from playground.data.place import Place
+from playground.data.raw import read_hgt, read_raw
+from playground.data.resample import decimate
+from playground.errors import DataError, nearest
+from playground.paths import shown
+
+Edge = Literal["north", "south"]
+
+_log = logging.getLogger(__name__)
+
+_OVERVIEW = 2**20
+"""Texels, at least, of the overview that tells how low and high a terrain is."""
+
+
+@dataclass(frozen=True, eq=False)
+class Elevation:
+    """Heights on a grid, and what the file says about them."""
+
+    heights: Heights  # (ny, nx) float32, row 0 in the south, NaN for no data; read-only
+    name: str  # the file's name
+    spacing: tuple[float, float] | None = None  # [m] a texel, east and north; None: the file is silent
+    in_metres: bool = True  # heights are metres; else codes, as a picture's
+    code_range: tuple[float, float] | None = None  # what raw numbers can be: (0, 255), (0, 65535),
+    # (0, 16777215) when packed, or the metres that these mean where a PNG's texts say so;
+    # None for other metres and for floats
+    notes: tuple[str, ...] = ()  # sentences: what was assumed, what was lost
+    path: Path | None = None  # where it was read from
+    place: Place | None = None  # where all of the file's texels lie; None: the file is silent
+    assumed: str = ""  # of the unit of its heights; "" where the file or its format says it
+    range: tuple[float, float] | None = None  # the lowest and the highest of the file; None: of ``heights``
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Return (nx, ny), in texels."""
+        ny, nx = self.heights.shape
+        return nx, ny
+
+    @property
+    def extent(self) -> tuple[float, float] | None:
+        """Return the width and depth in metres, from first to last node; None if unknown."""
+        return _extent(self.spacing, self.size)
+
+    @cached_property
+    def lowest(self) -> float:
+        """Return the lowest height there is, no-data texels apart."""
+        return float(np.nanmin(self.heights)) if self.range is None else self.range[0]
+
+    @cached_property
+    def highest(self) -> float:
+        """Return the highest height there is, no-data texels apart."""
+        return float(np.nanmax(self.heights)) if self.range is None else self.range[1]
+
+    @cached_property
+    def missing(self) -> int:
+        """Return how many texels have no data."""
+        return int(np.count_nonzero(np.isnan(self.heights)))
+
+
+@dataclass(frozen=True, eq=False)
+class ElevationFile:
+    """An elevation file that was opened: its header is known, its heights can be read."""
+
+    path: Path
+    found: Found
+    south_first: bool
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Return (nx, ny), in texels."""
+        return self.found.size
+
+    @property
+    def extent(self) -> tuple[float, float] | None:
+        """Return the width and depth in metres, from first to last node; None if unknown."""
+        return _extent(self.found.spacing, self.size)
+
+    def read(self) -> Elevation:
+        """Return all heights; raise ``DataError`` for more than fit."""
+        check_grid(self.found.rows.shape, self.found.rows.dtype, self.path)
+        heights = np.empty(self.found.rows.shape, np.float32)
+        in_order = heights if self.south_first else heights[::-1]
+        with _damage_explained(self.path):
+            for start, band in self.found.rows.bands():
+                in_order[start : start + len(band)] = self._heights(start, band)
+        return self._finished(heights, self.found.spacing)
+
+    def read_at(self, size: tuple[int, int]) -> Elevation:
+        """Return the heights at another size (nx, ny), corners on corners, a part of the file at a time.
+
+        Where that is smaller than an overview of the file, the overview is read. The lowest and the highest
+        are those of the file, or of an overview of a million texels or more.
+        """
+        rows, whole = self.found.rows, self.size
+        if size == whole:
+            found = self.read()
+            return replace(found, range=self.lowest_and_highest) if self.found.overviews else found
+        # Twice as fine as what is wanted: the mean that an overview's texel is counts little then.
+        fine = [
+            o
+            for o in self.found.overviews
+            if all(a >= 2 * b for a, b in zip(o.shape, size[::-1], strict=True))
+        ]
+        with _damage_explained(self.path):
+            made = decimate(fine[-1] if fine else rows, size, self._heights, whole if fine else None)
+        extent = self.extent
+        spacing = None
+        if extent is not None:
+            spacing = extent[0] / (size[0] - 1), extent[1] / (size[1] - 1)
+        span = self.lowest_and_highest if self.found.overviews else (made.lowest, made.highest)
+        heights = made.heights if self.south_first else np.ascontiguousarray(made.heights[::-1])
+        return replace(self._finished(heights, spacing), range=span)
+
+    @cached_property
+    def lowest_and_highest(self) -> tuple[float, float]:
+        """Return those of an overview of a million texels or more, else of all texels."""
+        large = [rows for rows in self.found.overviews if math.prod(rows.shape) >= _OVERVIEW]
+        rows = large[-1] if large else self.found.rows
+        low, high = math.inf, -math.inf
+        with _damage_explained(self.path):
+            for start, band in rows.bands():
+                heights = self._heights(start, band)
+                if not np.isnan(heights).all():
+                    low, high = min(low, float(np.nanmin(heights))), max(high, float(np.nanmax(heights)))
+        if low > high:
+            raise self._nothing()
+        return low, high
+
+    def _heights(self, start: int, band: NDArray[Any]) -> NDArray[np.floating[Any]]:
+        heights = self.found.heights(start, band)
+        if np.isinf(heights).any():
+            row, x = (int(n) for n in np.argwhere(np.isinf(heights))[0])
+            y = start + row if self.south_first else self.found.rows.shape[0] - 1 - start - row
+            message = f"a height is infinite, at texel ({x}, {y}) from the south-west corner"
+            raise DataError(message, file=self.path)
+        return heights
+
+    def _nothing(self) -> DataError:
+        return DataError("no texel has any data", file=self.path)
+
+    def _finished(self, heights: Heights, spacing: tuple[float, float] | None) -> Elevation:
+        found, path = self.found, self.path
+        if np.isnan(heights).all():
+            raise self._nothing()
+        notes, dtype = found.notes, found.rows.dtype
+        if dtype.itemsize > 2 and dtype != np.float32:
+            low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
+            grain = float(np.spacing(np.float32(max(abs(low), abs(high)))))
+            if high > low and grain > (high - low) / 65536.0:
+                notes += (f"{dtype} heights up to {high:.6g} are kept as float32, to {grain:.2g} only",)
+        heights.setflags(write=False)
+        return Elevation(
+            heights,
+            path.name,
+            spacing,
+            found.in_metres,
+            found.code_range,
+            notes,
+            path,
+            found.place,
+            found.assumed,
+        )
+
+
+def _extent(spacing: tuple[float, float] | None, size: tuple[int, int]) -> tuple[float, float] | None:
+    return None if spacing is None else ((size[0] - 1) * spacing[0], (size[1] - 1) * spacing[1])
+
+
+def read_elevation(
+    path: str | Path,
+    *,
+    raw_size: tuple[int, int] | None = None,
+    packing: Packing = "grey",
+    first_row: Edge = "north",
+) -> Elevation:
+    """Read all heights of an elevation file; the arguments and mistakes are those of ``open_elevation``."""
+    return open_elevation(path, raw_size=raw_size, packing=packing, first_row=first_row).read()
+
+
+def open_elevation(
+    path: str | Path,
+    *,
+    raw_size: tuple[int, int] | None = None,
+    packing: Packing = "grey",
+    first_row: Edge = "north",
+) -> ElevationFile:
+    """Open an elevation file; the name's ending tells the format.
+
+    * `.png`: 8 or 16 bits, grey, raw numbers, or metres if its texts `scale_m` and `offset_m`
+      say which, as `playground export` writes them, with the spacing in `spacing_m`. Fully
+      transparent texels have no data.
+    * `.tif`, `.tiff`: integers or floats. Tags of GeoTIFF give the spacing (degrees
+      become metres at the middle latitude), the height's unit and what is no data. 8 or
+      16 bits without a sign, a place or a unit are a picture's raw numbers.
+    * `.npy`; `.npz`: the array `elevation`, or the only one of two dimensions, in metres
+      unless a string `height_units` names another unit; scalars `dx` and `dy` give the
+      spacing. They are degrees if `xmin`, `xmax`, `ymin`, `ymax` are there, look like degrees
+      (|x| <= 360, |y| <= 90, spacing below 0.05) and no string `units` says "m"; else metres.
+      A text `crs`, the well-known text of a reference system, says what they are instead;
+      `first_row` is "north" or "south".
+    * `.asc`, and `.bil` and `.flt` with an `.hdr`: ESRI's grids. A `.prj` next to them says
+      whether their cells are metres or degrees, and the unit of heights in a compound system.
+    * `.nc`: NetCDF, read by GDAL in the extra `gis`.
+    * `.r16`, `.raw`: unsigned 16-bit little-endian numbers, square unless `raw_size`
+      (nx, ny) says otherwise.
+    * `.hgt`: SRTM, signed 16-bit big-endian metres over one degree; the latitude is
+      in the name, as `N36W085.hgt`.
+
+    The `.aux.xml` that GDAL writes next to TIFF and ESRI's grids may have a unit, a scale and an
+    offset of heights, and a reference system where the file has none. `assumed` says what nothing
+    tells of the unit.
+
+    `packing="rgb"` reads R*65536 + G*256 + B from three 8-bit channels of a PNG or
+    TIFF. `first_row` says which edge the file begins with: "north" for everything
+    image-like and, by custom, for arrays; an `.npy` that `write_values` wrote is
+    "south". What the file itself says counts more than "north" does. In 16-bit signed
+    files -32768 is no data.
+
+    Raises:
+        DataError: a file that is missing, damaged, too large (`images.bounds`),
+            not numbers, not a grid of at least 2 x 2, infinite somewhere or without
+            any data; an unknown ending, packing or edge.
+    """
+    path = Path(path)
+    ending = path.suffix.lower()
+    if ending not in ELEVATIONS:
+        checked_file(path)
+        named = f"{ending!r} is" if ending else "a name without an ending is"
+        raise DataError(f"{named} no elevation format; readable are {', '.join(ELEVATIONS)}", file=path)
+    for what, word, words in (
+        ("packing", packing, ("grey", "rgb")),
+        ("first row", first_row, ("north", "south")),
+    ):
+        if word not in words:
+            raise DataError(f"no such {what}: {word!r}{nearest(str(word), words)}", file=path)
+    path = checked_file(path)
+    _log.debug("read the heights of %s", shown(path))
+    if packing == "rgb" and ending not in (".png", ".tif", ".tiff"):
+        raise DataError(
+            f"heights packed in three channels are read from PNG and TIFF, not {ending}", file=path
+        )
+    with _damage_explained(path):
+        if ending == ".png":
+            found = from_channels(read_samples(path), packing, path)
+            found = _scaled(found, read_texts(path)) if packing == "grey" else found
+        elif ending in (".tif", ".tiff"):
+            found = read_tiff(path, packing)
+        elif ending == ".npy":
+            found = read_npy(path)
+        elif ending == ".npz":
+            found = read_npz(path)
+        elif ending in (".r16", ".raw"):
+            found = read_raw(path, raw_size)
+        elif ending == ".hgt":
+            found = read_hgt(path, raw_size)
+        else:
+            found = _READERS[ending](path)
+    check_grid(found.rows.shape, found.rows.dtype, path, in_turn=True)
+    return ElevationFile(path, found, found.south_first or first_row == "south")
+
+
+_READERS = {".asc": read_asc, ".bil": read_bil, ".flt": read_flt, ".nc": read_netcdf}
+
+
+def _scaled(found: Found, text: Mapping[str, str]) -> Found:
+    """Return what was found in metres, where a PNG's texts say what its numbers mean."""
+    scale, offset = (_numbers(text.get(name, ""), 1) for name in ("scale_m", "offset_m"))
+    if not scale or not offset or scale[0] <= 0.0 or found.code_range is None:
+        return found
+    low, high = (offset[0] + scale[0] * code for code in found.code_range)
+    spacing = _numbers(text.get("spacing_m", ""), 2)
+    return replace(
+        found,
+        in_metres=True,
+        scale=scale[0],
+        offset=offset[0],
+        code_range=(low, high),
+        spacing=(spacing[0], spacing[1]) if spacing and min(spacing) > 0.0 else None,
+    )
+
+
+def _numbers(text: str, count: int) -> list[float]:
+    """Return so many finite numbers of a text, or none: a text may be anybody's."""
+    try:
+        found = [float(word) for word in text.split()]
+    except ValueError:
+        return []
+    return found if len(found) == count and all(map(math.isfinite, found)) else []
+
+
+@contextmanager
+def _damage_explained(path: Path) -> Iterator[None]:
+    # Decoders (tifffile, zlib, zipfile, NumPy's headers) raise a dozen kinds of exception
+    # on damaged files, and warn about odd metadata.
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            yield
+    except DataError:
+        raise
+    except MemoryError as error:
+        raise DataError("there is not enough memory to read it", file=path) from error
+    except PermissionError as error:
+        raise DataError(f"cannot be read: {reason(error)}", file=path) from error
+    except Exception as error:
+        raise DataError(f"the file is damaged or cut short: {reason(error)}", file=path) from error

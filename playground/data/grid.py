@@ -1,0 +1,149 @@
+"""Report what a grid of heights may be, how a format's reader hands one over, and which heights it means."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.data.bounds import MAX_TEXELS
+from playground.data.place import Crs, Place
+from playground.data.rows import ArrayRows, Rows
+from playground.errors import DataError
+
+Heights = NDArray[np.float32]
+Packing = Literal["grey", "rgb"]
+
+EIGHT_BIT = (0.0, 255.0)
+SIXTEEN_BIT = (0.0, 65535.0)
+PACKED = (0.0, 16777215.0)
+
+MOST_IN_TURN = 2**34
+"""Texels of a file that is never read as a whole."""
+
+
+_SHORT_VOID = -32768  # "no data" in 16-bit elevations: SRTM's value, and the custom since
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What a format's reader hands over; rows in the file's order."""
+
+    rows: Rows  # of any real dtype
+    spacing: tuple[float, float] | None = None
+    in_metres: bool = True  # else heights are codes, as a picture's
+    code_range: tuple[float, float] | None = None
+    void: NDArray[np.bool_] | None = None  # (rows, cols) where there is no data, besides NaN and ``no_data``
+    no_data: float | None = None  # what stands for no data
+    assumed: str = ""  # of the unit of its heights; "" where the file or its format says it
+    scale: float = 1.0  # [m] height of one step of the file's numbers
+    offset: float = 0.0  # [m] height of the file's 0
+    place: Place | None = None
+    south_first: bool | None = None  # the file's first row is the south's; None: it does not say
+    overviews: tuple[Rows, ...] = ()  # the same terrain in fewer texels, each the mean of several
+    notes: tuple[str, ...] = ()
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Return (nx, ny), in texels."""
+        ny, nx = self.rows.shape
+        return nx, ny
+
+    def in_unit(self, crs: Crs, stated: str = "") -> Found:
+        """Return the same in metres, of scale and offset in a stated unit, else in that of ``crs``."""
+        metres, assumed = crs.height_unit(stated)
+        return replace(self, scale=self.scale * metres, offset=self.offset * metres, assumed=assumed)
+
+    def heights(self, start: int, band: NDArray[Any]) -> NDArray[np.floating[Any]]:
+        """Return the heights that some rows mean, NaN for no data; ``start`` is the number of the first."""
+        void = void_of(band, self.no_data)
+        if band.dtype.kind == "i" and band.dtype.itemsize == 2:
+            short = band == _SHORT_VOID
+            void = short if void is None else void | short
+        if self.void is not None:
+            own = self.void[start : start + len(band)]
+            void = own if void is None else void | own
+        with np.errstate(all="ignore"):
+            plain = (self.scale, self.offset) == (1.0, 0.0)
+            heights = np.array(
+                band if plain else band.astype(np.float64) * self.scale + self.offset, dtype=np.float32
+            )
+        if void is not None:
+            heights[void] = np.nan
+        return heights
+
+
+def in_memory(values: NDArray[Any], spacing: tuple[float, float] | None = None, **facts: Any) -> Found:
+    """Return what was found, of an array (rows, cols)."""
+    return Found(ArrayRows(values), spacing, **facts)
+
+
+def void_of(values: NDArray[Any], no_data: float | None) -> NDArray[np.bool_] | None:
+    """Return where numbers stand for no data; None where none could."""
+    if no_data is None or math.isnan(no_data):
+        return None
+    if values.dtype.kind != "f":
+        bounds = np.iinfo(values.dtype)
+        exact = no_data.is_integer() and bounds.min <= no_data <= bounds.max
+        return np.asarray(values == int(no_data)) if exact else None
+    if abs(no_data) > 1e30:  # the lowest float, which programs round in several ways before printing
+        return np.asarray(np.abs(values) > 1e30)
+    return np.asarray(values == values.dtype.type(no_data))
+
+
+def fitted(size: tuple[int, int], longest: int) -> tuple[int, int]:
+    """Return a grid like one of ``size`` (nx, ny) with so many nodes at most on the longer side."""
+    most = max(size)
+    if longest >= most:
+        return size
+    ratio = (longest - 1) / (most - 1)
+    return max(2, round((size[0] - 1) * ratio) + 1), max(2, round((size[1] - 1) * ratio) + 1)
+
+
+def check_grid(shape: tuple[int, ...], dtype: np.dtype[Any], path: Path, *, in_turn: bool = False) -> None:
+    """Raise ``DataError`` for what is no terrain; a header's claims are judged, before memory is taken.
+
+    ``in_turn``: its rows can be read in turn, so that there may be more of them.
+    """
+    size = " x ".join(map(str, reversed(shape))) or "a single number"
+    if dtype.kind not in "iuf":
+        raise DataError(f"holds {dtype}, not heights; expected integers or real numbers", file=path)
+    if len(shape) != 2:
+        raise DataError(
+            f"has {len(shape)} dimensions ({size}); expected two, rows from north to south", file=path
+        )
+    if min(shape) < 2:
+        raise DataError(f"is {size} texels; expected at least 2 x 2", file=path)
+    if math.prod(shape) > (MOST_IN_TURN if in_turn else MAX_TEXELS):
+        most = "2**34, as 131072 x 131072" if in_turn else "2**28, as 16384 x 16384"
+        raise DataError(f"is {size} texels; the most is {most}", file=path)
+
+
+def from_channels(samples: NDArray[Any], packing: Packing, path: Path) -> Found:
+    """Return the heights in a picture's samples (rows, cols, channels): grey, grey + alpha, RGB or RGBA."""
+    channels = samples.shape[2]
+    code_range = {"u1": EIGHT_BIT, "u2": SIXTEEN_BIT}.get(samples.dtype.str[1:])
+    void = None
+    pictured = samples.dtype.kind == "u"  # as greys and colours are, and bands of measured numbers are not
+    if channels in (2, 4) and pictured:
+        void = samples[..., -1] == 0
+    if packing == "rgb":
+        if channels < 3 or samples.dtype != np.uint8:
+            bits = 8 * samples.dtype.itemsize
+            raise DataError(
+                f"packed heights need three channels of 8 bits; found {channels} of {bits}", file=path
+            )
+        red, green, blue = (samples[..., k].astype(np.float32) for k in range(3))  # exact: below 2**24
+        packed = red * 65536.0 + green * 256.0 + blue
+        return in_memory(packed, in_metres=False, code_range=PACKED, void=void)
+    grey = samples[..., 0]
+    if pictured and channels >= 3 and not all(np.array_equal(grey, samples[..., k]) for k in (1, 2)):
+        raise DataError(
+            "is a picture in colour; expected grey, or packing 'rgb' for heights in three channels", file=path
+        )
+    notes = () if pictured or channels == 1 else (f"the first of its {channels} bands was read",)
+    return in_memory(grey, in_metres=code_range is None, code_range=code_range, void=void, notes=notes)

@@ -1,0 +1,406 @@
+"""Sources that read a file: elevations, masks, painted numbers, models, vectors.
+
+A large file is read at that size, a part at a time, and never has all of its texels in memory.
+
+An image's numbers are taken as they are, not as colours: nothing is decoded. Without an alpha
+channel the fourth weight is 0.
+
+What was written is read again bit by bit, at the size it was written in.
+
+Texel by texel from the south-west, row by row: the three corners of the first triangle, of the second, and so
+on, ``CORNERS`` in a row. The fourth number of a place is 1 where there is a corner, 0 after the last.
+
+Where the terrain lies is what an elevation file says; shapes in another reference system are brought into
+that one, by GDAL where it is more than a name. The datums WGS 84, NAD 83 and ETRS 89 are taken for one: they
+differ by two metres at most.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.data.content_hash import content_key
+from playground.data.elevation import Edge, Elevation, ElevationFile, open_elevation, read_elevation
+from playground.data.gaps import Voids, fill_no_data
+from playground.data.gis import advice, has_rasters, name_for_gdal, transformed
+from playground.data.grid import Packing, check_grid, fitted
+from playground.data.image_files import Image, read_image, replacing
+from playground.data.model_files import Model, read_model
+from playground.data.place import Place
+from playground.data.resample import resample
+from playground.data.vectors import Grid, Line, Shape, draw, read_vectors
+from playground.engine.source_kinds import Terrain
+from playground.errors import DataError
+from playground.paths import shown
+from playground.sketch.model import Value
+
+LARGE = 2**24
+"""Texels of a file above which not all of them are read, unless the terrain has its size."""
+
+USUAL_SIDE = 4097
+"""Texels of the longer side of terrain from a large file, where nothing says how many."""
+
+KEPT = 2**26
+"""Texels above which heights are not kept in memory once a texture was made of them."""
+
+Asked = tuple[str, str, tuple[int, int] | None, Packing, Voids, Edge]
+"""A file's path, what changes whenever its contents do, and what its parameters say."""
+
+
+def describe(values: Mapping[str, Value]) -> Terrain:
+    """Return what the file knows of its terrain."""
+    asked = _asked(values)
+    file = _opened(asked)
+    size = _size(file, values)
+    known = _known(asked, size)
+    low, high = known.lowest, known.highest
+    metres = values["metres"]  # of the file's lowest and highest codes; equal: nothing is known
+    relief = base = None
+    assumed = ""
+    if isinstance(metres, tuple) and metres[0] != metres[1]:
+        codes = known.code_range or (low, high)
+        scale = (metres[1] - metres[0]) / ((codes[1] - codes[0]) or 1.0)
+        base, relief = metres[0] + (low - codes[0]) * scale, (high - low) * scale
+    elif known.in_metres:
+        base, relief, assumed = low, high - low, known.assumed
+    return Terrain(size, file.extent, relief, base, file.found.place, assumed)
+
+
+def make(
+    values: Mapping[str, Value], size: tuple[int, int], moment: None = None
+) -> dict[str, NDArray[np.float32]]:
+    """Return the heights at a size: 0 at the file's lowest, 1 at its highest.
+
+    Of a large file, those at less than half of the size that it has by itself are made of these: previews
+    need not go through it again.
+    """
+    asked = _asked(values)
+    own = _size(_opened(asked), values)
+    elevation = _at(asked, own if all(2 * a <= b for a, b in zip(size, own, strict=True)) else size)
+    low, span, made = elevation.lowest, elevation.highest - elevation.lowest, elevation.size
+    with _memory_explained(Path(str(values["elevation"]))):
+        if span > 0:
+            heights = elevation.heights - np.float32(low)
+            heights /= np.float32(span)
+        else:
+            heights = np.zeros_like(elevation.heights)
+        if math.prod(made) > KEPT:
+            _whole.cache_clear()
+            _large.cache_clear()
+        del elevation
+        if size != made:
+            heights = resample(heights, size, within=(0.0, 1.0))
+    return {"height": heights}
+
+
+def notes(values: Mapping[str, Value]) -> tuple[str, ...]:
+    """Return what was assumed of the file, or lost."""
+    asked = _asked(values)
+    file = _opened(asked)
+    size = _size(file, values)
+    found = _known(asked, size).notes
+    if not values.get("longest") and size != file.size:
+        texels, fewer = (f"{x} x {y}" for x, y in (file.size, size))
+        found += (f"has {texels} texels; unless a size or `longest` says how many, {fewer} are read",)
+    return tuple(f"{file.path.name}: {note}" for note in found)
+
+
+def _size(file: ElevationFile, values: Mapping[str, Value]) -> tuple[int, int]:
+    """Return the size of the terrain where the sketch says none."""
+    longest = values.get("longest", 0)  # kernels made before it was there have none
+    assert isinstance(longest, int)  # the kernel's file says so
+    if longest:
+        return fitted(file.size, longest)
+    return fitted(file.size, USUAL_SIDE) if math.prod(file.size) > LARGE else file.size
+
+
+def _asked(values: Mapping[str, Value]) -> Asked:
+    path = str(values["elevation"])
+    raw = values["raw_size"]
+    size = (int(raw[0]), int(raw[1])) if isinstance(raw, tuple) and raw[0] and raw[1] else None
+    packing: Packing = "rgb" if values["packing"] == 1 else "grey"
+    voids: Voids = "fill" if values["no_data"] == 1 else "refuse"
+    first_row: Edge = "south" if values["first_row"] == 1 else "north"
+    return path, content_key(Path(path)), size, packing, voids, first_row
+
+
+@lru_cache(maxsize=4)
+def _opened(asked: Asked) -> ElevationFile:
+    path, _, raw_size, packing, _, first_row = asked
+    with _memory_explained(Path(path)):
+        return open_elevation(path, raw_size=raw_size, packing=packing, first_row=first_row)
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What is known of an elevation besides its heights."""
+
+    lowest: float
+    highest: float
+    code_range: tuple[float, float] | None
+    in_metres: bool
+    assumed: str
+    notes: tuple[str, ...]
+
+
+@lru_cache(maxsize=16)
+def _known(asked: Asked, size: tuple[int, int]) -> _Known:
+    found = _at(asked, size)
+    return _Known(found.lowest, found.highest, found.code_range, found.in_metres, found.assumed, found.notes)
+
+
+def _at(asked: Asked, size: tuple[int, int]) -> Elevation:
+    """Return all heights of a file; of a large one, those of a size."""
+    with _memory_explained(Path(asked[0])):
+        return _large(asked, size) if math.prod(_opened(asked).size) > LARGE else _whole(asked)
+
+
+@lru_cache(maxsize=4)
+def _whole(asked: Asked) -> Elevation:
+    return fill_no_data(_opened(asked).read(), asked[4])
+
+
+@lru_cache(maxsize=2)
+def _large(asked: Asked, size: tuple[int, int]) -> Elevation:
+    return fill_no_data(_opened(asked).read_at(size), asked[4])
+
+
+@contextmanager
+def _memory_explained(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except MemoryError:
+        raise DataError("there is not enough memory to read it", file=shown(path)) from None
+
+
+def read_mask(path: Path, size: tuple[int, int], stated: tuple[int, int] = (0, 0)) -> NDArray[np.float32]:
+    """Return an image's four channels, (ny, nx, 4) for a size (nx, ny), 0..1, row 0 south.
+
+    The image may have more texels than that or fewer, but the same proportions, to within
+    one texel; and where a size is ``stated``, that one.
+
+    Raises:
+        DataError: missing, not a picture, damaged, of another size than stated, or of
+            other proportions.
+    """
+    image = read_image(path)
+    width, height = image.size
+    if any(stated) and (width, height) != stated:
+        raise DataError(
+            f"this alpha map has {width} x {height} texels; {stated[0]} x {stated[1]} were expected",
+            file=path,
+        )
+    if abs(width * size[1] - height * size[0]) > max(width, height, *size):
+        raise DataError(
+            f"this alpha map has {width} x {height} texels, which the terrain's weights, "
+            f"{size[0]} x {size[1]}, would stretch; the same proportions were expected",
+            file=path,
+        )
+    return resized(weights_of(image), size)
+
+
+def weights_of(image: Image) -> NDArray[np.float32]:
+    """Return an image's channels as four weights (ny, nx, 4), 0..1, row 0 south."""
+    pixels = image.pixels[::-1]
+    weights = np.array(pixels / np.float32(255) if pixels.dtype == np.uint8 else pixels, np.float32)
+    np.clip(weights, 0.0, 1.0, out=weights)
+    if not image.has_alpha:
+        weights[..., 3] = 0.0
+    return weights
+
+
+def resized(weights: NDArray[np.float32], size: tuple[int, int]) -> NDArray[np.float32]:
+    """Return four weights a texel on a grid of another size (nx, ny), corners on corners."""
+    if weights.shape[1::-1] == size:
+        return weights
+    channels = [resample(weights[..., k], size, within=(0.0, 1.0)) for k in range(4)]
+    return np.stack(channels, axis=-1).astype(np.float32)
+
+
+def read_numbers(path: Path, size: tuple[int, int]) -> NDArray[np.float32]:
+    """Return a file's numbers (ny, nx) at a size (nx, ny), row 0 south; any elevation file will do.
+
+    Raises:
+        DataError: missing, damaged, no grid of finite numbers.
+    """
+    found = read_elevation(path)
+    if found.missing:
+        raise DataError(f"{found.missing} texels have no data; expected a number in each", file=path)
+    if found.size == size:
+        return found.heights
+    nx, ny = size
+    return resample(found.heights, (max(nx, 2), max(ny, 2)))[:ny, :nx]
+
+
+def write_numbers(path: Path, numbers: NDArray[np.float32]) -> None:
+    """Write numbers (ny, nx), row 0 south, as a TIFF without compression, which takes a few milliseconds.
+
+    Raises ``DataError`` where the file cannot be written.
+    """
+    import tifffile
+
+    with replacing(path) as handle:
+        tifffile.imwrite(
+            handle, np.ascontiguousarray(numbers[::-1], "<f4"), photometric="minisblack", metadata=None
+        )
+
+
+CORNERS = 96
+"""Corners in a row of texels."""
+
+
+def size_of_model(values: Mapping[str, Value]) -> tuple[int, int]:
+    """Return how many texels hold a model's corners."""
+    corners = 3 * len(_model(values).corners)
+    return CORNERS, -(-corners // CORNERS)
+
+
+def make_model(
+    values: Mapping[str, Value], size: tuple[int, int], moment: Any = None
+) -> dict[str, NDArray[np.float32]]:
+    """Return places (ny, nx, 4) [m], normals (ny, nx, 4) and colours (ny, nx, 4), linear.
+
+    Raises:
+        DataError: as ``read_model``, or the model has more corners than there are texels.
+    """
+    model = _model(values)
+    texels, corners = size[0] * size[1], 3 * len(model.corners)
+    if corners > texels:
+        raise DataError(
+            f"this model has {corners} corners; {texels} texels were expected to hold them",
+            file=Path(str(values["model"])),
+        )
+    found = {}
+    for name, numbers in (("place", model.corners), ("facing", model.normals), ("tint", model.colours)):
+        rows = np.zeros((texels, 4), np.float32)
+        rows[:corners, :3] = numbers.reshape(-1, 3)
+        rows[:corners, 3] = 1.0
+        found[name] = rows.reshape(size[1], size[0], 4)
+    return found
+
+
+def _model(values: Mapping[str, Value]) -> Model:
+    """Return a model, which is not read again while its file stays as it is: every plan needs its size."""
+    path = Path(str(values["model"]))
+    return _read(path, content_key(path))
+
+
+@lru_cache(maxsize=8)
+def _read(path: Path, _: str) -> Model:
+    return read_model(path)
+
+
+_ALIKE = frozenset({"EPSG:4326", "EPSG:4269", "EPSG:4258", "OGC:CRS84"})
+"""Degrees on datums that differ by metres."""
+
+_MOST_PIECES = 512
+"""Of a straight line, which is bent in another reference system."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    """The shapes of a file, in the reference system of the terrain."""
+
+    place: Place
+    shapes: tuple[Shape, ...]
+    extent: tuple[float, float]  # [m]
+    notes: tuple[str, ...]
+
+
+def make_mask(
+    values: Mapping[str, Value], size: tuple[int, int], moment: None = None
+) -> dict[str, NDArray[np.float32]]:
+    """Return how much of each texel the shapes cover."""
+    check_grid(size[::-1], np.dtype(np.float32), Path("mask of vector data"))
+    placed = _placed(*_vector_request(values))
+    west, south, east, north = placed.place.bounds
+    scale = (size[0] - 1) / (east - west), (size[1] - 1) / (north - south)
+    shapes = [
+        replace(s, lines=tuple((line - (west, south)) * scale for line in s.lines)) for s in placed.shapes
+    ]
+    spacing = placed.extent[0] / (size[0] - 1), placed.extent[1] / (size[1] - 1)
+    width = values["width"]
+    assert isinstance(width, int | float)  # the kernel's file says so
+    return {"mask": draw(shapes, Grid(size, spacing), float(width), filled=values["polygons"] == 0)}
+
+
+def mask_notes(values: Mapping[str, Value]) -> tuple[str, ...]:
+    """Return what was left out of the file."""
+    vectors = Path(str(values["vectors"]))
+    return tuple(f"{vectors.name}: {note}" for note in _placed(*_vector_request(values)).notes)
+
+
+def _vector_request(values: Mapping[str, Value]) -> tuple[str, str, str, str]:
+    paths = [str(values[name]) for name in ("vectors", "elevation")]
+    return paths[0], paths[1], content_key(Path(paths[0])), content_key(Path(paths[1]))
+
+
+@lru_cache(maxsize=4)
+def _placed(vectors: str, elevation: str, *contents: str) -> _Placed:
+    path, terrain = Path(vectors), open_elevation(elevation)
+    place, extent = terrain.found.place, terrain.extent
+    if place is None or not place.crs.facts.kind or extent is None:
+        message = "does not say where its terrain lies, so nothing can be laid on it; a GeoTIFF does"
+        raise DataError(message, file=terrain.path)
+    found = read_vectors(path)
+    shapes = _in_system(found.shapes, found.crs, place, path)
+    said = list(found.notes)
+    lost = len(found.shapes) - len(shapes)
+    if lost:
+        said.append(
+            f"{lost} of its {len(found.shapes)} shapes have no place in the terrain's reference system"
+        )
+    if not any(_meets(shape, place.bounds) for shape in shapes):
+        said.append("none of its shapes lies on the terrain")
+    return _Placed(place, shapes, extent, tuple(said))
+
+
+def _in_system(shapes: tuple[Shape, ...], crs: str, place: Place, path: Path) -> tuple[Shape, ...]:
+    """Return shapes in the terrain's reference system, without those that have no place in it."""
+    if not crs:
+        return shapes  # the file says nothing: it is taken for that of the terrain
+    wanted = name_for_gdal(place.crs)
+    if crs == wanted or {crs, wanted} <= _ALIKE:
+        return shapes
+    if not has_rasters() or not wanted:
+        target = wanted.partition("[")[0] or "one without a code"
+        message = f"its reference system is {crs.partition('[')[0]} and that of the terrain {target}"
+        raise DataError(f"{message}; {advice('transforms')}", file=path)
+    lines = [_dense(line) if shape.kind != "point" else line for shape in shapes for line in shape.lines]
+    try:
+        points = transformed(np.concatenate(lines), crs, wanted)
+    except DataError as error:
+        raise DataError(error.diagnostics[0].message, file=path) from None
+    bent = iter(np.split(points, np.cumsum([len(line) for line in lines])[:-1]))
+    made = (replace(shape, lines=tuple(next(bent) for _ in shape.lines)) for shape in shapes)
+    return tuple(shape for shape in made if all(np.isfinite(line).all() for line in shape.lines))
+
+
+def _dense(line: Line) -> Line:
+    """Return a line with points between its own where they are far apart: it will be bent."""
+    if len(line) < 2:
+        return line
+    degrees = np.abs(line).max() <= 360.0  # metres of a terrain near the origin are cut finer than need be
+    length = np.hypot(*(line[1:] - line[:-1]).T)
+    counts = np.clip(np.ceil(length / (0.01 if degrees else 1000.0)), 1, _MOST_PIECES).astype(np.intp)
+    owner = np.repeat(np.arange(len(counts)), counts)
+    number = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
+    step = (line[1:] - line[:-1]) / counts[:, None]
+    return np.concatenate([line[owner] + step[owner] * number[:, None], line[-1:]])
+
+
+def _meets(shape: Shape, bounds: tuple[float, float, float, float]) -> bool:
+    """Return whether a shape may lie on the terrain, by what is around it."""
+    points = np.concatenate(shape.lines)
+    (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
+    west, south, east, north = bounds
+    return bool(x0 <= east and x1 >= west and y0 <= north and y1 >= south)

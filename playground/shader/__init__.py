@@ -1,0 +1,1 @@
+"""GLSL as text: read, check, translate, assemble, explain. No OpenGL, no window, no picture."""

@@ -1,0 +1,473 @@
+"""Shaders of other tools: their files, their passes, and the kernel made of each pass.
+
+What a dialect gives is a table: name → (type, meaning). A name that the text reads and does not
+declare is declared before it; where the text declares one, its own type counts.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from playground.allowed_files import is_file, is_inside, leads_outside
+from playground.errors import Diagnostic, ShaderError, SketchError
+from playground.paths import PART_OF_FILE, shown
+from playground.shader.declarations import Declared, is_declared, takes, uniforms, vertex_outputs
+from playground.shader.dialects.es import Rewritten, version_of
+from playground.shader.header import read_uniforms, title_of
+from playground.shader.kernel import SHAPES, Input, Kernel, Output
+from playground.shader.parameter import Parameter, Sampling, Value, Widget
+from playground.shader.reserved_names import ELEMENT
+from playground.shader.source import Line, Origin, SourceText, normalised, read_source_and_origin, read_text
+
+Names = Mapping[str, tuple[str, str]]
+"""Name → GLSL type and meaning: a key of ``Runner``'s values; of a sampler "noise 0", "picture 3", "none"."""
+
+STAND_INS = {
+    "noise": "foreign/noise",
+    "picture": "foreign/picture",
+    "sky": "foreign/sky_box",
+    "volume": "foreign/noise",
+    "sound": "foreign/spectrum",
+    "fft": "foreign/spectrum",
+    "keys": "foreign/keys",
+}
+"""What is drawn where nothing feeds a channel: the first word of its meaning → a technique of ``glsl/``."""
+
+STAND_INS_OF_SHAPES = {"cube": "sky", "volume": "volume"}
+"""Likewise, by a channel's shape, where it has one of its own."""
+
+SAMPLING = Sampling("linear", "repeat", mipmap=True)
+STAND_IN_SIZE = ("256", "256")
+SIZES = {
+    "foreign/keys": ("256", "3"),
+    "foreign/microphone": ("512", "2"),
+    "foreign/sky_box": ("128", "768"),
+    "foreign/sound": ("512", "2"),
+    "foreign/spectrum": ("512", "2"),
+}
+"""Texels of techniques that feed a channel, where they are not ``STAND_IN_SIZE``."""
+
+SIZES_OF_SHAPES = {"cube": ("64", "384"), "volume": ("32", "1024"), "line": ("256", "1")}
+"""Texels of other techniques, by the channel's shape."""
+
+_CLAMPED = Sampling("linear", "clamp")
+_SAMPLINGS = {"sound": _CLAMPED, "fft": _CLAMPED, "keys": Sampling("nearest", "clamp")}
+_STRENGTHS = {"fft": 0.01}  # Bonzomatic's shaders multiply what they hear, by 100 as a rule
+_ALIKE = ("keys",)  # stand-ins that have no numbers
+
+
+@dataclass(frozen=True)
+class Rules:
+    """What a dialect gives a shader."""
+
+    name: str  # of its row
+    names: Names
+    declared_anywhere: bool = False  # a name declared in any function counts as declared
+    epilogue: str = ""  # of shader/shaders
+    varyings: tuple[str, ...] = ()  # declarations of what every text may take from its vertex shader
+    helpers: tuple[str, ...] = ()  # of shader/shaders, between what is declared and the text
+    vertex_helpers: tuple[str, ...] = ()  # likewise, of a vertex shader of the author's own
+    defines: Callable[[SourceText], tuple[str, ...]] = lambda source: ()  # lines of the prelude
+
+
+@dataclass(frozen=True)
+class Channel:
+    """What one sampler of a shader reads: a target, or a technique of ``glsl/``; neither: black."""
+
+    target: str = ""  # of the same file: its latest write in this frame, else that of the frame before
+    use: str = ""  # a technique, as "foreign/image"
+    values: tuple[tuple[str, Value], ...] = ()  # of the technique
+    size: tuple[str, str] = STAND_IN_SIZE  # [texels] likewise, expressions
+    sampling: Sampling = SAMPLING
+    unfed: str = ""  # what is drawn instead, where the technique is a stand-in: the end of a sentence
+
+
+def stand_in(kind: str, number: int, unfed: str) -> Channel:
+    """Return a channel that a stand-in feeds; ``kind`` is a key of ``STAND_INS``."""
+    size = SIZES.get(STAND_INS[kind]) or SIZES_OF_SHAPES.get(kind, STAND_IN_SIZE)
+    values: tuple[tuple[str, Value], ...] = () if kind in _ALIKE else (("number", number),)
+    if kind in _STRENGTHS:
+        values = (*values, ("strength", _STRENGTHS[kind]))
+    sampling = _SAMPLINGS.get(kind, SAMPLING)
+    return Channel(use=STAND_INS[kind], values=values, size=size, sampling=sampling, unfed=unfed)
+
+
+@dataclass(frozen=True)
+class Shader:
+    """One pass of another tool's file."""
+
+    name: str  # of the pass, one of its own in the file
+    text: Rewritten
+    rules: Rules
+    target: str = ""  # what others read its picture as; of two that write one, the later counts
+    channels: Mapping[str, Channel] = field(default_factory=dict)  # by sampler; others go by the rules
+    parameters: tuple[Parameter, ...] = ()  # besides the uniforms that the text declares
+    size: tuple[str, str] | None = None  # expressions; None: the size of the picture
+    format: str = "rgba8"
+    named: frozenset[str] = frozenset()  # names of the rules that the prelude names
+    prelude: tuple[str, ...] = ()  # lines besides those that the rules give
+    vertex: Rewritten | None = None  # the author's own vertex shader
+    keeps: bool = False  # what it wrote in the last frame may be read
+    repeat: str = ""  # an expression: it is drawn so often, and reads what it wrote before by ``feeds``
+    feeds: str = ""  # a sampler
+
+
+@dataclass(frozen=True)
+class Made:
+    """A pass that a technique of ``glsl/`` makes of what others wrote; its output is ``frame``."""
+
+    name: str
+    use: str
+    reads: Mapping[str, str]  # input → target
+    target: str = ""
+    size: tuple[str, str] | None = None
+    repeat: str = ""
+    feeds: str = ""  # an input
+    keeps: bool = True
+
+
+_COMMENTED_FILE = re.compile(r"^\s*([^\s\"'<>|*?]+\.(?:png|jpe?g|webp|tiff?))\b", re.IGNORECASE)
+_PICTURE = re.compile(r"\buniform\b.*\bu_tex\d+\s*;")
+_COUNT = re.compile(r"\[\s*(\d{1,9})\s*\]")
+_MOST_ELEMENTS = 16  # of an array of samplers: what a driver of OpenGL 3.3 may be limited to
+_MODEL = "MODEL_"
+_PACKS = 420  # the version of GLSL that has all of these
+_PACKING = frozenset(f"{way}{kind}2x16" for way in ("pack", "unpack") for kind in ("Half", "Snorm", "Unorm"))
+_DEFINED = re.compile(r"\s*#\s*define\s+(\w+)")
+_SHADOW_MAP = "#define LIGHT_SHADOWMAP "
+_STANDS_IN = "a stand-in is drawn; a sketch may wire an image to it"
+_SOUNDS = "a made-up sound stands in; a sketch may wire foreign/sound to it"
+_BANDS = "a made-up sound stands in"
+_NO_PANEL = "it is 0, as no panel shows its type"
+_NO_IMAGE = "it reads 0, and nothing keeps what is written"
+_IMAGE = re.compile(r"[iu]?image(?:[123]D|Cube|Buffer|2DRect)\w*")
+
+
+class ForeignKernel:
+    """One shader's kernel, and what its samplers read; ``root`` is the folder that its files stay in."""
+
+    def __init__(self, shader: Shader, root: Path) -> None:
+        self.shader = shader
+        self.source = shader.text.source
+        self.code = self.source.code
+        self.root = root
+        self.declared = uniforms(self.code)
+        self.vertex = shader.vertex.source if shader.vertex else None
+        own = {**(uniforms(self.vertex.code) if self.vertex else {}), **self.declared}
+        given = shader.rules.names.items()
+        kept = {n: one for n, one in given if n not in own or takes(own[n].type, one[0])}
+        self.types = {n: own[n].type for n in kept if n in own}
+        self.rules = replace(shader.rules, names=kept)
+        self.missing = self._missing(self.source)
+        self.vertex_missing = self._missing(self.vertex) if self.vertex else []
+        self.commented = {(line.file, line.number): file for line, file in commented_files(self.source)}
+        self.pictures = dict(self._pictures())
+        self.shapes = {n: SHAPES[kind] for n, kind in self._kinds() if kind in SHAPES and self._is_read(n)}
+        self.shapes |= {element: SHAPES[one.type] for element, one in self._elements()}
+        self.channels = {name: self._channel(name) for name in self.shapes}
+
+    def kernel(self, name: str) -> Kernel:
+        """Return the kernel as a technique called ``name``."""
+        shader, parameters = self.shader, self._parameters()
+        own = {p.name for p in parameters}
+        given = {*self.declared, *self.missing, *self.vertex_missing}
+        meanings = [
+            (n, f"identity{self.types.get(n, kind)[-1]}" if kind.startswith("mat") else meaning)
+            for n, (kind, meaning) in self.rules.names.items()
+            if n in given and n not in own and "sampler" not in kind
+        ]
+        ours = not shader.vertex
+        return Kernel(
+            name,
+            "plain_fragment",
+            self.source,
+            (Output("frame", shader.format),),
+            parameters,
+            tuple(
+                Input(n, c.sampling, "zero" if c.target else "black", shape=self.shapes[n])
+                for n, c in self.channels.items()
+            ),
+            title=title_of(self.source),
+            dialect=self.rules.name,
+            prelude=(*self._prelude(shader.text, self.missing), *self._varyings()),
+            epilogue=self.rules.epilogue,
+            helpers=(*_packing(self.source), *self.rules.helpers),
+            vertex=vertex_outputs("\n".join([*shader.text.prelude, *self._varyings(), self.code]))
+            if ours
+            else (),
+            vertex_source=self.vertex,
+            vertex_prelude=tuple(self._prelude(shader.vertex, self.vertex_missing)) if shader.vertex else (),
+            vertex_helpers=(*_packing(self.vertex), *self.rules.vertex_helpers) if self.vertex else (),
+            tool_names=(
+                *((n, m) for n, (_, m) in self.rules.names.items()),
+                *((p.name, "") for p in shader.parameters),
+                *((one.rstrip(";").split()[-1], "") for one in self.rules.varyings),
+            ),
+            meanings=tuple(meanings),
+            unfed=tuple(self._unfed(own)),
+        )
+
+    def _prelude(self, text: Rewritten, missing: Sequence[str]) -> Iterator[str]:
+        """Yield the lines that come before a text: what is declared for it."""
+        yield from (*text.prelude, *self.shader.prelude, *self.rules.defines(text.source))
+        yield from (f"uniform {_declaration(self.rules.names[name][0], name)};" for name in missing)
+        declared = uniforms(text.source.code)
+        yield from (f"uniform {p.type} {p.name};" for p in self.shader.parameters if p.name not in declared)
+
+    def _varyings(self) -> list[str]:
+        """Return the dialect's own that a text reads and does not declare itself."""
+        known = [declaration for declaration, _ in vertex_outputs(self.code)]
+        return [one for one in self.rules.varyings if one.replace("in ", "out ", 1) not in known]
+
+    def _channel(self, sampler: str) -> Channel:
+        """Return what feeds a sampler; by the rules where the shader does not say."""
+        if sampler in self.shader.channels:
+            return self.shader.channels[sampler]
+        kind, _, number = self.rules.names.get(sampler, ("", ""))[1].partition(" ")
+        if kind not in STAND_INS:
+            return Channel()
+        file = self._commented(self.declared[sampler]) if sampler in self.declared else ""
+        unfed = f"there is no file '{file}', so a stand-in is drawn" if file else _STANDS_IN
+        unfed = _SOUNDS if kind in ("sound", "fft") else unfed
+        kind = STAND_INS_OF_SHAPES.get(self.shapes[sampler], kind)
+        return stand_in(kind, int(number), unfed)
+
+    def _missing(self, source: SourceText) -> list[str]:
+        """Return the names of the dialect that a text reads and does not declare."""
+        code, declared = source.code, uniforms(source.code)
+        anywhere = self.rules.declared_anywhere
+        return [
+            name
+            for name in self.rules.names
+            if name not in declared
+            and (name in self.shader.named or name in source.names)
+            and (name in self.shader.named or re.search(rf"(?<![.\w]){name}\b", code))
+            and not is_declared(code, name, anywhere=anywhere)
+        ]
+
+    def _is_read(self, name: str) -> bool:
+        """Return whether a text names a sampler besides declaring it."""
+        return name in self.missing or name in self.vertex_missing or self.source.counts[name] > 1
+
+    def _kinds(self) -> Iterator[tuple[str, str]]:
+        """Yield each sampler that a wire may feed, with its type."""
+        for name in dict.fromkeys([*self.missing, *self.vertex_missing]):
+            yield name, self.rules.names[name][0]
+        files = {p.name for p in self.shader.parameters}
+        for one in self.declared.values():
+            if (
+                not one.is_array
+                and one.name not in self.pictures
+                and one.name not in files
+                and not self._line(one).comment.startswith("!")
+            ):
+                yield one.name, one.type
+
+    def _elements(self) -> Iterator[tuple[str, Declared]]:
+        """Yield what a wire feeds of the arrays of samplers: ``maps_0`` is the first of ``maps[4]``."""
+        for one in self.declared.values():
+            count = _COUNT.search(one.written) if one.is_array and one.type in SHAPES else None
+            if count and self._is_read(one.name):
+                elements = (
+                    f"{one.name}{ELEMENT}{number}" for number in range(min(int(count[1]), _MOST_ELEMENTS))
+                )
+                yield from ((element, one) for element in elements if element not in self.source.names)
+
+    def _line(self, one: Declared) -> Line:
+        return self.source.lines[one.line]
+
+    # ── parameters ───────────────────────────────────────────────────────────
+
+    def _parameters(self) -> tuple[Parameter, ...]:
+        """Return the text's own uniforms; one that no panel can show keeps what the text gives it."""
+        found: dict[str, Parameter] = {}
+        for declared in self.declared.values():
+            line = self._line(declared)
+            line = replace(line, code=f"uniform {declared.type} {' '.join(declared.written.split())};")
+            annotated = line.comment.startswith("!")  # in our own way, so that a parameter is meant
+            skip = () if annotated else self.rules.names.keys()
+            try:
+                some, _ = read_uniforms(replace(self.source, lines=(line,)), plain=True, skip=skip)
+            except ShaderError:
+                if annotated:
+                    raise
+                continue
+            found |= {one.name: one for one in some}
+        found |= {one.name: one for one in self.shader.parameters}
+        return (*found.values(), *self.pictures.values())
+
+    def _pictures(self) -> Iterator[tuple[str, Parameter]]:
+        """Yield the samplers whose comment names a file that is there."""
+        for one in self.declared.values():
+            line, file = self._line(one), self._commented(one)
+            if file and self._is_there(file, line):
+                made = Parameter(
+                    one.name,
+                    "sampler2D",
+                    file,
+                    Widget("file"),
+                    sampling=SAMPLING,
+                    file=line.file,
+                    line=line.number,
+                )
+                yield one.name, made
+
+    def _commented(self, one: Declared) -> str:
+        line = self._line(one)
+        return self.commented.get((line.file, line.number), "") if one.type == "sampler2D" else ""
+
+    def _is_there(self, file: str, line: Line) -> bool:
+        there = any(is_file(place) for place in places_of(file, line, self.root))
+        return there and not leads_outside(file, self.root, line.file)
+
+    def _unfed(self, fed: Collection[str]) -> Iterator[tuple[str, str]]:
+        """Yield what the picture lacks where nothing is wired: each name, and what is drawn instead."""
+        arrays = {one.name for _, one in self._elements()}
+        own = {one.name: one.type for one in self.declared.values() if one.name not in arrays}
+        for element, _ in self._elements():
+            yield element, "it reads black"
+        own |= {name: self.rules.names[name][0] for name in (*self.missing, *self.vertex_missing)}
+        for name, kind in own.items():
+            channel = self.channels.get(name, Channel())
+            if channel.unfed:
+                yield name, channel.unfed
+            elif self.rules.names.get(name, ("", ""))[1] == "bands":
+                yield name, _BANDS
+            elif name in fed or name in self.shader.channels:  # where that is black, the tool has it so
+                continue
+            elif "sampler" in kind and channel == Channel() and self._is_read(name):
+                yield name, "it reads black"
+        yield from self._unset(fed)
+        if any(line.startswith(_SHADOW_MAP) for line in self.rules.defines(self.source)):
+            yield "LIGHT_SHADOWMAP", "it reads black"
+        for name in sorted(self.source.names):
+            if name.startswith(_MODEL):
+                yield name, "there is no mesh here, so it is drawn flat"
+
+    def _unset(self, fed: Collection[str]) -> Iterator[tuple[str, str]]:
+        """Yield the uniforms that are no parameters, are given by nobody and have no value in the text."""
+        for one in self.declared.values():
+            is_given = one.name in fed or one.name in self.rules.names or "sampler" in one.type
+            if not is_given and "=" not in one.written and self._is_read(one.name):
+                yield one.name, _NO_IMAGE if _IMAGE.match(one.type) else _NO_PANEL
+
+
+def unfed_warnings(kernel: Kernel, wired: Collection[str]) -> tuple[Diagnostic, ...]:
+    """Return a warning for each thing that another tool's shader lacks; ``wired`` are inputs that are fed."""
+    names: dict[str, list[str]] = {}
+    for name, instead in kernel.unfed:
+        if name not in wired:
+            names.setdefault(instead, []).append(name)
+    lines = kernel.source.lines
+    found = []
+    for instead, some in names.items():
+        first = re.compile(
+            rf"\b(?:{'|'.join([*some, *(name.rpartition(ELEMENT)[0] or name for name in some)])})\b"
+        )
+        line = next((line for line in lines if first.search(line.code)), lines[0])
+        found.append(line.diagnostic(f"nothing feeds {', '.join(some)}: {instead}", severity="warning"))
+    return tuple(found)
+
+
+def commented_files(source: SourceText) -> Iterator[tuple[Line, str]]:
+    """Yield each line that declares ``u_tex0`` or its like with a file in its comment, and the file."""
+    for line in source.lines:
+        if _PICTURE.search(line.code) and (match := _COMMENTED_FILE.match(line.comment)):
+            yield line, match.group(1)
+
+
+def places_of(file: str, line: Line, root: Path) -> tuple[Path, ...]:
+    """Return where a file is looked for that a line names."""
+    return tuple(dict.fromkeys((root / file, Path(line.file).parent / file)))
+
+
+def _packing(source: SourceText) -> tuple[str, ...]:
+    """Return what packs numbers for a text that does so in a version of GLSL without such functions."""
+    own = {found[1] for found in map(_DEFINED.match, source.code.splitlines()) if found}
+    packs = [n for n in (_PACKING & source.names) - own if not is_declared(source.code, n, anywhere=False)]
+    return ("packing.glsl",) if packs and version_of(source) < _PACKS else ()
+
+
+def _declaration(kind: str, name: str) -> str:
+    """Return "vec3 name[4]" for vec3[4]."""
+    base, bracket, count = kind.partition("[")
+    return f"{base} {name}{bracket}{count}"
+
+
+@dataclass
+class Files:
+    """The files of one shader, inside ``root``.
+
+    ``instead`` has texts, by absolute path, in place of files'; ``named``: a user has named the dialect.
+    """
+
+    path: Path
+    root: Path
+    instead: Mapping[str, str] = field(default_factory=dict)
+    named: bool = False
+    title: str = ""  # that the other tool gives it
+    notes: list[Diagnostic] = field(default_factory=list)  # of what is not as in the other tool
+    _origins: list[Origin] = field(default_factory=list)
+    _texts: dict[str, str] = field(default_factory=dict)
+    _there: dict[Path, bool] = field(default_factory=dict)
+
+    def text(self, path: Path | None = None) -> str:
+        """Return a file's text, by default the shader's; raise ``SketchError`` where it cannot be read."""
+        path = path or self.path
+        found = self.instead.get(str(path))
+        found = read_text(path, any_encoding=True) if found is None else found
+        self._texts[str(path)] = found
+        return found
+
+    def check_inside(self, path: Path) -> None:
+        """Raise ``SketchError`` for a file that leads out of the root; a user may name such a shader."""
+        if path != self.path and not is_inside(path, (self.root,)):
+            message = f"this leads outside the shader's own folder, {shown(self.root)}, and is not read"
+            raise SketchError(message, file=shown(path))
+
+    def source(self, path: Path | None = None) -> SourceText:
+        """Return a file with its includes, by default the shader's; raise as ``read_source`` does."""
+        self.check_inside(path or self.path)
+        source, origin = read_source_and_origin(path or self.path, (self.root,), self.instead, foreign=True)
+        self._origins.append(origin)
+        for line, file in commented_files(source):
+            for place in places_of(file, line, self.root):
+                self.is_there(place)
+        return source
+
+    def part(self, label: str, text: str) -> SourceText:
+        """Return a text that is a part of the file: its lines are those of "file:label", from 1."""
+        named = self.path.with_name(f"{self.path.name}{PART_OF_FILE}{label}")
+        instead = {**self.instead, str(named): normalised(text)}
+        source, origin = read_source_and_origin(named, (self.root,), instead, foreign=True)
+        self._origins.append(Origin(tuple(t for t in origin.texts if t[0] != str(named)), origin.places))
+        files = (str(self.path), *(name for name in source.files if name != str(named)))
+        return SourceText(str(self.path), source.lines, files)
+
+    def note(self, message: str, line: int = 0, path: Path | None = None) -> None:
+        """Note what a user is told of the file, at one of its lines."""
+        self._note(Diagnostic(message, shown(path or self.path), line, severity="warning"))
+
+    def note_at(self, line: Line, message: str) -> None:
+        """Note what a user is told of a line."""
+        self._note(line.diagnostic(message, severity="warning"))
+
+    def _note(self, found: Diagnostic) -> None:
+        if found not in self.notes:
+            self.notes.append(found)
+
+    def is_there(self, place: Path) -> bool:
+        """Return whether there is a file at a place, in the folder or not."""
+        found = self._there[place] = str(place) in self.instead or is_file(place)
+        return found
+
+    def hold(self) -> bool:
+        """Return whether all that was read and looked for is still the same."""
+        return (
+            all(is_file(place) == there for place, there in self._there.items())
+            and Origin(tuple(self._texts.items()), ()).holds()
+            and all(origin.holds() for origin in self._origins)
+        )

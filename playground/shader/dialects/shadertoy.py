@@ -1,0 +1,594 @@
+"""Shadertoy: one file with ``mainImage``, its passes, their channels and directives.
+
+Shadertoy declares its channels by what a user puts there, which a file alone does not say. A lookup does: a
+cube map is read at three coordinates, a volume by texels of three. So does a function that a channel is
+handed to. Types are followed by name, not by a compiler.
+
+A driver is given a uniform in the place of ``#iUniform`` and nothing in that of the others; that the
+keyboard is asked for stays as a pragma, which ``rewritten`` takes away.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from playground.errors import ShaderError, nearest
+from playground.shader.declarations import expanded, is_declared
+from playground.shader.dialects.es import rewritten
+from playground.shader.dialects.foreign import Channel, Files, Names, Rules, Shader
+from playground.shader.dialects.passes import VIEW
+from playground.shader.parameter import Parameter, Sampling, Widget, spell
+from playground.shader.preprocessor import WEBGL_2, live_source
+from playground.shader.reserved_names import SIZES
+from playground.shader.source import Line, SourceText
+
+_LOOKUP = re.compile(r"\b(texture(?:Lod|Grad|Cube\w*)?)\s*\(\s*(iChannel\d)\s*,")
+_TYPES = {
+    "float": 1,
+    "int": 1,
+    "uint": 1,
+    "bool": 1,
+    **{f"{k}vec{n}": n for k in ("", "i", "u") for n in (2, 3, 4)},
+}
+_DECLARED = rf"\b({'|'.join(_TYPES)})\s+(?:[A-Za-z_]\w*\s*(?:=[^;,(){{}}]*)?,\s*)*"
+_CHANNEL = re.compile(r"iChannel\d")
+_TEXELS = re.compile(r"\b(?:texelFetch\s*\(\s*(?=iChannel\d\s*,\s*ivec3\b)|texture3D\w*\s*\(\s*)(iChannel\d)")
+_FUNCTION = re.compile(r"\b[A-Za-z_]\w*\s+([A-Za-z_]\w*)\s*\(([^(){};]*)\)\s*[{;]")
+_BODY = re.compile(r"\b(?!(?:if|for|while|switch)\b)([A-Za-z_]\w*)\s*\([^(){};]*\)\s*\{")
+_MACRO = re.compile(r"^[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)(.*)$", re.MULTILINE)
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_PARAMETER = re.compile(r"\s*(?:(?:const|in|out|inout|lowp|mediump|highp)\s+)*([A-Za-z_]\w*)")
+_SHAPED = {"samplerCube", "sampler3D"}
+_LONGEST_CALL = 1_000  # characters
+_MOST_LOOKUPS = 4  # of one channel that are looked at
+_NEAR = 4_000  # characters, in which most names are declared
+_BRACKETS = re.compile(r"\([^()]*\)")
+_SWIZZLE = re.compile(r"\.\s*([xyzw]+|[rgba]+|[stpq]+)$")
+_NAME = re.compile(r"[A-Za-z_]\w*$")
+_CALL = re.compile(r"([A-Za-z_]\w*)\s*\($")
+_GIVEN = {"iResolution": 3, "iMouse": 4, "iTime": 1, "fragCoord": 2, "gl_FragCoord": 4}
+_OF_ARGUMENTS = frozenset(
+    "abs sign floor ceil fract mod min max clamp mix step smoothstep normalize reflect refract sin cos tan "
+    "pow exp log sqrt round trunc faceforward".split()
+)
+
+
+def sampler_types(code: str) -> dict[str, str]:
+    """Return the channels of a text that are no pictures, each with its type in GLSL."""
+    code = expanded(code)
+    threes, twos = _looked_up(code)
+    types: dict[str, set[str]] = {name: {"sampler2D"} for name in twos}
+    for name, kind in (*_handed(code), *((name, "sampler3D") for name in _TEXELS.findall(code))):
+        types.setdefault(name, set()).add(kind)
+    found = {name: kinds.pop() for name, kinds in types.items() if len(kinds) == 1 and kinds < _SHAPED}
+    return {name: "samplerCube" for name in threes - types.keys()} | found
+
+
+def names_reached(code: str, names: Collection[str]) -> set[str]:
+    """Return names, with those that the functions and macros of a text of these names name in turn."""
+    bodies: dict[str, set[str]] = {}
+    for name, body in (*_bodies(code), *_MACRO.findall(code)):
+        bodies.setdefault(name, set()).update(_WORD.findall(body))
+    found, added = set[str](), set(names)
+    while added:
+        found |= added
+        added = set().union(*(bodies.get(name, ()) for name in added)) - found
+    return found
+
+
+def _bodies(code: str) -> Iterator[tuple[str, str]]:
+    """Yield each function that a text defines, with what is between its braces."""
+    for match in _BODY.finditer(code):
+        depth, end = 1, match.end()
+        while depth and end < len(code):
+            depth += {"{": 1, "}": -1}.get(code[end], 0)
+            end += 1
+        yield match[1], code[match.end() : end]
+
+
+def _handed(code: str) -> Iterator[tuple[str, str]]:
+    """Yield the channels that functions are called with, each with the type that the function takes."""
+    functions: dict[str, list[list[str]]] = {}
+    for name, parameters in _FUNCTION.findall(code):
+        kinds = [found[1] if (found := _PARAMETER.match(one)) else "" for one in parameters.split(",")]
+        functions.setdefault(name, []).append(kinds)
+    for name, forms in functions.items():
+        if not any(kind.startswith("sampler") for kinds in forms for kind in kinds):
+            continue
+        looked_at = Counter[str]()
+        for call in re.finditer(rf"\b{name}\s*\(", code):
+            given = _arguments(code, call.end())
+            channels = " ".join(one for one in given if _CHANNEL.fullmatch(one))
+            looked_at[channels] += 1
+            if not channels or looked_at[channels] > _MOST_LOOKUPS:
+                continue
+            fitting = [kinds for kinds in forms if len(kinds) == len(given)]
+            if len(fitting) > 1:
+                widths = [_width(one, code[: call.start()]) for one in given]
+                fitting = [
+                    kinds
+                    for kinds in fitting
+                    if all(not w or _TYPES.get(k, w) == w for k, w in zip(kinds, widths, strict=True))
+                ]
+            for at, one in enumerate(given):
+                if _CHANNEL.fullmatch(one):
+                    yield from ((one, kinds[at]) for kinds in fitting)
+
+
+def _looked_up(code: str) -> tuple[set[str], set[str]]:
+    """Return the channels that a text reads at three coordinates and nowhere else, and those read at two."""
+    threes, twos, unknown = Counter[str](), set[str](), set[str]()
+    for match in _LOOKUP.finditer(code):
+        name = match.group(2)
+        if name in twos or threes[name] >= _MOST_LOOKUPS:
+            continue
+        given = _arguments(code, match.end())
+        width = 3 if "Cube" in match.group(1) else _width(given[0] if given else "", code[: match.start()])
+        if width == 3:
+            threes[name] += 1
+        else:
+            (twos if width else unknown).add(name)
+    return threes.keys() - twos - unknown, twos
+
+
+def _arguments(code: str, start: int) -> list[str]:
+    """Return the texts of a call's arguments from one on, up to the call's bracket; none where it is far."""
+    depth, found = 0, list[str]()
+    for place in range(start, min(len(code), start + _LONGEST_CALL)):
+        depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(code[place], 0)
+        if depth < 0 or (depth == 0 and code[place] == ","):
+            found.append(code[start:place].strip())
+            start = place + 1
+        if depth < 0:
+            return found
+    return []
+
+
+def _width(text: str, before: str) -> int:
+    """Return how many numbers an expression is; 0 where that is not known."""
+    text = text.strip()
+    parts = _split(text)
+    if len(parts) > 1:
+        return max((_width(part, before) for part in parts), default=0)
+    text = text.lstrip("+-! \n\t")
+    if swizzle := _SWIZZLE.search(text):
+        return len(swizzle.group(1))
+    if text.endswith(")"):
+        start = _opening(text)
+        inside = text[start + 1 : -1]
+        call = _CALL.search(text[: start + 1])
+        if call is None:
+            return _width(inside, before) if start == 0 else 0
+        name = call.group(1)
+        if name in _TYPES:
+            return _TYPES[name]
+        if name == "cross":
+            return 3
+        if name in _OF_ARGUMENTS:
+            return max((_width(part, before) for part in _split(inside, ",")), default=0)
+        return _declared(rf"{name}\s*\(", before)
+    if _NAME.fullmatch(text):
+        return _declared(rf"{text}\b(?!\s*\()", before) or _GIVEN.get(text, 0)
+    return 0
+
+
+def _declared(name: str, before: str) -> int:
+    """Return the width of the latest declaration of a name, also behind others with calls in their values."""
+    near = before[-_NEAR:]
+    found = list(re.finditer(f"{_DECLARED}{name}", near)) or list(re.finditer(f"{_DECLARED}{name}", before))
+    if not found:
+        flat = before
+        while (inner := _BRACKETS.sub(lambda match: " " * len(match.group()), flat)) != flat:
+            flat = inner
+        found = list(re.finditer(f"{_DECLARED}{name}", flat))
+    return _TYPES[found[-1].group(1)] if found else 0
+
+
+def _split(text: str, at: str = "+-*/") -> list[str]:
+    """Return the parts of an expression between its outer operators, or its commas."""
+    found, depth, start = list[str](), 0, 0
+    for place, letter in enumerate(text):
+        depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(letter, 0)
+        is_exponent = letter in "+-" and re.search(r"[\d.][eE]$", text[:place])
+        if depth == 0 and letter in at and text[start:place].strip() and not is_exponent:
+            found.append(text[start:place])
+            start = place + 1
+    return [*found, text[start:]]
+
+
+def _opening(text: str) -> int:
+    """Return where the bracket opens that a text ends with; -1 where none does."""
+    depth = 0
+    for place in range(len(text) - 1, -1, -1):
+        depth += {")": 1, "(": -1}.get(text[place], 0)
+        if depth == 0:
+            return place
+    return -1
+
+
+CHANNELS = tuple(f"iChannel{number}" for number in range(4))
+
+NAMES: Names = {
+    "iResolution": ("vec3", "resolution"),
+    "iTime": ("float", "time"),
+    "iGlobalTime": ("float", "time"),
+    "iTimeDelta": ("float", "delta"),
+    "iFrame": ("int", "frame_of_time"),
+    "iFrameRate": ("float", "frame_rate"),
+    "iSampleRate": ("float", "sample_rate"),
+    "iMouse": ("vec4", "drag"),
+    "iDate": ("vec4", "date"),
+    "iChannelTime": ("float[4]", "time"),
+    "iChannelResolution": ("vec3[4]", f"{SIZES}{' '.join(CHANNELS)}"),
+    **{name: ("sampler2D", f"noise {number}") for number, name in enumerate(CHANNELS)},
+}
+
+_MORE_CHANNELS = tuple(f"iChannel{number}" for number in range(10))
+
+MORE_NAMES: Names = {
+    **NAMES,
+    "iGlobalFrame": ("int", "frame_of_time"),
+    "iMouseButton": ("vec4", "buttons"),
+    "iViewMatrix": ("mat4", "identity4"),
+    "iChannelResolution": ("vec3[10]", f"{SIZES}{' '.join(_MORE_CHANNELS)}"),
+    **{name: ("sampler2D", f"noise {number}") for number, name in enumerate(_MORE_CHANNELS)},
+}
+"""Those of the VS Code extension."""
+
+MACROS = {**WEBGL_2, "HW_PERFORMANCE": "1"}
+"""What Shadertoy defines."""
+
+
+def defines(source: SourceText) -> tuple[str, ...]:
+    """Return those of Shadertoy's own macros that a text names."""
+    return ("#define HW_PERFORMANCE 1",) if "HW_PERFORMANCE" in source.names else ()
+
+
+RULES = Rules("shadertoy", NAMES, epilogue="main_image.glsl", defines=defines)
+
+
+_NOT_DRAWN = {"mainSound": "sound", "mainVR": "for VR"}
+
+
+def shaders(files: Files) -> Sequence[Shader]:
+    """Return the passes of a file."""
+    source = live_source(files.source(), MACROS)
+    note_not_drawn(files, source)
+    return (Shader(VIEW, rewritten(source), replace(RULES, names=with_sampler_types(NAMES, source))),)
+
+
+_STAND_INS = {"samplerCube": "sky", "sampler3D": "volume"}
+
+
+def with_sampler_types(names: Names, source: SourceText) -> Names:
+    """Return names with the channels as the cube maps and volumes that a text reads."""
+    types = {name: kind for name, kind in sampler_types(source.code).items() if name in names}
+    return {**names, **{name: (kind, f"{_STAND_INS[kind]} {name[-1]}") for name, kind in types.items()}}
+
+
+def note_not_drawn(files: Files, source: SourceText) -> None:
+    """Note each function of a text that makes no picture here."""
+    for function, what in _NOT_DRAWN.items():
+        if line := _defines(source, function):
+            files.note_at(line, f"{function} is {what}, which is not drawn")
+
+
+def refused(files: Files) -> Sequence[Shader]:
+    """Raise ``ShaderError`` for a text that has no picture of its own, at the function that it has."""
+    source = files.source()
+    for function, what in _NOT_DRAWN.items():
+        if line := _defines(source, function):
+            raise line.error(f"{function} is {what}, which is not drawn, and there is no mainImage")
+    line = _defines(source, "mainCubemap") or source.lines[0]
+    raise line.error(
+        "a cube map alone is not drawn: as 'Cube A.glsl' it is, next to an Image.glsl that reads it"
+    )
+
+
+def _defines(source: SourceText, function: str) -> Line | None:
+    sign = re.compile(rf"\b{function}\s*\(")
+    return next((line for line in source.lines if sign.search(line.code)), None)
+
+
+KEYBOARD = "iKeyboard"
+MOST_CHANNELS = 10
+
+_STRICT = "StrictCompatibility"  # mainImage is what runs: so it is here wherever a text has one
+_DIRECTIVE = re.compile(rf"\s*#\s*(i[A-Z]\w*|{_STRICT})\b(.*)", re.DOTALL)
+_ASKS_FOR_KEYS = f"#pragma {KEYBOARD}"
+_CHANNEL_LINE = re.compile(r'\s*#\s*iChannel(\d)\s*(?:::\s*(\w+)\s*)?(["\'])(.*?)\3')
+_UNIFORM = re.compile(
+    r"\s*(\w+)\s+([A-Za-z_]\w*)\s*(?:=\s*(.+?)\s*)?(?:\bin\s*\{\s*([^,{}]+),\s*([^,{}]+)\})?"
+    r"\s*(?:\bstep\s+(\S+))?\s*;?\s*$"
+)
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_COLOURS = {"color3": "vec3", "color4": "vec4"}
+_TYPE_NAMES = (
+    "float",
+    "int",
+    "uint",
+    "bool",
+    *(f"{kind}vec{n}" for kind in ("", "i", "u") for n in (2, 3, 4)),
+)
+_FILTERS = (
+    "Nearest", "Linear", "NearestMipMapNearest", "NearestMipMapLinear", "LinearMipMapNearest",
+    "LinearMipMapLinear",
+)  # fmt: skip
+_NOT_DONE = {
+    "iFirstPersonControls": ": no key moves a camera here, so iViewMatrix stays the identity",
+    "iVertex": ": no vertex shader is run here, so the picture is drawn over the whole view",
+    "iSound": " is sound, which is not drawn",
+}
+"""What is not as in the extension, by directive: the rest of a sentence."""
+_CHOICES = {
+    "MinFilter": _FILTERS,
+    "MagFilter": ("Nearest", "Linear"),
+    "WrapMode": ("Clamp", "Repeat", "Mirror"),
+    "Type": ("Texture2D", "CubeMap"),
+}
+
+
+@dataclass
+class ChannelLines:
+    """What the lines of one channel say."""
+
+    line: Line  # the first of them
+    path: str = ""  # "file://x.png", "self"; "" where no line says it
+    settings: dict[str, str] = field(default_factory=dict)  # MinFilter, MagFilter, WrapMode, Type
+
+    @property
+    def is_cube(self) -> bool:
+        """Whether it is a cube map."""
+        return self.settings.get("Type") == "CubeMap"
+
+    def sampling(self, usual: Sampling) -> Sampling:
+        """Return how it is read; what no line says is as ``usual``."""
+        least, most = self.settings.get("MinFilter", ""), self.settings.get("MagFilter", "")
+        wrap = self.settings.get("WrapMode", "")
+        found = replace(usual, wrap=wrap.lower()) if wrap else usual
+        if least:
+            form = "nearest" if least.startswith("Nearest") else "linear"
+            found = replace(found, filter=form, mipmap="MipMap" in least)
+        return replace(found, magnify=most.lower()) if most else found
+
+
+@dataclass(frozen=True)
+class Read:
+    """A text without its directives, and what they say."""
+
+    source: SourceText
+    channels: dict[int, ChannelLines]
+    notes: tuple[tuple[Line, str], ...]  # lines, and what is not as in the extension
+
+
+def read_directives(source: SourceText) -> Read:
+    """Read the directives of a text; raise ``ShaderError`` at a line that cannot be understood."""
+    channels: dict[int, ChannelLines] = {}
+    notes: list[tuple[Line, str]] = []
+    lines = []
+    for line in source.lines:
+        match = _DIRECTIVE.match(line.code)
+        if match is None:
+            lines.append(line)
+        elif match.group(1).startswith("iChannel"):
+            _channel(line, channels)
+            lines.append(replace(line, code=""))
+        elif match.group(1) == "iUniform":
+            lines.append(_uniform(line, match.group(2)))
+        elif match.group(1) == KEYBOARD:
+            lines.append(replace(line, code=_ASKS_FOR_KEYS))
+        else:
+            name = match.group(1)
+            if name != _STRICT:
+                notes.append((line, f"#{name}{_NOT_DONE.get(name, ' is not known here, and does nothing')}"))
+            lines.append(replace(line, code=""))
+    return Read(SourceText(source.path, tuple(lines), source.files), channels, tuple(notes))
+
+
+def has_keyboard(source: SourceText) -> bool:
+    """Return whether a text, with what is included and common, asks for the keyboard."""
+    return any(line.code == _ASKS_FOR_KEYS for line in source.lines)
+
+
+def _channel(line: Line, channels: dict[int, ChannelLines]) -> None:
+    match = _CHANNEL_LINE.match(line.text)
+    if match is None:
+        raise line.error('expected #iChannel0 "file://picture.png", or #iChannel0::WrapMode "Repeat"')
+    number, name, text = int(match.group(1)), match.group(2), match.group(4)
+    channel = channels.setdefault(number, ChannelLines(line))
+    if not name:
+        channel.path, channel.line = text, line
+        return
+    setting = next((known for known in _CHOICES if known.lower() == name.lower()), None)
+    if setting is None:
+        raise line.error(
+            f"#iChannel{number} has no '{name}'{nearest(name, _CHOICES)}", line.text.find(name) + 1
+        )
+    value = next((known for known in _CHOICES[setting] if known.lower() == text.lower()), None)
+    if value is None:
+        wrong = f"{setting} of #iChannel{number}: no '{text}'{nearest(text, _CHOICES[setting])}"
+        raise line.error(wrong, line.text.find(text) + 1)
+    channel.settings[setting] = value
+
+
+def _uniform(line: Line, text: str) -> Line:
+    """Return a line that declares a parameter as ours do, with a ``//!`` annotation."""
+    match = _UNIFORM.match(text)
+    if match is None:
+        example = "#iUniform float size = 1.0 in { 0.0, 5.0 } step 0.1"
+        raise line.error(f"cannot read this #iUniform; expected as {example}")
+    kind, name, initial, low, high, step = match.groups()
+    if kind not in (*_TYPE_NAMES, *_COLOURS):
+        hint = nearest(kind, (*_TYPE_NAMES, *_COLOURS))
+        raise line.error(f"#iUniform of the type '{kind}'{hint}", line.text.find(kind) + 1)
+    glsl = _COLOURS.get(kind, kind)
+    bounds = [_float(line, word) for word in (low, high)] if low else []
+    value = _initial(line, kind, glsl, initial, bounds)
+    calls = ["colour"] if kind in _COLOURS else []
+    if len(bounds) == 2 and bounds[0] < bounds[1] and kind not in _COLOURS and glsl != "bool":
+        calls.append(f"slider({bounds[0]:g}, {bounds[1]:g})")
+    if step and glsl != "bool" and (size := _float(line, step)) > 0:
+        calls.append(f"step({size:g})")
+    note = " ".join(["!", *calls, line.comment.strip()])
+    return replace(line, code=f"uniform {glsl} {name}{value};", comment=note)
+
+
+def _initial(line: Line, kind: str, glsl: str, initial: str | None, bounds: list[float]) -> str:
+    """Return " = value" in GLSL, within the bounds; "" where there is none."""
+    if initial is None:
+        return ""
+    if glsl == "bool" or not (bounds or glsl != kind or "vec" in glsl):
+        return f" = {initial}"
+    numbers = initial.partition("(")[2] if "(" in initial else initial
+    given = [_float(line, number) for number in _NUMBER.findall(numbers)]
+    if len(bounds) == 2 and bounds[0] < bounds[1]:
+        given = [min(max(number, bounds[0]), bounds[1]) for number in given]
+    whole = glsl in ("int", "uint") or glsl.startswith(("i", "u"))
+    texts = [str(int(number)) if whole else repr(number) for number in given]
+    if "vec" not in glsl:
+        return f" = {texts[0] if texts else initial}"
+    return f" = {glsl}({', '.join(texts)})"
+
+
+def _float(line: Line, text: str) -> float:
+    text = text.strip()
+    try:
+        number = float(text.rstrip("fF"))
+    except ValueError:
+        number = math.nan
+    if not abs(number) < 1e30:
+        raise line.error(f"expected a number, not {spell(text)}", line.text.find(text) + 1)
+    return number
+
+
+IMAGE, BUFFER, CUBE = "image", "buffer", "cubemap"
+CUBE_SIDE = 1024
+"""Texels of a side of a cube map's face, as on Shadertoy's site."""
+
+OF_BUFFERS = Sampling("linear", "clamp")
+"""How a pass is read where nothing says how."""
+
+_ORDER = (BUFFER, CUBE, IMAGE)
+_EPILOGUES = {IMAGE: "main_image.glsl", BUFFER: "main_buffer.glsl", CUBE: "main_cubemap.glsl"}
+_FORMATS = {IMAGE: "rgba8", BUFFER: "rgba32f", CUBE: "rgba16f"}
+_FUNCTIONS = {IMAGE: "mainImage", BUFFER: "mainImage", CUBE: "mainCubemap"}
+_NOT_NAMES = re.compile(r"\W+")
+
+
+@dataclass(frozen=True)
+class ToyInput:
+    """What one channel reads: a pass or a technique, or an image file."""
+
+    channel: Channel
+    type: str = "sampler2D"
+    file: str = ""  # an image, from the root
+
+
+@dataclass(frozen=True)
+class ToyPass:
+    """One pass, as its tool calls it."""
+
+    label: str  # "Buffer A"
+    kind: str  # image | buffer | cubemap
+    source: SourceText  # what they have in common before it
+    inputs: Mapping[str, ToyInput] = field(default_factory=dict)  # by sampler; others are noise
+    may_have_main: bool = False  # one of its own, in place of the function of its kind
+    called: str = ""  # its name, where that is not made of the label
+
+    @property
+    def name(self) -> str:
+        """Its name as a pass, and as what others read."""
+        return self.called or pass_name(self.label)
+
+
+def pass_name(label: str) -> str:
+    """Return the name of a pass that its tool calls so: ``buffer_a`` of "Buffer A"."""
+    return _NOT_NAMES.sub("_", label.strip()).strip("_").lower()
+
+
+def with_common(common: SourceText | None, source: SourceText) -> SourceText:
+    """Return a pass's text after what all have in common; each line stays that of its own file."""
+    if common is None:
+        return source
+    files = tuple(dict.fromkeys((*source.files, *common.files)))
+    return SourceText(source.path, (*common.lines, *source.lines), files)
+
+
+def shaders_of(passes: Sequence[ToyPass], dialect: str = "shadertoy") -> tuple[Shader, ...]:
+    """Return the shaders of some passes in the order in which they are drawn, the image last.
+
+    ``dialect`` is the name of their row.
+
+    Buffers and cube maps come in the order given. Raises ``ShaderError`` for one without its function.
+    """
+    ordered = sorted(passes, key=lambda one: _ORDER.index(one.kind))
+    macros = {"SHADER_TOY": "", **WEBGL_2} if dialect == "vscode" else MACROS
+    live = [replace(one, source=live_source(one.source, macros)) for one in ordered]
+    return tuple(_shader(one, dialect) for one in live)
+
+
+def _shader(one: ToyPass, dialect: str) -> Shader:
+    function = _FUNCTIONS[one.kind]
+    is_there = function in one.source.names
+    has_main = one.may_have_main and not is_there and is_declared(one.source.code, "main", anywhere=False)
+    if not (is_there or has_main):
+        own = [line for line in one.source.lines if line.text.strip()]
+        place = own[-1] if own else one.source.lines[-1]
+        others = next((f for f in ("mainImage", "mainCubemap", "mainSound") if f in one.source.names), "")
+        hint = f", but a {others}" if others else ""
+        raise ShaderError(diagnostics=[place.diagnostic(f"{one.label} has no {function}{hint}")])
+    names = dict(with_sampler_types(MORE_NAMES if dialect == "vscode" else NAMES, one.source))
+    parameters = []
+    for sampler, feeds in one.inputs.items():
+        if feeds.file:
+            names.pop(sampler, None)
+            line = one.source.lines[-1]
+            parameters.append(
+                Parameter(
+                    sampler,
+                    "sampler2D",
+                    feeds.file,
+                    Widget("file"),
+                    sampling=feeds.channel.sampling,
+                    file=line.file,
+                    line=line.number,
+                )
+            )
+        else:
+            names[sampler] = (feeds.type, "none")
+    if one.kind == CUBE:
+        names["iResolution"] = ("vec3", "square_resolution")
+    has_keyboard = KEYBOARD in one.inputs
+    return Shader(
+        one.name,
+        rewritten(one.source),
+        Rules(
+            dialect,
+            names,
+            epilogue="" if has_main else _EPILOGUES[one.kind],
+            helpers=("vscode_keyboard.glsl",) if has_keyboard else (),
+            defines=defines if dialect != "vscode" else lambda source: (),
+        ),
+        named=frozenset({KEYBOARD}) if has_keyboard else frozenset(),
+        target=one.name,
+        channels={name: feeds.channel for name, feeds in one.inputs.items() if not feeds.file},
+        parameters=tuple(parameters),
+        size=(str(CUBE_SIDE), str(6 * CUBE_SIDE)) if one.kind == CUBE else None,
+        format=_FORMATS[one.kind],
+        prelude=_prelude(one.kind, dialect),
+        keeps=one.kind != IMAGE,
+    )
+
+
+def _prelude(kind: str, dialect: str) -> tuple[str, ...]:
+    found = (f"const float k_side = {CUBE_SIDE}.0;",) if kind == CUBE else ()
+    return ("#define SHADER_TOY", *found) if dialect == "vscode" else found
+
+
+def reading(target: str, sampling: Sampling = OF_BUFFERS) -> Channel:
+    """Return a channel that reads a pass."""
+    return replace(Channel(target=target), sampling=sampling)

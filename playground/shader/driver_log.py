@@ -1,0 +1,739 @@
+r"""Read the log of an OpenGL driver for a shader: entries with lines, hints, and likely names.
+
+Every driver words and numbers its log differently; here all of them become the same
+`LogEntry`. Pure text: no context, no files. Turning a line of the flattened text into
+(file, line) is left to ``program``.
+
+What the drivers count:
+
+* The number before the line is the source string (`0:12`, `0(12)`, `3:27`). A shader here
+  is one string, so it is ignored: it could only be a leftover of `#line`.
+* Lines are 1-based everywhere; 0 means "no place": Mesa prints `0:0(0)`, NVIDIA `(0)`.
+  Only Mesa prints a column, and it counts in the *preprocessed* line, where a run of blanks
+  or a comment is one space and macros are expanded: `source_column` undoes the blanks.
+* Mesa 22.3.6 gives every part of a line continued by `\` the number of its first part, and
+  code behind the `*/` of a long comment the line where the comment began (so comments are
+  blanked before compiling). The lines after are right again.
+* A syntax error is placed where the compiler gave up: after a missing `;` that is the line
+  of the *next* word. Intel on Windows is reported to be off at times (DaemonEngine/Daemon#1241).
+* `#line n` names the next line n from GLSL 3.30 on, and n + 1 before it; Mesa moreover
+  applies its string number to some errors and not to others (seen in 22.3.6), and tools
+  that emit it report errors off by one (3Dickulus/FragM#71, #157); a file name after it is
+  a syntax error on Mesa (FragM#52). So this project never emits `#line`.
+* ANGLE on Direct3D quotes lines of translated HLSL, and NVIDIA's "assembly compile error"
+  lines of assembly: both are given as 0, for they are not lines of the shader.
+* Mesa 22.3.6 runs link errors together without a line break; they are split here.
+
+moderngl compiles stage by stage and raises at the first that fails, so a log concerns one
+stage only; a driver that gives no log leaves an empty one, for which there are no entries.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Literal
+
+from playground.paths import GLSL, SKETCHES, shown
+from playground.shader.kernel import Kernel
+from playground.shader.own_shaders import own_part
+from playground.shader.reserved_names import GIVEN, GIVEN_INSTEAD, GLSL_WORDS, PLAIN_UNIFORMS
+from playground.shader.source import Line, SourceText
+
+Severity = Literal["error", "warning"]
+
+
+@dataclass(frozen=True, slots=True)
+class LogEntry:
+    """One complaint of a driver."""
+
+    line: int  # 1-based, in the text handed to the driver; 0: unknown
+    column: int  # 1-based, as the driver counts: see `source_column`; 0: unknown
+    severity: Severity
+    message: str  # cleaned; further lines (candidates, notes) are indented by four spaces
+
+
+# ---- moderngl's wrapping ------------------------------------------------------------------
+
+_WRAPPED = re.compile(
+    r"\s*GLSL (?P<step>Compiler|Linker) failed[ \t]*(?:\n\s*|\Z)"
+    r"(?:(?P<title>\w+)[ \t]*\n=+[ \t]*(?:\n|\Z))?(?P<log>.*)",
+    re.DOTALL,
+)
+
+
+def split_moderngl(text: str) -> tuple[str, str]:
+    """Take the driver's log out of the text of a `moderngl.Error`.
+
+    The stage is "vertex", "fragment", "geometry", "compute", "tess_control" or
+    "tess_evaluation" for a compiler log, "link" for a linker log, and "" for a text that
+    moderngl did not wrap (which is then returned whole).
+    """
+    wrapped = _WRAPPED.match(text.replace("\r\n", "\n"))
+    if wrapped is None:
+        return "", text.strip()
+    if wrapped["step"] == "Linker":
+        return "link", wrapped["log"].strip()
+    return (wrapped["title"] or "").removesuffix("_shader"), wrapped["log"].strip()
+
+
+# ---- the formats ---------------------------------------------------------------------------
+
+_NUMBER = r"[0-9]{1,9}"
+_KIND = r"(?P<kind>(?:preprocessor |fatal |internal )?(?:error|warning)|note|info)"
+FORMATS = tuple(
+    re.compile(pattern)
+    for pattern in (
+        # Mesa, Intel on Linux        0:12(8): preprocessor error: message
+        rf"{_NUMBER}:(?P<line>{_NUMBER})\((?P<column>{_NUMBER})\): {_KIND}: ?(?P<message>.*)",
+        # NVIDIA                      0(12) : error C1503: message
+        rf"[^\s():]*\((?P<line>{_NUMBER})\) ?: {_KIND}(?: (?P<code>[A-Z][0-9]+))?: ?(?P<message>.*)",
+        # ANGLE on Direct3D           C:\fakepath(249,9-30): error X3004: message
+        rf"[^\s()]*\({_NUMBER},[-0-9]{{1,19}}\): {_KIND}(?: X[0-9]+)?: ?(?P<message>.*)",
+        # Intel, AMD, Apple, ANGLE    ERROR: 0:12: message, AMD's with error(#143) before it
+        rf"(?P<kind>ERROR|WARNING|NOTE|INFO): [^\s:]*:(?P<line>-?{_NUMBER}):(?:(?P<column>{_NUMBER}):)?"
+        r"\s*(?:(?:error|warning)\(#[0-9]+\)\s*)?(?P<message>.*)",
+        # glslc                       file.vert:12: error: message
+        rf"[^\s:()]+:(?P<line>{_NUMBER}):(?:(?P<column>{_NUMBER}):)? ?{_KIND}: ?(?P<message>.*)",
+        # Mali                        0:12: L0003: message
+        rf"{_NUMBER}:(?P<line>{_NUMBER}): (?P<code>[A-Z][0-9]{{4}}): ?(?P<message>.*)",
+        # no place: linkers           error: message, ERROR: error(#280) message
+        r"(?P<kind>(?:fatal |internal )?(?:error|warning)|ERROR|WARNING|Error|Warning|Internal error):"
+        r"\s*(?:(?:error|warning)\(#[0-9]+\)\s*)?(?P<message>.*)",
+    )
+)
+
+# Lines that say that nothing is wrong.
+BENIGN = re.compile(r"No errors\.?|.{0,80} was successfully compiled to run on hardware\.?|Success\.?", re.I)
+
+# Lines that only frame others.
+FRAME = re.compile(r"[-=^~]{2,}|\^|[\w ()]{1,40} info|-- error message --", re.I)
+
+# Summaries: worth showing only when there is nothing else.
+SUMMARY = re.compile(
+    r"compilation terminated\.?"
+    r"|[0-9]+ compilation errors?\. *No code generated\.?"
+    r"|(?:[0-9]+ (?:errors?|warnings?)(?: and )?){1,2} generated\.?"
+    r"|.{0,40}shader failed to compile with the following errors:?"
+    r"|(?:[\w ]{0,40}shader\(s\) (?:failed to link|(?:was |were )?linked)[,.]? ?){1,6}"
+    r"|[\w ]{0,40}link error: INVALID_OPERATION\.?"
+    r"|.{0,40}shader\(s\) were not successfully compiled before glLinkProgram\(\) was called\..*"
+    r"|One or more attached shaders not successfully compiled\.?"
+    r"|linking with uncompiled/unspecialized shader"
+    r"|LINK_ERROR",
+    re.I,
+)
+
+ASSEMBLY = "-- internal assembly text --"  # NVIDIA: a dump of thousands of lines follows
+UNBROKEN = re.compile(r"(?<=\))(?=(?:error|warning): )")  # Mesa: two link errors on one line
+
+
+@dataclass(slots=True)
+class _Draft:
+    """An entry that may still grow."""
+
+    line: int
+    column: int
+    severity: Severity
+    head: str
+    code: str = ""
+    known: bool = True  # a format recognised it
+    more: list[str] = field(default_factory=list)
+
+    def entry(self) -> LogEntry:
+        # NVIDIA's C0000 is "syntax error" itself; its other codes are what people search for.
+        code = f" ({self.code})" if self.code not in ("", "C0000") else ""
+        message = "\n    ".join([self.head + code, *self.more])
+        return LogEntry(self.line, self.column, self.severity, message)
+
+
+def parse_log(log: str) -> tuple[LogEntry, ...]:
+    """Read the log of a compiler or linker, of whichever driver.
+
+    Entries keep the driver's order; exact repetitions go, as do frames and summaries unless
+    they are all there is. Consequential errors stay. Lines in no known format become one
+    entry of line 0, and so does a log that is not understood at all. Never raises.
+    """
+    text = log.replace("\0", "").replace("\r\n", "\n").replace("\r", "\n")
+    text = UNBROKEN.sub("\n", text.split(ASSEMBLY)[0])
+    drafts: list[_Draft] = []
+    for raw in text.split("\n"):
+        line = raw.strip()
+        if line and not BENIGN.fullmatch(line) and not FRAME.fullmatch(line):
+            _take(drafts, line, indented=raw[0].isspace())
+    entries = [draft for draft in drafts if not SUMMARY.fullmatch(draft.head)] or drafts
+    return tuple(dict.fromkeys(draft.entry() for draft in entries))
+
+
+def _take(drafts: list[_Draft], line: str, indented: bool) -> None:
+    """Add one line of a log: to the last draft where it continues that, else as a new one."""
+    last = drafts[-1] if drafts else None
+    draft = _recognise(line)
+    if draft is None:
+        head = _clean(line)
+        if last is None or (last.known and not indented) or SUMMARY.fullmatch(head):
+            drafts.append(_Draft(0, 0, "error", head, known=False))
+        elif SUMMARY.fullmatch(last.head):
+            drafts.append(_Draft(0, 0, "error", head, known=False))
+        else:
+            last.more.append(head)
+    elif last is not None and _continues(last, draft, line):
+        if draft.head.startswith("..."):
+            last.head += " " + draft.head
+        else:
+            last.more.append(draft.head)
+    else:
+        drafts.append(draft)
+
+
+def _recognise(line: str) -> _Draft | None:
+    for pattern in FORMATS:
+        found = pattern.fullmatch(line)
+        if found is None:
+            continue
+        parts = found.groupdict()
+        kind = (parts.get("kind") or "error").lower()
+        return _Draft(
+            line=max(0, int(parts.get("line") or 0)),
+            column=int(parts.get("column") or 0),
+            severity="error" if "error" in kind else "warning",
+            head=_clean(parts["message"] or "") or kind,
+            code=parts.get("code") or "",
+        )
+    return None
+
+
+def _continues(last: _Draft, draft: _Draft, line: str) -> bool:
+    """Return whether a recognised line only goes on with the one before it."""
+    if (last.line, last.column, last.severity) != (draft.line, draft.column, draft.severity):
+        return False
+    # Mesa lists candidate functions, and NVIDIA a second remedy, as if they were errors.
+    return (last.head.endswith("candidates are:") and ":    " in line) or draft.head.startswith("... ")
+
+
+def _clean(message: str) -> str:
+    text = " ".join(message.split())
+    text = re.sub(r"^(?:'' ?: ?|Error: )", "", text)
+    return re.sub(r"\b(syntax error):? (?:\1|parse error)$", r"\1", text)
+
+
+# ---- columns -----------------------------------------------------------------------------------
+
+
+def source_column(line: str, column: int) -> int:
+    """Convert a driver's column to the column of the source line it means; 0 where there is none.
+
+    Exact unless a macro or a comment that was not blanked is before it on the line.
+    """
+    counted, blank = 0, False
+    for place, character in enumerate(line, start=1):
+        counted += not (blank and character in " \t")
+        blank = character in " \t"
+        if counted == column and not blank:
+            return place
+    return 0
+
+
+# ---- hints -----------------------------------------------------------------------------------
+
+_Q = "[`'\"]"
+
+# Keywords that people use as names. Mesa names some only by an upper-case token.
+_TOKENS = "SAMPLE|SMOOTH|FLAT|PATCH|BUFFER|SHARED|CENTROID|INVARIANT|PRECISE|RESOURCE|SUBROUTINE"
+_WORDS = (
+    "active|buffer|cast|class|common|external|filter|fixed|flat|half|input|output|partition|patch"
+    "|sample|shared|smooth|this|union"
+)
+
+_OLD_LOOKUP = r"(?:texture|shadow)(?:[123]D|Cube)\w*"
+_UNKNOWN = r"(?:undeclared|undefined|no function|no matching|not known|removed|deprecated)"
+
+# (pattern, sentence): the first pattern found gives the sentence; {0} is its group, {1} that in lower case.
+# More telling mistakes come first: `texture2D` is also an undeclared identifier.
+HINTS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
+    (re.compile(pattern, re.IGNORECASE), sentence)
+    for pattern, sentence in (
+        (
+            rf"^(?=.*{_UNKNOWN}).*?\b({_OLD_LOOKUP})\b",
+            "`{0}` is not in core GLSL: call `texture`, or `textureLod` and `texelFetch` in a kernel.",
+        ),
+        (
+            rf"^(?=.*{_UNKNOWN}).*?\b(gl_Frag(?:Color|Data))\b",
+            "`{0}` is not in core GLSL: declare an `out vec4` of your own and write to that.",
+        ),
+        (rf"{_Q}(attribute|varying){_Q}", "`{0}` is not in core GLSL: write `in` or `out`."),
+        (
+            r"#version must|#version (?:is )?required|only valid for function parameters in GLSL"
+            r"|requires \"?#version",
+            "The text needs a newer `#version` on its very first line, such as `#version 330`.",
+        ),
+        (
+            r"(?:GLSL|version|version number) '?([0-9.]+)'? (?:is )?not supported"
+            r"|unsupported version ([0-9]+)",
+            "This driver has no GLSL `{0}`: ask for a lower `#version`.",
+        ),
+        (
+            rf"extension:? {_Q}?(\w+){_Q}? ?:? ?.*(?:unsupported|not supported)"
+            rf"|{_Q}(\w+){_Q} ?:.*extension.*not supported",
+            "This driver lacks the extension `{0}`: do without it, or guard it with `#ifdef {0}`.",
+        ),
+        (r"#extension (\w+)", "This needs an extension: add `#extension {0} : enable` below `#version`."),
+        (
+            r"not supported for this version|unrecognized layout identifier|Unknown identifier .* in layout"
+            r"|(?:only )?(?:available|allowed|supported) (?:only )?in (?:GLSL|version)|GLSL .* required",
+            "The `#version` at the top is too old for this: raise it, or add the right `#extension`.",
+        ),
+        (
+            rf"(?:reserved word:? {_Q}?|keyword {_Q})(\w+)|{_Q}(\w+){_Q} ?:.*reserved word",
+            "`{0}` is a reserved word of GLSL: choose another name.",
+        ),
+        (
+            rf"(?-i:unexpected ({_TOKENS})\b|(?:at token|Syntax error:) \"({_WORDS})\""
+            rf"|{_Q}({_WORDS}){_Q} ?: syntax error)",
+            "`{1}` is a reserved word of GLSL: choose another name.",
+        ),
+        (r"(?-i:unexpected ERROR_TOK)", ""),  # Mesa gives the reason in the entry before
+        (
+            rf"{_Q}(gl_\w*){_Q}.*(?:reserved|prefix|redeclared)",
+            "Names that begin with `gl_` belong to GLSL: choose another name.",
+        ),
+        (
+            r"unexpected (?:end of file|\$end|\$undefined|EOF)|at token \"<EOF>\"|premature end",
+            "The text ends too soon: a `{{`, a `(` or a `;` is missing its partner somewhere above.",
+        ),
+        (
+            r"unexpected '\}', expecting end of file|unexpected '\}' at token|extraneous",
+            "There is one closing brace too many here or above.",
+        ),
+        (
+            r"(?-i:syntax error.*expecting[^a-z]*(?:','|';'|COMMA|SEMICOLON))",
+            "A `;` is missing, usually at the end of the line above, or a type name is misspelt.",
+        ),
+        (
+            r"unexpected NEW_IDENTIFIER|undeclared type|typename expected",
+            "A word that GLSL does not know is where a type should be: check its spelling.",
+        ),
+        (
+            r"\b(?:syntax|parse) error|Syntax error",
+            "GLSL cannot read this: look for a missing `;`, comma or bracket here and on the line above.",
+        ),
+        (
+            r"of operator % must be an integer|operands to \"%\" must be integral|'%' ?:.*\bfloat\b",
+            "`%` is for whole numbers: write `mod(a, b)` for floats.",
+        ),
+        (
+            r"(?:if-statement|loop) condition must be scalar boolean|boolean expression expected",
+            "A condition is a bool: compare a number, as in `x > 0.0`.",
+        ),
+        (r"recursion|recursive function", "GLSL has no recursion: write a loop."),
+        (r"C-style initialization", "Braces do not fill an array here: write `float[](1.0, 2.0)`."),
+        (
+            r"swizzle|field selection|cannot access field|unknown field|no such field",
+            "These components do not exist here: a `vec3` has x y z (or r g b), a scalar has none, "
+            "and the two sets do not mix.",
+        ),
+        (
+            r"read-only|l-?value required|can(?:'t|not) modify|non-lvalue|assignment to const",
+            "This cannot be written to: `uniform`, `const` and `in` are read-only, so copy it into a local "
+            "variable first.",
+        ),
+        (
+            r"no return statement|does not return a value|missing return|not all .*paths? return"
+            r"|`?return'? with no value",
+            "A function that promises a value must end in `return` with one on every path.",
+        ),
+        (
+            r"redeclar|redefin|already (?:defined|declared|has a body)|conflicts with previous declaration",
+            "This name is taken already in the same scope or by an included file: rename one of the two, "
+            "or drop the repetition.",
+        ),
+        (
+            r"too few components to construct|too little data in type constructor|not enough data"
+            r"|too few arguments.*construct",
+            "The constructor gets too few components: a `vec4` takes four numbers in all, or a single one.",
+        ),
+        (
+            r"too many parameters to .*constructor|too much data in type constructor"
+            r"|too many arguments.*construct|constructor.*too many arguments",
+            "The constructor gets too many components: count those of its arguments together.",
+        ),
+        (
+            rf"no function with name {_Q}(\w+)|invalid call of (?:undeclared identifier )?{_Q}(\w+)"
+            rf"|{_Q}(\w+){_Q} ?: function is not known",
+            "No function `{0}` is known here: check its spelling, the `#include` that brings it and the "
+            "`#version`, and that no variable has the same name.",
+        ),
+        (
+            rf"{_Q}(\w+){_Q} ?:? ?undeclared"
+            rf"|(?:undefined variable|undeclared (?:identifier|variable)):? {_Q}?(\w+)",
+            "`{0}` is not declared at this point: check its spelling, and that its declaration or `#include` "
+            "is above.",
+        ),
+    )
+)
+
+CALLED = re.compile(r"call to [`'\"]([^`'\"]+)['\"]")
+MAX_CANDIDATES = 3
+
+MISFIT = re.compile(
+    r"no matching|could not implicitly convert|cannot be assigned to variable|cannot convert|wrong operand"
+    r"|does not operate on|incompatible type|implicit (?:cast|narrowing)|invalid operands|overloaded function"
+    r"|with wrong type|size mismatch|dimension mismatch|non-matching types|must be (?:an )?integer"
+    r"|wrong type",
+    re.I,
+)
+CALL = re.compile(
+    rf"(?:call to|overloaded function(?: found:| reference)?) {_Q}?(?!found\b|reference\b)(\w+)"
+    r"(?:\(([^()]*)\))?"
+    rf"|{_Q}(\w+){_Q} ?: no matching"
+)
+TYPE = re.compile(
+    r"(?:(?P<size>[234])-component vector of )?(?:(?:low|medium|high)p )?"
+    r"\b(?P<word>float|double|unsigned int|uint|int|bool|[biud]?vec[234]|[d]?mat[234](?:x[234])?)\b"
+)
+BASES = {"f": "float", "d": "float", "v": "float", "m": "float", "i": "int", "u": "uint", "b": "bool"}
+
+# What is wrong with types that do not fit → the sentence; {0} is a function, {1} what it was given.
+MISFITS = {
+    "whole call": "No form of `{0}` takes ({1}): most built-in functions want floats, so write 2.0 for 2, or "
+    "float(...).",
+    "call": "No form of `{0}` takes these arguments: check its spelling, their number, order and types.",
+    "bool": "A bool is not a number: compare to get one, or convert with float(...) or int(...).",
+    "float": "Whole and decimal numbers do not mix: write 2.0 for 2, or convert with float(...) or int(...).",
+    "sign": "Signed and unsigned do not mix: write 2u for 2, or convert with uint(...) or int(...).",
+    "size": "The two sides differ in size: pick components with a swizzle such as .xyz, or build the vector.",
+    "types": "The types on the two sides do not fit: convert one of them, as in float(...) or vec3(...).",
+}
+
+
+def folded(message: str) -> str:
+    """Return a message that lists what might have been called with the few that are most like the call."""
+    head, *rest = message.split("\n")
+    if not head.endswith("candidates are:") or len(rest) <= MAX_CANDIDATES:
+        return message
+    call = CALLED.search(head)
+    near = difflib.get_close_matches(call[1] if call else head, rest, MAX_CANDIDATES, 0.0)
+    return "\n".join([head, *near, f"    and {len(rest) - len(near)} more"])
+
+
+def hint(message: str) -> str:
+    """Return in one sentence what a message usually means, or "" where nothing useful is known."""
+    head = message.split("\n", 1)[0][:600]
+    for pattern, sentence in HINTS:
+        found = pattern.search(head)
+        if found:
+            name = next((group for group in found.groups() if group), "")
+            return sentence.format(name, name.lower())
+    # Mesa's type "error" marks what follows from a mistake already reported.
+    if MISFIT.search(head) and not re.search(r"\berror\b", head):
+        return _misfit(head)
+    return ""
+
+
+def _misfit(head: str) -> str:
+    """Explain types that do not fit together."""
+    call = CALL.search(head)
+    if call is not None:
+        name, given = call[1] or call[3], call[2] or ""
+        if any(base in ("int", "uint") for base, _ in _types(given)):
+            return MISFITS["whole call"].format(name, given)
+        return MISFITS["call"].format(name)
+    types = _types(head)
+    bases = {base for base, _ in types}
+    if "bool" in bases and len(bases) > 1:
+        return MISFITS["bool"]
+    if "float" in bases and len(bases) > 1:
+        return MISFITS["float"]
+    if bases == {"int", "uint"}:
+        return MISFITS["sign"]
+    return MISFITS["size" if len({size for _, size in types}) > 1 or "mismatch" in head else "types"]
+
+
+def _types(text: str) -> list[tuple[str, str]]:
+    """Find the types named in a text, as (kind of number, size)."""
+    found: list[tuple[str, str]] = []
+    for match in TYPE.finditer(text):
+        word = match["word"]
+        if "mat" in word:
+            size = word[word.index("mat") :]
+        elif "vec" in word:
+            size = word[-1]
+        else:
+            size = match["size"] or "1"
+        found.append((BASES["u" if word.startswith("uns") else word[0]], size))
+    return found
+
+
+UNKNOWN = re.compile(
+    rf"no function with name {_Q}(\w+)|invalid call of (?:undeclared identifier )?{_Q}(\w+)"
+    rf"|{_Q}(\w+){_Q} ?: function is not known|{_Q}(\w+){_Q} ?: no matching overloaded function found"
+    rf"|{_Q}(\w+){_Q} ?:? ?undeclared"
+    rf"|(?:undefined variable|undeclared (?:identifier|variable)):? {_Q}?(\w+)",
+    re.IGNORECASE,
+)
+TYPE_NAME = r"(?:void|bool|u?int|float|double|[biud]?vec[234]|d?mat[234](?:x[234])?|[iu]?sampler\w+|[A-Z]\w*)"
+FUNCTION = re.compile(rf"\b{TYPE_NAME}\s+(\w+)\s*\(")
+DEFINITION = re.compile(rf"^{TYPE_NAME}\s+(\w+)\s*\(", re.MULTILINE)
+VARIABLE = re.compile(rf"\b{TYPE_NAME}\s+(\w+)\s*(?:\[[^\]]*\])?\s*(?=[=;,)])")
+DEFINE = re.compile(r"^\s*#\s*define\s+(\w+)(\()?", re.MULTILINE)
+RUNS = re.compile(r"^\s*#\s*(?:pragma\s+(?:kernel|source|draw|compute)\b|version\b)", re.MULTILINE)
+FOLLOWS = re.compile(
+    r"\berror\b|numeric|mismatch|no matching|cannot|can't|could not|wrong|incompatible|invalid|does not"
+    r"|must be|non-vector|swizzle|field|unable to find",
+    re.IGNORECASE,
+)
+"""What drivers say of an expression around a name that they do not know."""
+UNFIT = re.compile(r"no matching|unable to find compatible", re.IGNORECASE)
+UNREAD = re.compile(
+    r"syntax error|parse error|NEW_IDENTIFIER|undeclared type|typename expected", re.IGNORECASE
+)
+CAST = re.compile(r"(?<![\w)\]])\(\s*(float|int|uint|bool|[iub]?vec[234])\s*\)\s*[\w(.]")
+TYPES = (*"float int uint bool void vec2 vec3 vec4 ivec2 ivec3 ivec4 uvec2 uvec3 uvec4".split(),
+          *"bvec2 bvec3 bvec4 mat2 mat3 mat4 sampler2D const uniform return struct".split())  # fmt: skip
+NEAR = 0.75  # of difflib's ratio
+
+ELSEWHERE = {
+    "lerp": "mix", "frac": "fract", "fmod": "mod", "rsqrt": "inversesqrt", "ddx": "dFdx", "ddy": "dFdy",
+    "atan2": "atan", "tex2D": "texture", "tex2Dlod": "textureLod", "float2": "vec2", "float3": "vec3",
+    "float4": "vec4", "int2": "ivec2", "int3": "ivec3", "int4": "ivec4", "float4x4": "mat4",
+    "fabs": "abs", "fabsf": "abs", "sinf": "sin", "cosf": "cos", "sqrtf": "sqrt", "floorf": "floor",
+    "powf": "pow", "fmin": "min", "fmax": "max", "fminf": "min", "fmaxf": "max", "ln": "log",
+}  # fmt: skip
+"""Names of HLSL and C, with GLSL's for the same."""
+
+GUESSES = {
+    "elsewhere": "GLSL knows no `{0}`: its name for that is `{1}`.",
+    "saturate": "GLSL knows no `saturate`: write `clamp(x, 0.0, 1.0)`.",
+    "instead": "`{0}` is given to plain shaders; a kernel is given `{1}`.",
+    "library": "`{0}` is in the library: add {1} above.",
+    "near": "`{0}` is not declared; did you mean `{1}`?",
+    "cast": "GLSL has no casts like ({0}): write {0}(...).",
+    "type": "GLSL knows no `{0}`; did you mean `{1}`?",
+    "below": "`{0}` is defined further down, at {1}: GLSL reads from above, so move it up.",
+}
+"""Kind of guess → its sentence."""
+
+
+def without_consequences(entries: Iterable[LogEntry]) -> Iterator[LogEntry]:
+    """Yield the entries of a log: of an unknown name the first, and nothing that follows from it.
+
+    What follows is an expression around the name, or around a call that fits no function.
+    """
+    seen: set[str] = set()
+    cause = (0, 0)  # line and column
+    for entry in entries:
+        head, place = _head(entry.message), (entry.line, entry.column)
+        follows = 0 < entry.line and place <= cause and FOLLOWS.search(head) is not None
+        name = "" if follows else _unknown(head)
+        if name or (UNFIT.search(head) and not follows):
+            cause = place
+        if entry.severity != "error" or not (follows or name in seen):
+            yield entry
+        if name:
+            seen.add(name)
+
+
+def names_given(kernel: Kernel) -> frozenset[str]:
+    """Return the names that a kernel, or the tool of another shader, is given without declaring them."""
+    if kernel.dialect:
+        helpers = "\n".join(own_part(part) for part in kernel.helpers)
+        found = [*FUNCTION.finditer(helpers), *DEFINE.finditer(helpers)]
+        return frozenset({*(name for name, _ in kernel.tool_names), *(match[1] for match in found)})
+    return frozenset(GIVEN) if _is_own(kernel) else frozenset()
+
+
+def whereabouts(message: str, source: SourceText, line: Line | None, kernel: Kernel) -> str:
+    """Return in one sentence where an unknown name is declared, or who is given it; "" where nobody is."""
+    name = _unknown(message)
+    if not name or line is None:
+        return ""
+    here = next((number for number, one in enumerate(source.lines) if one is line), 0)
+    places = _places(source)
+    for kind, number in sorted(places.get(name, ())):
+        place = f"{shown(source.lines[number].file)}:{source.lines[number].number}"
+        if kind == "called" or (kind == "global" and number <= here):
+            return ""  # ``guess`` knows functions
+        return (GUESSES["below"] if kind == "global" else WHEREABOUTS["block"]).format(name, place)
+    return _given_elsewhere(name, kernel)
+
+
+def _places(source: SourceText) -> dict[str, set[tuple[str, int]]]:
+    """Return the names that a text declares, each with the kinds and the lines, from 0, of where."""
+    from playground.shader.declarations import Declarations
+    from playground.shader.preprocessor import readings
+
+    found: dict[str, set[tuple[str, int]]] = defaultdict(set)
+    for tokens in readings(source.code):
+        for name, kind, at in Declarations(tokens).names():
+            if kind != "member":
+                found[name].add((kind, tokens[at].line))
+    return found
+
+
+def _given_elsewhere(name: str, kernel: Kernel) -> str:
+    """Say so where other shaders are given a name, and what is called otherwise here."""
+    from playground.shader.dialects import isf, main
+
+    kinds = {**isf.NAMES, **main.NAMES}
+    given = kernel.tool_names if kernel.dialect else tuple(_MEANINGS.items()) if _is_own(kernel) else ()
+    if kernel.kind == "plain_fragment" and not kernel.dialect and name in _PLAIN:
+        return WHEREABOUTS["undeclared"].format(name, kinds[name][0])
+    if name in dict(given) or (_is_own(kernel) and name in GIVEN_INSTEAD):
+        return ""
+    meaning = _MEANINGS.get(name) or _ALIKE.get(kinds.get(name, ("", ""))[1], "")
+    if not meaning and name not in GIVEN:
+        return ""
+    same = next((own for own, means in given if meaning and _ALIKE.get(means) == meaning), "")
+    if same:
+        return WHEREABOUTS["same"].format(name, same)
+    return WHEREABOUTS["kernels"].format(name) if name in GIVEN and not _is_own(kernel) else ""
+
+
+def _is_own(kernel: Kernel) -> bool:
+    """Return whether a kernel is one of ours, not a library file alone."""
+    return bool(kernel.outputs) and not kernel.kind.startswith("plain")
+
+
+def _head(message: str) -> str:
+    return message.split("\n", 1)[0][:600]
+
+
+def _unknown(message: str) -> str:
+    """Return the name that a message calls unknown; "" for any other."""
+    found = UNKNOWN.search(_head(message))
+    return next(group for group in found.groups() if group) if found else ""
+
+
+WHEREABOUTS = {
+    "block": "`{0}` is declared at {1}, in a block or a function of its own: it exists only there.",
+    "undeclared": "`{0}` is given where it is declared: add `uniform {1} {0};` above.",
+    "same": "`{0}` is not given here; `{1}` is the same.",
+    "kernels": "`{0}` is given to kernels, and this file is none: take it as an argument, or declare it.",
+}
+"""Where a name is known, or to whom → its sentence."""
+
+_MEANINGS = {"time": "time", "size": "resolution"}  # of names that a kernel is given
+_ALIKE = {
+    **{meaning: meaning for meaning in PLAIN_UNIFORMS},
+    **dict.fromkeys(("hover", "hover_share", "drag"), "mouse"),
+    "frame_of_time": "frame",
+    "date_from_1": "date",
+}
+"""Meanings of what tools give → those of ``PLAIN_UNIFORMS`` that are the same."""
+_PLAIN = frozenset(name for names in PLAIN_UNIFORMS.values() for name in names)
+
+
+def guess(
+    message: str, source: SourceText, line: Line | None, given: Collection[str] = frozenset(GIVEN)
+) -> str:
+    """Return in one sentence what an unknown name was meant to be; "" where that is not sure.
+
+    ``message`` is a driver's, of any maker; ``line`` is where it points, None where it points nowhere.
+    ``given`` are names that need no declaration.
+    """
+    name = _unknown(message)
+    if not name:
+        return _unread(source, line) if line is not None and UNREAD.search(_head(message)) else ""
+    called = bool(re.search(rf"\b{name}\s*\(", line.code if line is not None else source.code))
+    functions, variables = _declared(source)
+    if name in functions or name in variables:
+        return _below(name, functions, source, line) if called else ""
+    if name in GLSL_WORDS:
+        return ""  # known, but not with these arguments, or not to this version
+    if name in ELSEWHERE:
+        return GUESSES["elsewhere"].format(name, ELSEWHERE[name])
+    if name == "saturate" and called:
+        return GUESSES["saturate"]
+    own = any(text.pragma for text in source.lines)
+    if own and name in GIVEN_INSTEAD:
+        return GUESSES["instead"].format(name, GIVEN_INSTEAD[name])
+    files = library().get(name, ())
+    if files:
+        which = " or ".join(f'`#include "{file}"`' for file in files[:3])
+        return GUESSES["library"].format(name, which)
+    known = {*functions, *given, *(GLSL_WORDS if called else variables)}
+    near = _nearest(name, known - {name})
+    return GUESSES["near"].format(name, near) if near else ""
+
+
+def _unread(source: SourceText, line: Line) -> str:
+    """Report what a line that GLSL cannot read has of other languages, or which word of it is misspelt."""
+    if cast := CAST.search(line.code):
+        return GUESSES["cast"].format(cast[1])
+    functions, variables = _declared(source)
+    for word in re.findall(r"[A-Za-z_]\w*", line.code):
+        if word in functions or word in variables or word in GLSL_WORDS or word in GIVEN:
+            continue
+        if word in ELSEWHERE:
+            return GUESSES["elsewhere"].format(word, ELSEWHERE[word])
+        # A word that the text has elsewhere as well is a name of its own.
+        if source.code.count(word) == 1 and (near := _nearest(word, set(TYPES))):
+            return GUESSES["type"].format(word, near)
+    return ""
+
+
+@cache
+def library() -> dict[str, tuple[str, ...]]:
+    """Return the files to include, from ``glsl/``, that define each function of the library."""
+    found: dict[str, list[str]] = {}
+    for path in sorted(GLSL.rglob("*.glsl")):
+        if path.is_relative_to(SKETCHES):
+            continue
+        try:
+            text = path.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError):
+            continue
+        if RUNS.search(text):
+            continue
+        for name in {match[1] for match in DEFINITION.finditer(text)}:
+            found.setdefault(name, []).append(path.relative_to(GLSL).as_posix())
+    return {name: tuple(files) for name, files in found.items()}
+
+
+def _declared(source: SourceText) -> tuple[dict[str, Line], set[str]]:
+    """Return the functions that a text defines, with where, and its variables and macros."""
+    functions: dict[str, Line] = {}
+    variables: set[str] = set()
+    for line in source.lines:
+        if not line.code.strip():
+            continue
+        for match in FUNCTION.finditer(line.code):
+            functions.setdefault(match[1], line)
+        variables |= {match[1] for match in VARIABLE.finditer(line.code)}
+        if macro := DEFINE.match(line.code):
+            if macro[2]:
+                functions.setdefault(macro[1], line)
+            else:
+                variables.add(macro[1])
+    return functions, variables
+
+
+def _below(name: str, functions: dict[str, Line], source: SourceText, line: Line | None) -> str:
+    """Say so where a function is defined further down than where it is called."""
+    there = functions.get(name)
+    if there is None or line is None:
+        return ""
+    order = {id(text): place for place, text in enumerate(source.lines)}
+    if order.get(id(there), 0) <= order.get(id(line), 0):
+        return ""
+    where = f"{shown(there.file)}:{there.number}"
+    return GUESSES["below"].format(name, where)
+
+
+def _nearest(name: str, known: set[str]) -> str:
+    """Return the one known name that is like this one; "" where there is none, or two are as near."""
+    folded = [other for other in known if other.lower() == name.lower()]
+    if len(folded) == 1 and folded[0] != name:
+        return folded[0]
+    if len(name) < 3:
+        return ""
+    near = difflib.get_close_matches(name, sorted(known), n=2, cutoff=NEAR)
+    if len(near) == 2:
+        first, second = (difflib.SequenceMatcher(None, name, other).ratio() for other in near)
+        if first == second:
+            return ""
+    return near[0] if near else ""

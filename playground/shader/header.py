@@ -1,0 +1,1029 @@
+"""A kernel's header: its pragma, its parameters with ``//!`` annotations, its inputs.
+
+``slider(0, 1) step(0.01) The tooltip`` becomes calls with their arguments, and a tooltip.
+Which calls there are, and what their arguments mean, is known elsewhere.
+
+They are read from the text, never from the driver, where a uniform that is optimised
+away vanishes.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from playground.allowed_files import SHADERS
+from playground.errors import Diagnostic, ParameterError, ShaderError, nearest
+from playground.paths import shown
+from playground.shader import expressions
+from playground.shader import parameter as values
+from playground.shader.expressions import ExpressionError
+from playground.shader.kernel import Buffer, Input, Kernel, Output, read_agreement
+from playground.shader.parameter import SCALARS, VECTORS, WIDGETS, Follows, Parameter, Sampling, Value, Widget
+from playground.shader.reserved_names import (
+    DRIVER_BOUND,
+    GIVEN,
+    GIVEN_INSTEAD,
+    GLSL_WORDS,
+    MATCHES,
+    OF_THE_TERRAIN,
+    PLAIN_UNIFORMS,
+    PREFIX,
+    RESERVED,
+    TOWARDS,
+    WIRED,
+)
+from playground.shader.source import Line, SourceText
+
+_ARGUMENT = re.compile(r'\s*(?:(\w+)\s*=\s*)?("(?:[^"\\]|\\.)*"|[^,()"]+)\s*(,|$)')
+_WORD = re.compile(r"\s*([A-Za-z_]\w*)(\s*\()?")
+_STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
+
+Argument = tuple[str, str]
+"""A name, "" where there is none, and a text."""
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """The text of one annotation, and the lines that it is on."""
+
+    text: str
+    lines: tuple[tuple[int, Line], ...]  # where in the text each line's part begins, and that line
+
+    def line_at(self, position: int) -> Line:
+        """Return the line that a position of the text is on."""
+        return next(line for start, line in reversed(self.lines) if start <= position)
+
+    def error(self, message: str, word: str, position: int) -> ShaderError:
+        """Return an error that points at a word of the note, at or before a position."""
+        line = self.line_at(position)
+        return line.error(message, line.text.find(word) + 1)
+
+
+def note_at(lines: Sequence[Line], index: int) -> Note:
+    """Return the annotation that begins on a line, with the lines after it that hold ``//!`` alone."""
+    text, found = "", list[tuple[int, Line]]()
+    for line in lines[index:]:
+        goes_on = not line.code and line.file == lines[index].file and line.chain == lines[index].chain
+        if not line.comment.startswith("!") or (found and not goes_on):
+            break
+        text += " " if found else ""
+        found.append((len(text), line))
+        text += line.comment[1:].strip()
+    return Note(text, tuple(found) or ((0, lines[index]),))
+
+
+def arguments(text: str, line: Line) -> list[Argument]:
+    """Split the text in brackets at its commas; texts lose their quotes. Raises ``ShaderError``."""
+    found: list[Argument] = []
+    position, end = 0, len(text.rstrip())
+    while position < end:
+        match = _ARGUMENT.match(text, position, end)
+        if not match or not match.group(2).strip():
+            rest = text[position:end].strip()
+            raise line.error(f"cannot read '{rest}'; expected values separated by commas, text in quotes")
+        raw = match.group(2).strip()
+        if raw.startswith('"'):
+            raw = re.sub(r"\\(.)", r"\1", raw[1:-1])
+        found.append((match.group(1) or "", raw))
+        position = match.end()
+    return found
+
+
+def annotation_calls(
+    note: Note, words: Collection[str], bare: Collection[str]
+) -> tuple[dict[str, list[str]], str]:
+    """Return (the calls of a note with their arguments, the tooltip that follows them).
+
+    ``words`` may be called; those of ``bare`` need no brackets as the first word.
+    Raises ``ShaderError`` for a word in brackets that is nearly one of ``words``.
+    """
+    found: dict[str, list[str]] = {}
+    position = 0
+    while match := _WORD.match(note.text, position):
+        word, opens, start = match.group(1), bool(match.group(2)), match.start(1)
+        if word not in words:
+            hint = nearest(word, words) if opens else ""
+            if opens and (position == 0 or "did you mean" in hint):
+                raise note.error(f"no widget '{word}'{hint}", word, start)
+            break
+        if not opens:
+            if position or word not in bare:
+                break
+            found[word] = []
+            position = match.end()
+            continue
+        if word in found:
+            raise note.error(f"'{word}' appears twice", word, start)
+        end = _closing(note.text, match.end())
+        if end < 0:
+            raise note.error(f"'{word}(' is not closed", word, start)
+        pairs = arguments(note.text[match.end() : end], note.line_at(start))
+        for name, _ in pairs:
+            if name:
+                raise note.error(f"{word}() takes no '{name} ='", word, start)
+        found[word] = [value for _, value in pairs]
+        position = end + 1
+    return found, note.text[position:].strip()
+
+
+def _closing(text: str, position: int) -> int:
+    """Return where a bracket closes, brackets in quotes apart; -1 if it does not."""
+    while position < len(text):
+        if text[position] == ")":
+            return position
+        string = _STRING.match(text, position)
+        position = string.end() if string else position + 1
+    return -1
+
+
+FALLBACKS = ("white", "black", "zero")
+"""What an input reads where nothing is wired: "zero" is black with alpha 0, and a loop's first iteration
+reads zeros of the size of what is fed back."""
+_UNIFORM = re.compile(
+    r"^\s*uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s+(\w+)\s*(\[[^\]]*\])?\s*(?:=([^;]*))?;"
+)
+_LAYOUT = re.compile(r"^\s*layout\s*\([^)]*\)(?=\s*uniform\b)")
+_SAMPLERS = re.compile(r"\buniform\s+(?:(?:lowp|mediump|highp)\s+)?([iu]?sampler\w+)\s+([^;]*);")
+_WORD_UNIFORM = re.compile(r"\buniform\b")
+_IMAGE = re.compile(r"\b[iu]?image[123]D\b")
+_FLOAT = re.compile(r"[-+]?(?:\d+\.\d*|\.\d+|\d+(?=[eEfF]))(?:[eE][-+]?\d+)?[fF]?")
+_WHOLE = re.compile(r"([-+]?)(?:0[xX]([0-9a-fA-F]+)|(\d+))[uU]?")
+_VECTOR = re.compile(r"([iu]?vec[234])\s*\((.*)\)", re.DOTALL)
+_LONGEST_LITERAL = 64
+
+_TYPES = frozenset(SCALARS + VECTORS)
+_ROLES = WIDGETS.keys() - {"number"} | {"input"}
+_BARE = frozenset(word for word in _ROLES if word == "input" or WIDGETS[word].bare)
+MODIFIERS = frozenset(
+    {"step", "unit", "group", "label", "parts", "values", "follows", "was", "erode", "preview"}
+)
+"""Words of an annotation that may follow its widget."""
+
+Calls = dict[str, list[str]]
+
+
+def read_uniforms(
+    source: SourceText, *, plain: bool = False, skip: Collection[str] = ()
+) -> tuple[tuple[Parameter, ...], tuple[Input, ...]]:
+    """Return the parameters and the inputs of a file with its includes, in the order of their lines.
+
+    Of a ``plain`` shader only what can be understood is taken, ``skip`` left out, and of its
+    samplers those that an image file feeds; in any other, raises ``ShaderError`` for a
+    declaration that cannot be.
+    """
+    parameters: list[Parameter] = []
+    inputs: list[Input] = []
+    seen: dict[str, Line] = {}
+    following: list[tuple[int, list[str], Line]] = []  # which parameter, what it follows
+    for index, line in enumerate(source.lines):
+        if "uniform" not in line.code:  # most lines: a text with its includes has a thousand
+            continue
+        match = _UNIFORM.match(_LAYOUT.sub("", line.code) if plain else line.code)
+        if not plain:
+            _check_declaration(line, match)
+        if not match:
+            continue
+        glsl_type, name, array, initial = match.groups()
+        feeds = plain and glsl_type == "sampler2D" and line.comment.startswith("!")
+        if name in skip or (plain and not feeds and (array or glsl_type not in _TYPES)):
+            continue
+        if array:
+            raise line.error(f"'{name}' is an array; parameters are scalars and vectors")
+        if not plain:
+            check_name(name, line, "parameter")
+            _refuse_given_elsewhere(name, initial, line)
+        if name in seen:
+            # A file that is included twice is here twice; its guard leaves one to the driver.
+            if (seen[name].file, seen[name].number) == (line.file, line.number):
+                continue
+            first = f"{shown(seen[name].file)}:{seen[name].number}"
+            raise line.error(f"'{name}' is declared twice: first at {first}")
+        seen[name] = line
+        calls, tooltip = annotation_calls(note_at(source.lines, index), _ROLES | MODIFIERS, _BARE)
+        if glsl_type == "sampler2D":
+            item = _sampler(name, calls, tooltip, line)
+            if isinstance(item, Input) and plain:
+                example = f'uniform sampler2D {name};  //! file("picture.png")'
+                raise line.error(f"a plain shader has no inputs, but may read an image file: {example}")
+            if isinstance(item, Input):
+                inputs.append(item)
+            else:
+                parameters.append(item)
+        elif glsl_type in _TYPES:
+            if "follows" in calls:
+                following.append((len(parameters), calls["follows"], line))
+            parameters.append(_parameter(name, glsl_type, initial, calls, tooltip, line))
+        else:
+            raise line.error(f"a parameter may not be a {glsl_type}; scalars, vectors and sampler2D may")
+    for number, words, line in following:
+        found = read_follows(parameters[number], words, parameters, line)
+        parameters[number] = replace(parameters[number], follows=found)
+    _check_former_names(parameters, seen)
+    return tuple(parameters), tuple(inputs)
+
+
+def unfed_samplers(source: SourceText) -> tuple[Diagnostic, ...]:
+    """Return a warning for each sampler of a plain shader that no image file feeds: it reads black."""
+    fed = {p.name for p in read_uniforms(source, plain=True)[0] if p.type == "sampler2D"}
+    found: list[Diagnostic] = []
+    for line in source.lines:
+        for match in _SAMPLERS.finditer(line.code):
+            kind, names = match.groups()
+            for one in re.finditer(r"([A-Za-z_]\w*)\s*(?:\[[^\]]*\]\s*)?(?:,|$)", names):
+                name, column = one.group(1), match.start(2) + one.start() + 1
+                example = f'uniform sampler2D {name};  //! file("picture.png")'
+                more = f"an image file does: {example}"
+                if kind != "sampler2D":
+                    more = "only a sampler2D may be fed"
+                if name not in fed:
+                    message = f"nothing feeds '{name}', so it reads black; {more}"
+                    found.append(line.diagnostic(message, column, "warning"))
+    return tuple(dict.fromkeys(found))
+
+
+def is_given(name: str) -> bool:
+    """Return whether a name is one that the engine gives, or calls."""
+    return name in GIVEN or name in RESERVED or name.startswith(("previous_", WIRED, MATCHES, TOWARDS))
+
+
+def check_name(name: str, line: Line, what: str) -> None:
+    """Raise ``ShaderError`` for a name that GLSL or the engine has taken."""
+    if is_given(name):
+        message = f"'{name}' is given to every kernel; name the {what} something else"
+    elif name.startswith((PREFIX, "gl_")) or "__" in name:
+        message = f"'{name}': names that begin with {PREFIX} or gl_, or hold __, are reserved"
+    elif name in GLSL_WORDS:
+        message = f"'{name}' is a word of GLSL itself; name the {what} something else"
+    else:
+        return
+    found = re.search(rf"\b{re.escape(name)}\b", line.code)
+    raise line.error(message, found.start() + 1 if found else 0)
+
+
+def _refuse_given_elsewhere(name: str, initial: str | None, line: Line) -> None:
+    """Refuse a uniform that only plain shaders are given: here it would always have its default.
+
+    One with an annotation is meant as a parameter, and so is a plain word with a default.
+    """
+    meaning = next((m for m, names in PLAIN_UNIFORMS.items() if name in names), "")
+    if not meaning or line.comment.startswith("!") or (name == meaning and initial is not None):
+        return
+    column = line.code.index(name) + 1
+    wrong = f"'{name}' is given to plain shaders only, and here nothing would set it"
+    if name in GIVEN_INSTEAD:
+        given = GIVEN_INSTEAD[name]
+        raise line.error(f"{wrong}; did you mean '{given}'? It is given: take this line out", column)
+    raise line.error(f"{wrong}; an annotation makes it a parameter, as //! point for a vec2", column)
+
+
+def _check_declaration(line: Line, match: re.Match[str] | None) -> None:
+    count = len(_WORD_UNIFORM.findall(line.code))
+    if line.code.lstrip().startswith("#") or _IMAGE.search(line.code) or count == bool(match):
+        return
+    raise line.error(
+        "a uniform is declared on one line of its own: uniform TYPE NAME = LITERAL;  //! annotation"
+    )
+
+
+def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | Input:
+    wrong = sorted(set(calls) & _ROLES - {"file", "input"})
+    if wrong:
+        raise line.error(f"{wrong[0]} is not for a sampler2D; '{name}' may be an input or a file")
+    if "file" in calls and "input" in calls:
+        raise line.error(f"'{name}' has two widgets: file and input")
+    is_file = "file" in calls
+    if "erode" in calls and not (is_file and "paint" in calls["file"]):
+        raise line.error(f"'{name}' is not painted on; erode is for a file with the word \"paint\"")
+    if "was" in calls and not is_file:
+        raise line.error(f"'{name}' is an input; was is for a parameter")
+    words = list(calls.get("file" if is_file else "input", []))
+    path = words.pop(0) if is_file and words else ""
+    if "\0" in path:
+        raise line.error(f"the path of '{name}' holds a zero byte")
+    valid = [
+        "nearest",
+        "linear",
+        "clamp",
+        "repeat",
+        "mipmap",
+        *(["paint"] if is_file else FALLBACKS),
+    ]
+    for word in words:
+        if word not in valid:
+            raise line.error(f"'{word}' is not a way to read a texture{nearest(word, valid)}")
+    for pair in (("nearest", "linear"), ("clamp", "repeat"), FALLBACKS):
+        if len(both := [word for word in pair if word in words]) > 1:
+            raise line.error(f"'{name}' is both {both[0]} and {both[1]}")
+    sampling = Sampling(
+        "linear" if "linear" in words else "nearest",
+        "repeat" if "repeat" in words else "clamp",
+        "mipmap" in words,
+    )
+    if not is_file:
+        fallback = next((word for word in FALLBACKS if word in words), "")
+        return Input(name, sampling, fallback, line.number)
+    return Parameter(
+        name,
+        "sampler2D",
+        path,
+        Widget("file"),
+        sampling=sampling,
+        painted="paint" in words,
+        erode=_text(calls, "erode", line),
+        **_described(calls, tooltip, line),
+        former=_former_names(name, calls, line),
+    )
+
+
+def _parameter(
+    name: str, glsl_type: str, initial: str | None, calls: Calls, tooltip: str, line: Line
+) -> Parameter:
+    widgets = [word for word in calls if word in _ROLES]
+    if "erode" in calls:
+        raise line.error(f"erode is for a file that is painted on; '{name}' is a {glsl_type}")
+    if len(widgets) > 1:
+        raise line.error(f"'{name}' has two widgets: {' and '.join(widgets)}")
+    kind = widgets[0] if widgets else ("checkbox" if glsl_type == "bool" else "number")
+    if kind in ("file", "input"):
+        raise line.error(f"{kind} is for a sampler2D; '{name}' is a {glsl_type}")
+    fits = WIDGETS[kind].types
+    if glsl_type not in fits:
+        wanted = " or ".join(fits) if len(fits) <= 3 else "numbers"
+        raise line.error(f"{kind} is for {wanted}; '{name}' is a {glsl_type}")
+    step = _numbers(name, "step", calls["step"], 1, line)[0] if "step" in calls else None
+    if step is not None and step <= 0:
+        raise line.error(f"step of '{name}': expected a number above 0")
+    widget = _widget(name, kind, calls.get(kind, []), line)
+    widget = replace(widget, values=_menu_values(name, widget, calls, line))
+    parameter = Parameter(
+        name,
+        glsl_type,
+        0,
+        replace(widget, renamed=_renamed_choices(name, widget, calls, line)),
+        step,
+        _text(calls, "unit", line),
+        parts=_parts(name, glsl_type, kind, calls, line),
+        **_described(calls, tooltip, line),
+        former=_former_names(name, calls, line),
+    )
+    default = _literal(name, glsl_type, initial, line)
+    if widget.values:
+        if default not in widget.values:
+            listed = ", ".join(map(str, widget.values))
+            raise line.error(f"the default of '{name}' is {default}; its menu's values are {listed}")
+        default = widget.values.index(default)
+    if kind == "button" and default:
+        raise line.error(f"the default of '{name}' must be false: a button is true while it is pressed")
+    try:
+        parameter = replace(parameter, default=values.coerce(parameter, default))
+    except ParameterError as error:
+        raise line.error(f"the default of {error.diagnostics[0].message}") from None
+    return replace(parameter, preview=_preview(parameter, calls, line))
+
+
+def _parts(name: str, glsl_type: str, kind: str, calls: Calls, line: Line) -> tuple[str, ...]:
+    """Return the names of a vector's components, one each."""
+    found = tuple(calls.get("parts", ()))
+    count = values.length_of(glsl_type)
+    if not found:
+        return ()
+    if kind not in ("slider", "number"):
+        raise line.error(f"parts is for a vector of numbers; '{name}' is a {kind}")
+    if count == 1 or len(found) != count or len(set(found)) < count or not all(found):
+        example = ", ".join(f'"{part}"' for part in ("west", "east", "south", "north")[:count])
+        wanted = f"{count} different names, as parts({example})" if count > 1 else "a vector"
+        raise line.error(f"parts of '{name}', a {glsl_type}: expected {wanted}")
+    return found
+
+
+def _preview(parameter: Parameter, calls: Calls, line: Line) -> Value | None:
+    """Return the choice of a menu, or the number, that previews have; None for what is the same there."""
+    if "preview" not in calls:
+        return None
+    found = calls["preview"]
+    if parameter.widget.kind not in ("menu", "slider", "log_slider") or len(found) != 1:
+        example = 'preview("fast"), or a slider\'s number'
+        raise line.error(f"preview of '{parameter.name}': expected one choice of a menu, as {example}")
+    try:
+        return values.coerce(parameter, found[0])
+    except ParameterError as error:
+        raise line.error(f"the preview of {error.diagnostics[0].message}") from None
+
+
+def _menu_values(name: str, widget: Widget, calls: Calls, line: Line) -> tuple[int, ...]:
+    """Return what the uniform gets for each choice of a menu; nothing where that is the choice's number."""
+    if "values" not in calls:
+        return ()
+    found = [_number(word, fractions=False) for word in calls["values"]]
+    numbers = tuple(n for n in found if isinstance(n, int) and -(2**31) <= n < 2**31)
+    if widget.kind != "menu" or len(numbers) != len(widget.choices) or len(found) != len(numbers):
+        wanted = f"{len(widget.choices)} whole numbers" if widget.choices else "a menu before it"
+        raise line.error(f'values of \'{name}\': expected {wanted}, as menu("soft", "hard") values(1, 4)')
+    return numbers
+
+
+def _former_names(name: str, calls: Calls, line: Line) -> tuple[str, ...]:
+    """Return the names that ``was("stride")`` gives; ``was("mended: removed")`` is of a menu's choices."""
+    found = tuple(word for word in calls.get("was", ()) if ":" not in word)
+    wrong = next((word for word in found if not word.isidentifier()), None)
+    if wrong is not None or ("was" in calls and not calls["was"]):
+        example = 'as was("stride"), or of a choice was("former: present")'
+        raise line.error(f"was of '{name}': expected its former name, {example}")
+    return found
+
+
+def _renamed_choices(name: str, widget: Widget, calls: Calls, line: Line) -> tuple[tuple[str, str], ...]:
+    """Return former choices of a menu with what each is called now."""
+    pairs = [word.partition(":") for word in calls.get("was", ()) if ":" in word]
+    found = tuple((former.strip(), present.strip()) for former, _, present in pairs)
+    for former, present in found:
+        if present not in widget.choices:
+            raise line.error(f"was of '{name}': no choice '{present}'{nearest(present, widget.choices)}")
+        if former in widget.choices:
+            raise line.error(f"was of '{name}': '{former}' is one of its choices still")
+    return found
+
+
+def _check_former_names(parameters: Sequence[Parameter], seen: Mapping[str, Line]) -> None:
+    """Raise ``ShaderError`` for a former name that something else of the file has, or had."""
+    owners: dict[str, str] = {}
+    for parameter in parameters:
+        for former in parameter.former:
+            other = former if former in seen else owners.setdefault(former, parameter.name)
+            if other != parameter.name or former in seen:
+                message = f"was of '{parameter.name}': '{former}' is the name of '{other}'"
+                raise seen[parameter.name].error(message)
+
+
+def _widget(name: str, kind: str, arguments: list[str], line: Line) -> Widget:
+    facts = WIDGETS[kind]
+    if facts.takes == "range" or (facts.takes == "range or nothing" and arguments):
+        low, high = _numbers(name, kind, arguments, 2, line)
+        if kind == "log_slider" and low <= 0:
+            raise line.error(f"log_slider of '{name}': its range must lie above 0")
+        return Widget(kind, low, high)
+    if facts.takes == "ranges" and arguments:
+        pairs = [arguments[:2], arguments[2:]] if len(arguments) > 2 else [arguments]
+        axes = [_numbers(name, kind, pair, 2, line) for pair in pairs]
+        return with_axes(kind, [(low, high) for low, high in axes])
+    if facts.takes == "raw or nothing" and arguments:
+        if arguments != ["raw"]:
+            example = f'as {kind}("raw") for one that is not linear, or {kind}'
+            raise line.error(f"{kind} of '{name}' takes only raw in brackets, {example}")
+        return Widget(kind, raw=True)
+    if facts.takes == "choices":
+        if len(arguments) < 2:
+            raise line.error(f'the {kind} of \'{name}\' needs its choices, as {kind}("linear", "smooth")')
+        if len(set(arguments)) < len(arguments):
+            raise line.error(f"the {kind} of '{name}' has a choice twice")
+        return Widget(kind, choices=tuple(arguments))
+    if arguments:
+        raise line.error(f"{kind} of '{name}' takes nothing in brackets")
+    return Widget(kind, *(facts.range or (None, None)))
+
+
+def with_axes(kind: str, axes: Sequence[tuple[float, float]]) -> Widget:
+    """Return a widget of a vector whose numbers have these ranges: one for all, or one each."""
+    low, high = min(low for low, _ in axes), max(high for _, high in axes)
+    return Widget(kind, low, high, axes=tuple(axes) if len(set(axes)) > 1 else ())
+
+
+def _numbers(name: str, word: str, arguments: list[str], count: int, line: Line) -> tuple[float, ...]:
+    try:
+        numbers = tuple(float(a) for a in arguments)
+    except ValueError:
+        numbers = ()
+    ordered = count == 1 or (len(numbers) == 2 and numbers[0] < numbers[1])
+    if len(numbers) != count or not ordered or not all(map(math.isfinite, numbers)):
+        two = f"two numbers, the lower first, as {word}(0, 1)"
+        raise line.error(f"{word} of '{name}': expected {two if count == 2 else 'one number, as step(0.01)'}")
+    return numbers
+
+
+def _described(calls: Calls, tooltip: str, line: Line) -> dict[str, Any]:
+    """Return the fields that any parameter has, of a number or a file."""
+    texts = {word: _text(calls, word, line) for word in ("group", "label")}
+    return {**texts, "tooltip": tooltip, "file": line.file, "line": line.number}
+
+
+def _text(calls: Calls, word: str, line: Line) -> str:
+    if word in calls and len(calls[word]) != 1:
+        raise line.error(f'{word}() takes one text in quotes, as {word}("m")')
+    return calls[word][0] if word in calls else ""
+
+
+def _literal(name: str, glsl_type: str, initial: str | None, line: Line) -> Value | list[float]:
+    length = values.length_of(glsl_type)
+    if initial is None:
+        return False if glsl_type == "bool" else (0 if length == 1 else [0] * length)
+    text = initial.strip()
+    column = line.code.find(text) + 1
+    if glsl_type == "bool":
+        if text in ("true", "false"):
+            return text == "true"
+        raise line.error(f"'{name}' is a bool; expected true or false, found {text}", column)
+    parts = [text]
+    if length > 1:
+        vector = _VECTOR.fullmatch(text)
+        if not vector or vector.group(1) != glsl_type:
+            raise line.error(f"the initialiser of '{name}' must be a literal, as {glsl_type}(…)", column)
+        parts = [part.strip() for part in vector.group(2).split(",")]
+        if len(parts) == 1:
+            parts *= length
+    # A constructor takes any numbers, a scalar is converted from whole to real alone.
+    fractions = length > 1 or not values.is_whole(glsl_type)
+    numbers = [_number(part, fractions=fractions) for part in parts]
+    if len(parts) != length or any(number is None for number in numbers):
+        wanted = "" if fractions else "whole "
+        raise line.error(f"the initialiser of '{name}' must be a {wanted}literal, found {text}", column)
+    found = [math.trunc(n) if values.is_whole(glsl_type) else n for n in numbers if n is not None]
+    return found if length > 1 else found[0]
+
+
+def _number(text: str, *, fractions: bool) -> float | int | None:
+    """Read a number as GLSL writes it: 0x1F and 017 have the bases 16 and 8."""
+    if len(text) > _LONGEST_LITERAL:
+        return None
+    if whole := _WHOLE.fullmatch(text):
+        sign, sixteen, digits = whole.groups()
+        base = 16 if sixteen else 8 if digits.startswith("0") else 10
+        try:
+            return int(sixteen or digits, base) * (-1 if sign == "-" else 1)
+        except ValueError:  # 089 is neither
+            return None
+    if not fractions or not _FLOAT.fullmatch(text):
+        return None
+    number = float(text.rstrip("fF"))
+    return number if math.isfinite(number) else None
+
+
+def read_follows(
+    parameter: Parameter, words: Sequence[str], known: Iterable[Parameter], line: Line
+) -> Follows:
+    """Return what an annotation's ``follows(…)`` says; raise ``ShaderError`` where it cannot be."""
+
+    def wrong(message: str) -> ShaderError:
+        return line.error(f"follows of '{parameter.name}': {message}")
+
+    if parameter.widget.kind != "angle" or len(words) not in (1, 3):
+        raise wrong(
+            'an angle follows a direction, as follows("sun"), '
+            'or while a menu has a choice, as follows("sun", "form", "near")'
+        )
+    by_name = {p.name: p for p in known}
+    directions = [name for name, p in by_name.items() if p.widget.kind == "direction"]
+    if words[0] not in directions:
+        raise wrong(f"no direction '{words[0]}' here{nearest(words[0], directions)}")
+    if len(words) == 1:
+        return Follows(words[0])
+    menus = {name: p.widget.choices for name, p in by_name.items() if p.widget.kind == "menu"}
+    if words[1] not in menus:
+        raise wrong(f"no menu '{words[1]}' here{nearest(words[1], menus)}")
+    choices = menus[words[1]]
+    if words[2] not in choices:
+        raise wrong(f"'{words[1]}' has no choice '{words[2]}'{nearest(words[2], choices)}")
+    return Follows(words[0], words[1], choices.index(words[2]))
+
+
+FORMATS: tuple[str, ...] = tuple(f"{c}{d}" for c in ("r", "rg", "rgba") for d in ("8", "16", "16f", "32f"))
+
+_PRAGMA = re.compile(r"#\s*pragma\s+(\w+)\s*(.*)", re.DOTALL)
+_OTHER_PRAGMA = re.compile(r"\s*#\s*pragma\s+(\w+)\s*\(")
+_DEFINE = re.compile(r"^\s*#\s*define\s+(\w+)")
+_UNIFORM_STATEMENT = re.compile(r"uniform\b[^;]*;$")
+_VERSION = re.compile(r"^\s*#\s*version\b")
+_MAIN = re.compile(r"\bvoid\s+main\s*\(")
+_OWN_NAME = re.compile(rf"^\S+(?:{'|'.join(map(re.escape, SHADERS))})\s*(?:--|—|–|:)\s*")
+_LONGEST_TITLE = 72
+_BETWEEN = ("squares", "triangles")
+_BLENDS = ("none", "alpha", "add")
+_DEPTHS = ("less", "equal", "none")
+_STEPS = ("visits", "stride", "between", "at_once", "until")
+_IMAGE_DECLARATION = re.compile(
+    r"layout\s*\(([^)]*)\)\s*(?:(?:writeonly|readonly|restrict|coherent|volatile)\s+)*"
+    r"uniform\s+(?:\w+\s+)*image2D\s+(\w+)"
+)
+PRAGMAS: dict[str, tuple[str, ...]] = {
+    "kernel": (
+        *("where", "output", "repeat", "accepts", "visits", "stride", "between", "at_once", "until"),
+        "warns",
+    ),
+    "source": ("name", "output", "reads"),
+    "draw": (
+        *("where", "mesh", "count", "instances", "output", "blend", "depth", "over", "samples", "repeat"),
+    ),
+    "compute": (
+        *("where", "accepts", "groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned"),
+        *("in_place", "active", "agrees"),
+    ),
+}
+"""Kind of a pragma → its options."""
+# The options that may use the names of where.
+_EXPRESSIONS = ("groups", "buffers", "repeat", "count", "instances", "visits", "stride", "at_once")
+_EXAMPLES = {
+    "kernel": '(output = "height:r32f")',
+    "source": '("elevation_file", output = "height:r32f")',
+    "draw": '(mesh = "grid")',
+    "compute": '(groups = "size.y, 1", agrees = "exact")',
+}
+_SIZE = ("size.x", "size.y")
+_SOURCE_READS = ("time", "keys", "microphone", "camera", *OF_THE_TERRAIN)
+_NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?![\w.]|\s*:)")
+_NOT_IN_WHERE = ("size", "if", "else", "and", "or", "not", "log2", "min", "max", "abs", "floor", "ceil")
+CHOICES: dict[str, tuple[str, ...]] = {
+    "blend": _BLENDS,
+    "depth": _DEPTHS,
+    "between": _BETWEEN,
+    "until": ("unchanged",),
+    "reads": _SOURCE_READS,
+    "samples": ("0", "1"),
+    "aligned": ("4", "8", "16", "32"),
+}
+"""Option of a pragma → what it may be, where that is one of a few."""
+_BUFFER_TYPES = "float int uint vec2 vec4 ivec2 ivec4 uvec2 uvec4".split()
+
+
+def parse_kernel(name: str, source: SourceText) -> Kernel | None:
+    """Return what a GLSL file declares; None for a library file, which declares nothing to run.
+
+    Raises ``ShaderError`` naming file and line for each mistake in the header.
+    """
+    outermost = [line for line in source.lines if not line.chain]
+    found = [line for line in outermost if line.pragma]
+    versions = [line for line in outermost if _VERSION.match(line.code)]
+    if versions and not found:
+        return _plain(name, source, versions[0])
+    _refuse_misspelt(outermost)
+    if not found:
+        return None
+    if versions:
+        raise versions[0].error(
+            "a kernel has no #version of its own; only a plain shader, without #pragma, has one"
+        )
+    if len(found) > 1:
+        raise found[1].error("a second #pragma; a file is one kernel, one source or one draw")
+    line = found[0]
+    match = _PRAGMA.match(line.pragma)
+    assert match is not None  # or source.py would not have taken it for a pragma
+    kind = match.group(1)
+    options = _options(kind, match.group(2), line)
+    _refuse_redefined(source)
+    parameters, inputs = read_uniforms(source)
+    kernel = Kernel(name, kind, source, (), parameters, inputs, title=title_of(source))
+    if "where" in options:
+        options = _with_names_replaced(options, kernel, line)
+    if kind == "compute":
+        return _compute(kernel, options, line)
+    text = options.get("output", "frame:rgba16f" if kind == "draw" else "")
+    if not text:
+        raise line.error(f'#pragma {kind} needs output = "name:format", as output = "height:r32f"')
+    kernel = replace(kernel, outputs=_outputs(text, line))
+    for output in kernel.outputs:
+        if parameter := kernel.parameter(output.name):
+            place = next(x for x in source.lines if (x.file, x.number) == (parameter.file, parameter.line))
+            raise place.error(f"'{output.name}' is both an output and a parameter")
+    if kind == "source":
+        if not options.get("name"):
+            raise line.error(f"#pragma source needs its name, as #pragma source{_EXAMPLES[kind]}")
+        _refuse_code(source)
+        return replace(kernel, registry=options["name"], depends=_depends(options.get("reads", ""), line))
+    numbers = _number_names(kernel)
+    repeat = options.get("repeat", "1")
+    _check("repeat", repeat, (*_SIZE, *expressions.CLOCKS, *numbers), line)
+    if expressions.counts_frames(repeat) and "frames" in numbers:
+        raise line.error(f"repeat '{repeat}': 'frames' {expressions.TWO_FRAMES}")
+    if kind == "draw":
+        return _draw(kernel, options, line)
+    _refuse_driver_bound(source)
+    texts = {key: options[key] for key in (*_STEPS, "accepts") if key in options}
+    warns = _warns(options.get("warns", ""), numbers, line)
+    kernel = replace(kernel, repeat=repeat, warns=warns, **texts)  # type: ignore[arg-type]
+    _check_steps(kernel, numbers, line)
+    _check_accepts(kernel.accepts, line)
+    return kernel
+
+
+def _depends(text: str, line: Line) -> tuple[str, ...]:
+    """Return what a source depends on besides its parameters."""
+    found = tuple(filter(None, (part.strip() for part in text.split(","))))
+    for name in found:
+        if name not in _SOURCE_READS:
+            hint = nearest(name, _SOURCE_READS)
+            raise line.error(f"reads = '{text}': a source cannot read '{name}'{hint}")
+    return found
+
+
+def _warns(text: str, numbers: Collection[str], line: Line) -> tuple[tuple[str, str], ...]:
+    """Return conditions of the parameters, and what is warned of where one holds."""
+    found: list[tuple[str, str]] = []
+    for part in filter(None, (part.strip() for part in text.split(";"))):
+        condition, colon, message = (piece.strip() for piece in part.partition(":"))
+        if not colon or not message:
+            example = "frequency <= tiles: no detail is left (several are separated by ;)"
+            raise line.error(f"warns '{part}': expected condition: message, as {example}")
+        _check("warns", condition, (*_SIZE, *numbers), line)
+        found.append((condition, " ".join(message.split())))
+    return tuple(found)
+
+
+def _check_accepts(accepts: str, line: Line) -> None:
+    try:
+        if accepts:
+            expressions.accepted_sizes(accepts)
+    except ExpressionError as error:
+        raise line.error(f'accepts: {error}; as accepts = "2**n + 1"') from None
+
+
+def _check_steps(kernel: Kernel, numbers: Collection[str], line: Line) -> None:
+    """Check how a kernel's steps run: which texels they visit, how far apart those are, how many at once."""
+    known = (*_SIZE, "iteration", "iterations", *numbers)
+    if kernel.visits:
+        _check("visits", kernel.visits, known, line, count=2)
+    if kernel.stride:
+        _check("stride", kernel.stride, known, line)
+        if not kernel.visits:
+            raise line.error("stride says how far apart the texels of visits lie; give the kernel visits")
+    if kernel.between:
+        if kernel.between not in _BETWEEN:
+            raise line.error(f"between = '{kernel.between}'{nearest(kernel.between, _BETWEEN)}")
+        if not kernel.stride:
+            raise line.error("between says how the texels of a stride are joined; give the kernel a stride")
+    if kernel.until:
+        _check_until(kernel, line)
+    if kernel.at_once == "1":
+        return
+    _check("at_once", kernel.at_once, (*_SIZE, *numbers), line)
+    if kernel.visits:
+        raise line.error("at_once and visits: a kernel has one or the other")
+    if kernel.repeat == "1":
+        raise line.error("at_once counts steps, but the kernel has one step only; give it a repeat")
+    if not kernel.reads("until"):
+        raise line.error(
+            "at_once: the kernel must do the steps from iteration up to until, but never names until"
+        )
+
+
+def _check_until(kernel: Kernel, line: Line) -> None:
+    """Check that what a kernel does of a state is the same at every step: then an unchanged one stays."""
+    if kernel.until != "unchanged":
+        raise line.error(f"until = '{kernel.until}'{nearest(kernel.until, ('unchanged',))}")
+    if kernel.repeat == "1":
+        raise line.error(
+            "until says when a repeat may end, but the kernel has one step only; give it a repeat"
+        )
+    if kernel.visits or kernel.at_once != "1":
+        name = "visits" if kernel.visits else "at_once"
+        raise line.error(f"until and {name}: a kernel has one or the other")
+    for name in ("iteration", "iterations", "until", "time"):
+        if kernel.reads(name):
+            raise line.error(
+                f"until: the text names '{name}', so after a step that changes nothing another may"
+            )
+
+
+def title_of(source: SourceText) -> str:
+    """Return the sentence that a file begins with, without its own name, as a heading."""
+    for line in source.lines:
+        if line.chain or line.pragma or _VERSION.match(line.code):
+            continue
+        if line.code.strip() or line.comment.startswith("!"):
+            break
+        text = _OWN_NAME.sub("", line.comment.strip())
+        if any(letter.isalnum() for letter in text):
+            return _titled(text)
+    return ""
+
+
+def _titled(text: str) -> str:
+    """Return a sentence as a heading: no full stop, a capital, of a long one the part before its colon."""
+    if len(text) > _LONGEST_TITLE:
+        text = text.partition(": ")[0]
+    text = text.removesuffix(".")
+    # Not sRGB or iTime, which are spelt so.
+    return text[:1].upper() + text[1:] if text.partition(" ")[0].islower() else text
+
+
+def _plain(name: str, source: SourceText, version: Line) -> Kernel:
+    is_compute = source.path.endswith(".comp") or "local_size_x" in source.names
+    if not _MAIN.search(source.code):
+        raise version.error("a shader with its own #version needs its own main()")
+    usual = {n for names in PLAIN_UNIFORMS.values() for n in names}
+    parameters, _ = read_uniforms(source, plain=True, skip=usual)
+    output = Output("frame", "rgba8")
+    local = (1, 1)
+    if is_compute:
+        image = _IMAGE_DECLARATION.search(source.code)
+        if not image:
+            example = "layout(rgba8, binding = 0) uniform image2D picture;"
+            raise version.error(f"a plain compute shader needs an image2D to write, as {example}")
+        formats = [w.strip() for w in image.group(1).split(",") if w.strip() in FORMATS]
+        if not formats:
+            raise version.error(f"the image {image.group(2)} needs a format; there are: {', '.join(FORMATS)}")
+        output = Output("frame", formats[0])
+        sizes = [re.search(rf"local_size_{axis}\s*=\s*(\d{{1,5}})\b", source.code) for axis in "xy"]
+        local = (int(sizes[0].group(1)) if sizes[0] else 1, int(sizes[1].group(1)) if sizes[1] else 1)
+        if min(local) < 1:
+            raise version.error("local_size_x and local_size_y should be 1 or more")
+    kind = "plain_compute" if is_compute else "plain_fragment"
+    return Kernel(name, kind, source, (output,), parameters, local=local, title=title_of(source))
+
+
+def _draw(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
+    if not options.get("mesh"):
+        raise line.error('#pragma draw needs a mesh, as mesh = "grid"')
+    blend, depth = options.get("blend", "none"), options.get("depth", "less")
+    for key, value, valid in (
+        ("blend", blend, _BLENDS),
+        ("depth", depth, _DEPTHS),
+    ):
+        if value not in valid:
+            raise line.error(f'{key} = "{value}": expected one of {", ".join(valid)}')
+    samples, count = options.get("samples", "0"), options.get("count", "")
+    if samples not in ("0", "1"):
+        raise line.error(f"samples = {samples}: expected 1, or 0 for as many as the view has")
+    if count:
+        sizes = [f"{declared.name}.{axis}" for declared in kernel.inputs for axis in _SIZE]
+        _check("count", count, (*_SIZE, *_number_names(kernel), *sizes), line)
+    instances = options.get("instances", "")
+    if instances:
+        texels = [f"{declared.name}.{component}" for declared in kernel.inputs for component in "xyzw"]
+        _check("instances", instances, (*_SIZE, *_number_names(kernel), *texels), line)
+    over, inputs = options.get("over", ""), [declared.name for declared in kernel.inputs]
+    if over and over not in inputs:
+        raise line.error(f"over: there is no input '{over}'{nearest(over, inputs)}")
+    kernel = replace(kernel, registry=options["mesh"], blend=blend, depth=depth, count=count)
+    kernel = replace(kernel, instances=instances, over=over)
+    return replace(kernel, samples=int(samples), repeat=options.get("repeat", "1"))
+
+
+def _compute(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
+    if not options.get("groups"):
+        raise line.error('#pragma compute needs groups, as groups = "size.y, 1"')
+    names = (*_SIZE, *_number_names(kernel))
+    local = [part.strip() for part in options.get("local", "8, 8").split(",")]
+    if len(local) != 2 or not all(re.fullmatch(r"[1-9][0-9]{0,4}", part) for part in local):
+        raise line.error(f'local = "{options.get("local")}": expected two whole numbers, as "256, 1"')
+    buffers: list[Buffer] = []
+    for part in filter(None, (p.strip() for p in options.get("buffers", "").split(";"))):
+        pieces = [p.strip() for p in part.split(":", 2)]
+        if len(pieces) != 3 or not re.fullmatch(r"[A-Za-z_]\w*", pieces[0], re.ASCII):
+            example = "stack:vec4:size.x * 64 (several separated by ;)"
+            raise line.error(f"buffer '{part}': expected name:type:count, as {example}")
+        if pieces[1] not in _BUFFER_TYPES:
+            raise line.error(
+                f"buffer '{pieces[0]}' has no type '{pieces[1]}'{nearest(pieces[1], _BUFFER_TYPES)}"
+            )
+        _check(f"buffer '{pieces[0]}'", pieces[2], names, line)
+        buffers.append(Buffer(pieces[0], pieces[1], pieces[2]))
+    stages = [part.strip() for part in filter(None, options.get("stages", "").split(","))]
+    if not all(re.fullmatch(r"[0-9]{1,4}", part, re.ASCII) for part in stages):
+        raise line.error(f'stages = "{options["stages"]}": expected whole numbers separated by commas')
+    if stages and "repeat" in options:
+        raise line.error("stages says how many steps there are; leave repeat out")
+    if options.get("aligned", "8") not in CHOICES["aligned"]:
+        raise line.error(
+            f'aligned = "{options["aligned"]}": expected 4, 8, 16 or 32, the bytes that rows are filled up to'
+        )
+    active, there = options.get("active", ""), [buffer.name for buffer in buffers]
+    if active and active not in there:
+        raise line.error(f"active: no buffer '{active}'{nearest(active, there)}")
+    if active and "repeat" not in options:
+        raise line.error("active says when a repeat may end; give the compute variant a repeat")
+    in_place = options.get("in_place", "")
+    if in_place and in_place not in there:
+        raise line.error(f"in_place: no buffer '{in_place}'{nearest(in_place, there)}")
+    if in_place and not kernel.inputs:
+        raise line.error("in_place: there is no input that the buffer could begin as")
+    try:
+        agrees = read_agreement(options["agrees"]) if "agrees" in options else ()
+    except ValueError as error:
+        raise line.error(f"agrees: {error}") from None
+    _check_accepts(options.get("accepts", ""), line)
+    _check("groups", options["groups"], (*names, "iteration"), line, count=2)
+    _check("repeat", options.get("repeat", "1"), names, line)
+    return replace(
+        kernel,
+        own_accepts=options.get("accepts", ""),
+        groups=options["groups"],
+        local=(int(local[0]), int(local[1])),
+        buffers=tuple(buffers),
+        repeat=str(len(stages)) if stages else options.get("repeat", "1"),
+        stages=tuple(int(part) for part in stages),
+        aligned=int(options.get("aligned", "8")),
+        in_place=in_place,
+        active=active,
+        overwrites=tuple(filter(None, (p.strip() for p in options.get("overwrites", "").split(",")))),
+        agrees=agrees,
+    )
+
+
+def _options(kind: str, text: str, line: Line) -> dict[str, str]:
+    text = text.strip()
+    if not text.startswith("(") or not text.endswith(")"):
+        raise line.error(f"#pragma {kind} needs its options in brackets, as #pragma {kind}{_EXAMPLES[kind]}")
+    found: dict[str, str] = {}
+    for key, value in arguments(text[1:-1], line):
+        if not key and kind == "source" and "name" not in found:
+            key = "name"
+        if key not in PRAGMAS[kind]:
+            what = f"has no option '{key}'" if key else f"cannot tell what '{value}' is for"
+            raise line.error(f"#pragma {kind} {what}{nearest(key, PRAGMAS[kind])}")
+        if key in found:
+            raise line.error(f"#pragma {kind} gives '{key}' twice")
+        found[key] = value
+    return found
+
+
+def _with_names_replaced(options: dict[str, str], kernel: Kernel, line: Line) -> dict[str, str]:
+    """Replace the names that ``where`` gives to expressions, in the options that are expressions."""
+    known = (*_SIZE, "iteration", "iterations", *expressions.CLOCKS, *_number_names(kernel))
+    meant: dict[str, str] = {}
+    for part in filter(None, (p.strip() for p in options["where"].split(";"))):
+        name, equals, text = (piece.strip() for piece in part.partition("="))
+        if not equals or not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+            example = "half = size.x // 2 (several separated by ;)"
+            raise line.error(f"where '{part}': expected name = expression, as {example}")
+        if name in known or name in meant or name in _NOT_IN_WHERE or kernel.parameter(name):
+            raise line.error(f"where: the name '{name}' is taken")
+        text = _replaced(text, meant)
+        _check(f"where '{name}'", text, known, line)
+        meant[name] = f"({text})"
+    return {key: _replaced(text, meant) if key in _EXPRESSIONS else text for key, text in options.items()}
+
+
+def _replaced(text: str, meant: dict[str, str]) -> str:
+    # Not a component, as the x of size.x; nor the name or the type of a buffer, which colons follow.
+    return _NAME.sub(lambda match: meant.get(match.group(), match.group()), text)
+
+
+def _outputs(text: str, line: Line) -> tuple[Output, ...]:
+    found: list[Output] = []
+    for part in text.split(","):
+        name, _, form = (piece.strip() for piece in part.partition(":"))
+        if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+            raise line.error(f"output '{part.strip()}': expected name:format, as height:r32f")
+        if form not in FORMATS:
+            raise line.error(f"output '{name}' has no format '{form}'{nearest(form, FORMATS)}")
+        if name in [o.name for o in found]:
+            raise line.error(f"output '{name}' appears twice")
+        check_name(name, line, "output")
+        found.append(Output(name, form))
+    if len(found) > 8:
+        raise line.error(f"{len(found)} outputs; OpenGL promises no more than 8")
+    return tuple(found)
+
+
+def _number_names(kernel: Kernel) -> tuple[str, ...]:
+    """Return the parameters that an expression may name."""
+    return tuple(p.name for p in kernel.parameters if p.type in ("float", "int", "uint", "bool"))
+
+
+def _check(what: str, text: str, known: Collection[str], line: Line, count: int = 1) -> None:
+    try:
+        expressions.check(text, known, count=count)
+    except ExpressionError as error:
+        raise line.error(f"{what}: {error}") from None
+
+
+def _refuse_misspelt(lines: list[Line]) -> None:
+    for line in lines:
+        match = _OTHER_PRAGMA.match(line.code)
+        hint = nearest(match.group(1), PRAGMAS) if match else ""
+        if match and "did you mean" in hint:
+            raise line.error(f"no #pragma '{match.group(1)}'{hint}")
+
+
+def _refuse_redefined(source: SourceText) -> None:
+    if "define" not in source.names:
+        return
+    for line in source.lines:
+        match = _DEFINE.match(line.code) if "define" in line.code else None
+        if match and is_given(match.group(1)):
+            check_name(match.group(1), line, "macro")
+
+
+def _refuse_code(source: SourceText) -> None:
+    """Refuse code in a source's file: no driver is given it, so that a mistake in it would never show."""
+    for line in source.lines:
+        code = line.code.strip()
+        if code and not code.startswith("#") and not _UNIFORM_STATEMENT.match(code):
+            message = "a source's file has parameters only, and nothing runs this code; take it out"
+            raise line.error(message, len(line.code) - len(line.code.lstrip()) + 1)
+
+
+def _refuse_driver_bound(source: SourceText) -> None:
+    if not any(name in DRIVER_BOUND or name.startswith("gl_") for name in source.names):
+        return
+    for line in source.lines:
+        for match in re.finditer(r"[A-Za-z_]\w*", line.code):
+            word = match.group()
+            if word in DRIVER_BOUND:
+                raise line.error(f"a kernel may not use '{word}': {DRIVER_BOUND[word]}", match.start() + 1)
+            if word.startswith("gl_"):
+                raise line.error(
+                    f"a kernel may not use '{word}': its texel is an argument", match.start() + 1
+                )

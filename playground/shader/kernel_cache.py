@@ -1,0 +1,62 @@
+"""Cache parsed kernels for as long as the files that they were made of stay the same.
+
+A live session reads its sketch anew at every save, and most of its kernels have not
+changed; parsing them all again would take longer than drawing. A cached kernel is
+also the same object, by whose identity other caches go.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from playground.shader.header import parse_kernel
+from playground.shader.kernel import Kernel, Variant
+from playground.shader.source import Origin, read_source_and_origin
+
+_MOST = 1024  # the library has some three hundred, each read in its sketches' folders as well
+
+_parsed: OrderedDict[tuple[str, Path, tuple[Path, ...]], tuple[Kernel | None, Origin]] = OrderedDict()
+# What each was made of is referenced too, so that its identity is not given to another object.
+_replaced: OrderedDict[tuple[Any, ...], tuple[Kernel, dict[str, Any], Kernel]] = OrderedDict()
+
+
+def parsed_kernel(name: str, path: Path, roots: Sequence[Path]) -> Kernel | None:
+    """Return what ``parse_kernel`` makes of a file, parsed again only if anything it is made of changed."""
+    key = (name, path, tuple(roots))
+    known = _parsed.get(key)
+    if known is None or not known[1].holds():
+        source, origin = read_source_and_origin(path, roots)
+        known = _parsed[key] = (parse_kernel(name, source), origin)
+        while len(_parsed) > _MOST:
+            _parsed.popitem(last=False)
+    _parsed.move_to_end(key)
+    return known[0]
+
+
+def replaced(kernel: Kernel, **changes: Any) -> Kernel:
+    """Return a kernel with some fields replaced: the same object for the same kernel and changes."""
+    key = (id(kernel), *((name, _identity(value)) for name, value in changes.items()))
+    known = _replaced.get(key)
+    if known is None:
+        known = _replaced[key] = (kernel, changes, replace(kernel, **changes))
+        while len(_replaced) > _MOST:
+            _replaced.popitem(last=False)
+    _replaced.move_to_end(key)
+    return known[2]
+
+
+def _identity(value: Any) -> Any:
+    """Return what a value is known by: kernels are large, so those of fast variants by which they are.
+
+    Passes of a variant are read anew with each sketch, so they are known by what they are made of.
+    """
+    if isinstance(value, tuple):
+        return tuple(_identity(one) for one in value)
+    if not isinstance(value, Variant):
+        return value
+    technique = id(value.technique) if isinstance(value.technique, Kernel) else value.technique
+    return technique, value.verified, value.record

@@ -1,0 +1,129 @@
+"""Find GLSL libraries whose folders the user named once, so that ``#include "lygia/…"`` is found.
+
+Their names are in one small JSON file in the user's state folder, the same for every sketch. The
+environment variable ``PLAYGROUND_LIBRARIES`` names more, as ``lygia=FOLDER``, separated as in ``PATH``;
+it takes precedence. No library ships, and none is packed.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from playground.allowed_files import is_inside, names_below, note
+from playground.errors import DataError, ParameterError, nearest
+from playground.folders import state_folder
+from playground.json_text import read_json
+from playground.partial import partial_file
+from playground.paths import program
+from playground.regular_file import read_regular
+
+VARIABLE = "PLAYGROUND_LIBRARIES"
+ENDINGS = (".glsl", ".frag", ".vert", ".hlsl", ".fs", ".h")
+FORMAT = 1
+_LARGEST = 2**16  # [bytes]
+_NAME = re.compile(r"[A-Za-z_][\w.-]{0,39}")
+
+
+def libraries_file() -> Path:
+    """Return where the names are remembered."""
+    return state_folder() / "libraries.json"
+
+
+def libraries(environment: Mapping[str, str] = os.environ) -> dict[str, Path]:
+    """Return the folder of each library by its name; those of the environment come last, and count.
+
+    Raises ``DataError`` where the file of names cannot be read, ``ParameterError`` for a variable
+    that is no list of names and folders.
+    """
+    return {**remembered(), **_in_environment(environment.get(VARIABLE, ""))}
+
+
+def remembered() -> dict[str, Path]:
+    """Return the libraries that were named by ``playground library add``; raise ``DataError``."""
+    path = libraries_file()
+    note(path)
+    try:
+        if path.stat().st_size > _LARGEST:
+            raise ValueError(f"it is larger than {_LARGEST} bytes")
+        table = read_json(read_regular(path).decode())
+        if table["format"] != FORMAT:
+            raise ValueError(f"it has format {table['format']}, and this version knows {FORMAT}")
+        return {str(name): Path(str(folder)) for name, folder in table["libraries"].items()}
+    except FileNotFoundError:
+        return {}
+    except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
+        message = f"does not list libraries ({error}); remove it, and name them again"
+        raise DataError(message, file=path) from None
+
+
+def add_library(name: str, folder: str | Path) -> Path:
+    """Remember a library's folder by its name, and return it whole; a name that is known gets this folder.
+
+    Raises ``ParameterError`` for what is no name, ``DataError`` for a folder without shaders.
+    """
+    if not _NAME.fullmatch(name):
+        raise ParameterError(f"'{name}' is no name of a library: expected letters, digits, '_' and '-'")
+    place = Path(folder).expanduser().absolute()
+    if not place.is_dir():
+        raise DataError("there is no such folder", file=folder)
+    if not names_below((place,), ENDINGS):
+        raise DataError(f"holds no shader ({', '.join(ENDINGS)}), so it is no library", file=folder)
+    if (place / name).is_dir() and not any(place.glob("*.glsl")):
+        raise DataError(f"holds a folder '{name}'; name that one, {place / name}", file=folder)
+    _remember({**remembered(), name: place})
+    return place
+
+
+def remove_library(name: str) -> None:
+    """Forget a library; its folder stays. Raises ``ParameterError`` for one that was never named."""
+    known = remembered()
+    if name not in known:
+        raise ParameterError(f"no library '{name}' was named{nearest(name, known)}")
+    _remember({one: folder for one, folder in known.items() if one != name})
+
+
+def libraries_of(files: Iterable[str | Path]) -> dict[str, list[Path]]:
+    """Return those of some files that lie in a named library, by its name."""
+    found: dict[str, list[Path]] = {}
+    for file in map(Path, files):
+        name = library_around(file, libraries())
+        if name:
+            found.setdefault(name, []).append(file)
+    return found
+
+
+def library_around(file: Path, known: Mapping[str, Path]) -> str:
+    """Return the library that a file lies in, the innermost of several; "" for none."""
+    around = [name for name, folder in known.items() if is_inside(file, (folder,))]
+    return max(around, key=lambda name: len(known[name].parts), default="")
+
+
+def how_to_name(name: str) -> str:
+    """Return how a library's folder is named, as a command."""
+    return f"{program()} library add {name} FOLDER"
+
+
+def _remember(known: Mapping[str, Path]) -> None:
+    path = libraries_file()
+    table = {"format": FORMAT, "libraries": {name: str(known[name]) for name in sorted(known)}}
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with partial_file(path) as partial:
+            partial.handle.write(json.dumps(table, indent=1, ensure_ascii=False).encode())
+            partial.rename(path)
+    except OSError as error:
+        raise DataError(f"cannot be written to: {error.strerror or error}", file=path) from None
+
+
+def _in_environment(text: str) -> dict[str, Path]:
+    found: dict[str, Path] = {}
+    for part in filter(str.strip, text.split(os.pathsep)):
+        name, equals, folder = (piece.strip() for piece in part.partition("="))
+        if not equals or not folder or not _NAME.fullmatch(name):
+            raise ParameterError(f"{VARIABLE}: expected NAME=FOLDER, found '{part}'")
+        found[name] = Path(folder).expanduser().absolute()
+    return found

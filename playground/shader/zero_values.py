@@ -1,0 +1,159 @@
+"""Initialise the variables of other tools' shaders to 0, as WebGL does: OpenGL leaves them undefined.
+
+That is what is declared without a value, and what a function gives back: ``out``, outputs of ``main``, the
+end of a function without ``return``. Lines stay; columns do not, so that a text which a driver refuses is
+compiled again as it was, and its errors name the author's places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+
+from playground.shader.declarations import BUILT_IN, Declarations, Function, Type, Variable
+from playground.shader.preprocessor import Call, Token, readings
+from playground.shader.stage_recipe import VERSION_NUMBER
+from playground.shader.wrap import Wrapped
+
+_MAX_WRITTEN = 64  # elements of an array that are written out; more are set by a loop
+_MAX_WRITTEN_AT_ALL = 4096  # where no loop can stand
+_OUTSIDE = frozenset("const in inout uniform varying attribute buffer shared".split())
+_SCALARS = {"float": "0.0", "int": "0", "uint": "0u", "bool": "false"}
+_INDEX = "k_z"
+
+
+def with_zeros(wrapped: Wrapped) -> Wrapped:
+    """Return a wrapped text in whose author's stages nothing is read before it is set."""
+    return replace(
+        wrapped,
+        stages={
+            name: replace(stage, text=zeroed(stage.text)) if stage.first else stage
+            for name, stage in wrapped.stages.items()
+        },
+    )
+
+
+@lru_cache(maxsize=32)
+def zeroed(text: str) -> str:
+    """Return a stage's text with its variables beginning at 0, as many lines."""
+    version = VERSION_NUMBER.search(text)
+    edits: dict[tuple[int, int, int], str] = {}
+    for tokens in readings(text, int(version[1]) if version else 0):
+        for place, new in _Zeros(tokens).edits():
+            edits.setdefault(place, new)
+    lines = text.split("\n")
+    for (line, start, end), new in sorted(edits.items(), reverse=True):
+        lines[line] = f"{lines[line][:start]}{new}{lines[line][end:]}"
+    return "\n".join(lines)
+
+
+@dataclass
+class _Zeros:
+    """What is inserted into one reading of a text."""
+
+    tokens: tuple[Token, ...]
+    behind: dict[int, str] = field(default_factory=dict)  # index of a token → what is inserted behind it
+
+    def edits(self) -> Iterator[tuple[tuple[int, int, int], str]]:
+        """Yield line, first column and last of what is replaced, and by what."""
+        self.declared = Declarations(self.tokens)
+        if not self.declared.is_balanced:
+            return
+        globals_ = "".join(map(self._begin, self.declared.variables))
+        last_uses = {token.text: index for index, token in enumerate(self.tokens)}
+        for block, colon in self.declared.entries:  # a jump there passes the declarations above
+            for one in self.declared.variables:
+                is_read = one.block == block and one.at < colon < last_uses[one.name]
+                if is_read and not one.qualifiers & _OUTSIDE:
+                    self._insert(colon, self._statements(one.name, one.type))
+        for function in self.declared.functions:
+            if function.closes >= 0:
+                self._frame(function, globals_ if function.name == "main" else "")
+        calls: set[int] = set()
+        for index, new in self.behind.items():
+            token = self.tokens[index]
+            following = self.tokens[index + 1] if index + 1 < len(self.tokens) else None
+            if token.call is not None and following is not None and following.call is token.call:
+                calls.add(id(token.call))
+            else:
+                end = token.call.end if token.call is not None else token.end
+                yield (token.line, end, end), new
+        yield from self._written_out(calls)
+
+    def _begin(self, one: Variable) -> str:
+        """Insert a variable's value; return the statements that set it at the beginning of ``main``."""
+        if one.has_value or one.qualifiers & _OUTSIDE:
+            return ""
+        if "out" in one.qualifiers:
+            return self._statements(one.name, one.type)
+        can_loop = one.is_global or one.may_follow
+        value = self._value(one.type, _MAX_WRITTEN if can_loop else _MAX_WRITTEN_AT_ALL)
+        if value:
+            self._insert(one.end, f" = {value}")
+        elif one.is_global:
+            return self._statements(one.name, one.type)
+        elif one.may_follow:
+            self._insert(one.close, self._statements(one.name, one.type))
+        return ""
+
+    def _frame(self, function: Function, first: str) -> None:
+        """Insert what a function begins with, and what it returns at its end."""
+        outs = [one for one in function.parameters if one.name and "out" in one.qualifiers]
+        first += "".join(self._statements(one.name, one.type) for one in outs)
+        if first:
+            self._insert(function.opens, first)
+        is_open = function.returns and self.tokens[function.last].text != "return"
+        value = self._value(function.type, _MAX_WRITTEN_AT_ALL) if is_open else ""
+        if value:
+            self._insert(function.closes - 1, f" return {value};")
+
+    def _insert(self, index: int, new: str) -> None:
+        self.behind[index] = f"{self.behind.get(index, '')}{new}"
+
+    def _value(self, type_: Type, most: int) -> str:
+        """Return the expression of a type's zero; "" where there is none, or a longer one than wanted."""
+        if type_.sizes:
+            count = self.declared.count(type_.sizes[0])
+            inner = replace(type_, sizes=type_.sizes[1:])
+            if count is None or not 0 < count <= most:
+                return ""
+            value = self._value(inner, most // count)
+            brackets = "".join(f"[{''.join(size)}]" for size in inner.sizes)
+            return f"{type_.name}[{count}]{brackets}({', '.join([value] * count)})" if value else ""
+        if BUILT_IN.fullmatch(type_.name):
+            return _SCALARS.get(type_.name, f"{type_.name}(0)")
+        values = [self._value(member, most) for _, member in type_.members]
+        return f"{type_.name}({', '.join(values)})" if type_.name and values and all(values) else ""
+
+    def _statements(self, place: str, type_: Type, depth: int = 0) -> str:
+        """Return the statements that set a place to zero."""
+        value = self._value(type_, _MAX_WRITTEN)
+        if value:
+            return f" {place} = {value};"
+        if type_.sizes:
+            index = f"{_INDEX}{depth}"
+            inner = self._statements(f"{place}[{index}]", replace(type_, sizes=type_.sizes[1:]), depth + 1)
+            head = f" for (int {index} = 0; {index} < {place}.length(); ++{index})"
+            return f"{head} {{{inner} }}" if inner else ""
+        return "".join(self._statements(f"{place}.{name}", member, depth) for name, member in type_.members)
+
+    def _written_out(self, calls: Collection[int]) -> Iterator[tuple[tuple[int, int, int], str]]:
+        """Yield the calls of macros within which something is inserted, expanded.
+
+        One that would be expanded again stays as it is.
+        """
+        texts: dict[int, list[str]] = {}
+        wholes: dict[int, Call] = {}
+        again: set[int] = set()
+        for index, token in enumerate(self.tokens):
+            if (call := token.call) is not None and id(call) in calls:
+                following = self.tokens[index + 1 : index + 2]
+                is_last = not following or following[0].call is not call
+                new = "" if is_last else self.behind.get(index, "")
+                texts.setdefault(id(call), []).append(f"{token.text}{new}")
+                wholes[id(call)] = call
+                again |= {id(call)} if token.text in token.hidden else set()
+        for key, call in wholes.items():
+            if call.is_whole and key not in again:
+                yield (call.line, call.start, call.end), " ".join(texts[key])

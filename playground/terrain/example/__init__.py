@@ -1,1 +1,0 @@
-"""Make terrain that looks like a piece of real terrain."""

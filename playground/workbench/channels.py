@@ -1,0 +1,337 @@
+"""The channels of other tools' shaders in a sketch: what feeds each, what may, and how that is changed.
+
+A channel is an input of such a shader, as "view.iChannel0". What feeds it is a source: a technique as
+``use`` names it ("foreign/noise"), in a pass that is there for this channel alone; another pass or one
+of its outputs ("photo", "land:height"); or "" for nothing, which is black.
+
+Every technique of ``glsl/foreign`` that gives ``channel_texels`` and needs no input may feed a channel.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+from playground.errors import PlaygroundError, SketchError, nearest
+from playground.paths import GLSL, shown
+from playground.sketch.assign import find_targets
+from playground.sketch.find import shipped_names
+from playground.sketch.flat import Ref, Source, leaves_of
+from playground.sketch.flatten import flatten
+from playground.sketch.identity import Identity
+from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, kernels_of
+from playground.sketch.techniques import read_technique
+from playground.sketch.wiring import input_names, is_optional, output_names
+
+OUTPUT = "channel_texels"
+FOLDER = "foreign/"
+_CUBES = ("foreign/sky_box", "foreign/cube_faces")  # six square faces above each other
+_HEARD = ("foreign/microphone", "foreign/sound")
+_ANY = "foreign/black"  # what has any shape
+_OWN_SIZE = ("camera", "video_file")  # sources that give a pass of no size their own
+_NUMBER = re.compile(r"\d{1,2}$")
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """An input of another tool's shader."""
+
+    path: str  # "view.iChannel0": a pass of the sketch, and an input of it or inside it
+    source: str  # what feeds it now; "" for nothing
+    feeder: str = ""  # the pass of the sketch that feeds it; "" where that is inside the shader's own
+    alone: bool = False  # the feeder feeds nothing else, and a technique of ``glsl/foreign`` fills it
+    shape: str = ""  # of what it reads: a value of ``SHAPES``
+
+    @property
+    def spec(self) -> str:
+        """The pass that has it."""
+        return self.path.partition(".")[0]
+
+    @property
+    def name(self) -> str:
+        """Its name in that pass."""
+        return self.path.partition(".")[2]
+
+    def is_fed_by(self, source: str) -> bool:
+        """Say whether a source feeds it now: a pass by its name, or by the technique that fills it."""
+        return source in (self.source, self.feeder) if source else not self.source
+
+
+def channels(sketch: Sketch) -> tuple[Channel, ...]:
+    """Return every channel of a sketch, pass by pass, by name."""
+    return _channels(Identity(sketch.graph))
+
+
+@lru_cache(maxsize=16)
+def _channels(key: Identity[Graph]) -> tuple[Channel, ...]:
+    graph = key.object
+    names = [
+        (spec, name)
+        for spec in graph.passes
+        for name in sorted(_names(spec.technique), key=_by_number)
+        if name not in dict(spec.feedback)
+    ]
+    if not names:
+        return ()
+    flat = flatten(_bare(graph))
+    readers: dict[str, set[tuple[str, str]]] = {}  # passes of a shader read one channel by one name
+    sources: dict[tuple[str, str], Source | None] = {}
+    shapes: dict[tuple[str, str], str] = {}
+    for leaf in leaves_of(flat.nodes):
+        shapes |= {(leaf.path, declared.name): declared.shape for declared in leaf.kernel.inputs}
+        for name, source in leaf.inputs:
+            sources[leaf.path, name] = source
+            if isinstance(source, Ref):
+                readers.setdefault(source.path, set()).add((leaf.path.partition(".")[0], name))
+    found = []
+    for spec, name in names:
+        kernel, _, own = _leaf(spec, name).rpartition(".")
+        source, shape = sources.get((kernel, own)), shapes.get((kernel, own), "")
+        if isinstance(source, Ref):
+            fed = _fed(graph, f"{spec.name}.{name}", source, len(readers[source.path]), flat.specs)
+            found.append(replace(fed, shape=shape))
+        elif source is None:
+            found.append(Channel(f"{spec.name}.{name}", "", shape=shape))
+    return tuple(found)
+
+
+def _by_number(name: str) -> list[str | int]:
+    """Return a key that sorts u_tex2 before u_tex10."""
+    parts = re.split(r"(\d+)", name)
+    return [int(part) if part.isdigit() else part for part in parts]
+
+
+def _fed(graph: Graph, path: str, source: Ref, readers: int, specs: dict[str, PassSpec]) -> Channel:
+    spec = specs[source.path]
+    is_own = graph.find(source.path) is spec
+    is_feed = spec.use.startswith(FOLDER) and output_names(spec.technique) == (OUTPUT,)
+    if is_feed and (readers == 1 or not is_own):
+        return Channel(path, spec.use, source.path if is_own else "", is_own)
+    head = source.path.partition(".")[0]
+    several = len(output_names(graph.find(head).technique)) > 1  # type: ignore[union-attr]
+    return Channel(path, f"{head}:{source.output}" if several else head, head)
+
+
+def channel_of(sketch: Sketch, path: str) -> Channel:
+    """Return a channel by its path; raise ``SketchError`` with the nearest where there is none."""
+    known = {channel.path: channel for channel in channels(sketch)}
+    if path not in known:
+        raise SketchError(f"no channel '{path}' in sketch {sketch.name}{nearest(path, known)}")
+    return known[path]
+
+
+def find_channel(sketch: Sketch, path: str) -> Channel | None:
+    """Return a channel by its path; None where there is none."""
+    return next((channel for channel in channels(sketch) if channel.path == path), None)
+
+
+def source_of(sketch: Sketch, path: str) -> str | None:
+    """Return what feeds a channel; None where there is no such channel."""
+    found = find_channel(sketch, path)
+    return found.source if found is not None else None
+
+
+def sources(sketch: Sketch, path: str) -> list[str]:
+    """List what may feed a channel: techniques, then passes and their outputs; what does now is among them.
+
+    Raises ``SketchError`` where there is no such channel.
+    """
+    now = channel_of(sketch, path)
+    stand_ins = {channel.feeder for channel in channels(sketch) if channel.alone}
+    passes = [
+        f"{spec.name}:{output}" if len(outputs) > 1 else spec.name
+        for spec in sketch.graph.passes
+        for outputs in [output_names(spec.technique)]
+        for output in outputs
+        if spec.name not in (now.spec, now.feeder)
+        and not (spec.name in stand_ins and not _reads_file(spec))  # another channel's own
+    ]
+    feeds = [use for use in _feeds() if use == _ANY or (use in _CUBES) == (now.shape == "cube")]
+    found = dict.fromkeys([*feeds, *passes, now.source])
+    return [source for source in found if source == now.source or _may_feed(sketch, path, source)]
+
+
+def _reads_file(spec: PassSpec) -> bool:
+    return isinstance(spec.technique, Kernel) and bool(spec.technique.file_parameters)
+
+
+def is_technique(source: str) -> bool:
+    """Return whether a source is a technique, by its name; else it is a pass."""
+    return "/" in source
+
+
+def in_order(sources: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return (channel, source) pairs in the order that ``with_source`` takes: a pass may be one of them."""
+    return sorted(sources, key=lambda pair: not is_technique(pair[1]))
+
+
+@lru_cache(maxsize=1)
+def _feeds() -> tuple[str, ...]:
+    """Return the techniques that may feed a channel."""
+    found = []
+    for use in shipped_names():
+        if use.startswith(FOLDER):
+            technique = read_technique(use, GLSL, GLSL)
+            needs = [name for name in input_names(technique) if not is_optional(technique, name)]
+            if output_names(technique) == (OUTPUT,) and not needs:
+                found.append(use)
+    return tuple(found)
+
+
+def _may_feed(sketch: Sketch, path: str, source: str) -> bool:
+    try:
+        with_source(sketch, path, source)
+    except PlaygroundError:
+        return False
+    return True
+
+
+def with_source(sketch: Sketch, path: str, source: str) -> Sketch:
+    """Return the sketch with another source for a channel, as ``sources`` lists them.
+
+    A technique takes the place of the one that feeds this channel alone, else it comes in a new pass.
+    Raises ``SketchError`` where there is no such channel, technique or pass, or the passes would
+    read each other in a circle.
+    """
+    now = channel_of(sketch, path)
+    if now.is_fed_by(source):
+        return sketch
+    if not is_technique(source):
+        return _wired(sketch, now, source, sketch.graph.passes)
+    technique = read_technique(source, GLSL, GLSL)
+    passes = sketch.graph.passes
+    name = now.feeder if now.alone else _new_name(sketch, now)
+    before = sketch.graph.find(name)
+    spec = PassSpec(
+        name,
+        source,
+        technique,
+        values=(*_values(technique, now), *_same_choices(technique, before)),
+        size=_size(technique, source, now.shape, name, before),
+        file=shown(sketch.file),
+    )
+    if not now.alone:
+        return _wired(sketch, now, name, (*passes[:-1], spec, passes[-1]))
+    was = next(one for one in passes if one.name == name)
+    spec = replace(spec, inputs=(), file=was.file, line=was.line)
+    return _checked(sketch, tuple(spec if one is was else one for one in passes))
+
+
+def _wired(sketch: Sketch, channel: Channel, source: str, passes: tuple[PassSpec, ...]) -> Sketch:
+    def wired(spec: PassSpec) -> PassSpec:
+        if spec.name != channel.spec:
+            return spec
+        if any(name == channel.name for name, _ in spec.inputs):
+            inputs = tuple((n, source if n == channel.name else s) for n, s in spec.inputs)
+        else:
+            inputs = (*spec.inputs, (channel.name, source))
+        return replace(spec, inputs=inputs)
+
+    return _checked(sketch, tuple(map(wired, passes)))
+
+
+def _checked(sketch: Sketch, passes: tuple[PassSpec, ...]) -> Sketch:
+    graph = replace(sketch.graph, passes=passes)
+    overrides = tuple(pair for pair in sketch.overrides if find_targets(graph, pair[0]))
+    found = replace(sketch, graph=graph, overrides=overrides)
+    flatten(found)
+    return found
+
+
+def _new_name(sketch: Sketch, channel: Channel) -> str:
+    """Return a name for a pass: the channel's, unless another pass has it or would read it by that name."""
+    taken = [spec.name for spec in sketch.graph.passes]
+    same = [spec for spec in sketch.graph.passes if channel.name in input_names(spec.technique)]
+    own = channel.path.replace(".", "_")
+    wanted = own if len(same) > 1 or "." in channel.name else channel.name
+    numbered = (f"{wanted}_{number}" for number in range(2, 10_000))
+    return next(name for name in (wanted, *numbered) if name not in taken)
+
+
+def _values(technique: Technique, channel: Channel) -> tuple[tuple[str, Value], ...]:
+    """Return the number of a stand-in: that of the channel's name, so that channels differ."""
+    number = _NUMBER.search(channel.name)
+    return (("number", int(number.group())),) if number and find_targets(technique, "number") else ()
+
+
+def _same_choices(technique: Technique, before: PassSpec | None) -> Iterator[tuple[str, Value]]:
+    """Yield the choices that a stand-in has and what takes its place has too: a spectrum stays one."""
+    if before is None or not isinstance(technique, Kernel) or not isinstance(before.technique, Kernel):
+        return
+    for name, value in before.values:
+        was, parameter = before.technique.parameter(name), technique.parameter(name)
+        if was is None or parameter is None or not isinstance(value, int) or not was.widget.choices:
+            continue
+        if was.widget.choices[value] in parameter.widget.choices:
+            yield name, parameter.widget.choices.index(was.widget.choices[value])
+
+
+def _size(
+    technique: Technique, use: str, shape: str, name: str, before: PassSpec | None
+) -> tuple[str, str] | None:
+    """Return the size of a pass that feeds a channel: that of its picture, if it reads one.
+
+    A sound has no size: its texels are as many as those of a made-up one ``before``.
+    """
+    from playground.shader.dialects.foreign import SIZES, SIZES_OF_SHAPES, STAND_IN_SIZE
+
+    kernel = technique if isinstance(technique, Kernel) else None
+    if kernel is not None and kernel.registry in _OWN_SIZE:
+        return None
+    if use in _HEARD and before is not None and before.use == "foreign/spectrum":
+        return before.size
+    files = [p for p in kernel.parameters if p.widget.kind == "file"] if kernel is not None else []
+    if files and kernel is not None and kernel.kind == "kernel":
+        wide, high = (f"{name}.{files[0].name}.size.{axis}" for axis in "xy")
+        return (wide, f"6 * {wide}") if use in _CUBES else (wide, high)
+    if use in SIZES:
+        return SIZES[use]
+    if before is not None and before.use not in SIZES and before.size and not _reads_file(before):
+        return before.size  # as an ISF filter has it, whose image is as large as its picture
+    return SIZES_OF_SHAPES.get(shape, STAND_IN_SIZE)
+
+
+def _names(technique: Technique) -> Iterator[str]:
+    """Yield the inputs of other tools' shaders in a technique, as its user wires them."""
+    if isinstance(technique, Kernel):
+        if technique.dialect:
+            yield from input_names(technique)
+        return
+    if not any(kernel.dialect for _, kernel in kernels_of(technique)):
+        return
+    exported = dict[str, None]()
+    for export in technique.inputs:
+        if any(_is_foreign(technique, target) for target in export.targets):
+            exported |= dict.fromkeys(export.targets)
+            yield export.name
+    for spec in technique.passes:
+        wired = {name for name, _ in (*spec.inputs, *spec.feedback)}
+        for name in _names(spec.technique):
+            if f"{spec.name}.{name}" not in exported and name not in wired:
+                yield f"{spec.name}.{name}"
+
+
+def _is_foreign(graph: Graph, target: str) -> bool:
+    return _reader(graph, target)[0].dialect != ""
+
+
+def _leaf(spec: PassSpec, name: str) -> str:
+    """Return the path of the kernel's input that a channel's name leads to."""
+    return f"{spec.name}.{_reader(spec.technique, name)[1]}"
+
+
+def _reader(technique: Technique, name: str) -> tuple[Kernel, str]:
+    """Return the kernel that has an input of a name or path, and the path of the input."""
+    path = ""
+    while isinstance(technique, Graph):
+        export = next((e for e in technique.inputs if e.name == name), None)
+        head, _, name = (export.targets[0] if export else name).partition(".")
+        path = f"{path}{head}."
+        technique = technique.find(head).technique  # type: ignore[union-attr]
+    return technique, f"{path}{name}"
+
+
+def _bare(graph: Graph) -> Sketch:
+    return Sketch(graph.name, graph.path, "", graph)

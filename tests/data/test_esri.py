@@ -1,0 +1,175 @@
+"""ESRI's grids, against numbers made here and against GDAL."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from playground.data import esri
+from playground.data.elevation import read_elevation
+from playground.data.geodesy import degree_lengths
+from playground.errors import DataError
+
+RNG = np.random.default_rng(2)
+HEIGHTS = RNG.integers(-40, 3000, (7, 5)).astype(np.float32)  # north row first
+UTM = (
+    'PROJCS["WGS_1984_UTM_Zone_33N",GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,'
+    '298.257223563]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],'
+    'PROJECTION["Transverse_Mercator"],PARAMETER["False_Easting",500000.0],PARAMETER["False_Northing",0.0],'
+    'PARAMETER["Central_Meridian",15.0],PARAMETER["Scale_Factor",0.9996],'
+    'PARAMETER["Latitude_Of_Origin",0.0],UNIT["Meter",1.0]]'
+)
+DEGREES = (
+    'GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],'
+    'PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]]'
+)
+FEET = UTM.replace('UNIT["Meter",1.0]', 'UNIT["Foot_US",0.3048006096012192]').replace("Zone_33N", "Zone_X")
+
+
+def asc(path, heights=HEIGHTS, header="xllcorner 1000\nyllcorner 2000\ncellsize 25", prj=UTM, per_line=0):
+    rows, cols = heights.shape
+    lines = [f"ncols {cols}", f"NROWS {rows}", header, "NODATA_value -9999"]
+    words = [f"{v:.9g}" for v in heights.ravel()]
+    per_line = per_line or cols
+    lines += [" ".join(words[k : k + per_line]) for k in range(0, len(words), per_line)]
+    path.write_text("\n".join(lines) + "\n")
+    if prj:
+        path.with_suffix(".prj").write_text(prj)
+    return path
+
+
+def refused(path, words):
+    with pytest.raises(DataError, match=words) as caught:
+        read_elevation(path)
+    assert caught.value.diagnostics[0].file
+
+
+@pytest.mark.parametrize("per_line", [0, 1, 3, 35])
+def test_a_grid_of_text_however_its_lines_part_it(tmp_path, per_line):
+    found = read_elevation(asc(tmp_path / "a.asc", per_line=per_line))
+    np.testing.assert_array_equal(found.heights[::-1], HEIGHTS)
+    assert found.spacing == (25.0, 25.0) and found.in_metres and found.notes == ()
+    # The corner is the cell's: its middle, the node, lies half a cell inside.
+    assert found.place.bounds == (1012.5, 2012.5, 1112.5, 2162.5)
+    assert found.place.crs.facts.epsg == 32633
+
+
+@pytest.mark.parametrize("chunk", [1, 2, 3, 7, 16])
+def test_a_part_of_a_text_may_be_one_number_without_an_end(tmp_path, monkeypatch, chunk):
+    path = asc(tmp_path / "a.asc")
+    path.write_text(path.read_text().rstrip())
+    monkeypatch.setattr(esri, "_CHUNK", chunk)
+    np.testing.assert_array_equal(read_elevation(path).heights[::-1], HEIGHTS)
+
+
+def test_the_corner_or_the_middle_of_the_cell_and_cells_that_are_not_square(tmp_path):
+    header = "xllcenter 1000\nyllcenter 2000\ndx 10\ndy 20"
+    found = read_elevation(asc(tmp_path / "a.asc", header=header))
+    assert found.spacing == (10.0, 20.0) and found.place.bounds == (1000.0, 2000.0, 1040.0, 2120.0)
+
+
+def test_cells_in_degrees_and_in_feet(tmp_path):
+    header = "xllcenter 7\nyllcenter 46\ncellsize 0.01"
+    found = read_elevation(asc(tmp_path / "a.asc", header=header, prj=DEGREES))
+    east, north = degree_lengths(46.03)
+    assert found.spacing == pytest.approx((0.01 * east, 0.01 * north), rel=1e-9)
+    found = read_elevation(asc(tmp_path / "b.asc", prj=FEET))
+    assert found.spacing == pytest.approx((25 * 1200 / 3937,) * 2, rel=1e-9)
+
+
+def test_without_a_prj_the_cells_are_not_believed_and_that_is_said(tmp_path):
+    found = read_elevation(asc(tmp_path / "a.asc", prj=""))
+    assert found.spacing is None and found.in_metres
+    assert "there is no a.prj next to it" in found.notes[0]
+
+
+def test_no_data_of_text_becomes_nan(tmp_path):
+    heights = HEIGHTS.copy()
+    heights[2, 3] = -9999
+    found = read_elevation(asc(tmp_path / "a.asc", heights))
+    assert np.isnan(found.heights[::-1][2, 3]) and found.missing == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("ncols 5", "columns 5"), "says no ncols; it says columns"),
+        (("ncols 5", "ncols five"), "says ncols five; expected a whole number"),
+        (("NROWS 7", "NROWS 9"), "cut short: it holds 35 numbers; 5 x 9 are 45"),
+        (("cellsize 25", "cellsize -25"), "lengths above zero"),
+        (("xllcorner 1000", "xllcorner here"), "says xllcorner here; expected a number"),
+        (("\n-9", "\n?9"), r"holds '\?9' among its numbers"),
+    ],
+)
+def test_a_header_that_is_wrong_is_a_sentence(tmp_path, change, words):
+    path = asc(tmp_path / "a.asc", np.full_like(HEIGHTS, -9), per_line=1)
+    path.write_text(path.read_text().replace(*change, 1))
+    refused(path, words)
+
+
+def test_a_text_that_is_none_is_a_sentence(tmp_path):
+    (tmp_path / "a.asc").write_bytes(RNG.bytes(5000))
+    refused(tmp_path / "a.asc", "says no ncols")
+
+
+def flt(path, heights=HEIGHTS, order="LSBFIRST", prj=UTM):
+    rows, cols = heights.shape
+    heights.astype("<f4" if order == "LSBFIRST" else ">f4").tofile(path)
+    lines = [f"ncols {cols}", f"nrows {rows}", "xllcorner 1000", "yllcorner 2000", "cellsize 25"]
+    path.with_suffix(".hdr").write_text("\n".join([*lines, "NODATA_value -9999", f"byteorder {order}"]))
+    path.with_suffix(".prj").write_text(prj)
+    return path
+
+
+@pytest.mark.parametrize("order", ["LSBFIRST", "MSBFIRST"])
+def test_floats_with_a_header(tmp_path, order):
+    found = read_elevation(flt(tmp_path / "a.flt", order=order))
+    np.testing.assert_array_equal(found.heights[::-1], HEIGHTS)
+    assert found.place.bounds == (1012.5, 2012.5, 1112.5, 2162.5)
+
+
+def test_floats_without_their_header_or_cut_short(tmp_path):
+    path = flt(tmp_path / "a.flt")
+    path.write_bytes(path.read_bytes()[:-1])
+    refused(path, "holds 139 bytes; 5 x 7 numbers of 32 bits need 140")
+    path.with_suffix(".hdr").unlink()
+    refused(path, "needs a.hdr next to it")
+
+
+@pytest.mark.parametrize(
+    ("dtype", "kind"), [("i2", ""), ("u1", ""), ("i4", "SIGNEDINT"), ("f4", "FLOAT"), ("u2", "UNSIGNEDINT")]
+)
+@pytest.mark.parametrize("order", ["I", "M"])
+def test_bil_of_every_kind_of_number_with_rows_that_are_filled_up(tmp_path, dtype, kind, order):
+    heights = (HEIGHTS % 200).astype((">" if order == "M" else "<") + dtype)
+    wide = heights.itemsize * 5 + 3
+    stored = np.zeros((7, wide), np.uint8)
+    stored[:, : heights.itemsize * 5] = np.ascontiguousarray(heights).view(np.uint8).reshape(7, -1)
+    (tmp_path / "a.bil").write_bytes(b"head" + stored.tobytes())
+    lines = ["NROWS 7", "NCOLS 5", f"NBITS {8 * heights.itemsize}", f"BYTEORDER {order}", "SKIPBYTES 4"]
+    lines += [f"TOTALROWBYTES {wide}", "ULXMAP 10", "ULYMAP 50", "XDIM 0.5", "YDIM 0.25", "LAYOUT BIL"]
+    lines += [f"PIXELTYPE {kind}"] if kind else []
+    (tmp_path / "a.hdr").write_text("\n".join(lines))
+    (tmp_path / "a.prj").write_text(DEGREES)
+    found = read_elevation(tmp_path / "a.bil")
+    np.testing.assert_array_equal(found.heights[::-1], heights.astype(np.float32))
+    assert found.place.bounds == (10.0, 48.5, 12.0, 50.0), "the corner is the middle of the first cell"
+
+
+def test_bil_of_several_bands_or_odd_numbers_is_refused(tmp_path):
+    (tmp_path / "a.bil").write_bytes(bytes(100))
+    for words, line in (("has 3 bands", "NBANDS 3"), ("float of 16 bits", "NBITS 16\nPIXELTYPE FLOAT")):
+        (tmp_path / "a.hdr").write_text(f"NROWS 5\nNCOLS 5\n{line}")
+        refused(tmp_path / "a.bil", words)
+
+
+@pytest.mark.parametrize("name", ["a.asc", "a.flt"])
+def test_gdal_reads_the_same_in_the_same_place(tmp_path, name):
+    rasterio = pytest.importorskip("rasterio")
+    path = (asc if name == "a.asc" else flt)(tmp_path / name)
+    found = read_elevation(path)
+    with rasterio.open(path) as raster:
+        np.testing.assert_array_equal(raster.read(1), found.heights[::-1])
+        west, south, east, north = found.place.bounds
+        assert tuple(raster.bounds) == (west - 12.5, south - 12.5, east + 12.5, north + 12.5)
+        assert raster.crs.to_epsg() == found.place.crs.facts.epsg

@@ -1,0 +1,311 @@
+"""Rasters as GDAL writes them, read by our own readers and, where those cannot, by GDAL."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from scipy.io import netcdf_file
+
+from playground.data import gis, tiff_rows
+from playground.data.elevation import open_elevation, read_elevation
+from playground.data.resample import decimate
+from playground.data.rows import ArrayRows
+from playground.engine import file_sources
+from playground.engine.sources import source_kind
+from playground.errors import DataError
+from playground.extras import install_command
+
+rasterio = pytest.importorskip("rasterio")  # of the extra gis
+from rasterio.enums import Resampling  # noqa: E402
+from rasterio.transform import Affine  # noqa: E402
+
+RNG = np.random.default_rng(8)
+HEIGHTS = RNG.normal(900.0, 300.0, (77, 131)).astype(np.float32)  # north row first
+NORTH_UP = Affine(10.0, 0.0, 400_000.0, 0.0, -12.5, 5_300_000.0)
+
+
+def raster(path, values=HEIGHTS, transform=NORTH_UP, crs="EPSG:32633", scale=1.0, offset=0.0, **options):
+    rows, cols = values.shape
+    facts = {"driver": "GTiff", "width": cols, "height": rows, "count": 1, "dtype": values.dtype}
+    with rasterio.open(path, "w", **facts, crs=crs, transform=transform, **options) as file:
+        file.write(values, 1)
+        if (scale, offset) != (1.0, 0.0):
+            file.scales, file.offsets = (scale,), (offset,)
+    return path
+
+
+TILES = {"tiled": True, "blockxsize": 32, "blockysize": 16}
+OWN = {
+    "strips": {},
+    "strips of several rows": {"blockysize": 10},
+    "tiles": TILES,
+    "deflate": {"compress": "deflate", **TILES},
+    "deflate and predictor 2": {"compress": "deflate", "predictor": 2, **TILES},
+    "deflate and predictor 3": {"compress": "deflate", "predictor": 3, **TILES},
+    "big-endian deflate": {"compress": "deflate", "predictor": 3, "ENDIANNESS": "BIG"},
+    "BigTIFF": {"BIGTIFF": "YES", **TILES},
+}
+GDALS = {
+    "zstd": {"compress": "zstd", **TILES},
+    "zstd and predictor 3": {"compress": "zstd", "predictor": 3, **TILES},
+    "lerc": {"compress": "lerc", "max_z_error": 0.0, **TILES},
+    "lerc and zstd": {"compress": "lerc_zstd", "max_z_error": 0.0, **TILES},
+    "lzw and predictor 3": {"compress": "lzw", "predictor": 3, **TILES},
+}
+
+
+@pytest.mark.parametrize("form", [*OWN, *GDALS])
+@pytest.mark.parametrize("dtype", ["f4", "f8", "i2", "u1", "i4"])
+def test_every_form_of_geotiff_has_its_numbers_and_its_place(tmp_path, form, dtype):
+    options = {**OWN, **GDALS}[form]
+    if dtype[0] != "f" and options.get("predictor") == 3:
+        options = options | {"predictor": 2}
+    if dtype[0] == "f" and options.get("predictor") == 2:
+        options = options | {"predictor": 3}
+    values = (HEIGHTS if dtype[0] == "f" else HEIGHTS % 120).astype(dtype)
+    file = open_elevation(raster(tmp_path / "a.tif", values, **options))
+    np.testing.assert_array_equal(file.read().heights[::-1], values.astype(np.float32))
+    west, south, east, north = file.found.place.bounds
+    assert (west, north) == (400_005.0, 5_299_993.75), "the corner's node is half a texel inside"
+    assert (east, south) == (400_005.0 + 1300.0, 5_299_993.75 - 950.0)
+    assert file.extent == (1300.0, 950.0)
+
+
+@pytest.mark.parametrize("form", OWN)
+def test_what_is_simple_is_read_without_the_extra(tmp_path, monkeypatch, form):
+    path = raster(tmp_path / "a.tif", **({} if "predictor 2" in form else OWN[form]))
+    monkeypatch.setattr(gis, "has_rasters", lambda: False)
+    np.testing.assert_array_equal(read_elevation(path).heights[::-1], HEIGHTS)
+
+
+def test_what_is_not_names_the_extra(tmp_path, monkeypatch):
+    path = raster(tmp_path / "a.tif", HEIGHTS.astype("f8"), **GDALS["lerc"])
+    monkeypatch.setattr(gis, "has_rasters", lambda: False)
+    with pytest.raises(DataError, match="under compression LERC .*" + re.escape(install_command("gis"))):
+        read_elevation(path)
+    (tmp_path / "a.nc").write_bytes(b"\x89HDF")
+    with pytest.raises(DataError, match="by GDAL; the extra gis .* " + re.escape(install_command("gis"))):
+        read_elevation(tmp_path / "a.nc")
+
+
+def test_a_sparse_file_has_no_data_where_nothing_is_stored(tmp_path):
+    facts = {
+        "driver": "GTiff",
+        "width": 70,
+        "height": 50,
+        "count": 1,
+        "dtype": "float32",
+        "crs": "EPSG:32633",
+    }
+    with rasterio.open(
+        tmp_path / "a.tif", "w", **facts, transform=NORTH_UP, nodata=-9999, SPARSE_OK=True, **TILES
+    ) as file:
+        file.write(HEIGHTS[:16, :32], 1, window=rasterio.windows.Window(0, 16, 32, 16))
+    found = read_elevation(tmp_path / "a.tif").heights[::-1]
+    np.testing.assert_array_equal(found[16:32, :32], HEIGHTS[:16, :32])
+    assert np.isnan(found).sum() == 50 * 70 - 16 * 32
+
+
+def test_scale_offset_and_no_data(tmp_path):
+    values = HEIGHTS.astype("i2")
+    values[3, 5] = -1
+    path = raster(tmp_path / "a.tif", values, nodata=-1, scale=0.25, offset=-10.0)
+    found = read_elevation(path).heights[::-1]
+    wanted = values * 0.25 - 10.0
+    wanted[values == -1] = np.nan
+    np.testing.assert_allclose(found, wanted, rtol=1e-6)
+
+
+def test_a_raster_from_the_south_is_turned(tmp_path):
+    south_up = Affine(10.0, 0.0, 400_000.0, 0.0, 12.5, 5_300_000.0)
+    found = read_elevation(raster(tmp_path / "a.tif", transform=south_up))
+    np.testing.assert_array_equal(found.heights, HEIGHTS)  # the first row is the south's
+    west, south, _, north = found.place.bounds
+    assert (west, south, north) == (400_005.0, 5_300_006.25, 5_300_006.25 + 76 * 12.5)
+
+
+@pytest.mark.parametrize(
+    ("transform", "angle"),
+    [
+        (Affine(10.0, 5.0, 0.0, 5.0, -10.0, 0.0), "26.57"),
+        (Affine(8.660254037844387, 5.0, 0.0, -5.0, 8.660254037844387, 0.0), "30"),
+        (Affine(-10.0, 0.0, 9e5, 0.0, -10.0, 0.0), "180"),
+    ],
+)
+def test_a_rotated_raster_is_refused(tmp_path, transform, angle):
+    with pytest.raises(DataError, match=rf"go {angle} degrees off east; expected a grid that is not rotated"):
+        read_elevation(raster(tmp_path / "a.tif", transform=transform))
+
+
+def test_a_raster_without_a_reference_system_says_so(tmp_path):
+    found = read_elevation(raster(tmp_path / "a.tif", crs=None))
+    assert found.spacing is None and "does not say whether that is metres" in found.notes[0]
+
+
+# Large files, which a bound of a few texels makes of small ones.
+
+
+@pytest.fixture
+def values(monkeypatch):
+    monkeypatch.setattr(file_sources, "LARGE", 1000)
+    monkeypatch.setattr(file_sources, "USUAL_SIDE", 61)
+    monkeypatch.setattr(tiff_rows, "_BAND", 400)
+
+    def values_(path, **changes):
+        found = {"raw_size": (0, 0), "packing": 0, "no_data": 0, "first_row": 0, "metres": (0.0, 0.0)}
+        return found | {"elevation": str(path), "longest": 0} | changes
+
+    return values_
+
+
+KIND = source_kind("elevation_file")
+
+
+def smooth(rows=300, cols=420):
+    south, east = np.mgrid[:rows, :cols]
+    return (700 + 300 * np.sin(south / 31) * np.cos(east / 47)).astype(np.float32)
+
+
+@pytest.mark.parametrize("form", ["strips", "tiles", "deflate and predictor 3", "zstd"])
+def test_a_large_file_is_read_at_the_size_of_the_terrain(tmp_path, values, monkeypatch, form):
+    heights = smooth()
+    path = raster(tmp_path / "a.tif", heights, **{**OWN, **GDALS}[form])
+    asked = values(path, longest=57)
+    known = KIND.describe(asked)
+    assert known.size == (57, 41) and known.extent == (4190.0, 3737.5)
+    assert (known.base_elevation, known.relief) == (heights.min(), np.ptp(heights))
+    made = KIND.make(asked, (57, 41))["height"]
+    monkeypatch.setattr(file_sources, "LARGE", 2**24)
+    wanted = KIND.make(asked, (57, 41))["height"]
+    np.testing.assert_allclose(made, wanted, rtol=0, atol=1e-6)
+    assert KIND.notes(asked) == ()
+
+
+def test_a_large_file_without_a_size_is_read_at_the_usual_one_and_that_is_said(tmp_path, values):
+    path = raster(tmp_path / "a.tif", smooth())
+    assert KIND.describe(values(path)).size == (61, 44)
+    assert KIND.notes(values(path)) == (
+        "a.tif: has 420 x 300 texels; unless a size or `longest` says how many, 61 x 44 are read",
+    )
+
+
+def test_a_large_file_at_its_own_size_has_its_own_numbers(tmp_path, values):
+    heights = smooth()
+    asked = values(raster(tmp_path / "a.tif", heights, **TILES), longest=420)
+    made = KIND.make(asked, (420, 300))["height"]
+    low, high = heights.min(), heights.max()
+    np.testing.assert_array_equal(made[::-1], (heights - low) / (high - low))
+
+
+def test_gaps_of_a_large_file_are_refused_or_filled(tmp_path, values):
+    heights = smooth()
+    heights[100:180, 50:200] = -9999
+    path = raster(tmp_path / "a.tif", heights, nodata=-9999)
+    with pytest.raises(DataError, match=r'have no data, .* or no_data = "fill"'):
+        KIND.describe(values(path))
+    made = KIND.make(values(path, no_data=1), (61, 44))["height"]
+    assert np.isfinite(made).all() and made.min() >= 0 and made.max() <= 1
+    assert "were filled from their surroundings" in KIND.notes(values(path, no_data=1))[0]
+    nothing = raster(tmp_path / "b.tif", np.full_like(heights, -9999), nodata=-9999)
+    with pytest.raises(DataError, match="no texel has any data"):
+        KIND.describe(values(nothing, no_data=1))
+
+
+def test_an_infinite_height_of_a_large_file_is_named(tmp_path, values):
+    heights = smooth()
+    heights[290, 7] = np.inf
+    with pytest.raises(DataError, match=r"at texel \(7, 9\) from the south-west corner"):
+        KIND.describe(values(raster(tmp_path / "a.tif", heights)))
+
+
+@pytest.mark.parametrize("compress", ["deflate", "zstd"])
+def test_an_overview_is_read_where_it_is_fine_enough(tmp_path, values, monkeypatch, compress):
+    heights = smooth(640, 800)
+    path = raster(tmp_path / "a.tif", heights, **TILES, compress=compress)
+    with rasterio.open(path, "r+") as file:
+        file.build_overviews([2, 4, 8], Resampling.average)
+    file = open_elevation(path)
+    assert [rows.shape for rows in file.found.overviews] == [(320, 400), (160, 200), (80, 100)]
+    read = []
+    monkeypatch.setattr(
+        "playground.data.elevation.decimate",
+        lambda rows, *rest: (read.append(rows.shape), decimate(rows, *rest))[1],
+    )
+    made = file.read_at((90, 70)).heights
+    assert read == [(160, 200)], "twice as fine as what is wanted"
+    wanted = decimate(ArrayRows(heights), (90, 70), lambda _, band: band).heights[::-1]
+    # Waves of 195 texels: means of 4 are 1 - sinc(4 / 195) lower, 0.07 % of 300 m each way.
+    assert np.abs(made - wanted)[2:-2, 2:-2].max() < 0.5
+    file.read_at((600, 500))
+    assert read[1] == (640, 800)
+
+
+# NetCDF
+
+
+def netcdf(path, names=("elevation",), up=1, unit="m"):
+    heights = np.arange(35, dtype="i2").reshape(5, 7)
+    with netcdf_file(path, "w") as file:
+        for name, count, first, degrees in (("lat", 5, 46.0, "north"), ("lon", 7, 7.0, "east")):
+            file.createDimension(name, count)
+            axis = file.createVariable(name, "f8", (name,))
+            axis[:] = (first + 0.1 * np.arange(count))[:: up if name == "lat" else 1]
+            axis.units, axis.standard_name = (
+                f"degrees_{degrees}",
+                {"lat": "latitude", "lon": "longitude"}[name],
+            )
+        for name in names:
+            grid = file.createVariable(name, "i2", ("lat", "lon"))
+            grid[:] = heights
+            if unit:
+                grid.units = unit
+    return path, heights
+
+
+@pytest.mark.parametrize("up", [1, -1])
+def test_netcdf_from_the_south_or_the_north(tmp_path, up):
+    path, heights = netcdf(tmp_path / "a.nc", up=up)
+    found = read_elevation(path)
+    np.testing.assert_array_equal(found.heights, heights[::up])
+    assert found.place.bounds == pytest.approx((7.0, 46.0, 7.6, 46.4))
+    assert found.place.crs.facts.epsg == 4326 and found.in_metres
+    assert found.notes == ("its degrees are of no named system; WGS 84 is assumed",)
+
+
+def test_netcdf_of_several_grids_needs_one_of_a_usual_name(tmp_path):
+    assert read_elevation(netcdf(tmp_path / "a.nc", names=("tid", "elevation"))[0]).size == (7, 5)
+    with pytest.raises(DataError, match="holds tid, sid; expected one grid, or one called elevation or z"):
+        read_elevation(netcdf(tmp_path / "b.nc", names=("tid", "sid"))[0])
+    assert "metres are assumed" in read_elevation(netcdf(tmp_path / "c.nc", unit="")[0]).assumed
+
+
+def test_netcdf_that_is_none_is_a_sentence(tmp_path):
+    (tmp_path / "a.nc").write_bytes(RNG.bytes(300))
+    with pytest.raises(DataError, match="cannot be read by GDAL"):
+        read_elevation(tmp_path / "a.nc")
+
+
+def test_more_texels_than_any_picture_may_have_are_read_in_turn(tmp_path, values):
+    """A terrain of 2**29 texels of which one tile is stored; the others have no data."""
+    path = tmp_path / "a.tif"
+    facts = {"driver": "GTiff", "width": 2**15, "height": 2**14, "count": 1, "dtype": "uint8"}
+    tiles = {"tiled": True, "blockxsize": 2048, "blockysize": 2048, "compress": "deflate"}
+    with rasterio.open(path, "w", **facts, transform=NORTH_UP, nodata=0, SPARSE_OK=True, **tiles) as file:
+        window = rasterio.windows.Window(4096, 2048, 2048, 2048)
+        file.write(np.full((2048, 2048), 7, np.uint8), 1, window=window)
+    file = open_elevation(path)
+    assert file.size == (2**15, 2**14)
+    with pytest.raises(DataError, match=r"32768 x 16384 texels; the most is 2\*\*28"):
+        file.read()
+
+
+def test_a_raster_without_a_tie_point_has_steps_and_no_place(tmp_path):
+    import tifffile
+
+    keys = (1, 1, 1, 2, 1024, 0, 1, 1, 3072, 0, 1, 32633)
+    tags = [(33550, "d", 3, (10.0, 20.0, 0.0), True), (34735, "H", len(keys), keys, True)]
+    tifffile.imwrite(tmp_path / "a.tif", HEIGHTS, extratags=tags, metadata=None, photometric="minisblack")
+    found = read_elevation(tmp_path / "a.tif")
+    assert found.place is None and found.spacing == (10.0, 20.0) and found.in_metres

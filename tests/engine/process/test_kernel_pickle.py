@@ -1,0 +1,93 @@
+"""A sketch is sent whole, and a kernel that the other end has already is not sent again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import pytest
+
+from playground.engine.process.kernel_pickle import Decoder, Encoder
+from playground.engine.sandbox import TryLibrary, TrySketch
+from playground.sketch.load import load
+from playground.sketch.model import Kernel, Sketch, Technique, kernels_of
+from tests.sketch_texts import passes
+
+TERRAIN = """#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) { return 0.5; }
+"""
+SKETCH = (
+    "format = 1\nsize = 33\n"
+    + passes(
+        height="./terrain", again="./terrain", light=("lighting/ray_cast", 'inputs = { height = "height" }')
+    )
+    + '[view]\nuse = "view/terrain"\n'
+)
+
+
+@dataclass
+class Ends:
+    """Both ends, and the size of what was sent last."""
+
+    encoder: Encoder
+    decoder: Decoder
+    bytes: int = 0
+
+    def send(self, message: object) -> object:
+        data = self.encoder.encode(message)
+        self.bytes = len(data)
+        return self.decoder.decode(data)
+
+
+@pytest.fixture
+def ends() -> Ends:
+    return Ends(Encoder(), Decoder())
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "terrain.glsl").write_text(TERRAIN)
+    (tmp_path / "sketch.toml").write_text(SKETCH)
+    return tmp_path
+
+
+def kernels(sketch: Sketch) -> dict[str, Kernel]:
+    return dict(kernels_of(sketch.graph))
+
+
+def sent_alone(technique: Technique) -> Iterator[Kernel]:
+    """Yield the kernels of a technique, and those of fast variants that replace several passes of it."""
+    if isinstance(technique, Kernel):
+        yield technique
+        return
+    for inside in (*technique.passes, *technique.variants):
+        yield from sent_alone(inside.technique)
+
+
+def test_what_is_received_is_what_was_sent(ends, folder):
+    for edit in ("0.5", "0.25", "0.5"):
+        (folder / "terrain.glsl").write_text(TERRAIN.replace("0.5", edit))
+        request = TrySketch(load(folder), time=1.0, drivers=("fragment",))
+        assert ends.send(request) == request
+    library = TryLibrary("a", "b")
+    assert ends.send(library) == library
+    assert ends.send(request) == request, "neither end held any of it"
+
+
+def test_only_what_changed_is_sent(ends, folder):
+    before = kernels(ends.send(TrySketch(load(folder))).sketch)
+    whole = ends.bytes
+    (folder / "terrain.glsl").write_text(TERRAIN.replace("0.5", "0.25"))
+    after = kernels(ends.send(TrySketch(load(folder))).sketch)
+    assert ends.bytes < whole / 4
+    assert {path for path in after if after[path] is not before[path]} == {"height", "again"}
+    assert after["height"] is after["again"], "one object stays one"
+
+
+def test_neither_end_holds_what_is_no_longer_used(ends, folder):
+    for number in range(6):
+        (folder / "terrain.glsl").write_text(TERRAIN.replace("0.5", f"0.{number + 1}"))
+        sketch = load(folder)
+        ends.send(TrySketch(sketch))
+        distinct = len({id(kernel) for kernel in sent_alone(sketch.graph)})
+        assert len(ends.encoder._known) == len(ends.decoder._known) == distinct

@@ -1,0 +1,259 @@
+"""Contexts: those that are to be had, those that are made to look old, those that are not there."""
+
+from __future__ import annotations
+
+import ctypes.util
+import json
+import os
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+
+from playground.engine import context as module
+from playground.engine.context import ContextInfo, context_info, open_context
+from playground.errors import ContextError
+
+ROOT = Path(__file__).resolve().parents[2]
+KERNELS = {
+    "start": '#pragma kernel(output = "h:r32f", repeat = "4", visits = "size.x, 1")\n'
+    "ivec2 visit(ivec2 cell) { return ivec2(cell.x, iteration); }\n"
+    "float kernel(ivec2 texel) { return texel.y == iteration ? float(texel.x) + 0.5 : previous(texel); }\n",
+    "view": '#pragma draw(mesh = "grid", output = "frame:rgba16f")\n'
+    'uniform sampler2D h; //! input("linear")\n'
+    "uniform int grid = 9; //! slider(2, 99)\nuniform uint seed = 4000000000u;\n"
+    "vec4 vertex(vec3 corner, out vec2 place) { place = corner.xy; return "
+    "vec4(corner.xy * 1.6 - 0.8, 0.0, 1.0); }\n"
+    "vec4 fragment(vec2 place) { return vec4(texture(h, place).r / 17.0, "
+    "place.y, float(seed >> 24) / 255.0, 1.0); }\n",
+}
+SKETCH = 'format = 1\nsize = 17\n[[pass]]\nname = "h"\nuse = "./start"\n[view]\nuse = "./view"\n'
+SCRIPT = """
+import hashlib, json, sys
+from playground.engine.engine import Engine
+from playground.engine.context import context_info, open_context
+from playground.sketch.load import load
+ctx = open_context()
+info = context_info(ctx)
+with Engine(ctx) as engine:
+    sketch = load(sys.argv[1])
+    frame = engine.render(sketch, size=(32, 18))
+    height = engine.read(sketch, "h")
+print(json.dumps({
+    "version": info.version_code, "compute": info.compute, "software": info.software, "opengl": info.opengl,
+    "frame": hashlib.sha256(frame.array.tobytes()).hexdigest(), "mean": float(frame.array.mean()),
+    "height": hashlib.sha256(height.tobytes()).hexdigest(), "error": ctx.error,
+}))
+"""
+
+
+def in_a_child(script: str, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(script), *arguments],
+        env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
+        capture_output=True,
+        text=True,
+        timeout=180,
+    )
+
+
+@pytest.fixture(scope="module")
+def sketch(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("old")
+    for name, text in KERNELS.items():
+        (folder / f"{name}.glsl").write_text(text)
+    (folder / "sketch.toml").write_text(SKETCH)
+    return folder / "sketch.toml"
+
+
+@pytest.mark.slow
+def test_an_older_context_draws_the_same(sketch):
+    """4.1 is what macOS has, 3.3 the least that will do: no compute, the same bits."""
+    found = {}
+    for version in ("", "4.1", "3.3"):
+        environment = {"MESA_GL_VERSION_OVERRIDE": version} if version else {}
+        done = in_a_child(SCRIPT, str(sketch), **environment)
+        assert done.returncode == 0, done.stderr
+        found[version] = json.loads(done.stdout)
+    if found["4.1"]["version"] != 410:
+        pytest.skip("this driver does not let itself be made older")
+    assert [found[v]["version"] for v in ("4.1", "3.3")] == [410, 330]
+    assert [found[v]["compute"] for v in ("", "4.1", "3.3")] == [True, False, False]
+    assert found["4.1"]["opengl"] == "OpenGL 4.1"
+    for key in ("frame", "height"):
+        assert len({one[key] for one in found.values()}) == 1, f"{key} differs"
+    assert all(one["error"] == "GL_NO_ERROR" for one in found.values())
+    assert 20 < found[""]["mean"] < 250
+
+
+@pytest.mark.slow
+def test_compute_that_is_not_there_is_a_sentence(sketch):
+    script = """
+    import sys
+    from playground.engine.engine import Engine
+    from playground.errors import ContextError
+    from playground.engine.context import open_context
+    from playground.sketch.load import load
+    ctx = open_context()
+    try:
+        Engine(ctx, driver="compute")
+    except ContextError as error:
+        print(error)
+    try:
+        Engine(ctx).render(load(sys.argv[1]))
+    except ContextError as error:
+        print(error)
+    """
+    plain = sketch.parent / "plain.comp"
+    plain.write_text(
+        "#version 430\nlayout(local_size_x = 1) in;\nlayout(rgba8, binding = 0) uniform image2D p;\n"
+        "void main() { imageStore(p, ivec2(gl_GlobalInvocationID.xy), vec4(1)); }\n"
+    )
+    done = in_a_child(script, str(plain), MESA_GL_VERSION_OVERRIDE="4.1")
+    lines = done.stdout.strip().split("\n")
+    assert lines[0] == "this context is OpenGL 4.1; compute needs 4.3", done.stderr
+    assert lines[1].endswith("is a compute shader; this context is OpenGL 4.1, and compute needs 4.3")
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="EGL is Linux's")
+def test_libraries_are_loaded_by_their_names_without_a_process_of_ldconfig(monkeypatch):
+    """Three of them took as long as the context itself."""
+    if not all(map(module._loads, ("libEGL.so.1", "libGL.so.1"))):
+        pytest.skip("the libraries of this system have other names")
+    monkeypatch.setattr(subprocess, "Popen", lambda *_, **__: pytest.fail("a process is started"))
+    monkeypatch.setattr("ctypes.util.find_library", lambda name: pytest.fail(f"{name} is looked for"))
+    open_context().release()
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="EGL is Linux's")
+def test_libraries_of_other_names_are_looked_for(monkeypatch):
+    looked_for = []
+    monkeypatch.setattr(module, "_loads", lambda name: False)
+    find = ctypes.util.find_library
+    monkeypatch.setattr("ctypes.util.find_library", lambda name: looked_for.append(name) or find(name))
+    open_context().release()
+    assert "EGL" in looked_for
+
+
+def test_one_that_is_too_old_says_what_it_offers():
+    done = in_a_child(
+        "from playground.engine.context import open_context\ntry:\n    open_context()\n"
+        "except Exception as e: print(type(e).__name__, e)",
+        MESA_GL_VERSION_OVERRIDE="3.0",
+    )
+    assert done.stdout.startswith("ContextError "), done.stdout + done.stderr
+    assert done.stdout.count("\n") == 1
+    assert "3.3" in done.stdout
+
+
+@pytest.mark.parametrize("device", [99, 2**31, -1])
+def test_an_impossible_device_is_one_sentence(device):
+    done = in_a_child(
+        "import sys\nfrom playground.engine.context import open_context\n"
+        "try:\n    open_context(device=int(sys.argv[1]))\n"
+        "except Exception as e: print(type(e).__name__, e)",
+        str(device),
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("ContextError "), done.stdout
+    assert done.stdout.count("\n") == 1
+    assert "Traceback" not in done.stderr
+
+
+def test_software_is_software():
+    done = in_a_child(
+        "from playground.engine.context import context_info, open_context\n"
+        "i = context_info(open_context(software=True))\n"
+        "print(i.software, i.slug)"
+    )
+    assert done.stdout.split() == ["True", "llvmpipe"], done.stderr
+
+
+def test_a_device_that_only_linux_has_is_refused_elsewhere(monkeypatch):
+    monkeypatch.setattr(module.sys, "platform", "darwin")
+    with pytest.raises(ContextError, match="only Linux has"):
+        open_context(device=0)
+
+
+def test_what_a_context_is(ctx):
+    info = context_info(ctx)
+    assert info.version_code >= 330
+    assert info.max_samples >= 1
+    assert info.compute == (info.version_code >= 430)
+
+
+@pytest.mark.parametrize(
+    ("renderer", "slug", "software"),
+    [
+        ("llvmpipe (LLVM 15.0.6, 256 bits)", "llvmpipe", True),
+        ("NVIDIA H200/PCIe/SSE2", "nvidia-h200", False),
+        ("AMD Radeon RX 6800 (navi21, LLVM 15.0.6, DRM 3.49)", "amd-radeon-rx-6800", False),
+        ("Apple M2", "apple-m2", False),
+        ("Mesa Intel(R) UHD Graphics 620 (KBL GT2)", "mesa-intel-uhd-graphics-620", False),
+        ("", "unknown", False),
+    ],
+)
+def test_a_renderer_s_folder_is_the_same_for_every_build(renderer, slug, software):
+    info = ContextInfo(450, renderer, "", "", 8)
+    assert (info.slug, info.software) == (slug, software)
+
+
+@pytest.mark.parametrize(("count", "message"), [(2, "there are 2, from 0"), (1, "the only one is 0")])
+def test_a_device_that_is_not_there_is_reported_by_its_number_and_theirs(monkeypatch, count, message):
+    def refuse(**_: object) -> None:
+        raise ValueError(f"requested device index 99, but found {count} devices")
+
+    monkeypatch.setattr(module.sys, "platform", "linux")
+    monkeypatch.setattr("moderngl.create_context", refuse)
+    with pytest.raises(ContextError) as caught:
+        open_context(device=99)
+    assert str(caught.value) == f"--device 99: there is no such EGL device; {message}"
+
+
+def test_advice_for_software_does_not_speak_of_what_we_set_ourselves():
+    code = """
+import moderngl
+def fail(*arguments, **options): raise Exception("found 0 devices")
+moderngl.create_context = fail
+from playground.engine.context import open_context
+try:
+    open_context(software=True)
+except Exception as error:
+    print(error)
+"""
+    clean = {k: v for k, v in os.environ.items() if k != "__EGL_VENDOR_LIBRARY_FILENAMES"}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=clean)
+    assert "found 0 devices" in done.stdout
+    assert "__EGL_VENDOR_LIBRARY_FILENAMES" not in done.stdout
+
+
+KEEPS = """
+import ctypes, resource, sys
+from playground.engine.context import keep_freed_memory
+libc = ctypes.CDLL(None)
+libc.malloc.restype, libc.free.argtypes = ctypes.c_void_p, (ctypes.c_void_p,)
+if sys.argv[1] == "keeps":
+    keep_freed_memory()
+def once():
+    blocks = [libc.malloc(65536) for _ in range(400)]
+    for block in blocks:
+        ctypes.memset(block, 1, 65536)
+    for block in reversed(blocks):
+        libc.free(block)
+once()
+before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+once()
+print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
+"""
+
+
+@pytest.mark.skipif(not hasattr(ctypes.CDLL(None), "mallopt"), reason="another C library")
+def test_memory_that_is_freed_and_taken_again_has_its_pages():
+    """Blocks as llvmpipe's, 25 MiB of them: 6400 pages."""
+    faults = [
+        int(subprocess.run([sys.executable, "-c", KEEPS, how], capture_output=True, check=True).stdout)
+        for how in ("keeps", "as it is")
+    ]
+    assert faults[0] < 200 < 5000 < faults[1]

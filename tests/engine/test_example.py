@@ -1,0 +1,388 @@
+"""Terrain from an example: each part against brute force, and the whole by what the example is like."""
+
+from __future__ import annotations
+
+import sys
+from itertools import pairwise, product
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tifffile
+from scipy.ndimage import gaussian_filter
+
+from playground.data.elevation import Elevation, read_elevation
+from playground.engine import by_example
+from playground.engine.by_example import (
+    CELLS,
+    Candidates,
+    Fit,
+    Wishes,
+    cut,
+    features_of,
+    in_cells,
+    integrated,
+    made_like,
+    oriented,
+    quilted,
+    smoothed,
+)
+from playground.engine.source_kinds import Material
+from playground.errors import DataError
+from playground.paths import GLSL
+
+from ..truth.drainage import drained_areas, exponent_of
+
+RNG = np.random.default_rng(7)
+JACKSBORO = GLSL / "sketches/data/jacksboro_fault_dem.npz"
+METRES = 80.0
+FEW = Wishes(candidates=50)
+
+
+# ── fields ───────────────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize("sigma", [3.0, 6.0])
+def test_smoothing_is_a_gaussian_of_the_mirrored_field(sigma):
+    field = RNG.normal(size=(37, 52))
+    wanted = gaussian_filter(field, sigma, mode="reflect", truncate=9)
+    np.testing.assert_allclose(smoothed(field, sigma), wanted, atol=1e-9)
+    assert smoothed(np.full((5, 9), 3.0), sigma) == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize("nearness", [1e-4, 0.3])
+def test_a_field_of_gradients_is_the_least_squares_one(nearness):
+    ny, nx = 6, 9
+    east, north, near = RNG.normal(size=(3, ny, nx))
+    rows, wanted = [], []
+
+    def equation(weight, number, *places):
+        row = np.zeros((ny, nx))
+        for place, sign in places:
+            row[place] = sign
+        rows.append(weight * row.ravel())
+        wanted.append(weight * number)
+
+    for y, x in product(range(ny), range(nx)):
+        if x + 1 < nx:
+            equation(1, east[y, x], ((y, x + 1), 1), ((y, x), -1))
+        if y + 1 < ny:
+            equation(1, north[y, x], ((y + 1, x), 1), ((y, x), -1))
+        equation(np.sqrt(nearness), near[y, x], ((y, x), 1))
+    found = np.linalg.lstsq(np.array(rows), np.array(wanted), rcond=None)[0].reshape(ny, nx)
+    np.testing.assert_allclose(integrated(east, north, near, nearness), found, atol=1e-9)
+
+
+def test_gradients_of_a_field_give_it_back():
+    field = RNG.normal(size=(31, 20))
+    east, north = np.diff(field, axis=1, append=0), np.diff(field, axis=0, append=0)
+    np.testing.assert_allclose(integrated(east, north, field, 1e-4), field, atol=1e-9)
+
+
+# ── pieces ───────────────────────────────────────────────────────────────────
+
+
+def test_a_cut_is_the_best_of_all_ways():
+    for _ in range(20):
+        error = RNG.random((5, 4))
+        ways = [w for w in product(range(4), repeat=5) if (abs(np.diff(w)) <= 1).all()]
+        best = min(ways, key=lambda way: error[np.arange(5), way].sum())
+        assert tuple(cut(error)) == best
+
+
+def test_eight_orientations_keep_metres():
+    """A plane that rises 0.3 to the east and 0.1 to the north rises so, turned and mirrored."""
+    y, x = np.mgrid[0:40, 0:30]
+    ways = oriented(0.3 * 50 * x + 0.1 * 80 * y, (50.0, 80.0), (40.0, 60.0))
+    found = set()
+    for way in ways:
+        north, east = np.gradient(way, 60.0, 40.0)
+        assert np.ptp(east) < 0.02 and np.ptp(north) < 0.02
+        found.add((round(float(east.mean()), 2), round(float(north.mean()), 2)))
+    wanted = {(a * s, b * t) for a, b in ((0.3, 0.1), (0.1, 0.3)) for s in (1, -1) for t in (1, -1)}
+    assert {(round(a, 2), round(b, 2)) for a, b in wanted} == found
+
+
+def test_cells_are_means():
+    pieces = RNG.random((3, 19, 19))
+    edges = [k * 19 // CELLS for k in range(CELLS)] + [19]
+    wanted = [
+        [p[a:b, c:d].mean() for a, b in pairwise(edges)
+         for c, d in pairwise(edges)]
+        for p in pieces
+    ]  # fmt: skip
+    np.testing.assert_allclose(in_cells(pieces), wanted)
+
+
+def test_the_best_piece_is_that_of_the_least_error():
+    """Worked out piece by piece: relative to both variances, and with what was used before."""
+    example = gaussian_filter(RNG.normal(size=(60, 50)), 3) * 100
+    side = 16
+    pieces = Candidates(oriented(example, (1.0, 1.0), (1.0, 1.0)), side, 60, np.random.default_rng(2))
+    known = RNG.random((side, side)) < 0.4
+    heights, features = 10 * RNG.normal(size=(side, side)) + 70, RNG.normal(size=CELLS * CELLS)
+    errors = []
+    for number in range(60):
+        piece = pieces.with_border(number)[:-1, :-1]
+        a, b = piece[known], heights[known]
+        error = np.var(a - b) / (np.var(a) + np.var(b))
+        errors.append(error)
+    assert pieces.best(Fit(known, heights)) == int(np.argmin(errors))
+    again = pieces.best(Fit(known, heights))
+    assert again != int(np.argmin(errors)), (
+        "the same is not taken twice running where others are nearly as good"
+    )
+    fresh = Candidates(oriented(example, (1.0, 1.0), (1.0, 1.0)), side, 60, np.random.default_rng(2))
+    whole = features_of(example, side / 6)
+    of_ways = oriented(whole, (1.0, 1.0), (1.0, 1.0))
+    for number in range(60):
+        y, x = fresh.corners[number]
+        own = in_cells(of_ways[fresh.which[number]][y : y + side, x : x + side]) / whole.std()
+        away = (abs(features) * (own - features) ** 2).sum() / (abs(features) * features**2).sum()
+        errors[number] += 5.0 * away
+    assert fresh.best(Fit(known, heights, features, 5.0)) == int(np.argmin(errors))
+
+
+def test_a_quilt_of_an_even_slope_has_no_seam():
+    """All pieces of one orientation are the same: so whatever is cut, it is that plane."""
+    plane = np.add.outer(2.0 * np.arange(60), 3.0 * np.arange(60))
+    pieces = Candidates([plane] * 5, 16, 20, np.random.default_rng(1))
+    laid = quilted(pieces, (50, 37), 5)
+    assert (laid.heights.shape, laid.east.shape) == ((37, 50), (37, 50))
+    np.testing.assert_allclose(laid.east, 3.0)
+    np.testing.assert_allclose(laid.north, 2.0)
+    np.testing.assert_allclose(np.diff(laid.heights, axis=1), 3.0, atol=1e-4)
+
+
+# ── the whole ────────────────────────────────────────────────────────────────
+
+
+@pytest.fixture(scope="module")
+def example() -> Elevation:
+    return read_elevation(JACKSBORO)
+
+
+def lines(n: int) -> np.ndarray:
+    """Return a picture of three ridges that meet."""
+    y, x = np.mgrid[0:n, 0:n] / (n - 1)
+    found = np.full((n, n), 1e9)
+    for end in ((0.1, 0.1), (0.9, 0.2), (0.5, 0.95)):
+        way = np.array(end) - 0.5
+        t = np.clip(((x - 0.5) * way[0] + (y - 0.5) * way[1]) / (way @ way), 0, 1)
+        found = np.minimum(found, np.hypot(x - 0.5 - t * way[0], y - 0.5 - t * way[1]))
+    return (found < 0.02).astype(float)
+
+
+def made(example: Elevation, n: int = 161, guide: np.ndarray | None = None, **wishes: object) -> np.ndarray:
+    wished = Wishes(**{"candidates": 400, **wishes})
+    return made_like(example, example.spacing, (n, n), (METRES, METRES), wished, guide)
+
+
+def slopes(heights: np.ndarray) -> np.ndarray:
+    """Return the slopes [degrees] that a half, nine tenths and 99 of 100 texels stay below."""
+    north, east = np.gradient(heights, METRES)
+    return np.percentile(np.degrees(np.arctan(np.hypot(east, north))), [50, 90, 99])
+
+
+def spectrum(heights: np.ndarray) -> float:
+    """Return the exponent of the power spectrum, from waves of 8 km to 200 m."""
+    n = min(heights.shape)
+    square = heights[:n, :n] - heights[:n, :n].mean()
+    power = abs(np.fft.fft2(square * np.hanning(n)[:, None] * np.hanning(n))) ** 2
+    k = np.hypot(*np.meshgrid(np.fft.fftfreq(n, METRES), np.fft.fftfreq(n, METRES)))
+    edges = np.geomspace(1 / 8000, 1 / 200, 9)
+    means = [power[(k >= a) & (k < b)].mean() for a, b in pairwise(edges)]
+    return float(np.polyfit(np.log(np.sqrt(edges[1:] * edges[:-1])), np.log(means), 1)[0])
+
+
+def parts(example: Elevation, n: int = 161) -> list[np.ndarray]:
+    """Return an example in square texels, and its four corners, n x n each."""
+    whole = oriented(example.heights.astype(np.float64), example.spacing, (METRES, METRES))[0]
+    corners = [whole[y, x] for y in (slice(n), slice(-n, None)) for x in (slice(n), slice(-n, None))]
+    return [whole, *corners]
+
+
+@pytest.mark.parametrize("guided", [False, True])
+def test_slopes_and_spectrum_are_those_of_the_example(example, guided):
+    """As near to the whole example's as those of its own parts of that size are."""
+    found = made(example, guide=lines(161) if guided else None)
+    for measure in (slopes, spectrum):
+        whole, *own = (measure(part) for part in parts(example))
+        assert (abs(measure(found) - whole) <= np.max([abs(part - whole) for part in own], axis=0)).all()
+
+
+@pytest.mark.slow
+def test_its_rivers_branch_as_those_of_the_example(example):
+    """Areas drained fall off by an exponent within 0.1 of the example's."""
+    own = exponent_of(drained_areas(parts(example)[1]))
+    assert own == pytest.approx(0.46, abs=0.03), "as measured before"
+    for guide in (None, lines(161)):
+        assert exponent_of(drained_areas(made(example, guide=guide, seed=2))) == pytest.approx(own, abs=0.1)
+
+
+def test_ridges_stand_where_they_are_drawn(example):
+    guide = lines(129)
+    near = gaussian_filter(guide, 6)
+    for drawn in (guide, lines(43)):  # a guide may have any size
+        found = made(example, 129, drawn, follow=0.7)
+        assert np.mean(found[guide > 0]) > np.percentile(found[near < 0.01], 90)
+        assert np.corrcoef(near.ravel(), found.ravel())[0, 1] > 0.6
+    valleys = made(example, 129, -guide, follow=0.7)
+    assert np.mean(valleys[guide > 0]) < np.percentile(valleys[near < 0.01], 10)
+
+
+def test_a_guide_that_is_not_followed_is_none(example):
+    plain = made(example, 65)
+    for guide, follow in ((lines(65), 0.0), (np.full((9, 9), 0.4), 0.5), (np.ones((1, 1)), 0.5)):
+        np.testing.assert_array_equal(made(example, 65, guide, follow=follow), plain)
+
+
+def test_a_seed_is_one_terrain(example):
+    first, again, other = made(example, 65), made(example, 65), made(example, 65, seed=9)
+    np.testing.assert_array_equal(first, again)
+    assert abs(first - other).max() > 50
+
+
+def test_an_example_smaller_than_a_piece_is_a_sentence():
+    small = Elevation(np.zeros((20, 30), np.float32), "small.npy", (METRES, METRES), path=Path("small.npy"))
+    with pytest.raises(DataError, match=r"has 30 x 20 texels .* pieces of 48 need 50 at least"):
+        made(small)
+    flat = Elevation(np.zeros((80, 80), np.float32), "flat.npy", (METRES, METRES))
+    assert not made(flat, 65, lines(65)).any()
+
+
+def test_it_can_be_stopped_between_any_two_of_its_heavy_steps(example, monkeypatch):
+    order, running = [], []
+    for name in ("oriented", "Candidates", "features_of", "quilted", "smoothed", "integrated"):
+        act = getattr(by_example, name)
+
+        def noted(*given, _name=name, _act=act, **more):
+            if not running:  # what one of them calls is not a step of its own
+                order.append(_name)
+            running.append(_name)
+            try:
+                return _act(*given, **more)
+            finally:
+                running.pop()
+
+        monkeypatch.setattr(by_example, name, noted)
+    by_example._ways.cache_clear()
+    guide = lines(65)
+    made_like(
+        example, example.spacing, (65, 65), (METRES, METRES), FEW, guide, lambda *at: order.append("report")
+    )
+    heavy = ["oriented", "Candidates", "features_of", "quilted", "smoothed", "integrated"]
+    assert [name for name in dict.fromkeys(order) if name != "report"] == heavy
+    for name in heavy:
+        around = order[order.index(name) - 1], order[order.index(name) + 1]
+        assert around[name == "quilted"] == "report", f"before {name}; a quilt does so by itself"
+    assert order[-1] == "report", "and after the last"
+
+
+def test_it_reports_how_far_it_is_and_can_be_stopped(example):
+    seen = []
+    made_like(example, example.spacing, (65, 65), (METRES, METRES), FEW, report=lambda *at: seen.append(at))
+    assert len(seen) >= 5 and all(0 <= done < wanted for done, wanted in seen)
+    assert [done for done, _ in seen] == sorted(done for done, _ in seen)
+
+    class Stop(Exception):
+        pass
+
+    def stop(done, wanted):
+        raise Stop
+
+    with pytest.raises(Stop):
+        made_like(example, example.spacing, (65, 65), (METRES, METRES), FEW, report=stop)
+
+
+def slow_order(strength):
+    """Yield the places by the rule itself: each time all that wait are looked at."""
+    weak, sides = by_example._WEAK, ((0, -1), (0, 1), (-1, 0), (1, 0))
+    waiting = set(product(*map(range, strength.shape)))
+    border = set()
+
+    def rank(place):
+        beside = sum((place[0] + dj, place[1] + di) not in waiting for dj, di in sides)
+        strong = float(strength[place]) if strength[place] > weak else 0.0
+        return strong, beside, (-place[0], -place[1])
+
+    while waiting:
+        strong = [place for place in border if strength[place] > weak]
+        if not strong and any(strength[place] > weak for place in waiting):
+            place = max(waiting, key=rank)
+        else:
+            place = max(strong or border or waiting, key=rank)
+        waiting.remove(place)
+        border.discard(place)
+        border |= {(place[0] + dj, place[1] + di) for dj, di in sides} & waiting
+        yield place
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (7, 1), (12, 17)])
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.6, 1.0])
+def test_pieces_are_laid_in_the_order_of_the_rule(shape, share):
+    rng = np.random.default_rng(8)
+    strength = np.where(rng.random(shape) < share, rng.integers(1, 6, shape) / 4.0, 0.1)
+    assert list(by_example._order(strength)) == list(slow_order(strength))
+
+
+def calls(order, strength):
+    """Return how many calls an order of all places makes."""
+    count = 0
+
+    def note(frame, event, given):
+        nonlocal count
+        count += event in ("call", "c_call")
+
+    sys.setprofile(note)
+    try:
+        assert len(list(order(strength))) == strength.size
+    finally:
+        sys.setprofile(None)
+    return count
+
+
+@pytest.mark.parametrize("height", [0.1, 1.0])
+def test_the_order_of_four_times_the_pieces_takes_little_more_than_four_times_the_work(height):
+    few, many = np.full((12, 12), height), np.full((24, 24), height)
+    assert calls(by_example._order, many) < 5 * calls(by_example._order, few)
+
+
+# ── the source ───────────────────────────────────────────────────────────────
+
+
+def values(file: Path, **more: float) -> dict[str, object]:
+    usual = {"texel": 0.0, "rise": 0.0, "piece": 3840.0, "candidates": 60, "follow": 0.5, "seed": 1}
+    return {"elevation": str(file), **usual, **more}
+
+
+def test_the_file_says_the_relief_and_heights_are_in_it():
+    known = by_example.describe(values(JACKSBORO))
+    assert (known.relief, known.base_elevation, known.size) == (840.0, 236.0, None)
+    for relief in (840.0, 420.0):
+        material = Material({}, (METRES, METRES), relief)
+        found = relief * by_example.work(values(JACKSBORO), (65, 65), material)["height"]
+        assert found.min() == 0 and 300 < found.max() < 1200, "metres are metres"
+    assert by_example.notes(values(JACKSBORO)) == ()
+
+
+def test_a_file_without_metres_is_told_them(tmp_path):
+    hills = gaussian_filter(np.random.default_rng(2).normal(size=(90, 70)), 4)
+    file = tmp_path / "hills.tif"  # a picture, whose greys have no unit
+    tifffile.imwrite(file, (65535 * (hills - hills.min()) / np.ptp(hills)).astype(np.uint16))
+    assert by_example.describe(values(file)).relief is None
+    assert by_example.describe(values(file, rise=300.0)).relief == 300.0
+    assert "it does not say how large it is" in by_example.notes(values(file))[0]
+    assert by_example.notes(values(file, texel=30.0)) == ()
+    for rise, wanted in ((0.0, 1.0), (300.0, 0.3)):  # of a relief of 1000 m
+        material = Material({}, (METRES, METRES), 1000.0)
+        made = by_example.work(values(file, rise=rise, piece=1600.0), (65, 65), material)["height"]
+        assert 0.4 * wanted < made.max() < 1.6 * wanted
+
+
+def test_of_a_large_file_no_more_is_read_than_an_example_needs(tmp_path):
+    file = tmp_path / "large.npy"
+    np.save(file, np.add.outer(np.zeros(20), np.arange(4097)).astype(np.float32))
+    assert "its 4097 x 20 texels are read as 2049 x " in by_example.notes(values(file, texel=10.0))[0]
+    example, coarser = by_example._example(values(file))
+    assert (example.size[0], coarser) == (2049, 2.0)

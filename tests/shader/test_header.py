@@ -1,0 +1,517 @@
+"""Kernels' headers: what each declares, and each mistake with its line and the nearest name."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+
+from playground.errors import PlaygroundError, ShaderError
+from playground.paths import GLSL
+from playground.shader.header import parse_kernel
+from playground.shader.source import read_source
+from playground.sketch.model import Kernel, Parameter
+from playground.sketch.techniques import read_kernel
+
+from ..cases import each
+
+KERNEL = '#pragma kernel(output = "height:r32f")\n'
+
+
+@pytest.fixture
+def parse(tmp_path):
+    def parse_(text: str, name: str = "main.glsl") -> Kernel | None:
+        path = tmp_path / name
+        path.write_text(text, encoding="utf-8")
+        return parse_kernel("main", read_source(path, (tmp_path,)))
+
+    return parse_
+
+
+@pytest.fixture
+def parameter(parse):
+    def parameter_(line: str) -> Parameter:
+        found = parse(KERNEL + line + "\n")
+        assert found is not None
+        return found.parameters[0]
+
+    return parameter_
+
+
+@pytest.fixture
+def refused(parse):
+    def refused_(text: str, words: str, line: int = 1) -> None:
+        with pytest.raises(ShaderError) as caught:
+            parse(text)
+        found = caught.value.diagnostics[0]
+        assert words in found.message and "\n" not in found.message, found.message
+        assert (Path(found.file).name, found.line) == ("main.glsl", line), found
+        assert found.excerpt == text.split("\n")[line - 1]
+
+    return refused_
+
+
+# What a header says
+
+
+def test_a_kernel_s_header(parse):
+    found = parse(
+        """\
+// main.glsl -- terrain by halving.
+#pragma kernel(output = "height:r32f, water:rgba16f", repeat = "2 * log2(size.x - 1)", \\
+               accepts = "2**n + 1", visits = "size.x, 2 if iteration == 0 else steps")
+uniform sampler2D before;  //! input("linear", "repeat", "mipmap")
+uniform sampler2D light;   //! input("white")
+uniform sampler2D grass;   //! file("textures/grass.png", "repeat") group("Ground") Blades
+uniform int steps = 3;     //! slider(1, 9) unit("steps") label("How often") group("Time") Not \\
+                           //  too often
+"""
+    )
+    assert found.kind == "kernel" and found.title == "Terrain by halving"
+    assert [(o.name, o.format, o.components, o.glsl) for o in found.outputs] == [
+        ("height", "r32f", 1, "float"),
+        ("water", "rgba16f", 4, "vec4"),
+    ]
+    assert (found.repeat, found.accepts) == ("2 * log2(size.x - 1)", "2**n + 1")
+    assert found.visits == "size.x, 2 if iteration == 0 else steps"
+    before, light = found.inputs
+    assert (before.sampling.filter, before.sampling.wrap, before.sampling.mipmap) == (
+        "linear",
+        "repeat",
+        True,
+    )
+    assert (light.fallback, light.sampling.filter, light.sampling.wrap) == ("white", "nearest", "clamp")
+    assert found.needs_inputs == ("before",)
+    grass, steps = found.parameters
+    assert (grass.default, grass.group, grass.tooltip, grass.sampling.wrap) == (
+        "textures/grass.png",
+        "Ground",
+        "Blades",
+        "repeat",
+    )
+    assert (steps.default, steps.unit, steps.label, steps.group, steps.title) == (
+        3,
+        "steps",
+        "How often",
+        "Time",
+        "How often",
+    )
+    assert steps.tooltip.startswith("Not ") and steps.tooltip.endswith("too often")
+    assert steps.line == 7
+
+
+@pytest.mark.parametrize(
+    ("line", "glsl", "default", "kind", "low", "high"),
+    [
+        ("uniform float a = 0.2;  //! slider(0, 1)", "float", 0.2, "slider", 0, 1),
+        ("uniform float a = -.5e1f;", "float", -5.0, "number", None, None),
+        ("uniform float a = 3;", "float", 3.0, "number", None, None),
+        ("uniform float a;", "float", 0.0, "number", None, None),
+        ("uniform highp float a = 2.;", "float", 2.0, "number", None, None),
+        ("uniform int a = 0x1F;", "int", 31, "number", None, None),
+        ("uniform int a = 017;", "int", 15, "number", None, None),
+        (
+            "uniform uint a = 4294967295u; //! slider(0, 4294967295)",
+            "uint",
+            2**32 - 1,
+            "slider",
+            0,
+            2**32 - 1,
+        ),
+        ("uniform bool a = true;", "bool", True, "checkbox", None, None),
+        ("uniform bool a; //! checkbox", "bool", False, "checkbox", None, None),
+        ("uniform vec2 a = vec2(135.0, 25.0); //! direction", "vec2", (135.0, 25.0), "direction", None, None),
+        ("uniform vec3 a = vec3(1); //! colour", "vec3", (1.0, 1.0, 1.0), "colour", None, None),
+        ("uniform vec4 a = vec4( 0.1 , 2u,3, 4.f );", "vec4", (0.1, 2.0, 3.0, 4.0), "number", None, None),
+        ("uniform ivec2 a = ivec2(1.7, -1.7);", "ivec2", (1, -1), "number", None, None),
+        ("uniform float a = 10.0; //! log_slider(0.1, 500)", "float", 10.0, "log_slider", 0.1, 500),
+        ("uniform float a = 90.0; //! angle", "float", 90.0, "angle", -360, 360),
+        ("uniform float a = 9.0; //! angle(0, 90)", "float", 9.0, "angle", 0, 90),
+        ("uniform vec2 a = vec2(0.5); //! point", "vec2", (0.5, 0.5), "point", 0, 1),
+        ('uniform int a = 1; //! menu("x", "y")', "int", 1, "menu", None, None),
+    ],
+)
+def test_a_parameter(parameter, line, glsl, default, kind, low, high):
+    found = parameter(line)
+    assert (found.name, found.type, found.widget.kind) == ("a", glsl, kind)
+    assert found.default == default and type(found.default) is type(default)
+    assert (found.widget.low, found.widget.high) == (low, high)
+    assert found.line == 2 and Path(found.file).name == "main.glsl"
+
+
+@pytest.mark.parametrize(
+    ("note", "kind", "tooltip"),
+    [
+        ("slider(0, 1) angle of the slope", "slider", "angle of the slope"),
+        ("slider(0, 1) step by step", "slider", "step by step"),
+        ("slider(0, 1) f(x) over x", "slider", "f(x) over x"),
+        ("Roughness: a step(wise) word", "number", "Roughness: a step(wise) word"),
+        ("unit of height", "number", "unit of height"),
+        ('slider(0, 1) unit("m (up), \\"z\\"") Höhe → oben', "slider", "Höhe → oben"),
+        ("", "number", ""),
+        ("angle", "angle", ""),
+    ],
+)
+def test_a_tooltip_begins_where_the_calls_end(parameter, note, kind, tooltip):
+    found = parameter(f"uniform float a = 0.5; //! {note}")
+    assert (found.widget.kind, found.tooltip) == (kind, tooltip)
+    if "unit(" in note:
+        assert found.unit == 'm (up), "z"'
+
+
+def test_the_parts_of_a_vector_have_names(parameter):
+    found = parameter('uniform vec4 a; //! slider(0, 1) parts("SW", "SE", "NW", "NE") Heights')
+    assert found.parts == ("SW", "SE", "NW", "NE") and found.tooltip == "Heights"
+    assert parameter("uniform vec4 a; //! slider(0, 1)").parts == ()
+
+
+def test_brackets_and_commas_in_a_menu_s_names(parameter):
+    found = parameter('uniform int a = 0; //! menu("plain (thesis)", "a, b", "c) d") Which')
+    assert found.widget.choices == ("plain (thesis)", "a, b", "c) d") and found.tooltip == "Which"
+
+
+def test_the_choice_of_previews_is_one_of_the_menu_s(parameter):
+    assert parameter('uniform int a = 0; //! menu("x", "y") preview("y") Which').preview == 1
+    assert parameter('uniform int a = 0; //! menu("x", "y") Which').preview is None
+    assert parameter("uniform int a = 9; //! slider(0, 20) preview(5) Many").preview == 5
+
+
+def test_a_library_file_declares_nothing(parse):
+    assert parse("float f(float x) { return x; }\n#pragma optimize(on)\n") is None
+    assert parse("") is None
+    assert parse('/* #pragma kernel(output = "h:r32f") */\n// #pragma kernel(\n') is None
+
+
+def test_an_included_kernel_gives_its_functions_and_parameters_only(parse, tmp_path):
+    (tmp_path / "other.glsl").write_text('#pragma kernel(output = "x:r8")\nuniform float gain = 1.0;\n')
+    found = parse(KERNEL + '#include "other.glsl"\n')
+    assert [o.name for o in found.outputs] == ["height"] and [p.name for p in found.parameters] == ["gain"]
+    assert parse('#include "other.glsl"\n') is None
+
+
+def test_a_guarded_file_may_come_twice_by_two_ways(parse, tmp_path):
+    (tmp_path / "base.glsl").write_text("#ifndef B\n#define B\nuniform float gain = 1.0;\n#endif\n")
+    for name in "ab":
+        (tmp_path / f"{name}.glsl").write_text('#include "base.glsl"\n')
+    found = parse(KERNEL + '#include "a.glsl"\n#include "b.glsl"\n')
+    assert [p.name for p in found.parameters] == ["gain"]
+
+
+@pytest.mark.parametrize(
+    ("text", "title"),
+    [
+        ("// terrain.glsl -- a slope.\n", "A slope"),
+        ("// land.frag: a slope.\n", "A slope"),
+        ("// A slope\n", "A slope"),
+        ("//////////////\n// -----\n// A slope\n", "A slope"),
+        ("#version 330\n\n// A slope\n", "A slope"),
+        ("float x;\n// no title\n", ""),
+        ('#include "lib.glsl"\n// mine\n', "Mine"),
+        ("// terrain.glsl -- sRGB's curve: NaN stays NaN.\n", "sRGB's curve: NaN stays NaN"),
+        ("// terrain.glsl -- a slope: " + "long " * 20 + "\n", "A slope"),
+        ("// NaN. Or not …\n", "NaN. Or not …"),
+        ("", ""),
+    ],
+)
+def test_a_title_is_the_file_s_first_sentence(parse, tmp_path, text, title):
+    (tmp_path / "lib.glsl").write_text("// lib.glsl -- a library.\n")
+    found = parse(text + ("void main() {}\n" if "#version" in text else KERNEL))
+    assert found.title == title
+
+
+def test_sources_draws_and_compute_variants(parse):
+    found = parse('#pragma source("elevation_file", output = "height:r32f")\n')
+    assert (found.kind, found.registry, found.outputs[0].name) == ("source", "elevation_file", "height")
+    found = parse(
+        '#pragma draw(mesh = "grid", blend = "alpha", depth = "none", repeat = "1 if sea else 0")\n'
+        "uniform bool sea;\n"
+    )
+    assert (found.kind, found.registry, found.blend, found.depth) == ("draw", "grid", "alpha", "none")
+    assert (found.outputs[0].name, found.outputs[0].format) == ("frame", "rgba16f")
+    assert (found.count, found.samples) == ("", 0)
+    found = parse(
+        '#pragma draw(mesh = "triangles", count = "2 * points + size.x", samples = 1)\nuniform int points;\n'
+    )
+    assert (found.count, found.samples) == ("2 * points + size.x", 1)
+    table = '#pragma draw(mesh = "triangles", count = "t.size.x // 3")\nuniform sampler2D t;  //! input\n'
+    assert parse(table).count == "t.size.x // 3"
+    found = parse(
+        '#pragma compute(groups = "size.y, 1", local = "256, 1", '
+        'buffers = "stack:vec4:size.x * 64; n:uint:1")\n'
+    )
+    assert (found.kind, found.groups, found.local) == ("compute", "size.y, 1", (256, 1))
+    assert [(b.name, b.type, b.count) for b in found.buffers] == [
+        ("stack", "vec4", "size.x * 64"),
+        ("n", "uint", "1"),
+    ]
+
+
+def test_plain_shaders(parse):
+    text = """#version 330
+// A plain one
+uniform float iTime; uniform vec3 iResolution;
+uniform float gain = 2.0; //! slider(0, 4)
+uniform vec4 list[4];
+uniform mat4 matrix;
+uniform int computed = 1 + 2
+  * 3;
+out vec4 colour;
+void main() { colour = vec4(texture2D(x, gl_FragCoord.xy)); }
+"""
+    found = parse(text)
+    assert (found.kind, found.title) == ("plain_fragment", "A plain one")
+    assert [p.name for p in found.parameters] == ["gain"]
+    text = "#version 430\nlayout(local_size_x = 16, local_size_y = 8) in;\n"
+    text += "layout(rgba16f, binding = 0) writeonly uniform image2D picture;\nvoid main() {}\n"
+    found = parse(text)
+    assert (found.kind, found.local, found.outputs[0].format) == ("plain_compute", (16, 8), "rgba16f")
+
+
+@each("path", sorted(GLSL.rglob("*.glsl")), ids=lambda p: p.stem)
+def test_every_shipped_file_has_a_header_that_can_be_read(path):
+    found = read_kernel(path, GLSL)
+    if found is not None:
+        assert found.title and found.outputs
+        assert all(p.tooltip for p in found.parameters)
+
+
+# Mistakes
+
+
+@each(
+    ("text", "words"),
+    [
+        ("#pragma kernel", "needs its options in brackets, as #pragma kernel(output"),
+        ('#pragma kernel(output = "h:r32f"', "in brackets"),
+        ("#pragma kernel()", "needs output"),
+        ('#pragma kernel(output = "h:r32f", repaet = "3")', "no option 'repaet'; did you mean 'repeat'"),
+        ('#pragma kernel("h:r32f")', "cannot tell what 'h:r32f' is for"),
+        ('#pragma kernel(output = "h:r32f", output = "g:r32f")', "gives 'output' twice"),
+        ('#pragma kernel(output = "h:r32f" repeat = "3")', "cannot read"),
+        ('#pragma kernel(output = "h:r32f", , repeat = "3")', "cannot read"),
+        ('#pragma kernel(output = "h")', "has no format ''"),
+        ('#pragma kernel(output = "h:r33f")', "no format 'r33f'; did you mean 'r32f'"),
+        ('#pragma kernel(output = "h:rgb32f")', "no format 'rgb32f'"),
+        ('#pragma kernel(output = "h:r32f, h:r8")', "'h' appears twice"),
+        ('#pragma kernel(output = "1h:r32f")', "expected name:format"),
+        ('#pragma kernel(output = "size:r32f")', "'size' is given to every kernel"),
+        ('#pragma kernel(output = "k_h:r32f")', "are reserved"),
+        ('#pragma kernel(output = "filter:r32f")', "word of GLSL"),
+        ('#pragma kernel(output = "a:r8,b:r8,c:r8,d:r8,e:r8,f:r8,g:r8,h:r8,i:r8")', "9 outputs"),
+        ('#pragma kernel(output = "h:r32f", repeat = "2 *")', "repeat: '2 *' is not an expression"),
+        (
+            '#pragma kernel(output = "h:r32f", repeat = "size.z")',
+            "names 'size.z', which is not known here; did you mean 'size.",
+        ),
+        ('#pragma kernel(output = "h:r32f", repeat = "iteration")', "names 'iteration'"),
+        ('#pragma kernel(output = "h:r32f", visits = "2")', "2 expressions"),
+        ('#pragma kernel(output = "h:r32f", visits = "2, steps")', "names 'steps'"),
+        ('#pragma kernel(output = "h:r32f", accepts = "2**k")', "accepts: '2**k' names 'k'"),
+        ('#pragma kernel(output = "h:r32f", accepts = "0")', "allows no size"),
+        ('#pragma source(output = "h:r32f")', "needs its name"),
+        ('#pragma source("x")', "needs output"),
+        ("#pragma draw()", "needs a mesh"),
+        ('#pragma draw(mesh = "grid", blend = "alfa")', "expected one of none, alpha, add"),
+        ('#pragma draw(mesh = "grid", instances = "lost.x")', "names 'lost.x', which is not known"),
+        ('#pragma draw(mesh = "grid", samples = 4)', "samples = 4: expected 1, or 0 for as many as"),
+        ('#pragma draw(mesh = "triangles", count = "pionts")', "count: 'pionts' names 'pionts'"),
+        ('#pragma draw(mesh = "triangles", count = "2,")', "count: "),
+        ("#pragma compute()", "needs groups"),
+        ('#pragma compute(groups = "1")', "2 expressions"),
+        ('#pragma compute(groups = "1, 1", local = "8")', "two whole numbers"),
+        ('#pragma compute(groups = "1, 1", local = "0, 8")', "two whole numbers"),
+        ('#pragma compute(groups = "1, 1", local = "\u00b2, 8")', "two whole numbers"),
+        ('#pragma compute(groups = "1, 1", buffers = "a:vec4")', "expected name:type:count"),
+        ('#pragma compute(groups = "1, 1", buffers = "a:vec3:1")', "no type 'vec3'; did you mean 'vec"),
+        ('#pragma compute(groups = "1, 1", buffers = "a:vec4:n")', "buffer 'a': 'n' names 'n'"),
+        ('#pragma kernal(output = "h:r32f")', "no #pragma 'kernal'; did you mean 'kernel'"),
+    ],
+)
+def test_mistakes_in_a_pragma(refused, text, words):
+    refused(text, words)
+    refused("// first\n" + text + "\n", words, 2)
+
+
+@each(
+    ("line", "words"),
+    [
+        ("uniform float a = 0.2; //! slidr(0, 1)", "no widget 'slidr'; did you mean 'slider'"),
+        ("uniform float a = 0.2; //! slider(0, 1) stp(0.1)", "no widget 'stp'; did you mean 'step'"),
+        ("uniform float a = 0.2; //! wheel(3)", "no widget 'wheel'; there are"),
+        ("uniform float a = 0.2; //! slider(0, 1", "'slider(' is not closed"),
+        ("uniform float a = 0.2; //! slider(0)", "two numbers, the lower first, as slider(0, 1)"),
+        ("uniform float a = 0.2; //! slider(1, 0)", "the lower first"),
+        ("uniform float a = 0.2; //! slider(a, b)", "two numbers"),
+        ("uniform float a = 0.2; //! slider(0, inf)", "two numbers"),
+        ("uniform float a = 0.2; //! slider(0, nan)", "two numbers"),
+        ("uniform float a = 0.2; //! slider(low = 0, 1)", "takes no 'low ='"),
+        ("uniform float a = 1.2; //! slider(0, 1)", "the default of a = 1.2 is outside its range 0 to 1"),
+        ("uniform float a = 0.2; //! log_slider(0, 1)", "must lie above 0"),
+        ("uniform float a = 0.2; //! slider(0, 1) step(0)", "a number above 0"),
+        ("uniform float a = 0.2; //! slider(0, 1) step(nan)", "one number"),
+        ("uniform float a = 0.2; //! slider(0, 1) step(1, 2)", "one number"),
+        ("uniform float a = 0.2; //! slider(0, 1) slider(0, 2)", "'slider' appears twice"),
+        ("uniform float a = 0.2; //! angle slider(0, 2)", "two widgets: angle and slider"),
+        ('uniform float a = 0.2; //! unit("m", "s")', "one text in quotes"),
+        ("uniform float a = 0.2; //! unit()", "one text in quotes"),
+        ('uniform vec2 a; //! parts("x")', 'expected 2 different names, as parts("west", "east")'),
+        ('uniform vec2 a; //! parts("x", "x")', "2 different names"),
+        ('uniform float a; //! slider(0, 1) parts("x")', "parts of 'a', a float: expected a vector"),
+        (
+            'uniform vec2 a; //! direction parts("x", "y")',
+            "for a vector of numbers; 'a' is a direction",
+        ),
+        ("uniform float a = 0.2; //! colour", "colour is for vec3 or vec4; 'a' is a float"),
+        ("uniform vec3 a; //! direction", "direction is for vec2"),
+        ("uniform bool a; //! slider(0, 1)", "slider is for numbers"),
+        ("uniform vec2 a; //! direction(1, 2)", "takes nothing in brackets"),
+        ('uniform float a; //! menu("x", "y")', "menu is for int"),
+        ('uniform int a; //! menu("x")', "needs its choices"),
+        ('uniform int a; //! menu("x", "x")', "a choice twice"),
+        ('uniform int a = 2; //! menu("x", "y")', "the default of a = 2: expected one of x, y"),
+        ('uniform int a; //! menu("x", "y") preview("z")', "the preview of a = 'z': expected one of x, y"),
+        ('uniform int a; //! menu("x", "y") preview()', 'expected one choice of a menu, as preview("fast")'),
+        ('uniform int a; //! menu("x", "y") preview("x", "y")', "expected one choice of a menu"),
+        ("uniform float a; //! slider(0, 1) preview(2)", "the preview of a = 2 is outside its range"),
+        ("uniform float a; //! slider(0, 1) preview(x)", "the preview of a = 'x': expected"),
+        ("uniform vec3 a; //! colour preview(#ffffff)", "expected one choice of a menu"),
+        ("uniform float a; //! input", "input is for a sampler2D"),
+        ('uniform float a; //! file("x")', "file is for a sampler2D"),
+        ("uniform sampler2D a; //! slider(0, 1)", "slider is not for a sampler2D"),
+        (
+            'uniform sampler2D a; //! input("liner")',
+            "'liner' is not a way to read a texture; did you mean 'linear'",
+        ),
+        ('uniform sampler2D a; //! input("linear", "nearest")', "both nearest and linear"),
+        ('uniform sampler2D a; //! file("x.png", "white")', "'white' is not a way"),
+        ("uniform float size = 1.0;", "'size' is given to every kernel"),
+        ("uniform float previous = 1.0;", "'previous' is given"),
+        ("uniform float previous_height = 1.0;", "is given"),
+        ("uniform float kernel = 1.0;", "'kernel' is given"),
+        ("uniform float k_x = 1.0;", "are reserved"),
+        ("uniform float a__b = 1.0;", "are reserved"),
+        ("uniform float step = 1.0;", "'step' is a word of GLSL"),
+        ("uniform float smooth = 1.0;", "word of GLSL"),
+        ("uniform float height = 1.0;", "both an output and a parameter"),
+        ("uniform float a[3];", "'a' is an array"),
+        ("uniform mat4 a;", "may not be a mat4"),
+        ("uniform sampler3D a;", "may not be a sampler3D"),
+        ("uniform float a = 1.0 + 2.0;", "must be a literal, found 1.0 + 2.0"),
+        ("uniform float a = PI;", "must be a literal"),
+        ("uniform float a = 1e999;", "must be a literal"),
+        ("uniform float a = 0.1.2;", "must be a literal"),
+        ("uniform int a = 1.5;", "must be a whole literal"),
+        ("uniform int a = 089;", "must be a whole literal"),
+        ("uniform int a = 2147483648;", "whole number from -2147483648"),
+        ("uniform uint a = -1;", "whole number from 0"),
+        ("uniform int a = " + "9" * 5000 + ";", "must be a whole literal"),
+        ("uniform bool a = 1;", "expected true or false"),
+        ("uniform vec2 a = vec3(1.0);", "as vec2(…)"),
+        ("uniform vec2 a = vec2(1.0, 2.0, 3.0);", "must be a literal"),
+        ("uniform vec2 a = vec2(x);", "must be a literal"),
+        ("uniform float a, b;", "declared on one line of its own"),
+        ("uniform float a = 1.0; uniform float b = 2.0;", "declared on one line of its own"),
+        ("const int n = 3; uniform float a = 1.0;", "declared on one line of its own"),
+        ("layout(location = 0) uniform float a;", "declared on one line of its own"),
+        ("uniform float image_scale =", "declared on one line of its own"),
+        ("uniform Block { float a; };", "declared on one line of its own"),
+        ("float f() { return texture(x, y).r; }", "may not use 'texture'"),
+        ("float f() { return gl_FragCoord.x; }", "may not use 'gl_FragCoord'"),
+        ("void f() { discard; }", "may not use 'discard'"),
+        ("#version 330", "a kernel has no #version"),
+        ('#pragma draw(mesh = "grid")', "a second #pragma"),
+    ],
+)
+def test_mistakes_in_a_line(refused, line, words):
+    refused(KERNEL + "float f;\n" + line + "\n", words, 3)
+
+
+def test_a_name_declared_twice_is_reported_at_the_second(refused):
+    refused(KERNEL + "uniform float a;\nuniform float a;\n", "'a' is declared twice", 3)
+
+
+def test_a_mistake_in_an_included_file_is_reported_there(parse, tmp_path):
+    (tmp_path / "lib.glsl").write_text("\nuniform float a = x;\n")
+    with pytest.raises(ShaderError) as caught:
+        parse(KERNEL + '#include "lib.glsl"\n')
+    found = caught.value.diagnostics[0]
+    assert (Path(found.file).name, found.line, found.column) == ("lib.glsl", 2, 19)
+    assert [Path(place).name for place in found.chain] == ["main.glsl:2"]
+
+
+def test_columns_point_at_the_word(parse):
+    with pytest.raises(ShaderError) as caught:
+        parse(KERNEL + "uniform float step = 1.0;\n")
+    assert caught.value.diagnostics[0].column == 15
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("#version 330\nfloat x;\n", "needs its own main"),
+        ("#version 430\nlayout(local_size_x = 8) in;\nvoid main() {}\n", "needs an image2D"),
+        (
+            "#version 430\nlayout(local_size_x = 8) in;\nlayout(binding = 0) uniform image2D p;\n"
+            "void main() {}\n",
+            "needs a format",
+        ),
+    ],
+)
+def test_mistakes_in_a_plain_shader(refused, text, words):
+    refused(text, words)
+
+
+def test_no_line_is_too_long_for_its_pattern(parse):
+    for line in (
+        "uniform float a =" + " " * 20_000,
+        "uniform float a = " + "1" * 20_000,
+        "uniform float a = " + "1 " * 20_000 + ";",
+        "uniform float a; //! slider(" + " " * 20_000,
+        "uniform float a; //! " + "slider " * 5_000,
+        'uniform float a; //! unit("' + "\\" * 20_000,
+        "#pragma kernel(" + "a" * 20_000 + ")",
+        "#pragma kernel(" + "a = " * 5_000 + ")",
+    ):
+        try:
+            parse(KERNEL.replace("kernel", "optimize") + KERNEL + line)
+        except ShaderError:
+            pass
+
+
+# A quarter of the texts every day, for they are made by chance: the others are no different.
+@pytest.mark.parametrize("seed", [5, *(pytest.param(n, marks=pytest.mark.slow) for n in (105, 205, 305))])
+def test_mutated_headers_raise_nothing_but_sentences(parse, seed):
+    rng = random.Random(seed)
+    texts = [p.read_text() for p in sorted(GLSL.rglob("*.glsl"))[:40]]
+    texts = ["\n".join(line for line in t.split("\n") if "include" not in line)[:3000] for t in texts]
+    for _ in range(375):
+        letters = list(rng.choice(texts))
+        for _ in range(rng.randint(1, 6)):
+            if rng.random() < 0.5 or not letters:
+                at = rng.randint(0, len(letters))
+                letters.insert(
+                    at,
+                    rng.choice(
+                        [*'()",=;:[]{}\\/*!#', "uniform ", "//! ", "#pragma ", "vec2", "9", "-", "é", "\n"]
+                    ),
+                )
+            else:
+                at = rng.randrange(len(letters))
+                del letters[at : at + rng.randint(1, 8)]
+        try:
+            parse("".join(letters))
+        except PlaygroundError as error:
+            assert error.diagnostics[0].file and error.diagnostics[0].message
+
+
+# Macros
+
+
+@pytest.mark.parametrize("name", ["size", "time", "previous", "previous_height", "kernel", "visit", "extent"])
+def test_a_macro_may_not_take_the_name_of_what_a_kernel_is_given(refused, name):
+    refused(KERNEL + f"  #  define {name} 3\n", f"'{name}' is given to every kernel; name the macro", 2)
+
+
+def test_a_macro_of_any_other_name_may_stand(parse):
+    assert parse(KERNEL + "#define sizes 3\n#define FAR (size.x * 2)\n") is not None

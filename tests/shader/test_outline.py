@@ -1,0 +1,110 @@
+"""The outline of a GLSL file: its declarations with their comments, and the names in its functions."""
+
+from __future__ import annotations
+
+import pytest
+
+from playground.paths import GLSL
+from playground.shader.driver_log import library
+from playground.shader.outline import code_of, locals_of, outline, words
+
+TEXT = """// A file. float no(int comment);
+#ifndef GUARD
+#define GUARD
+#define TWICE(x) ((x) * 2.0)
+
+struct March {
+    vec2 start;  // where
+    float far;
+};
+
+// How steep it is.
+// Not how high.
+float steep(vec2 slope, const in March march) {
+    float first = slope.x, second[2] = float[2](slope.y, 0.0);
+    for (int step = 0; step < 3; step++) { vec2 far = vec2(float(step)); first += far.x; }
+    return first + second[0] /* + hidden */ + march.far;
+}
+float asked(vec2 place);
+const float LEAST = 1e-6;
+uniform vec3 tint = vec3(1.0);  //! colour
+#endif
+"""
+
+
+def test_each_declaration_has_its_kind_its_signature_and_its_comment() -> None:
+    found = {one.name: one for one in outline(TEXT)}
+    assert {name: one.kind for name, one in found.items()} == {
+        "TWICE": "macro",
+        "March": "struct",
+        "steep": "function",
+        "asked": "function",
+        "LEAST": "variable",
+        "tint": "uniform",
+    }
+    assert found["steep"].signature == "float steep(vec2 slope, const in March march)"
+    assert found["steep"].comment == "How steep it is.\nNot how high."
+    assert found["asked"].is_prototype and not found["steep"].is_prototype
+    for one in found.values():
+        assert TEXT[one.at :].startswith(one.name)
+    assert TEXT[found["steep"].body] == "{" and TEXT[found["steep"].end - 1] == "}"
+
+
+def test_a_function_knows_its_arguments_and_all_that_it_declares() -> None:
+    steep = next(one for one in outline(TEXT) if one.name == "steep")
+    found = locals_of(TEXT, steep)
+    assert [one.name for one in found] == ["slope", "march", "first", "second", "step", "far"]
+    assert all(TEXT[one.at :].startswith(one.name) for one in found)
+
+
+def test_words_are_those_of_the_code() -> None:
+    found = {word for word, _ in words('#include "a/b.glsl"\n' + TEXT)}
+    assert found >= {"steep", "TWICE", "march", "far"}
+    assert not found & {"no", "comment", "hidden", "Not", "glsl", "colour"}
+    assert len(code_of(TEXT)) == len(TEXT)
+
+
+def test_letters_of_numbers_are_no_names() -> None:
+    text = "float a = 1e-3 + 2.0f + 3.e5 + .5e3f + 0xFFu + 0Xe1 + 1u + 4.f - e; vec2 b = v1e3.xy * 1E+2;\n"
+    assert [word for word, _ in words(text)] == ["float", "a", "e", "vec2", "b", "v1e3", "xy"]
+
+
+@pytest.mark.parametrize(
+    "pragma",
+    [
+        '#pragma kernel(output = "height:r32f", \\\n    about = "https://example.org // it")',
+        '#pragma kernel(output = "height:r32f") // see https://example.org \\\n  and what follows',
+        '#pragma kernel(output = "height:r32f", \\\n    about = "never closed // it \\\n   and on)',
+        '#pragma kernel(output = "a \\" // b", /* c // */ \\\n size = "1")',
+    ],
+)
+def test_what_follows_a_pragma_with_slashes_is_declared(pragma: str) -> None:
+    text = (
+        pragma + "\nuniform float gain = 1.0;  //! slider(0, 1)\nfloat kernel(ivec2 texel) { return gain; }\n"
+    )
+    assert [one.name for one in outline(text)] == ["gain", "kernel"]
+
+
+def test_what_a_bracket_never_closes_is_no_other_function() -> None:
+    text = "float a(float x) {\n    if (x > 0.0) {\n    return x;\n}\nfloat b() { return 1.0; }\n"
+    assert [one.name for one in outline(text)] == ["a"]
+
+
+def test_every_function_of_the_library_is_in_the_outline_of_its_file() -> None:
+    """``library`` finds them by another way, by lines that begin like one."""
+    missing = [
+        name
+        for name, files in library().items()
+        for file in files
+        if name not in {one.name for one in outline((GLSL / file).read_text(encoding="utf-8"))}
+    ]
+    assert missing == []
+
+
+def test_the_reference_explains_every_key() -> None:
+    from playground.sketch import toml_table
+
+    page = (GLSL.parent / "docs" / "reference" / "sketch-file.md").read_text(encoding="utf-8")
+    for table in (toml_table.SKETCH, *toml_table.TABLES.values()):
+        for key in table:
+            assert f"`{key}`" in page or f"[{key}]" in page, key
