@@ -253,7 +253,7 @@ def test_an_example_smaller_than_a_piece_is_a_sentence():
 
 def test_it_can_be_stopped_between_any_two_of_its_heavy_steps(example, monkeypatch):
     order, running = [], []
-    for name in ("oriented", "Candidates", "features_of", "quilted", "smoothed", "integrated"):
+    for name in ("oriented", "_features", "Candidates", "features_of", "quilted", "smoothed", "integrated"):
         act = getattr(by_example, name)
 
         def noted(*given, _name=name, _act=act, **more):
@@ -271,6 +271,7 @@ def test_it_can_be_stopped_between_any_two_of_its_heavy_steps(example, monkeypat
     made_like(
         example, example.spacing, (65, 65), (METRES, METRES), FEW, guide, lambda *at: order.append("report")
     )
+    order = [name for name in order if name != "_features"]  # cached, so no step of its own
     heavy = ["oriented", "Candidates", "features_of", "quilted", "smoothed", "integrated"]
     assert [name for name in dict.fromkeys(order) if name != "report"] == heavy
     for name in heavy:
