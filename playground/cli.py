@@ -17,6 +17,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache as cached
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -30,12 +31,10 @@ from playground.commands import (
     check,
     doctor,
     export,
-    fly,
     lesson,
     library,
     listing,
     live,
-    lsp,
     new,
     options,
     pack,
@@ -53,6 +52,12 @@ from playground.signals import ended_by_signals
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.streams import let_go, open_streams
 from playground.terminal import complain, note, with_loudness
+
+# Rooms that bring their own commands; without its folder and its line here, the rest works as before.
+ROOMS = (
+    "playground.flight.commands",
+    "playground.lsp.commands",
+)
 
 _NAME = "playground"
 MISTAKE, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
@@ -202,10 +207,8 @@ def _no_command(name: str, ctx: Any) -> str:
 
 app.command("live", cls=live.LiveCommand, help=live.HELP)(live.live)
 app.command("render", help=render.HELP)(render.render)
-app.command("fly", help=fly.HELP)(fly.fly)
 app.command("export", help=export.HELP)(export.export)
 app.command("check", help=check.HELP)(check.check)
-app.command("lsp", help=lsp.HELP)(lsp.lsp)
 app.command("reduce", help=reduce.HELP)(reduce.reduce)
 app.command("bench", help=bench.HELP)(bench.bench)
 app.command("list", help=listing.HELP)(listing.list_)
@@ -214,6 +217,8 @@ app.command("pack", help=pack.HELP)(pack.pack)
 app.command("new", help=new.HELP)(new.new)
 for _group in (shots.app, lesson.app, cache.app, variants.app, library.app):
     app.add_typer(_group)
+for _room in ROOMS:
+    import_module(_room).add_to(app)
 
 
 @cached

@@ -173,7 +173,7 @@ def _open(request: Request) -> None:
     if request.record:
         check_parent(Path(request.record), request.record)
     check_display(request.renderer)
-    from playground.live.fly import run
+    from playground.flight.window import run
 
     # What a record names must be found again from another folder.
     name = request.sketch or (record.header.sketch if record else DEFAULT_FLIGHT)
@@ -190,3 +190,8 @@ def _open(request: Request) -> None:
     )
     if status:
         raise typer.Exit(status)
+
+
+def add_to(app: typer.Typer) -> None:
+    """Add the room's command to a command line."""
+    app.command("fly", help=HELP)(fly)

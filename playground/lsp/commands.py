@@ -38,3 +38,8 @@ def lsp(
         raise ContextError(needs("the language server", "pygls", "lsp")) from None
     renderer: Renderer = ctx.obj.or_else(software, device)
     serve(port, software=renderer.software, device=renderer.device)
+
+
+def add_to(app: typer.Typer) -> None:
+    """Add the room's command to a command line."""
+    app.command("lsp", help=HELP)(lsp)

@@ -23,17 +23,17 @@ from playground.engine.context import context_info, prefer_software
 from playground.engine.engine import Engine
 from playground.engine.sandbox import Sandbox
 from playground.errors import DataError
+from playground.flight.controls import Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.flight.craft import STEP, Controls
 from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
+from playground.flight.instruments import Instruments
 from playground.flight.record import Header, Moment, Record, Recorder
-from playground.live.flight_controls import Wheel, by_gamepad, by_keys, by_mouse, together
-from playground.live.instruments import Instruments
+from playground.flight.reload import SaveFollower
 from playground.live.keys import pressed_sign
 from playground.live.status import add_line, status_file
 from playground.live.text_field import ctrl_held, letters
 from playground.live.window import Window, wake
 from playground.sketch.model import Sketch
-from playground.workbench.flight_reload import SaveFollower
 from playground.workbench.interface import remembered_size
 from playground.workbench.last_frame import Painter
 

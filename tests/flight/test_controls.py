@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from playground.flight.craft import Controls
-from playground.live.flight_controls import (
+from playground.flight.controls import (
     FULL,
     NOTCH,
     REST,
@@ -15,7 +14,8 @@ from playground.live.flight_controls import (
     by_mouse,
     together,
 )
-from playground.live.instruments import HELP, clock
+from playground.flight.craft import Controls
+from playground.flight.instruments import HELP, clock
 
 
 def test_keys_ask_for_all_or_nothing_and_opposite_ones_for_nothing():

@@ -10,9 +10,9 @@ import pytest
 
 from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ShaderError
+from playground.flight.reload import SaveFollower
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
-from playground.workbench.flight_reload import SaveFollower
 
 from ..loading import load
 

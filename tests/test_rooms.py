@@ -1,0 +1,85 @@
+"""Each room above the core can be removed: its folder, its tests, and one line of ``ROOMS``."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from playground.cli import ROOMS
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGE = ROOT / "playground"
+COMMANDS = {"flight": {"fly"}, "lsp": {"lsp"}}
+ROW = re.compile(r"^│ (\w+) {2,}", re.MULTILINE)
+NAMES = [entry.split(".")[1] for entry in ROOMS]
+CORE_TESTS = ("tests/sketch/test_load.py", "tests/shader/test_outline.py", "tests/data/test_resample.py")
+
+
+@pytest.mark.parametrize("room", NAMES)
+def test_nothing_outside_of_a_room_names_it(room):
+    naming = [
+        path.relative_to(PACKAGE).as_posix()
+        for path in PACKAGE.rglob("*.py")
+        if path.relative_to(PACKAGE).parts[0] not in (room, "web")
+        and f"playground.{room}" in path.read_text(encoding="utf-8")
+    ]
+    assert naming == ["cli.py"], "the registry alone"
+
+
+def commands(folder: Path) -> set[str]:
+    done = run(folder, "-m", "playground", "--help")
+    assert done.returncode == 0, done.stderr
+    return set(ROW.findall(done.stdout))
+
+
+def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "PYTHONPATH": str(folder), "COLUMNS": "80", "NO_COLOR": "1"}
+    return subprocess.run(
+        [sys.executable, *arguments], cwd=folder, env=environment, capture_output=True, text=True
+    )
+
+
+@pytest.fixture
+def without(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    """Give a checkout without a room, its tests and its line."""
+    room = request.param
+    shutil.copytree(
+        PACKAGE, tmp_path / "playground", ignore=shutil.ignore_patterns("node_modules", "__pycache__", room)
+    )
+    shutil.copytree(
+        ROOT / "tests", tmp_path / "tests", ignore=shutil.ignore_patterns("__pycache__", "screenshots", room)
+    )
+    for name in ("glsl", "docs", "pyproject.toml"):
+        (tmp_path / name).symlink_to(ROOT / name)
+    registry = tmp_path / "playground" / "cli.py"
+    line = f'    "playground.{room}.commands",\n'
+    text = registry.read_text(encoding="utf-8")
+    assert text.count(line) == 1
+    registry.write_text(text.replace(line, ""), encoding="utf-8")
+    return tmp_path
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("without", NAMES, indirect=True)
+def test_everything_else_works_without_a_room(without):
+    (room,) = {*NAMES} - {p.name for p in (without / "playground").iterdir()}
+    assert commands(without) == commands(ROOT) - COMMANDS[room]
+    modules = [
+        ".".join(path.relative_to(without).with_suffix("").parts)
+        for path in sorted((without / "playground").rglob("*.py"))
+        if "templates" not in path.parts and path.stem not in ("__main__", "conftest")
+    ]
+    code = "import importlib, sys\nfor name in sys.argv[1:]: importlib.import_module(name)\n"
+    done = run(without, "-c", code + "import playground; print(playground.__file__)", *modules)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == str(without / "playground" / "__init__.py")
+    picture = run(without, "-m", "playground", "render", "l_dot_n", "--size", "32x18", "-o", "p.png")
+    assert picture.returncode == 0 and (without / "p.png").is_file(), picture.stderr
+    core = run(without, "-m", "pytest", "-q", "-p", "no:cacheprovider", *CORE_TESTS)
+    assert core.returncode == 0, core.stdout
