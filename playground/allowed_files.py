@@ -1,7 +1,7 @@
 """Which files a sketch may read: its own folder, ``glsl/``, and the sidecars of its data files.
 
 Sources: ESRI, "BIL, BIP, and BSQ raster files" (ArcGIS Desktop help); ESRI (1998), "Shapefile Technical
-Description"; GDAL, "PAM (Persistent Auxiliary Metadata)".
+Description"; GDAL, "PAM (Persistent Auxiliary Metadata)" and "VRT -- GDAL Virtual Format".
 
 A stranger's sketch is data; nothing it names may come from elsewhere on the disk. Paths
 that the user types are the user's own affair and are not judged here.
@@ -15,27 +15,48 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from types import MappingProxyType
-from typing import NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from playground.paths import GLSL, shown
+from playground.regular_file import read_regular
+
+if TYPE_CHECKING:
+    from xml.etree import ElementTree
 
 AUXILIARY = ".aux.xml"
 """What GDAL appends to a raster's name, its ending included, for what the format has no place for."""
 
+OVERVIEWS, MASK = ".ovr", ".msk"
+"""What it appends for overviews, and for a mask: TIFF files."""
+
+_TIFF = (".tfw", AUXILIARY, OVERVIEWS, MASK)
+_APPENDED = (AUXILIARY, OVERVIEWS, MASK)
 _ENDINGS = {
     ".asc": (".prj", AUXILIARY),
     ".bil": (".hdr", ".prj", AUXILIARY),
     ".flt": (".hdr", ".prj", AUXILIARY),
-    ".tif": (AUXILIARY,),
-    ".tiff": (AUXILIARY,),
+    ".gpkg": (AUXILIARY,),
+    ".hgt": (AUXILIARY,),
+    ".img": (".ige", ".rrd", AUXILIARY),
+    ".jp2": (".j2w", AUXILIARY, OVERVIEWS, MASK),
+    ".nc": (AUXILIARY,),
+    ".tif": _TIFF,
+    ".tiff": _TIFF,
+    ".vrt": (AUXILIARY, OVERVIEWS),
     ".shp": (".shx", ".dbf", ".prj", ".cpg"),
 }
+_MAX_VRT_BYTES = 2**22
+_MAX_SOURCES = 2**12
 
 
 def sidecars(path: Path) -> tuple[Path, ...]:
-    """Return the files next to a data file that its readers look at, without those that are not there."""
+    """Return the files next to a data file that its readers look at, without those that are not there.
+
+    The sources of a VRT are among them, wherever they lie, each with its own.
+    """
     places = sidecar_places(path)
     pairs = zip(places[::2], places[1::2], strict=True)
     return tuple(found for pair in pairs if (found := next(filter(Path.is_file, pair), None)) is not None)
@@ -43,12 +64,59 @@ def sidecars(path: Path) -> tuple[Path, ...]:
 
 def sidecar_places(path: Path) -> tuple[Path, ...]:
     """Return where such files may lie: each by its ending in small letters, then in large ones."""
+    if path.suffix.lower() != ".vrt":
+        return _places(path)
+    sources = all_sources(path)
+    return _places(path) + tuple(p for file in sources for p in (file, file, *_places(file)))
+
+
+def _places(path: Path) -> tuple[Path, ...]:
     endings = _ENDINGS.get(path.suffix.lower(), ())
     return tuple(
-        path.with_name(path.name + form) if ending == AUXILIARY else path.with_suffix(form)
+        path.with_name(path.name + form) if ending in _APPENDED else path.with_suffix(form)
         for ending in endings
         for form in (ending, ending.upper())
     )
+
+
+def all_sources(path: Path) -> tuple[Path, ...]:
+    """Return the files that a VRT is made of, those of VRTs inside it too; a few thousand at most."""
+    found: dict[Path, None] = {}
+    waiting = [path]
+    while waiting and len(found) < _MAX_SOURCES:
+        for text, source in sources_of(waiting.pop()):
+            if source not in found and source != path:
+                found[source] = None
+                waiting += [source] if text.lower().endswith(".vrt") else []
+    return tuple(found)
+
+
+def sources_of(path: Path) -> list[tuple[str, Path]]:
+    """Return the sources that a VRT names, and their paths; none where it is no VRT."""
+    root = vrt_document(path)
+    names = [] if root is None else [e for e in root.iter() if e.tag in ("SourceFilename", "SourceDataset")]
+    texts = [(e.text or "").strip() for e in names]
+    return [(text, path.parent / text) for text in texts if text and "\0" not in text]
+
+
+def vrt_document(path: Path) -> ElementTree.Element | None:
+    """Return the XML of a VRT; None where it is none, or longer than a few megabytes."""
+    try:
+        status = path.stat()
+        small = status.st_size <= _MAX_VRT_BYTES
+        return _document(path, status.st_mtime_ns, status.st_size) if small else None
+    except (OSError, ValueError):
+        return None
+
+
+@lru_cache(maxsize=32)
+def _document(path: Path, modified: int, size: int) -> ElementTree.Element | None:
+    from xml.etree import ElementTree
+
+    try:
+        return ElementTree.fromstring(read_regular(path))
+    except ElementTree.ParseError:
+        return None
 
 
 SHADERS = (".glsl", ".frag", ".comp", ".fs", ".fragment")
@@ -62,7 +130,7 @@ TEXTS = (*SHADERS, ".toml")
 
 ELEVATIONS = (
     *(".png", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt"),
-    *(".asc", ".bil", ".flt", ".nc"),
+    *(".asc", ".bil", ".flt", ".nc", ".vrt", ".img", ".jp2", ".gpkg"),
 )
 """Endings of elevation files, which may be opened alone, too; in small letters or large ones."""
 

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     import moderngl
 
 PACKAGES = (
-    "moderngl", "glcontext", "glfw", "imgui-bundle", "numpy", "pillow", "pyrr", "rich", "tifffile", "typer",
-    "watchfiles",
+    "moderngl", "glcontext", "glfw", "imgui-bundle", "numpy", "pillow", "pyrr", "rasterio", "rich",
+    "tifffile", "typer", "watchfiles",
 )  # fmt: skip
 _LIMITS = {
     "texture, texels a side": "GL_MAX_TEXTURE_SIZE",

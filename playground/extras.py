@@ -25,7 +25,7 @@ DISTRIBUTION = "terrain-shader-playground"
 EXTRAS = {
     "bench": "the benchmark's peers and plots",
     "docs": "the documentation's site",
-    "gis": "more elevation files, vector data, transformations of coordinates",
+    "gis": "vector data in GeoPackage, Shapefile and other formats",
     "lsp": "diagnostics and completion in your editor",
     "microphone": "sound from a microphone",
     "midi": "MIDI controllers",

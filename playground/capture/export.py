@@ -47,7 +47,6 @@ from playground.capture.values import (
     light_span,
 )
 from playground.capture.web_page import WebPage, page_bytes, prepare_page
-from playground.data.gis import advice, geokeys_of
 from playground.data.grid import fitted
 from playground.data.image_files import encode_samples, naming
 from playground.data.place import Place
@@ -270,14 +269,10 @@ def _write_values(engine: Engine, job: ExportJob) -> Exported:
     files |= dict.fromkeys(sidecars, made.sidecar)
     write_together(files)
     parts = [f"{cols} x {rows}", *made.details, f"{spacing[0]:.5g} x {spacing[1]:.5g} m a texel"]
-    notes = [made.warning]
     place = _place(job)
     if place is not None and place.crs.facts.kind and job.ending in (".tif", ".tiff"):
-        if geokeys_of(place.crs):
-            parts.append(f"in its place, in {place.crs.name or 'the reference system of its file'}")
-        else:
-            notes.append(f"its reference system is left out: it has no EPSG code, and {advice()}")
-    return Exported(job.path, "; ".join(parts), sidecars, tuple(filter(None, notes)))
+        parts.append(f"in its place, in {place.crs.name or 'the reference system of its file'}")
+    return Exported(job.path, "; ".join(parts), sidecars, (made.warning,) if made.warning else ())
 
 
 def _spacing(job: ExportJob, size: tuple[int, int]) -> tuple[float, float]:

@@ -1,12 +1,9 @@
 """Encode a texture as the bytes of a file: heights, colours or other numbers.
 
 What whole numbers mean is written where the format has a place for it (PNG's texts,
-GDAL's scale and offset in TIFF) and in a JSON next to the file where it has none (raw). TIFF carries
-GeoTIFF's tags: where the terrain lies on the Earth, in the reference system of the file that it came from;
+GDAL's scale and offset in TIFF) and in a JSON next to the file where it has none (raw). GDAL writes TIFF,
+with the place of the terrain on the Earth, in the reference system of the file that it came from;
 else texels are points, the terrain's south-west corner is (0, 0), metres.
-
-Sources: OGC GeoTIFF 1.1 (OGC 19-008r4, 2019) for tags and keys; GDAL's raster driver
-documentation for tag 42112.
 """
 
 from __future__ import annotations
@@ -14,7 +11,7 @@ from __future__ import annotations
 import io
 import json
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,33 +19,14 @@ from numpy.typing import NDArray
 from playground._version import __version__
 from playground.capture.exr import encode_exr
 from playground.capture.extensions import COLOUR, HEIGHT, whole_numbers
-from playground.data.geokeys import (
-    CITATION,
-    DIRECTORY,
-    DOUBLES,
-    IS_AREA,
-    IS_POINT,
-    LENGTH,
-    MODEL,
-    OWN,
-    PROJECTED,
-    RASTER,
-    VERTICAL,
-    VERTICAL_UNIT,
-    WORDS,
-    Key,
-    code,
-    read_facts,
-    with_keys,
-    write_keys,
-)
-from playground.data.gis import geokeys_of
 from playground.data.image_files import JPEG_QUALITY, encode_as, encode_samples
-from playground.data.place import Crs, Place
-from playground.data.units import METRE
+from playground.data.place import Crs, Place, gdal, gdal_crs, horizontal
 from playground.data.values import clamped_note
 from playground.errors import DataError
 from playground.shader.parameter import linear_to_srgb
+
+if TYPE_CHECKING:
+    from rasterio.crs import CRS
 
 SOFTWARE = f"terrain shader playground {__version__}"
 
@@ -254,90 +232,58 @@ def _description(layer: Layer, numbers: str, span: tuple[float, float] | None = 
         description |= {"offset": span[0], "scale": scale_of(span, layer.bits)}
     if layer.place is not None:
         description |= {
-            "crs": layer.place.crs.name or layer.place.crs.wkt,
+            "crs": layer.place.crs.name or layer.place.crs.text,
             "bounds": list(layer.place.bounds),
         }
     return (json.dumps(description, indent=2) + "\n").encode()
 
 
-_PIXEL_SCALE, _TIE_POINT = 33550, 33922
-_GDAL_METADATA, _NO_DATA = 42112, 42113
-_ASCII, _SHORT, _DOUBLE = 2, 3, 12
-
 _OWN_CRS = Crs(
-    (
-        (MODEL, 1),
-        (RASTER, IS_POINT),
-        (CITATION, "metres from the south-west corner of the terrain"),
-        (PROJECTED, OWN),
-        (LENGTH, METRE),
-        (VERTICAL_UNIT, METRE),
-    )
+    'LOCAL_CS["metres from the south-west corner of the terrain",UNIT["metre",1],'
+    'AXIS["Easting",EAST],AXIS["Northing",NORTH]]'
 )
 
 
-def _place_tags(layer: Layer) -> list[tuple[int, int, int, Any, bool]]:
-    """Return GeoTIFF's tags of where a layer lies: its outermost texels are on the terrain's edges."""
-    rows, cols = layer.values.shape[:2]
-    (dx, dy), size = layer.spacing, (cols, rows)
-    place = layer.place or Place(0.0, (rows - 1) * dy, (dx, dy), size, _OWN_CRS)
-    dx, dy = place.step_at(size)
-    known = geokeys_of(place.crs)
-    keys = dict(known)
-    west, north = place.west, place.north
-    if code(keys, RASTER, IS_AREA) == IS_AREA:  # the tie point is the corner of the texel's area
-        west, north = west - 0.5 * dx, north + 0.5 * dy
-    directory, reals, text = write_keys(with_keys(known, _vertical(layer, keys)))
-    tags: list[tuple[int, int, int, Any, bool]] = [
-        (_PIXEL_SCALE, _DOUBLE, 3, (dx, dy, 0.0), True),
-        (_TIE_POINT, _DOUBLE, 6, (0.0, 0.0, 0.0, west, north, 0.0), True),
-    ]
-    if keys:
-        tags.append((DIRECTORY, _SHORT, len(directory), directory, True))
-    if reals:
-        tags.append((DOUBLES, _DOUBLE, len(reals), reals, True))
-    if text:
-        tags.append((WORDS, _ASCII, 0, text, True))
-    return tags
-
-
-def _vertical(layer: Layer, keys: dict[int, Key]) -> dict[int, Key | None]:
-    """Return which keys to change: heights are written in metres, in whatever unit they came."""
-    if layer.kind != HEIGHT:
-        return {VERTICAL_UNIT: None} if layer.place is None else {}
-    if read_facts(tuple(keys.items())).height_unit in (0.0, 1.0):
-        return {VERTICAL_UNIT: METRE} if VERTICAL_UNIT in keys else {}
-    # Without a vertical system they are metres; a unit by itself would be taken for a system of its own.
-    return dict.fromkeys(range(VERTICAL, VERTICAL_UNIT + 1))
-
-
 def _tiff(samples: NDArray[Any], layer: Layer, span: tuple[float, float] | None = None) -> bytes:
-    import tifffile
+    """Return a GeoTIFF: its outermost texels' middles are on the terrain's edges."""
+    import rasterio
+    from rasterio.transform import Affine
 
-    tags = _place_tags(layer)
+    rows, cols = samples.shape[:2]
+    bands = np.moveaxis(samples.reshape(rows, cols, -1), -1, 0)
+    own = Place(0.0, (rows - 1) * layer.spacing[1], layer.spacing, (cols, rows), _OWN_CRS, is_point=True)
+    place = layer.place or own
+    dx, dy = place.step_at((cols, rows))
+    facts: dict[str, Any] = {"count": len(bands), "dtype": samples.dtype, "crs": _crs(layer, place.crs)}
     if samples.dtype.kind == "f" and np.isnan(samples).any():
-        tags.append((_NO_DATA, _ASCII, 0, "nan", True))
-    items: list[tuple[str, str, float | str]] = []
-    if span is not None:
-        items += [("OFFSET", "offset", span[0]), ("SCALE", "scale", scale_of(span, layer.bits))]
-    if layer.kind == HEIGHT:
-        items.append(("UNITTYPE", "unittype", "m"))
-    if items:
-        metadata = "".join(
-            f'<Item name="{name}" sample="{channel}" role="{role}">{value}</Item>'
-            for channel in range(samples[0, 0].size)
-            for name, role, value in items
-        )
-        tags.append((_GDAL_METADATA, _ASCII, 0, f"<GDALMetadata>{metadata}</GDALMetadata>", True))
-    stream = io.BytesIO()
+        facts["nodata"] = np.nan
     colours = layer.kind == COLOUR and samples.ndim == 3
-    tifffile.imwrite(
-        stream,
-        np.ascontiguousarray(samples),
-        photometric="rgb" if colours else "minisblack",
-        planarconfig="contig" if samples.ndim == 3 else None,
-        metadata=None,
-        software=SOFTWARE,
-        extratags=tags,
-    )
-    return stream.getvalue()
+    with gdal(), rasterio.MemoryFile() as memory:
+        with memory.open(
+            driver="GTiff",
+            width=cols,
+            height=rows,
+            transform=Affine(dx, 0.0, place.west - 0.5 * dx, 0.0, -dy, place.north + 0.5 * dy),
+            photometric="RGB" if colours else "MINISBLACK",
+            interleave="pixel",
+            BIGTIFF="IF_SAFER",
+            **facts,
+        ) as raster:
+            raster.update_tags(AREA_OR_POINT="Point" if place.is_point else "Area", TIFFTAG_SOFTWARE=SOFTWARE)
+            if span is not None:
+                raster.scales = (scale_of(span, layer.bits),) * len(bands)
+                raster.offsets = (span[0],) * len(bands)
+            if layer.kind == HEIGHT:
+                raster.units = ("m",) * len(bands)
+            raster.write(bands)
+        data: bytes = memory.read()
+        return data
+
+
+def _crs(layer: Layer, crs: Crs) -> CRS | None:
+    """Return the reference system to write, without its heights where these are not metres."""
+    facts = crs.facts
+    if not facts.kind:
+        return None
+    keeps_heights = layer.kind != HEIGHT or facts.height_unit in (0.0, 1.0)
+    return gdal_crs(crs.text) if keeps_heights else horizontal(crs.text)

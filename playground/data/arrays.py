@@ -1,4 +1,4 @@
-"""Read elevations from NumPy's `.npy` and `.npz` files, by their headers first.
+"""Read elevations from NumPy's `.npy` and `.npz` files, and from bare 16-bit numbers (`.r16`, `.raw`).
 
 Nothing is unpickled, and no memory is taken before a header is judged.
 """
@@ -14,12 +14,9 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.data.bounds import refuse_bomb
-from playground.data.geodesy import spacing_from_degrees
-from playground.data.geokeys import GEOGRAPHIC, IS_POINT, MODEL, RASTER
-from playground.data.grid import Found, check_grid, in_memory
-from playground.data.place import Crs, Place
-from playground.data.rows import FileRows
+from playground.data.bounds import MAX_TEXELS, refuse_bomb
+from playground.data.grid import SIXTEEN_BIT, FileRows, Found, check_grid, in_memory
+from playground.data.place import WGS_84, Crs, Place, spacing_from_degrees
 from playground.errors import DataError
 from playground.regular_file import open_regular
 
@@ -148,7 +145,7 @@ def read_npz(path: Path) -> Found:
     found = _placed(path, values, (dx, dy), ((x0, x1), (y0, y1)), units, crs)
     if not crs and (dx is not None or dy is not None):
         of_heights = of_heights or "m"  # as of its cells
-    return replace(found.in_unit(Crs(wkt=crs), of_heights), south_first=first == "south" if first else None)
+    return replace(found.in_unit(Crs(crs), of_heights), south_first=first == "south" if first else None)
 
 
 def _placed(
@@ -169,8 +166,8 @@ def _placed(
     if crs:
         size, found = (values.shape[1], values.shape[0]), None
         if x0 is not None and x1 is not None and y0 is not None and y1 is not None:
-            found = _bounded((x0, x1), (y0, y1), (dx, dy), size, Crs(wkt=crs))
-        spacing, notes = (found or Place(math.nan, math.nan, (dx, dy), size, Crs(wkt=crs))).spacing
+            found = _bounded((x0, x1), (y0, y1), (dx, dy), size, Crs(crs))
+        spacing, notes = (found or Place(math.nan, math.nan, (dx, dy), size, Crs(crs))).spacing
         return in_memory(values, spacing, place=found, notes=notes)
     if x0 is None or x1 is None or y0 is None or y1 is None:
         in_degrees = False
@@ -191,15 +188,8 @@ def _placed(
     spacing, notes = spacing_from_degrees(dx, dy, (y0 + y1) / 2)
     place = None
     if x0 is not None and x1 is not None:
-        place = _place((x0, x1), (y0, y1), (dx, dy), (values.shape[1], values.shape[0]))
+        place = _bounded((x0, x1), (y0, y1), (dx, dy), (values.shape[1], values.shape[0]), WGS_84)
     return in_memory(values, spacing, place=place, notes=notes)
-
-
-def _place(
-    x: tuple[float, float], y: tuple[float, float], step: tuple[float, float], size: tuple[int, int]
-) -> Place | None:
-    """Return where the nodes lie, on WGS 84; None where the bounds are neither areas' nor nodes'."""
-    return _bounded(x, y, step, size, Crs(((MODEL, 2), (RASTER, IS_POINT), (GEOGRAPHIC, 4326))))
 
 
 def _bounded(
@@ -216,4 +206,47 @@ def _bounded(
         if min(abs(more), abs(more - 1.0)) > 0.01:
             return None
         inside.append(0.5 * of * round(more))
-    return Place(min(x) + inside[0], max(y) - inside[1], step, size, crs)
+    is_point = crs == WGS_84  # as where nothing but degrees is said
+    return Place(min(x) + inside[0], max(y) - inside[1], step, size, crs, is_point)
+
+
+def read_raw(path: Path, size: tuple[int, int] | None) -> Found:
+    """Read unsigned little-endian numbers; the grid is square unless ``size`` (nx, ny) says otherwise."""
+    dtype = np.dtype("<u2")
+    length = path.stat().st_size
+    count = length // 2
+    if size is None:
+        if length % 2:
+            raise DataError(f"holds {length} bytes, an odd number; expected two for each height", file=path)
+        side = math.isqrt(count)
+        if side * side != count:
+            raise DataError(_not_square(length), file=path)
+        size = side, side
+    nx, ny = (int(n) for n in size)
+    check_grid((ny, nx), dtype, path)
+    if 2 * nx * ny != length:
+        what = f"holds {length} bytes; {nx} x {ny} heights of 16 bits need {2 * nx * ny}{_fitting(length)}"
+        raise DataError(what, file=path)
+    return Found(FileRows(path, (ny, nx), dtype), in_metres=False, code_range=SIXTEEN_BIT)
+
+
+def _not_square(length: int) -> str:
+    count = length // 2
+    side = math.isqrt(count)
+    message = f"holds {count} heights of 16 bits, which is no square ({side} x {side} would be {side * side}"
+    message += f", {side + 1} x {side + 1} {(side + 1) ** 2})"
+    for bits in (8, 32):
+        other = math.isqrt(length * 8 // bits)
+        if other * other * bits == length * 8:
+            message += f"; it is {other} x {other} of {bits} bits, which is not read here"
+    return message + (_fitting(length) or "; raw_size must give its width and height")
+
+
+def _fitting(length: int) -> str:
+    # The two ways of laying the numbers out that are nearest to a square.
+    count = length // 2
+    side = math.isqrt(min(count, MAX_TEXELS))
+    widths = [n for n in range(side, 1, -1) if count % n == 0 and count // n <= 4 * n][:2]
+    if length % 2 or not widths:
+        return ""
+    return "; raw_size could be " + " or ".join(f"{count // n} x {n}" for n in widths)

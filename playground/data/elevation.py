@@ -4,9 +4,9 @@ Heights come out as float32 with row 0 in the south
 and NaN where the file has no data. Heights are on nodes: n texels in a row
 are n - 1 spacings long, so the corners of the terrain are the corners of the grid.
 
-Each format has a reader of its own (`geotiff`, `esri`, `arrays`, `raw`, `gis`); this chooses one and
-finishes what it hands over: whole, or at another size without ever having all of it in memory. Raw
-numbers (0..65535) stay raw: which heights they mean is the sketch's choice.
+GDAL reads what is georeferenced (`gis`), and `arrays` reads arrays; this finishes what they hand over:
+whole, or at another size without ever having all of it in memory. Raw numbers (0..65535) stay raw: which
+heights they mean is the sketch's choice.
 """
 
 from __future__ import annotations
@@ -25,14 +25,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.allowed_files import ELEVATIONS
-from playground.data.arrays import read_npy, read_npz
-from playground.data.esri import read_asc, read_bil, read_flt
-from playground.data.geotiff import read_tiff
-from playground.data.gis import read_netcdf
+from playground.data.arrays import read_npy, read_npz, read_raw
+from playground.data.gis import read_raster
 from playground.data.grid import Found, Heights, Packing, check_grid, from_channels
 from playground.data.image_files import checked_file, read_samples, read_texts, reason
 from playground.data.place import Place
-from playground.data.raw import read_hgt, read_raw
 from playground.data.resample import decimate
 from playground.errors import DataError, nearest
 from playground.paths import shown
@@ -221,26 +218,20 @@ def open_elevation(
     * `.png`: 8 or 16 bits, grey, raw numbers, or metres if its texts `scale_m` and `offset_m`
       say which, as `playground export` writes them, with the spacing in `spacing_m`. Fully
       transparent texels have no data.
-    * `.tif`, `.tiff`: integers or floats. Tags of GeoTIFF give the spacing (degrees
-      become metres at the middle latitude), the height's unit and what is no data. 8 or
-      16 bits without a sign, a place or a unit are a picture's raw numbers.
     * `.npy`; `.npz`: the array `elevation`, or the only one of two dimensions, in metres
       unless a string `height_units` names another unit; scalars `dx` and `dy` give the
       spacing. They are degrees if `xmin`, `xmax`, `ymin`, `ymax` are there, look like degrees
       (|x| <= 360, |y| <= 90, spacing below 0.05) and no string `units` says "m"; else metres.
       A text `crs`, the well-known text of a reference system, says what they are instead;
       `first_row` is "north" or "south".
-    * `.asc`, and `.bil` and `.flt` with an `.hdr`: ESRI's grids. A `.prj` next to them says
-      whether their cells are metres or degrees, and the unit of heights in a compound system.
-    * `.nc`: NetCDF, read by GDAL in the extra `gis`.
     * `.r16`, `.raw`: unsigned 16-bit little-endian numbers, square unless `raw_size`
       (nx, ny) says otherwise.
-    * `.hgt`: SRTM, signed 16-bit big-endian metres over one degree; the latitude is
-      in the name, as `N36W085.hgt`.
+    * `.tif`, `.tiff`, `.vrt`, `.img`, `.jp2`, `.gpkg`, `.nc`, `.hgt`, `.asc`, and `.bil` and `.flt` with an
+      `.hdr`: what GDAL reads, with its place, unit, scale and offset, mask and no data (degrees become metres
+      at the middle latitude). 8 or 16 bits without a sign, a place or a unit are a picture's raw numbers.
 
-    The `.aux.xml` that GDAL writes next to TIFF and ESRI's grids may have a unit, a scale and an
-    offset of heights, and a reference system where the file has none. `assumed` says what nothing
-    tells of the unit.
+    The `.aux.xml` that GDAL writes next to its files may have a unit, a scale and an offset of heights, and
+    a reference system where the file has none. `assumed` says what nothing tells of the unit.
 
     `packing="rgb"` reads R*65536 + G*256 + B from three 8-bit channels of a PNG or
     TIFF. `first_row` says which edge the file begins with: "north" for everything
@@ -275,23 +266,16 @@ def open_elevation(
         if ending == ".png":
             found = from_channels(read_samples(path), packing, path)
             found = _scaled(found, read_texts(path)) if packing == "grey" else found
-        elif ending in (".tif", ".tiff"):
-            found = read_tiff(path, packing)
         elif ending == ".npy":
             found = read_npy(path)
         elif ending == ".npz":
             found = read_npz(path)
         elif ending in (".r16", ".raw"):
             found = read_raw(path, raw_size)
-        elif ending == ".hgt":
-            found = read_hgt(path, raw_size)
         else:
-            found = _READERS[ending](path)
+            found = read_raster(path, packing)
     check_grid(found.rows.shape, found.rows.dtype, path, in_turn=True)
     return ElevationFile(path, found, found.south_first or first_row == "south")
-
-
-_READERS = {".asc": read_asc, ".bil": read_bil, ".flt": read_flt, ".nc": read_netcdf}
 
 
 def _scaled(found: Found, text: Mapping[str, str]) -> Found:

@@ -1,225 +1,352 @@
-"""Read rasters by GDAL, where the extra ``gis`` is installed (rasterio): what the readers here cannot.
+"""Read rasters by GDAL (rasterio), with its units, no data, masks, scale and offset, and overviews.
 
-Only the drivers that are named are used: others may read further files or the network.
+Each ending has one driver: others may take the same file for a list of further files, or of addresses. What
+a raster names by itself is looked at first: the files next to it, and the sources of a VRT. GDAL reads rows
+in turn, so that a large raster is never in memory as a whole; it reprojects nothing.
+
+Source: GDAL's raster driver documentation; USGS (2015), "SRTM data format" for the name of a tile.
 """
 
 from __future__ import annotations
 
-import io
+import math
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
-from functools import lru_cache
-from importlib.util import find_spec
+from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.data.geokeys import DIRECTORY, DOUBLES, WORDS, Keys, keys_of_code, read_keys, write_keys
-from playground.data.grid import Found, check_grid
+from playground.allowed_files import (
+    AUXILIARY,
+    MASK,
+    OVERVIEWS,
+    all_sources,
+    sidecar_places,
+    sidecars,
+    sources_of,
+    vrt_document,
+)
+from playground.data.bounds import ALWAYS_FINE, refuse_bomb
+from playground.data.grid import EIGHT_BIT, PACKED, SIXTEEN_BIT, Band, Found, Packing, check_grid
 from playground.data.image_files import reason
-from playground.data.place import Crs, Place, turned
-from playground.data.rows import Band
+from playground.data.place import WGS_84, Crs, Place, gdal, gdal_crs
 from playground.errors import DataError
-from playground.extras import install_command
+from playground.regular_file import irregularity, open_regular, read_regular
 
 if TYPE_CHECKING:
     import rasterio.io
 
-
-def advice(verb: str = "reads") -> str:
-    """Return how to install ``gis``, which reads, or transforms, what is not read here."""
-    return f"the extra gis {verb} it: {install_command('gis')}"
-
-
-_NETCDF = "netCDF"
-_USUAL = ("elevation", "z", "height", "altitude", "topo", "dem", "band1", "band_data")
-_WGS_84 = (
-    'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],'
-    'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433],AUTHORITY["EPSG","4326"]]'
+_DRIVERS = {
+    ".tif": "GTiff",
+    ".tiff": "GTiff",
+    ".asc": "AAIGrid",
+    ".bil": "EHdr",
+    ".flt": "EHdr",
+    ".gpkg": "GPKG",
+    ".hgt": "SRTMHGT",
+    ".img": "HFA",
+    ".jp2": "JP2OpenJPEG",
+    ".nc": "netCDF",
+    ".vrt": "VRT",
+}
+_EXPECTED = {
+    ".tif": "not a TIFF file, although its name says so",
+    ".tiff": "not a TIFF file, although its name says so",
+    ".asc": "is no ESRI grid; expected a header of ncols, nrows, xllcorner, yllcorner and cellsize",
+    ".gpkg": "holds no raster; vector data go to a pass that lays them on terrain",
+    ".hgt": "is no SRTM tile; expected 1201 x 1201 or 3601 x 3601 heights of 16 bits, and a name that says "
+    "its corner, as N36W085.hgt",
+}
+_ESRI = (".asc", ".bil", ".flt")
+_HEIGHTS = ("elevation", "z", "height", "altitude", "topo", "dem", "band1", "band_data")  # names of variables
+_BAND = 2**22  # [texels] that are read at a time
+_ESRI_NO_DATA = -9999.0  # where an .asc or .flt does not say
+_SOURCES = re.compile(rb"II[*+]\0|MM\0[*+]|EHFA_HEADER_TAG\0|\0\0\0\x0cjP  \r\n\x87\n")
+_VRT_TAGS = frozenset(
+    "VRTDataset SRS GeoTransform Metadata MDI VRTRasterBand ColorInterp ColorTable Entry CategoryNames "
+    "Category Description NoDataValue HideNoDataValue UnitType Offset Scale Histograms HistItem HistMin "
+    "HistMax BucketCount IncludeOutOfRange Approximate HistCounts SimpleSource ComplexSource AveragedSource "
+    "NoDataFromMaskSource KernelFilteredSource Kernel Size Coefs SourceFilename SourceBand SourceProperties "
+    "SrcRect DstRect NODATA UseMaskBand ScaleOffset ScaleRatio LUT Exponent SrcMin SrcMax DstMin DstMax "
+    "ColorTableComponent OverviewList MaskBand BlockXSize BlockYSize GDALWarpOptions WarpMemoryLimit "
+    "ResampleAlg WorkingDataType Option SourceDataset Transformer ApproxTransformer MaxError BaseTransformer "
+    "GenImgProjTransformer SrcGeoTransform SrcInvGeoTransform DstGeoTransform DstInvGeoTransform "
+    "ReprojectTransformer ReprojectionTransformer SourceSRS TargetSRS SourceCRS TargetCRS Options BandList "
+    "BandMapping SrcNoDataReal SrcNoDataImag DstNoDataReal DstNoDataImag SrcAlphaBand DstAlphaBand".split()
 )
-_BAND = 2**22  # [texels]
-
-
-def has_rasters() -> bool:
-    """Return whether rasterio is installed."""
-    return find_spec("rasterio") is not None
-
-
-def _open(path: Path | str, driver: str, overview: int | None = None) -> rasterio.io.DatasetReader:
-    import rasterio
-
-    options = {} if overview is None else {"OVERVIEW_LEVEL": overview}
-    return rasterio.open(path, driver=driver, **options)
+_VRT_CLASSES = (None, "VRTWarpedDataset", "VRTSourcedRasterBand", "VRTWarpedRasterBand")
 
 
 @dataclass(frozen=True, eq=False)
 class GdalRows:
-    """The rows of a raster's first band, or of one of its overviews."""
+    """The rows of a raster's first band, or of one of its overviews; NaN where its mask leaves out."""
 
-    path: Path | str  # or GDAL's name of a part of a file
+    path: Path  # of the file, for messages
+    name: str  # GDAL's, of the file or of a part of it
     driver: str
     shape: tuple[int, int]
     dtype: np.dtype[Any]
-    high: int  # rows of a block
+    block_rows: int
+    packed: bool = False  # heights in three bands
+    coloured: bool = False  # whether bands may differ, which is no picture of heights
+    masked: bool = False
     overview: int | None = None
 
     def bands(self) -> Iterator[Band]:
         """Yield all rows, at least a row of blocks at a time."""
         from rasterio.windows import Window
 
-        with _explained(self.path), _open(self.path, self.driver, self.overview) as raster:
-            rows, cols = self.shape
-            count = max(_BAND // (cols * self.high), 1) * self.high
+        rows, cols = self.shape
+        count = max(_BAND // (cols * self.block_rows), 1) * self.block_rows
+        with _explained(self.path):
+            raster = _open(self.name, self.driver, self.overview)
+        with raster:
             for start in range(0, rows, count):
                 window = Window(0, start, cols, min(count, rows - start))
-                yield start, raster.read(1, window=window)
+                with _explained(self.path):
+                    values = self._values(raster, window)
+                yield start, values
+
+    def _values(self, raster: rasterio.io.DatasetReader, window: Any) -> NDArray[Any]:
+        samples = raster.read((1, 2, 3) if self.packed or self.coloured else (1,), window=window)
+        values: NDArray[Any] = samples[0]
+        if self.packed:
+            weights = np.array([65536.0, 256.0, 1.0], np.float32)
+            values = np.tensordot(weights, samples, 1)  # exact: below 2**24
+        elif self.coloured and not (samples[1:] == values).all():
+            message = "is a picture in colour; expected grey, or packing 'rgb' for heights in three channels"
+            raise DataError(message, file=self.path)
+        if self.masked:
+            values = values.astype(self.dtype)
+            values[raster.read_masks(1, window=window) == 0] = np.nan
+        return values
 
 
-def raster_rows(path: Path | str, driver: str, overview: int | None = None) -> GdalRows:
-    """Return the rows of a raster's first band, or of one of its overviews, by its number from 0."""
-    with _explained(path), _open(path, driver, overview) as raster:
-        dtype, high = np.dtype(raster.dtypes[0]), raster.block_shapes[0][0]
-        return GdalRows(path, driver, raster.shape, dtype, high, overview)
+def read_raster(path: Path, packing: Packing = "grey") -> Found:
+    """Read a raster's header: its rows, their meaning and their place.
 
-
-def overview_rows(path: Path, driver: str) -> tuple[GdalRows, ...]:
-    """Return the overviews of a raster's first band, finest first."""
-    with _explained(path), _open(path, driver) as raster:
-        count = len(raster.overviews(1))
-    return tuple(raster_rows(path, driver, number) for number in range(count))
-
-
-@contextmanager
-def _explained(path: Path | str) -> Iterator[None]:
-    """Raise what rasterio raises as a ``DataError``."""
-    from rasterio.errors import RasterioError
-
-    try:
-        yield
-    except RasterioError as error:
-        message = f"cannot be read by GDAL: {reason(Exception(str(error.__cause__ or error)))}"
-        raise DataError(message, file=path) from error
-
-
-def read_netcdf(path: Path) -> Found:
-    """Read the heights of a NetCDF file by GDAL; raise ``DataError`` naming the extra where it is missing."""
-    if not has_rasters():
-        raise DataError(f"NetCDF is read by GDAL; {advice()}", file=path)
+    Raises:
+        DataError: what GDAL does not take for the format that its ending says, a rotated grid, a raster that
+            is made of files which may not be read, or of no heights.
+    """
+    ending = path.suffix.lower()
+    _check_neighbours(path)
     name = _grid_in(path)
-    with _explained(path), _open(name, _NETCDF) as raster:
-        check_grid(raster.shape, np.dtype(raster.dtypes[0]), path, in_turn=True)
-        notes = (f"the first of its {raster.count} bands was read",) if raster.count > 1 else ()
-        place, more = _place(raster, path)
-        scale, offset, no_data = raster.scales[0], raster.offsets[0], raster.nodata
-        unit = raster.units[0] or ""
-    rows = raster_rows(name, _NETCDF)
-    notes = (*more, *notes)
+    with _explained(path), _open(name, _DRIVERS[ending]) as raster:
+        shape, dtype, bands = raster.shape, np.dtype(raster.dtypes[0]), raster.count
+        check_grid(shape, dtype, path, in_turn=True)
+        _check_size(raster, path)
+        crs = Crs(raster.crs.to_wkt(version="WKT2_2019") if raster.crs else "")
+        unit, scale, offset = raster.units[0] or "", raster.scales[0], raster.offsets[0]
+        no_data, overviews = raster.nodata, len(raster.overviews(1))
+        pictures = len(raster.subdatasets) if _DRIVERS[ending] == "GTiff" else 0
+        masked = any(flag.name == "per_dataset" for flag in raster.mask_flag_enums[0])
+        place, south_first, notes = _place(raster, crs, path)
+        block_rows = raster.block_shapes[0][0]
+    if not (math.isfinite(scale) and math.isfinite(offset) and scale):
+        raise DataError("says that its numbers have a scale or an offset that is no number", file=path)
+    if packing == "rgb" and (bands < 3 or dtype != np.uint8):
+        what = f"packed heights need three channels of 8 bits; found {bands} of {8 * dtype.itemsize}"
+        raise DataError(what, file=path)
+    code_range = {"u1": EIGHT_BIT, "u2": SIXTEEN_BIT}.get(dtype.str[1:])
+    has_meaning = place is not None or crs.facts.kind or unit or (scale, offset) != (1.0, 0.0)
+    in_metres = code_range is None or bool(packing == "grey" and has_meaning)
+    if packing == "rgb":
+        code_range, dtype = PACKED, np.dtype(np.float32)
+    elif masked:
+        dtype = np.promote_types(dtype, np.float32)
+    coloured = packing == "grey" and code_range is not None and bands >= 3
+    rows = GdalRows(
+        path, name, _DRIVERS[ending], shape, dtype, block_rows, packing == "rgb", coloured, masked
+    )
+    if pictures > 1:
+        notes += (f"the first of {pictures} pictures was read",)
+    elif bands > 1 and code_range is None:
+        notes += (f"the first of its {bands} bands was read",)
+    if place is not None and ending in _ESRI and not crs.text:
+        prj = path.with_suffix(".prj").name
+        notes = (f"there is no {prj} next to it, so its cells may be degrees or metres",)
     spacing = None
     if place is not None:
         spacing, more = place.spacing
-        notes = (*more, *notes)
+        notes = notes if ending in _ESRI and not crs.text else (*more, *notes)
     found = Found(
         rows,
         spacing,
-        no_data=no_data,
-        scale=scale,
-        offset=offset,
+        in_metres=in_metres,
+        code_range=None if in_metres else code_range,
+        no_data=_ESRI_NO_DATA if no_data is None and ending in (".asc", ".flt") else no_data,
+        scale=scale if in_metres else 1.0,
+        offset=offset if in_metres else 0.0,
         place=place,
-        south_first=None if place is None else False,
+        south_first=south_first,
+        overviews=tuple(_overview(rows, number) for number in range(overviews)),
         notes=notes,
     )
-    return found.in_unit(Crs() if place is None else place.crs, unit)
+    return found.in_unit(crs if place is None else place.crs, unit) if in_metres else found
+
+
+def _open(name: str, driver: str, overview: int | None = None) -> rasterio.io.DatasetReader:
+    import rasterio
+
+    options: dict[str, Any] = {} if overview is None else {"OVERVIEW_LEVEL": overview}
+    if driver == "GPKG":
+        options |= {"IMMUTABLE": "YES"}  # SQLite puts nothing next to it
+    return rasterio.open(name, driver=driver, **options)
+
+
+@contextmanager
+def _explained(path: Path) -> Iterator[None]:
+    """Let GDAL work; raise what rasterio raises as a ``DataError``."""
+    from rasterio.errors import RasterioError
+
+    try:
+        with gdal():
+            yield
+    except RasterioError as error:
+        why = reason(Exception(str(error.__cause__ or error)))
+        ending = path.suffix.lower()
+        if "not recognized" in why:
+            usual = f"is no {ending} file to GDAL's driver {_DRIVERS[ending]}, although its name says so"
+            why = _EXPECTED.get(ending, usual)
+        else:
+            why = f"the file is damaged or cut short: {why}"
+        raise DataError(why, file=path) from error
+
+
+def _overview(rows: GdalRows, number: int) -> GdalRows:
+    """Return the rows of an overview, by its number from 0."""
+    with _explained(rows.path), _open(rows.name, rows.driver, number) as raster:
+        return replace(rows, shape=raster.shape, block_rows=raster.block_shapes[0][0], overview=number)
 
 
 def _grid_in(path: Path) -> str:
-    """Return what GDAL calls the variable that holds heights: the one of a usual name, or the only grid."""
-    with _explained(path), _open(path, _NETCDF) as raster:
+    """Return what GDAL calls the raster of heights: of several the one of a usual name, or the only one."""
+    ending = path.suffix.lower()
+    name = str(path.resolve() if ending == ".vrt" else path.absolute())  # GDAL follows the link of a VRT
+    if ending not in (".nc", ".gpkg"):
+        return name
+    with _explained(path), _open(name, _DRIVERS[ending]) as raster:
         if raster.count:
-            return str(path)
-        names: dict[str, str] = {name.rpartition(":")[2].lower(): name for name in raster.subdatasets}
-    usual = [names[name] for name in _USUAL if name in names]
+            return name
+        names: dict[str, str] = {part.rpartition(":")[2].lower(): part for part in raster.subdatasets}
+    usual = [names[name] for name in _HEIGHTS if name in names]
     if usual or len(names) == 1:
         return [*usual, *names.values()][0]
     listed = ", ".join(names) or "nothing"
-    raise DataError(f"holds {listed}; expected one grid, or one called {' or '.join(_USUAL[:2])}", file=path)
+    names_of_heights = " or ".join(_HEIGHTS[:2])
+    raise DataError(f"holds {listed}; expected one grid, or one called {names_of_heights}", file=path)
 
 
-def _place(raster: rasterio.io.DatasetReader, path: Path) -> tuple[Place | None, tuple[str, ...]]:
-    """Return where the nodes lie, None where it is not said, and notes; GDAL gives the northern row first."""
+def _place(
+    raster: rasterio.io.DatasetReader, crs: Crs, path: Path
+) -> tuple[Place | None, bool | None, tuple[str, ...]]:
+    """Return where the nodes lie, whether the first row is the south's, both None if unknown, and notes."""
     at = raster.transform
     if at.is_identity:
-        return None, ("it does not say where its texels lie",)
-    if at.b or at.d or at.a < 0.0 or at.e > 0.0:
+        return None, None, ("it does not say where its texels lie",) if raster.driver == "netCDF" else ()
+    if at.b or at.d or at.a < 0.0:
         raise turned(path, at.a, at.d)
-    wkt: str = raster.crs.to_wkt() if raster.crs else ""
+    if not (0.0 < at.a < math.inf and 0.0 < abs(at.e) < math.inf):
+        raise DataError(f"says that a texel is {at.a} x {abs(at.e)}; expected lengths above zero", file=path)
     notes: tuple[str, ...] = ()
     units = [str(text) for name, text in raster.tags().items() if name.endswith("#units")]
-    if not wkt and any(text.startswith("degree") for text in units):
-        wkt, notes = _WGS_84, ("its degrees are of no named system; WGS 84 is assumed",)
-    size = raster.width, raster.height
-    return Place(at.c + 0.5 * at.a, at.f + 0.5 * at.e, (at.a, -at.e), size, Crs(wkt=wkt)), notes
+    if not crs.text and any(text.startswith("degree") for text in units):
+        crs, notes = WGS_84, ("its degrees are of no named system; WGS 84 is assumed",)
+    size, south_first = (raster.width, raster.height), at.e > 0.0
+    north = at.f + (size[1] - 0.5 if south_first else 0.5) * at.e
+    is_point = raster.tags().get("AREA_OR_POINT") == "Point"
+    place = Place(at.c + 0.5 * at.a, north, (at.a, abs(at.e)), size, crs, is_point)
+    return place, south_first, notes
 
 
-def geokeys_of(crs: Crs) -> Keys:
-    """Return GeoTIFF's keys for a reference system; none where nothing here knows them."""
-    if crs.keys or not crs.facts.kind:
-        return crs.keys
-    if crs.facts.epsg:
-        return keys_of_code(crs.facts)
-    return _keys_of_wkt(crs.wkt) if has_rasters() else ()
+def turned(path: Path, east: float, north: float) -> DataError:
+    """Return the error of a grid whose rows do not go east, but so far east and north a texel."""
+    angle = abs(math.degrees(math.atan2(north, east)))
+    message = f"its rows go {angle:.4g} degrees off east; expected a grid that is not rotated"
+    return DataError(f"{message}, as gdalwarp makes of it", file=path)
 
 
-@lru_cache(maxsize=8)
-def _keys_of_wkt(wkt: str) -> Keys:
-    """Return the keys that GDAL writes for a text."""
-    import rasterio
-    import tifffile
-    from rasterio.crs import CRS
-    from rasterio.errors import CRSError
-    from rasterio.transform import Affine
-
-    try:
-        crs = CRS.from_wkt(wkt)
-    except CRSError:
-        return ()
-    facts = {"driver": "GTiff", "width": 1, "height": 1, "count": 1, "dtype": "uint8"}
-    with rasterio.MemoryFile() as memory:
-        with memory.open(**facts, crs=crs, transform=Affine(1.0, 0.0, 0.0, 0.0, -1.0, 1.0)) as raster:
-            raster.write(np.zeros((1, 1, 1), np.uint8))
-        with tifffile.TiffFile(io.BytesIO(memory.read())) as tif:
-            tags = tif.pages.first.tags
-            return read_keys(*(tags.valueof(number) for number in (DIRECTORY, DOUBLES, WORDS)))
+# ── what a stranger's file may ask for ───────────────────────────────────────
 
 
-def name_for_gdal(crs: Crs) -> str:
-    """Return a reference system as GDAL takes it: a code or a text; "" where nothing here knows one."""
-    if crs.name or crs.wkt or not crs.keys or not has_rasters():
-        return crs.name or crs.wkt
-    return _wkt_of_keys(crs.keys)
+def _check_size(raster: rasterio.io.DatasetReader, path: Path) -> None:
+    """Raise ``DataError`` for a raster that has more texels than its files can hold."""
+    unpacked = math.prod(raster.shape) * np.dtype(raster.dtypes[0]).itemsize
+    packed = sum(file.stat().st_size for file in (path, *sidecars(path)))
+    if raster.driver == "EHdr" and unpacked > path.stat().st_size:
+        nx, ny = raster.width, raster.height
+        have, bits = path.stat().st_size, unpacked * 8 // (nx * ny)
+        what = f"holds {have} bytes; {nx} x {ny} numbers of {bits} bits need {unpacked}"
+        raise DataError(f"is cut short: it {what}", file=path)
+    if unpacked > ALWAYS_FINE and not _is_sparse(raster):
+        refuse_bomb(path, unpacked, packed)
 
 
-@lru_cache(maxsize=8)
-def _wkt_of_keys(keys: Keys) -> str:
-    """Return the text that GDAL makes of GeoTIFF's keys."""
-    import rasterio
-    import tifffile
+def _is_sparse(raster: rasterio.io.DatasetReader) -> bool:
+    """Return whether blocks of a TIFF are not stored: they have no data."""
+    (high, wide), (rows, cols) = raster.block_shapes[0], raster.shape
+    blocks = product(range(-(-cols // wide)), range(-(-rows // high)))
+    return raster.driver == "GTiff" and any(
+        raster.get_tag_item(f"BLOCK_OFFSET_{x}_{y}", "TIFF", bidx=1) is None for x, y in blocks
+    )
 
-    directory, reals, text = write_keys(keys)
-    tags: list[tuple[int, str, int, Any, bool]] = [
-        (33550, "d", 3, (1.0, 1.0, 0.0), True),
-        (33922, "d", 6, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), True),
-        (DIRECTORY, "H", len(directory), directory, True),
-    ]
-    tags += [(DOUBLES, "d", len(reals), reals, True)] if reals else []
-    tags += [(WORDS, "s", 0, text, True)] if text else []
-    stream = io.BytesIO()
-    tifffile.imwrite(stream, np.zeros((1, 1), np.uint8), extratags=tags, metadata=None)
-    with rasterio.MemoryFile(stream.getvalue()) as memory, memory.open(driver="GTiff") as raster:
-        found: str = raster.crs.to_wkt() if raster.crs else ""
-        return found
+
+def _check_neighbours(path: Path) -> None:
+    """Raise ``DataError`` where GDAL would be led to what is no file of this raster."""
+    ending = path.suffix.lower()
+    for place in sidecar_places(path):
+        if what := irregularity(place):
+            raise DataError(what, file=place)
+    beside = sidecars(path)
+    if ending in (".bil", ".flt") and not any(file.suffix.lower() == ".hdr" for file in beside):
+        raise DataError(f"needs {path.with_suffix('.hdr').name} next to it, which says its size", file=path)
+    for file in (path, *all_sources(path)) if ending == ".vrt" else ():
+        if file.suffix.lower() == ".vrt":
+            _check_vrt(file)
+        elif _SOURCES.match(read_regular(file, 16)) is None:
+            raise DataError("is a source of a VRT; expected GeoTIFF, ERDAS Imagine or JPEG 2000", file=file)
+    for file in beside:
+        if file.name.lower().endswith(AUXILIARY) and re.search(rb"OVERVIEW_FILE|<Subdataset", _text(file)):
+            raise DataError("names further files, which are not read; gdaladdo makes overviews", file=file)
+        if file.suffix.lower() in (OVERVIEWS, MASK) and _SOURCES.match(read_regular(file, 16)) is None:
+            raise DataError("is no TIFF file, as an overview or a mask is", file=file)
+
+
+def _text(path: Path) -> bytes:
+    with open_regular(path) as handle:
+        return handle.read()
+
+
+def _check_vrt(path: Path) -> None:
+    """Raise ``DataError`` for a VRT of other parts than GDAL's mosaics and warps of files have."""
+    root = vrt_document(path.resolve())
+    if root is None or root.tag != "VRTDataset":
+        raise DataError("is no VRT; expected XML, <VRTDataset>, of 4 MiB at most", file=path)
+    for element in root.iter():
+        domain = element.get("domain", "") if element.tag == "Metadata" else ""
+        kind = element.get("subClass")
+        if element.tag not in _VRT_TAGS or domain not in ("", "IMAGE_STRUCTURE") or kind not in _VRT_CLASSES:
+            what = kind if kind not in _VRT_CLASSES else domain or element.tag
+            raise DataError(
+                f"has a part {str(what)[:40]!r}, which is not read here; expected what gdalbuildvrt, "
+                "gdal_translate and gdalwarp write",
+                file=path,
+            )
+        if element.tag in ("SourceFilename", "SourceDataset") and element.get("relativeToVRT", "0") != "1":
+            if not Path((element.text or "").strip()).is_absolute():
+                raise DataError("names a source that is not relative to itself (relativeToVRT)", file=path)
+    for text, source in sources_of(path.resolve()):
+        if ":" in text[2:] or text.startswith(("/vsi", "\\\\", "//")) or not source.is_file():
+            raise DataError(f"names the source {text[:80]!r}, which is no file", file=path)
+
+
+# ── transformations ──────────────────────────────────────────────────────────
 
 
 def transformed(points: NDArray[np.float64], from_crs: str, to_crs: str) -> NDArray[np.float64]:
@@ -227,15 +354,13 @@ def transformed(points: NDArray[np.float64], from_crs: str, to_crs: str) -> NDAr
 
     Both are a code or a text. Raises ``DataError`` where GDAL knows one of them not.
     """
-    from rasterio.crs import CRS
-    from rasterio.errors import CRSError, RasterioError
+    from rasterio.errors import RasterioError
     from rasterio.warp import transform
 
+    systems = [gdal_crs(crs) for crs in (from_crs, to_crs)]
     try:
-        systems = [CRS.from_user_input(crs) for crs in (from_crs, to_crs)]
-        x, y = transform(*systems, points[:, 0].tolist(), points[:, 1].tolist())
-    except CRSError as error:
-        raise DataError(f"GDAL does not know a reference system: {reason(Exception(str(error)))}") from None
+        with gdal():
+            x, y = transform(*systems, points[:, 0].tolist(), points[:, 1].tolist())
     except RasterioError as error:
         raise DataError(f"cannot be brought into another system: {reason(Exception(str(error)))}") from None
     return np.stack([np.array(x, np.float64), np.array(y, np.float64)], 1)

@@ -1,19 +1,23 @@
-"""Report what a grid of heights may be, how a format's reader hands one over, and which heights it means."""
+"""What a grid of heights may be, how a format's reader hands one over, and which heights it means.
+
+A grid's rows are gone through in bands, so that a large file is never in memory as a whole.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from playground.data.bounds import MAX_TEXELS
 from playground.data.place import Crs, Place
-from playground.data.rows import ArrayRows, Rows
 from playground.errors import DataError
+from playground.regular_file import open_regular
 
 Heights = NDArray[np.float32]
 Packing = Literal["grey", "rgb"]
@@ -27,6 +31,83 @@ MOST_IN_TURN = 2**34
 
 
 _SHORT_VOID = -32768  # "no data" in 16-bit elevations: SRTM's value, and the custom since
+
+
+_BAND = 2**22  # [texels] of a band of an array
+
+Band = tuple[int, NDArray[Any]]
+"""The number of its first row, and the rows."""
+
+
+class Rows(Protocol):
+    """A grid of numbers whose rows can be read in turn, any number of times."""
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Return (rows, columns)."""
+        ...
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Return the numbers' type."""
+        ...
+
+    def bands(self) -> Iterator[Band]:
+        """Yield all rows in the file's order, some at a time."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class ArrayRows:
+    """The rows of an array."""
+
+    values: NDArray[Any]  # (rows, cols)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Return (rows, columns)."""
+        rows, cols = self.values.shape
+        return rows, cols
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Return the numbers' type."""
+        return self.values.dtype
+
+    def bands(self) -> Iterator[Band]:
+        """Yield all rows, some at a time."""
+        rows, cols = self.shape
+        count = max(_BAND // cols, 1)
+        for start in range(0, rows, count):
+            yield start, self.values[start : start + count]
+
+
+@dataclass(frozen=True, eq=False)
+class FileRows:
+    """Rows that are in a file as they are.
+
+    They are read, not mapped: where a file shrinks under a map, the system ends the process.
+    """
+
+    path: Path
+    shape: tuple[int, int]
+    dtype: np.dtype[Any]  # as stored
+    offset: int = 0  # [bytes] from the file's beginning to the first row
+
+    def bands(self) -> Iterator[Band]:
+        """Yield all rows, some at a time."""
+        rows, cols = self.shape
+        count = max(_BAND // cols, 1)
+        with open_regular(self.path) as handle:
+            handle.seek(self.offset)
+            for start in range(0, rows, count):
+                high = min(count, rows - start)
+                raw = handle.read(high * cols * self.dtype.itemsize)
+                if len(raw) < high * cols * self.dtype.itemsize:
+                    row = start + len(raw) // (cols * self.dtype.itemsize)
+                    raise DataError(f"is cut short: row {row} is missing", file=self.path)
+                values = np.frombuffer(raw, self.dtype).reshape(high, cols)
+                yield start, values.astype(self.dtype.newbyteorder("="), copy=False)
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,8 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.data.grid import Heights, check_grid
-from playground.data.rows import Rows
+from playground.data.grid import Heights, Rows, check_grid
 from playground.errors import DataError
 
 

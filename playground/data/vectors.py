@@ -23,9 +23,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.allowed_files import sidecar_places
-from playground.data.gis import advice
 from playground.data.image_files import checked_file, reason
 from playground.errors import DataError
+from playground.extras import needs
 from playground.json_text import read_json
 from playground.regular_file import irregularity, open_regular, read_regular
 
@@ -193,7 +193,7 @@ def _crs_of(document: dict[str, Any], path: Path) -> str:
 
 def _by_ogr(path: Path, ending: str) -> Vectors:
     if find_spec("pyogrio") is None:
-        raise DataError(f"{ending} is read by OGR; {advice()}", file=path)
+        raise DataError(needs(f"{ending} is read by OGR, which", "pyogrio", "gis"), file=path)
     if not _is_what_it_says(path, ending):
         raise DataError(f"is no {ending[1:]} file, although its name says so", file=path)
     import pyogrio

@@ -182,7 +182,7 @@ def tool() -> str:
     """Return a hash of what decides a texture besides the driver: our own files, what reads images."""
     found: list[object] = [__version__]
     # Another version of a package is another file; importlib.metadata takes 30 ms to be imported.
-    for package in ("moderngl", "numpy", "PIL", "tifffile"):
+    for package in ("moderngl", "numpy", "PIL", "rasterio", "tifffile"):
         spec = find_spec(package)
         if spec is not None and spec.origin is not None:
             status = Path(spec.origin).stat()

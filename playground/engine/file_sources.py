@@ -11,7 +11,7 @@ Texel by texel from the south-west, row by row: the three corners of the first t
 on, ``CORNERS`` in a row. The fourth number of a place is 1 where there is a corner, 0 after the last.
 
 Where the terrain lies is what an elevation file says; shapes in another reference system are brought into
-that one, by GDAL where it is more than a name. The datums WGS 84, NAD 83 and ETRS 89 are taken for one: they
+that one by GDAL. The datums WGS 84, NAD 83 and ETRS 89 are taken for one: they
 differ by two metres at most.
 """
 
@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from playground.data.content_hash import content_key
 from playground.data.elevation import Edge, Elevation, ElevationFile, open_elevation, read_elevation
 from playground.data.gaps import Voids, fill_no_data
-from playground.data.gis import advice, has_rasters, name_for_gdal, transformed
+from playground.data.gis import transformed
 from playground.data.grid import Packing, check_grid, fitted
 from playground.data.image_files import Image, read_image, replacing
 from playground.data.model_files import Model, read_model
@@ -368,13 +368,9 @@ def _in_system(shapes: tuple[Shape, ...], crs: str, place: Place, path: Path) ->
     """Return shapes in the terrain's reference system, without those that have no place in it."""
     if not crs:
         return shapes  # the file says nothing: it is taken for that of the terrain
-    wanted = name_for_gdal(place.crs)
+    wanted = place.crs.name or place.crs.text
     if crs == wanted or {crs, wanted} <= _ALIKE:
         return shapes
-    if not has_rasters() or not wanted:
-        target = wanted.partition("[")[0] or "one without a code"
-        message = f"its reference system is {crs.partition('[')[0]} and that of the terrain {target}"
-        raise DataError(f"{message}; {advice('transforms')}", file=path)
     lines = [_dense(line) if shape.kind != "point" else line for shape in shapes for line in shape.lines]
     try:
         points = transformed(np.concatenate(lines), crs, wanted)

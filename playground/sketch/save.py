@@ -431,6 +431,9 @@ def _copied_into(folder: Path, source: Path) -> str:
     """
     if source.is_absolute() and source.is_relative_to(folder):
         return source.relative_to(folder).as_posix()
+    if source.suffix.lower() == ".vrt":
+        message = "names other files, so it is not copied into the sketch's folder; put all of them there"
+        raise DataError(message, file=source)
     target, number = folder / source.name, 2
     try:
         data = _contents(source)

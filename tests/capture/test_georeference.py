@@ -6,14 +6,12 @@ import json
 
 import numpy as np
 import pytest
+import rasterio
+from rasterio.crs import CRS
+from rasterio.transform import Affine
 
 from playground.capture.export import export
-from playground.data import gis
 from playground.data.elevation import read_elevation
-
-rasterio = pytest.importorskip("rasterio")  # of the extra gis
-from rasterio.crs import CRS  # noqa: E402
-from rasterio.transform import Affine  # noqa: E402
 
 HEIGHTS = np.random.default_rng(4).normal(700.0, 200.0, (19, 31)).astype(np.float32)  # north row first
 METRES = Affine(12.5, 0.0, 400_123.5, 0.0, -7.0, 5_300_000.25)
@@ -149,20 +147,15 @@ def test_exported_heights_state_that_they_are_metres(tmp_path, any_engine, crs, 
     np.testing.assert_allclose(read_elevation(made.path).heights[::-1], metres, rtol=1e-6)
 
 
-@pytest.mark.parametrize("extra", [True, False])
-def test_a_prj_without_a_code_needs_gdal_and_that_is_said(tmp_path, any_engine, monkeypatch, extra):
+def test_a_prj_without_a_code_keeps_its_system(tmp_path, any_engine):
     path = tmp_path / "dem.asc"
     lines = ["ncols 3", "nrows 2", "xllcorner 1000", "yllcorner 2000", "cellsize 25"]
     path.write_text("\n".join([*lines, "1 2 3", "4 5 6"]))
     path.with_suffix(".prj").write_text(CRS.from_epsg(2154).to_wkt(version="WKT1_ESRI"))
-    if not extra:
-        monkeypatch.setattr(gis, "has_rasters", lambda: False)
     made = of_terrain(tmp_path, any_engine, path)
     with rasterio.open(made.path) as after:
-        assert tuple(after.bounds) == (1000.0, 2000.0, 1075.0, 2050.0)
-        assert (after.crs and after.crs.to_epsg()) == (2154 if extra else None)
-    said = [w for w in made.warnings if "reference system is left out: it has no EPSG code" in w]
-    assert bool(said) is not extra
+        assert tuple(after.bounds) == (1000.0, 2000.0, 1075.0, 2050.0) and after.crs.to_epsg() == 2154
+    assert not made.warnings
 
 
 def test_colours_and_whole_numbers_lie_there_too(tmp_path, any_engine):

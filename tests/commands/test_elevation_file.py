@@ -40,12 +40,16 @@ def test_a_page_of_a_file_has_its_sketch_to_edit(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("name", "content", "words"),
     [
-        ("a.tif", b"hello", "a.tif: not a TIFF file, although its name says so: header=b'hell'"),
-        ("a.hgt", b"x" * 7, "a.hgt: holds 7 bytes, an odd number"),
-        ("a.asc", b"what is this", "a.asc: its header says no ncols"),
+        ("a.tif", b"hello", "a.tif: not a TIFF file, although its name says so"),
+        ("a.hgt", b"x" * 7, "a.hgt: is no SRTM tile; expected 1201 x 1201"),
+        ("a.asc", b"what is this", "a.asc: is no ESRI grid; expected a header of ncols"),
         ("a.bil", b"0000", "a.bil: needs a.hdr next to it"),
         ("a.npy", b"\x93NUMPY", "a.npy: the file is damaged or cut short"),
         ("a.nc", b"CDF", "a.nc: "),
+        ("a.vrt", b"<VRTDataset", "a.vrt: is no VRT; expected XML"),
+        ("a.img", b"EHFA", "a.img: is no .img file to GDAL's driver HFA"),
+        ("a.jp2", b"jp2", "a.jp2: is no .jp2 file to GDAL's driver JP2OpenJPEG"),
+        ("a.gpkg", b"SQLite", "a.gpkg: holds no raster"),
     ],
 )
 def test_what_is_no_elevation_file_is_one_sentence(tmp_path, monkeypatch, capsys, name, content, words):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from playground.data.grid import ArrayRows
 from playground.data.resample import decimate, resample
-from playground.data.rows import ArrayRows, StreamRows
 
 RNG = np.random.default_rng(5)
 HILLS = RNG.standard_normal((143, 211)).cumsum(0).cumsum(1).astype(np.float32)
@@ -16,12 +16,14 @@ def as_they_are(start, band):
     return band
 
 
-def in_bands(values, count):
-    def bands():
-        for start in range(0, len(values), count):
-            yield start, values[start : start + count]
+class in_bands(ArrayRows):  # noqa: N801
+    def __init__(self, values, count):
+        super().__init__(values)
+        object.__setattr__(self, "count", count)
 
-    return StreamRows(values.shape, values.dtype, bands)
+    def bands(self):
+        for start in range(0, len(self.values), self.count):
+            yield start, self.values[start : start + self.count]
 
 
 @pytest.mark.parametrize("size", [(64, 31), (211, 20), (17, 143), (300, 57), (400, 300), (2, 2)])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import math
-import re
 import shutil
 import zipfile
 from pathlib import Path
@@ -14,14 +13,11 @@ import pytest
 import tifffile
 from PIL import Image as PillowImage
 
-from playground.data import geotiff as geotiff_reader
-from playground.data import gis
 from playground.data.elevation import Elevation, read_elevation
-from playground.data.geodesy import degree_lengths
 from playground.data.image_files import encode_samples
+from playground.data.place import degree_lengths
 from playground.data.values import write_values
 from playground.errors import DataError
-from playground.extras import install_command
 
 RNG = np.random.default_rng(11)
 HEIGHTMAP = RNG.integers(200, 2000, (6, 9)).astype(np.int16)  # north row first, as files are
@@ -124,7 +120,7 @@ def test_packing_must_fit_the_file(tmp_path):
     np.save(tmp_path / "a.npy", HEIGHTMAP)
     refused(tmp_path / "a.npy", "read from PNG and TIFF", packing="rgb")
     tifffile.imwrite(tmp_path / "a.tif", HEIGHTMAP)
-    refused(tmp_path / "a.tif", "found one", packing="rgb")
+    refused(tmp_path / "a.tif", "three channels of 8 bits; found 1 of 16", packing="rgb")
     refused(tmp_path / "a.png", "no such packing: 'gray'; did you mean 'grey'", packing="gray")
     refused(tmp_path / "a.png", "no such first row: 'North'", first_row="North")
 
@@ -158,24 +154,8 @@ def test_tiff_with_a_predictor(tmp_path, predictor):
     assert_heightmap(read_elevation(tmp_path / "a.tif"), heightmap)
 
 
-def test_what_neither_library_unpacks_is_a_sentence(tmp_path, monkeypatch):
-    def lacking(*_: object, **__: object) -> None:
-        raise ValueError("<COMPRESSION.ADOBE_DEFLATE: 8> requires the 'imagecodecs' package")
-
-    tifffile.imwrite(tmp_path / "a.tif", HEIGHTMAP.astype("f8"), compression="zlib")
-    tifffile.imwrite(tmp_path / "b.tif", HEIGHTMAP, compression="zlib")
-    monkeypatch.setattr(tifffile.TiffPage, "asarray", lacking)
-    monkeypatch.setattr(geotiff_reader, "tiff_rows", lambda *_: None)
-    monkeypatch.setattr(gis, "has_rasters", lambda: False)
-    refused(
-        tmp_path / "a.tif",
-        "float64 numbers under compression ADOBE_DEFLATE .* " + re.escape(install_command("gis")),
-    )
-    assert_heightmap(read_elevation(tmp_path / "b.tif"), HEIGHTMAP)
-
-
 @pytest.mark.parametrize("dtype", [np.float32, np.int32])
-def test_zstd_is_read_or_named_and_never_called_damage(tmp_path, dtype):
+def test_zstd_is_read(tmp_path, dtype):
     path, heightmap = tmp_path / "a.tif", HEIGHTMAP.astype(dtype)
     try:
         PillowImage.fromarray(heightmap).save(path, compression="zstd")
@@ -184,28 +164,10 @@ def test_zstd_is_read_or_named_and_never_called_damage(tmp_path, dtype):
     assert_heightmap(read_elevation(path), heightmap)
 
 
-def test_a_compression_that_nothing_here_undoes_says_which_and_what_to_install(tmp_path, monkeypatch):
-    monkeypatch.setattr(gis, "has_rasters", lambda: False)
-    path = tmp_path / "a.tif"
-    for code, name in ((50000, "ZSTD"), (34887, "LERC")):  # of 64 bits, which Pillow has no mode for
-        tifffile.imwrite(path, HEIGHTMAP.astype(np.float64))
-        with tifffile.TiffFile(path, mode="r+") as tif:
-            tif.pages[0].tags[259].overwrite(code)
-        with pytest.raises(DataError) as caught:
-            read_elevation(path)
-        if "damaged" in str(caught.value):
-            pytest.skip("this Python undoes zstd itself")
-        assert f"float64 numbers under compression {name} cannot be read here" in str(caught.value)
-        assert install_command("gis") in str(caught.value)
-
-
 @pytest.mark.parametrize("bands", [2, 3, 5])
 def test_of_several_bands_the_first_is_read_and_that_is_reported(tmp_path, bands):
     heightmap = np.stack([HEIGHTMAP.astype(np.float32) + 100 * k for k in range(bands)])
     tifffile.imwrite(tmp_path / "a.tif", heightmap, planarconfig="separate", photometric="minisblack")
-    if bands > 4:
-        refused(tmp_path / "a.tif", "has 5 channels")
-        return
     found = read_elevation(tmp_path / "a.tif")
     assert_heightmap(found, HEIGHTMAP)
     assert found.notes == (f"the first of its {bands} bands was read",)
@@ -215,8 +177,8 @@ def test_a_damaged_tag_is_one_sentence_and_no_log(tmp_path, capfd):
     tifffile.imwrite(tmp_path / "a.tif", HEIGHTMAP, metadata=None)
     content = bytearray((tmp_path / "a.tif").read_bytes())
     with tifffile.TiffFile(tmp_path / "a.tif") as tif:
-        at = tif.pages[0].tags[273].offset
-    content[at + 2 : at + 4] = b"\xff\xff"
+        at = tif.pages[0].tags[273].valueoffset
+    content[at : at + 3] = b"\xff\xff\xff"
     (tmp_path / "a.tif").write_bytes(content)
     refused(tmp_path / "a.tif", "damaged or cut short")
     assert capfd.readouterr() == ("", "")
@@ -305,9 +267,9 @@ def test_whole_numbers_that_gdal_s_metadata_scale_become_metres(tmp_path, dtype)
     )
 
 
-@pytest.mark.parametrize(("unit", "metres"), [(9002, 0.3048), (9003, 1200 / 3937)])
-def test_feet_become_metres(tmp_path, unit, metres):
-    keys = {1024: 1, 3076: unit, 4099: unit}
+@pytest.mark.parametrize(("unit", "epsg", "metres"), [(9002, 2222, 0.3048), (9003, 2264, 1200 / 3937)])
+def test_feet_become_metres(tmp_path, unit, epsg, metres):
+    keys = {1024: 1, 3072: epsg, 4099: unit}
     found = read_elevation(geotiff(tmp_path / "a.tif", HEIGHTMAP, keys, (10.0, 10.0)))
     assert found.spacing == pytest.approx((10 * metres, 10 * metres))
     np.testing.assert_allclose(found.heights[::-1], HEIGHTMAP * metres, rtol=1e-6)
@@ -349,7 +311,6 @@ def test_a_texel_size_without_a_unit_is_not_believed(tmp_path):
     assert found.in_metres and "metres are assumed" in found.assumed
     at_the_pole = geotiff(tmp_path / "b.tif", HEIGHTMAP, {1024: 2}, (0.1, 0.1), (0, 0, 0, 0, 90.3, 0))
     assert read_elevation(at_the_pole).spacing is None
-    refused(geotiff(tmp_path / "c.tif", HEIGHTMAP, {1024: 1}, (0.0, 10.0)), "expected lengths above zero")
 
 
 @pytest.mark.parametrize(
@@ -486,19 +447,18 @@ def test_raw_numbers_that_do_not_fit_are_sentences(tmp_path):
     ("name", "middle"), [("N36W085.hgt", 36.5), ("s07e110.HGT", -6.5), ("S01E006.hgt", -0.5)]
 )
 def test_srtm_tiles_cover_a_degree(tmp_path, name, middle):
-    heightmap = RNG.integers(-100, 4000, (61, 61)).astype(">i2")
+    heightmap = RNG.integers(-100, 4000, (1201, 1201)).astype(">i2")
     heightmap[5, 7] = -32768
     (tmp_path / name).write_bytes(heightmap.tobytes())
     found = read_elevation(tmp_path / name)
     assert found.extent == pytest.approx(degree_lengths(middle), rel=1e-12)
-    assert found.in_metres and found.missing == 1 and np.isnan(found.heights[60 - 5, 7])
-    assert found.heights[60, 60] == heightmap[0, 60]
+    assert found.in_metres and found.missing == 1 and np.isnan(found.heights[1200 - 5, 7])
+    assert found.heights[1200, 60] == heightmap[0, 60]
 
 
-def test_srtm_of_three_seconds_without_a_name_has_no_spacing(tmp_path):
+def test_a_tile_whose_name_says_no_corner_is_refused(tmp_path):
     (tmp_path / "hill.hgt").write_bytes(np.full((1201, 1201), 5, ">i2").tobytes())
-    found = read_elevation(tmp_path / "hill.hgt")
-    assert found.size == (1201, 1201) and found.spacing is None and "N36W085" in found.notes[0]
+    refused(tmp_path / "hill.hgt", "is no SRTM tile; .* a name that says its corner, as N36W085.hgt")
 
 
 # Whatever the format
@@ -542,7 +502,7 @@ def test_rubbish_is_refused(tmp_path, ending):
         b"\x93NUMPY\x01\0\x08\0rubbish!",
     ):
         (tmp_path / f"a.{ending}").write_bytes(content + b"x")
-        refused(tmp_path / f"a.{ending}", "damaged or cut short|not a|odd number|no square|tell")
+        refused(tmp_path / f"a.{ending}", "damaged or cut short|not a|is no SRTM tile")
 
 
 def damage(path: Path) -> None:
@@ -563,14 +523,6 @@ def test_files_cut_short_are_refused(tmp_path):
     heightmap[:45].tofile(tmp_path / "a.r16")
     for path in sorted(tmp_path.iterdir()):
         damage(path)
-
-
-def test_a_tiff_that_promises_more_than_it_has_is_refused_before_it_is_unpacked(tmp_path, monkeypatch):
-    tifffile.imwrite(tmp_path / "a.tif", HEIGHTMAP, metadata=None)
-    whole = (tmp_path / "a.tif").read_bytes()
-    (tmp_path / "a.tif").write_bytes(whole[:-2])
-    monkeypatch.setattr(tifffile.TiffPage, "asarray", None)
-    refused(tmp_path / "a.tif", f"its data ends at byte {len(whole)}, the file before")
 
 
 def test_a_damaged_archive_is_refused(tmp_path):
@@ -641,7 +593,7 @@ def test_monsters_are_refused_by_their_header(tmp_path):
         huge = (60_000).to_bytes(2 if kind == 3 else 4, "little")
         content = content[:place] + huge + content[place + len(huge) :]
     (tmp_path / "a.tif").write_bytes(content)
-    refused(tmp_path / "a.tif", "would become 6866 MiB from")
+    refused(tmp_path / "a.tif", r"60000 x 60000 texels; the most is 2\*\*28")
 
 
 def test_large_offsets_that_float32_cannot_hold_are_reported(tmp_path):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from playground.data.geodesy import degree_lengths
+from playground.data.place import degree_lengths
 
 
 # National Geospatial-Intelligence Agency, "Length of a degree of latitude and longitude", WGS 84, km.

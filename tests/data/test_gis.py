@@ -1,25 +1,26 @@
-"""Rasters as GDAL writes them, read by our own readers and, where those cannot, by GDAL."""
+"""Rasters as GDAL writes them, and what it reads of them: numbers, places, masks, overviews."""
 
 from __future__ import annotations
 
-import re
+import socket
 
 import numpy as np
 import pytest
+import rasterio
+import rasterio.shutil
+from rasterio.enums import Resampling
+from rasterio.transform import Affine
 from scipy.io import netcdf_file
 
-from playground.data import gis, tiff_rows
+from playground.allowed_files import leads_outside, sidecars
+from playground.data import gis
 from playground.data.elevation import open_elevation, read_elevation
+from playground.data.grid import ArrayRows
 from playground.data.resample import decimate
-from playground.data.rows import ArrayRows
 from playground.engine import file_sources
+from playground.engine.files import find_file
 from playground.engine.sources import source_kind
 from playground.errors import DataError
-from playground.extras import install_command
-
-rasterio = pytest.importorskip("rasterio")  # of the extra gis
-from rasterio.enums import Resampling  # noqa: E402
-from rasterio.transform import Affine  # noqa: E402
 
 RNG = np.random.default_rng(8)
 HEIGHTS = RNG.normal(900.0, 300.0, (77, 131)).astype(np.float32)  # north row first
@@ -37,7 +38,7 @@ def raster(path, values=HEIGHTS, transform=NORTH_UP, crs="EPSG:32633", scale=1.0
 
 
 TILES = {"tiled": True, "blockxsize": 32, "blockysize": 16}
-OWN = {
+FORMS = {
     "strips": {},
     "strips of several rows": {"blockysize": 10},
     "tiles": TILES,
@@ -46,8 +47,6 @@ OWN = {
     "deflate and predictor 3": {"compress": "deflate", "predictor": 3, **TILES},
     "big-endian deflate": {"compress": "deflate", "predictor": 3, "ENDIANNESS": "BIG"},
     "BigTIFF": {"BIGTIFF": "YES", **TILES},
-}
-GDALS = {
     "zstd": {"compress": "zstd", **TILES},
     "zstd and predictor 3": {"compress": "zstd", "predictor": 3, **TILES},
     "lerc": {"compress": "lerc", "max_z_error": 0.0, **TILES},
@@ -56,10 +55,10 @@ GDALS = {
 }
 
 
-@pytest.mark.parametrize("form", [*OWN, *GDALS])
+@pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("dtype", ["f4", "f8", "i2", "u1", "i4"])
 def test_every_form_of_geotiff_has_its_numbers_and_its_place(tmp_path, form, dtype):
-    options = {**OWN, **GDALS}[form]
+    options = FORMS[form]
     if dtype[0] != "f" and options.get("predictor") == 3:
         options = options | {"predictor": 2}
     if dtype[0] == "f" and options.get("predictor") == 2:
@@ -71,23 +70,6 @@ def test_every_form_of_geotiff_has_its_numbers_and_its_place(tmp_path, form, dty
     assert (west, north) == (400_005.0, 5_299_993.75), "the corner's node is half a texel inside"
     assert (east, south) == (400_005.0 + 1300.0, 5_299_993.75 - 950.0)
     assert file.extent == (1300.0, 950.0)
-
-
-@pytest.mark.parametrize("form", OWN)
-def test_what_is_simple_is_read_without_the_extra(tmp_path, monkeypatch, form):
-    path = raster(tmp_path / "a.tif", **({} if "predictor 2" in form else OWN[form]))
-    monkeypatch.setattr(gis, "has_rasters", lambda: False)
-    np.testing.assert_array_equal(read_elevation(path).heights[::-1], HEIGHTS)
-
-
-def test_what_is_not_names_the_extra(tmp_path, monkeypatch):
-    path = raster(tmp_path / "a.tif", HEIGHTS.astype("f8"), **GDALS["lerc"])
-    monkeypatch.setattr(gis, "has_rasters", lambda: False)
-    with pytest.raises(DataError, match="under compression LERC .*" + re.escape(install_command("gis"))):
-        read_elevation(path)
-    (tmp_path / "a.nc").write_bytes(b"\x89HDF")
-    with pytest.raises(DataError, match="by GDAL; the extra gis .* " + re.escape(install_command("gis"))):
-        read_elevation(tmp_path / "a.nc")
 
 
 def test_a_sparse_file_has_no_data_where_nothing_is_stored(tmp_path):
@@ -151,7 +133,7 @@ def test_a_raster_without_a_reference_system_says_so(tmp_path):
 def values(monkeypatch):
     monkeypatch.setattr(file_sources, "LARGE", 1000)
     monkeypatch.setattr(file_sources, "USUAL_SIDE", 61)
-    monkeypatch.setattr(tiff_rows, "_BAND", 400)
+    monkeypatch.setattr(gis, "_BAND", 400)
 
     def values_(path, **changes):
         found = {"raw_size": (0, 0), "packing": 0, "no_data": 0, "first_row": 0, "metres": (0.0, 0.0)}
@@ -171,7 +153,7 @@ def smooth(rows=300, cols=420):
 @pytest.mark.parametrize("form", ["strips", "tiles", "deflate and predictor 3", "zstd"])
 def test_a_large_file_is_read_at_the_size_of_the_terrain(tmp_path, values, monkeypatch, form):
     heights = smooth()
-    path = raster(tmp_path / "a.tif", heights, **{**OWN, **GDALS}[form])
+    path = raster(tmp_path / "a.tif", heights, **FORMS[form])
     asked = values(path, longest=57)
     known = KIND.describe(asked)
     assert known.size == (57, 41) and known.extent == (4190.0, 3737.5)
@@ -283,7 +265,7 @@ def test_netcdf_of_several_grids_needs_one_of_a_usual_name(tmp_path):
 
 def test_netcdf_that_is_none_is_a_sentence(tmp_path):
     (tmp_path / "a.nc").write_bytes(RNG.bytes(300))
-    with pytest.raises(DataError, match="cannot be read by GDAL"):
+    with pytest.raises(DataError, match=r"is no \.nc file to GDAL.s driver netCDF, although"):
         read_elevation(tmp_path / "a.nc")
 
 
@@ -301,11 +283,181 @@ def test_more_texels_than_any_picture_may_have_are_read_in_turn(tmp_path, values
         file.read()
 
 
-def test_a_raster_without_a_tie_point_has_steps_and_no_place(tmp_path):
-    import tifffile
+# What else GDAL opens
 
-    keys = (1, 1, 1, 2, 1024, 0, 1, 1, 3072, 0, 1, 32633)
-    tags = [(33550, "d", 3, (10.0, 20.0, 0.0), True), (34735, "H", len(keys), keys, True)]
-    tifffile.imwrite(tmp_path / "a.tif", HEIGHTS, extratags=tags, metadata=None, photometric="minisblack")
-    found = read_elevation(tmp_path / "a.tif")
-    assert found.place is None and found.spacing == (10.0, 20.0) and found.in_metres
+
+def copied(source, path, driver, **options):
+    rasterio.shutil.copy(source, path, driver=driver, **options)
+    return path
+
+
+FORMATS = {
+    "a.img": ("HFA", "f4", {}),
+    "a.gpkg": ("GPKG", "f4", {}),
+    "a.jp2": ("JP2OpenJPEG", "u2", {"REVERSIBLE": "YES", "QUALITY": "100"}),
+    "a.nc": ("netCDF", "f4", {}),
+    "a.asc": ("AAIGrid", "f4", {"SIGNIFICANT_DIGITS": "9", "FORCE_CELLSIZE": "NO"}),
+    "a.flt": ("EHdr", "f4", {}),
+    "a.vrt": ("VRT", "f4", {}),
+}
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_format_has_what_rasterio_reads_of_it(tmp_path, name):
+    driver, dtype, options = FORMATS[name]
+    values = np.abs(HEIGHTS).astype(dtype)
+    source = raster(tmp_path / "source.tif", values, Affine(10.0, 0.0, 4e5, 0.0, -10.0, 5.3e6))
+    path = copied(source, tmp_path / name, driver, **options)
+    beside = sorted(tmp_path.iterdir())
+    found = read_elevation(path)
+    with rasterio.open(path) as same:
+        np.testing.assert_array_equal(found.heights[::-1], same.read(1).astype(np.float32))
+        west, south, east, north = found.place.bounds
+        np.testing.assert_allclose(same.bounds, (west - 5, south - 5, east + 5, north + 5), rtol=1e-15)
+    assert found.spacing == (10.0, 10.0) and found.in_metres and found.place.crs.name == "EPSG:32633"
+    assert sorted(tmp_path.iterdir()) == beside, "nothing is written next to it"
+
+
+@pytest.mark.parametrize("internal", ["YES", "NO"])
+def test_what_a_mask_leaves_out_has_no_data(tmp_path, internal):
+    path = raster(tmp_path / "a.tif", HEIGHTS.astype("i2"))
+    kept = HEIGHTS > 700.0
+    with rasterio.Env(GDAL_TIFF_INTERNAL_MASK=internal), rasterio.open(path, "r+") as file:
+        file.write_mask(kept)
+    found = read_elevation(path).heights[::-1]
+    np.testing.assert_array_equal(np.isnan(found), ~kept)
+    np.testing.assert_array_equal(found[kept], HEIGHTS.astype("i2")[kept])
+    assert (tmp_path / "a.tif.msk").exists() is (internal == "NO")
+
+
+def test_overviews_next_to_a_file_are_read(tmp_path):
+    path = raster(tmp_path / "a.tif", smooth(640, 800), **TILES)
+    with rasterio.Env(TIFF_USE_OVR=True), rasterio.open(path, "r+") as file:
+        file.build_overviews([2, 4], Resampling.average)
+    assert (tmp_path / "a.tif.ovr").exists()
+    assert [rows.shape for rows in open_elevation(path).found.overviews] == [(320, 400), (160, 200)]
+
+
+def test_a_mosaic_is_read_as_one(tmp_path):
+    (tmp_path / "tiles").mkdir()
+    heights = smooth(60, 100)
+    west = raster(tmp_path / "tiles" / "w.tif", heights[:, :40])
+    east = raster(tmp_path / "tiles" / "e.tif", heights[:, 40:], NORTH_UP @ Affine.translation(40, 0))
+    (tmp_path / "a.vrt").write_text(mosaic((west, 0, 40), (east, 40, 60), size=(100, 60)))
+    found = read_elevation(tmp_path / "a.vrt")
+    np.testing.assert_array_equal(found.heights[::-1], heights)
+    assert set(sidecars(tmp_path / "a.vrt")) == {west, east}, "they go where it goes"
+
+
+def mosaic(*parts, size):
+    sources = "".join(
+        f'<SimpleSource><SourceFilename relativeToVRT="1">tiles/{path.name}</SourceFilename>'
+        f'<SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="{width}" ySize="{size[1]}"/>'
+        f'<DstRect xOff="{left}" yOff="0" xSize="{width}" ySize="{size[1]}"/></SimpleSource>'
+        for path, left, width in parts
+    )
+    band = f'<VRTRasterBand dataType="Float32" band="1">{sources}</VRTRasterBand>'
+    place = "<GeoTransform>400000, 10, 0, 5300000, 0, -12.5</GeoTransform><SRS>EPSG:32633</SRS>"
+    return f'<VRTDataset rasterXSize="{size[0]}" rasterYSize="{size[1]}">{place}{band}</VRTDataset>'
+
+
+# What a stranger's file may name
+
+VRT = (
+    '<VRTDataset rasterXSize="131" rasterYSize="77"><VRTRasterBand dataType="Float32" band="1"><SimpleSource>'
+    '<SourceFilename relativeToVRT="{relative}">{source}</SourceFilename></SimpleSource></VRTRasterBand>'
+    "</VRTDataset>"
+)
+
+
+@pytest.fixture
+def listener():
+    """Give the address of a server that notes who asks it."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        server.settimeout(0.2)
+        yield f"http://127.0.0.1:{server.getsockname()[1]}/a.tif"
+        with pytest.raises(TimeoutError):
+            server.accept()
+
+
+@pytest.mark.parametrize(
+    ("source", "relative", "words"),
+    [
+        ("{url}", 1, "names the source 'http://.*', which is no file"),
+        ("{url}", 0, "names a source that is not relative to itself"),
+        ("/vsicurl/{url}", 0, "names the source '/vsicurl/.*', which is no file"),
+        ("/vsicurl/{url}", 1, "names the source '/vsicurl/.*', which is no file"),
+        ('NETCDF:"b.tif":z', 1, "which is no file"),
+        ("b.tif", 0, "names a source that is not relative to itself"),
+        ("none.tif", 1, "names the source 'none.tif', which is no file"),
+        ("service.xml", 1, "is a source of a VRT; expected GeoTIFF, ERDAS Imagine or JPEG 2000"),
+        ("far.vrt", 1, "far.vrt: names the source 'http"),
+        ("text.tif", 1, "is a source of a VRT; expected GeoTIFF"),
+    ],
+)
+def test_a_vrt_leads_to_files_alone(tmp_path, listener, source, relative, words, capfd):
+    raster(tmp_path / "b.tif")
+    service = f"<GDAL_WMS><Service name='TMS'><ServerUrl>{listener}</ServerUrl></Service></GDAL_WMS>"
+    for name in ("service.xml", "text.tif"):
+        (tmp_path / name).write_text(service)
+    (tmp_path / "far.vrt").write_text(VRT.format(relative=1, source=listener))
+    (tmp_path / "a.vrt").write_text(VRT.format(relative=relative, source=source.format(url=listener)))
+    with pytest.raises(DataError, match=words) as caught:
+        read_elevation(tmp_path / "a.vrt")
+    assert "\n" not in str(caught.value) and capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    ("part", "words"),
+    [
+        ("<OpenOptions/>", "has a part 'OpenOptions', which is not read here"),
+        ('<Metadata domain="GEOLOCATION"/>', "has a part 'GEOLOCATION'"),
+        ('<VRTRasterBand subClass="VRTRawRasterBand"/>', "has a part 'VRTRawRasterBand'"),
+        ('<VRTRasterBand subClass="VRTDerivedRasterBand"/>', "has a part 'VRTDerivedRasterBand'"),
+    ],
+)
+def test_a_vrt_of_other_parts_is_refused(tmp_path, part, words):
+    raster(tmp_path / "b.tif")
+    text = VRT.format(relative=1, source="b.tif").replace("</VRTDataset>", f"{part}</VRTDataset>")
+    (tmp_path / "a.vrt").write_text(text)
+    with pytest.raises(DataError, match=words):
+        read_elevation(tmp_path / "a.vrt")
+
+
+def test_a_vrt_s_sources_are_those_a_sketch_may_read(tmp_path):
+    own = tmp_path / "own"
+    own.mkdir()
+    raster(tmp_path / "b.tif")
+    (own / "a.vrt").write_text(VRT.format(relative=1, source="../b.tif"))
+    assert read_elevation(own / "a.vrt").size == (131, 77), "a user's own file"
+    assert leads_outside("a.vrt", own) and not leads_outside("own/a.vrt", tmp_path)
+    with pytest.raises(DataError, match=r"elevation: b\.tif next to it leads out of the sketch's folder"):
+        find_file("a.vrt", str(own), str(own / "k.glsl"), "elevation")
+
+
+@pytest.mark.parametrize("beside", ["a.tif.ovr", "a.tif.msk", "a.tif.aux.xml"])
+def test_a_file_next_to_a_raster_leads_nowhere(tmp_path, listener, beside, capfd):
+    path = raster(tmp_path / "a.tif")
+    item = f'<Metadata domain="OVERVIEWS"><MDI key="OVERVIEW_FILE">/vsicurl/{listener}</MDI></Metadata>'
+    text = VRT.format(relative=0, source=f"/vsicurl/{listener}")
+    (tmp_path / beside).write_text(f"<PAMDataset>{item}</PAMDataset>" if "aux" in beside else text)
+    with pytest.raises(DataError, match=r"names further files|is no TIFF file, as an overview"):
+        read_elevation(path)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_text_of_a_system_is_no_address(tmp_path, listener, capfd):
+    np.savez(tmp_path / "a.npz", elevation=HEIGHTS, dx=1.0, dy=1.0, crs=np.array(listener))
+    assert read_elevation(tmp_path / "a.npz").spacing is None
+    with pytest.raises(DataError, match="GDAL does not know a reference system"):
+        gis.transformed(np.zeros((1, 2)), listener, "EPSG:4326")
+    assert capfd.readouterr() == ("", "")
+
+
+def test_what_becomes_too_much_of_too_little_is_refused(tmp_path):
+    facts = {"driver": "GTiff", "width": 2**15, "height": 2**14, "count": 1, "dtype": "uint16"}
+    tiles = {"tiled": True, "blockxsize": 4096, "blockysize": 4096, "compress": "deflate"}
+    with rasterio.open(tmp_path / "a.tif", "w", **facts, transform=NORTH_UP, **tiles) as file:
+        file.write(np.ones((4096, 4096), np.uint16), 1, window=rasterio.windows.Window(0, 0, 4096, 4096))
+    with pytest.raises(DataError, match="would become 1024 MiB from"):
+        read_elevation(tmp_path / "a.tif")

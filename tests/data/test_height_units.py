@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import sqlite3
-import sys
 from contextlib import closing
 from pathlib import Path
 
 import numpy as np
 import pytest
+import rasterio
 import tifffile
 from PIL import Image
+from rasterio.crs import CRS
+from rasterio.transform import Affine
 
 import playground
 from playground.data.elevation import read_elevation
-from playground.data.units import HEIGHTS_IN_FEET, UNITS, metres_in
-
-rasterio = pytest.importorskip("rasterio")  # of the extra gis
-from rasterio.crs import CRS  # noqa: E402
-from rasterio.transform import Affine  # noqa: E402
+from playground.data.place import metres_in
 
 FOOT, SURVEY_FOOT = 0.3048, 1200 / 3937
 NUMBERS = np.add.outer(np.arange(9.0), np.arange(9.0)).astype(np.float32) * 100  # 0 .. 1600
@@ -68,24 +66,6 @@ def rows_of_proj(query):
         pytest.skip("rasterio has no database of PROJ beside it")
     with closing(sqlite3.connect(database)) as opened:
         return dict(opened.execute(query).fetchall())
-
-
-def test_units_are_those_of_epsg():
-    known = rows_of_proj(
-        "select cast(code as int), conv_factor from unit_of_measure "
-        "where auth_name = 'EPSG' and type = 'length'"
-    )
-    for code, metres in UNITS.items():
-        assert metres == pytest.approx(known[code], rel=1e-15), code
-
-
-def test_vertical_systems_in_feet_are_those_of_epsg():
-    known = rows_of_proj(
-        "select cast(v.code as int), cast(a.uom_code as int) from vertical_crs v join axis a on "
-        "a.coordinate_system_auth_name = v.coordinate_system_auth_name and "
-        "a.coordinate_system_code = v.coordinate_system_code where v.auth_name = 'EPSG'"
-    )
-    assert {code: unit for code, unit in known.items() if unit != 9001} == HEIGHTS_IN_FEET
 
 
 @pytest.mark.parametrize(
@@ -164,17 +144,15 @@ def test_grids_have_their_unit_next_to_them(tmp_path, driver, ending):
 @pytest.mark.parametrize(
     ("lines", "factor", "cell"),
     [
-        ("Projection UTM\nZone 33\nZunits FEET\nUnits METERS\n", FOOT, 30.0),
-        ("Projection STATEPLANE\nZunits METERS\nUnits FEET\n", 1.0, 30.0 * FOOT),
-        ("Projection UTM\nZunits NO\nUnits METERS\n", 1.0, 30.0),
+        ("Projection UTM\nZone 33\nUnits METERS\nParameters\n", 1.0, 30.0),
+        ("Projection UTM\nZone 33\nUnits FEET\nParameters\n", SURVEY_FOOT, 30.0 * SURVEY_FOOT),
     ],
 )
-def test_a_prj_of_lines_says_both_units(tmp_path, lines, factor, cell):
+def test_a_prj_of_lines_says_the_unit_of_its_cells(tmp_path, lines, factor, cell):
     path = raster(tmp_path / "a.asc", driver="AAIGrid")
     path.with_suffix(".prj").write_text(lines)
     found = assert_metres(path, factor)
-    assert found.spacing == pytest.approx((cell, cell), rel=1e-5)
-    assert bool(found.assumed) is ("NO" in lines)
+    assert found.spacing == pytest.approx((cell, cell), rel=1e-5) and found.assumed
 
 
 UTM = {1024: 1, 1025: 1, 3072: 32633}
@@ -203,26 +181,13 @@ def test_keys_and_metadata_count_as_in_gdal(tmp_path, keys, metadata, aux, facto
     assert not assert_metres(path, factor).assumed
 
 
-def test_keys_that_contradict_each_other_are_reported(tmp_path):
-    found = assert_metres(keyed(tmp_path / "a.tif", UTM | {4096: 5703, 4099: 9003}), 1.0)
-    assert "its keys name EPSG:5703 and another unit, EPSG 9003" in found.notes[0]
-    # A datum of GeoTIFF 1.0, which has no unit of its own.
-    assert not assert_metres(keyed(tmp_path / "b.tif", UTM | {4096: 5103, 4099: 9003}), SURVEY_FOOT).notes
+@pytest.mark.parametrize(("code", "metres"), [(2264, SURVEY_FOOT), (2222, FOOT)])
+def test_a_code_in_feet_scales_cells_without_a_unit(tmp_path, code, metres):
+    found = read_elevation(keyed(tmp_path / "a.tif", {1024: 1, 1025: 1, 3072: code}))
+    assert found.spacing == pytest.approx((30 * metres,) * 2)
 
 
-def test_a_code_in_feet_scales_cells_without_a_unit(tmp_path, monkeypatch):
-    found = read_elevation(keyed(tmp_path / "a.tif", {1024: 1, 1025: 1, 3072: 2264}))
-    assert found.spacing == pytest.approx((30 * SURVEY_FOOT,) * 2)
-    found = read_elevation(raster(tmp_path / "b.tif", crs="EPSG:2222"))
-    assert found.spacing == pytest.approx((30 * FOOT,) * 2)
-    found = read_elevation(keyed(tmp_path / "c.tif", {1024: 1, 1025: 1, 3072: 9999}))
-    assert "GDAL does not know EPSG:9999; its unit is taken for a metre" in found.notes
-    monkeypatch.setitem(sys.modules, "rasterio.crs", None)  # without the extra
-    found = read_elevation(keyed(tmp_path / "d.tif", {1024: 1, 1025: 1, 3072: 2264}))
-    assert "its keys do not say the unit of EPSG:2264; a metre is assumed" in found.notes
-
-
-@pytest.mark.parametrize(("driver", "ending"), [("GTiff", "tif"), ("AAIGrid", "asc"), ("EHdr", "bil")])
+@pytest.mark.parametrize(("driver", "ending"), [("GTiff", "tif"), ("EHdr", "bil")])
 def test_a_system_stated_beside_a_file_counts(tmp_path, driver, ending):
     path = raster(tmp_path / f"a.{ending}", None, driver=driver)
     wkt = CRS.from_user_input("EPSG:2264+8228").to_wkt().replace('"', "&quot;")
@@ -301,7 +266,6 @@ WITHOUT_METRES = {
     "floats.npy": lambda path: np.save(path, HEIGHTS.astype("f8")),
     "bytes.npy": lambda path: np.save(path, HEIGHTS),
     "archive.npz": lambda path: np.savez(path, elevation=HEIGHTS.astype("f4")),
-    "no name.hgt": lambda path: path.write_bytes(HEIGHTS.astype(">i2").tobytes()),
 }
 
 

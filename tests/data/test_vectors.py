@@ -13,7 +13,6 @@ import tifffile
 from playground.allowed_files import VECTORS
 from playground.data import vectors
 from playground.data.vectors import Grid, Shape, draw, read_vectors
-from playground.engine import file_sources
 from playground.engine.sources import source_kind
 from playground.errors import DataError
 from playground.extras import install_command
@@ -261,7 +260,9 @@ def test_other_formats_are_read_by_ogr_or_name_the_extra(tmp_path, monkeypatch, 
     with pytest.raises(DataError, match=f"is no {ending[1:]} file, although its name says so"):
         read_vectors(path)
     monkeypatch.setattr(vectors, "find_spec", lambda _: None)
-    with pytest.raises(DataError, match=f"is read by OGR; .*{re.escape(install_command('gis'))}"):
+    with pytest.raises(
+        DataError, match=f"is read by OGR, which needs pyogrio: {re.escape(install_command('gis'))}"
+    ):
         read_vectors(path)
 
 
@@ -400,7 +401,6 @@ def utm(longitude, latitude, middle):
 
 
 def test_a_place_in_degrees_is_at_its_place_on_terrain_in_utm(tmp_path, values):
-    pytest.importorskip("rasterio")  # of the extra gis
     x, y = utm(13.37, 47.21, 15.0)
     dem = terrain(tmp_path / "a.tif", 32633, x - 300.0, y + 250.0, (10.0, 12.5))
     path = geojson(tmp_path / "a.json", geometry("Point", [13.37, 47.21]))
@@ -409,7 +409,6 @@ def test_a_place_in_degrees_is_at_its_place_on_terrain_in_utm(tmp_path, values):
 
 
 def test_a_parallel_is_bent_on_terrain_in_utm(tmp_path, values):
-    pytest.importorskip("rasterio")
     (west, _), (east, _) = utm(12.0, 47.5, 15.0), utm(13.0, 47.5, 15.0)
     middle = utm(12.5, 47.5, 15.0)
     step = (east - west) / 60, 50.0
@@ -427,10 +426,7 @@ def test_a_parallel_is_bent_on_terrain_in_utm(tmp_path, values):
 
 
 @pytest.mark.parametrize("name", ["urn:ogc:def:crs:EPSG::32633", "EPSG:32633"])
-def test_the_system_that_an_older_geojson_names_needs_no_extra_where_it_is_the_terrain_s(
-    tmp_path, values, monkeypatch, name
-):
-    monkeypatch.setattr(file_sources, "has_rasters", lambda: False)
+def test_an_older_geojson_may_name_the_terrain_s_system(tmp_path, values, name):
     dem = terrain(tmp_path / "a.tif", 32633, 5000.0, 9000.0, (10.0, 10.0))
     crs = {"type": "name", "properties": {"name": name}}
     path = geojson(tmp_path / "a.json", geometry("Point", [5100, 8800]), crs=crs)
@@ -438,14 +434,8 @@ def test_the_system_that_an_older_geojson_names_needs_no_extra_where_it_is_the_t
     assert centre(made) == pytest.approx((10.0, 20.0), abs=0.02)
 
 
-def test_what_cannot_be_transformed_is_a_sentence(tmp_path, values, monkeypatch):
+def test_what_cannot_be_transformed_is_a_sentence(tmp_path, values):
     dem = terrain(tmp_path / "a.tif", 32633, 5000.0, 9000.0, (10.0, 10.0))
-    path = geojson(tmp_path / "a.json", geometry("Point", [13, 47]))
-    monkeypatch.setattr(file_sources, "has_rasters", lambda: False)
-    with pytest.raises(DataError, match=r"is EPSG:4326 and that of the terrain EPSG:32633; .* transforms it"):
-        KIND.make(values(path, dem), (61, 41))
-    monkeypatch.undo()
-    pytest.importorskip("rasterio")
     crs = {"type": "name", "properties": {"name": "EPSG:99999"}}
     path = geojson(tmp_path / "b.json", geometry("Point", [13, 47]), crs=crs)
     with pytest.raises(DataError, match="GDAL does not know a reference system"):

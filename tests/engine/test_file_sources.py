@@ -144,7 +144,7 @@ def test_large_heights_are_not_kept_once_a_texture_was_made_and_are_known_all_th
     monkeypatch.setattr("playground.engine.file_sources.KEPT", 1)
     np.testing.assert_array_equal(KIND.make(given, (3, 2))["height"], kept)
     assert file_sources._whole.cache_info().currsize == 0
-    for module in ("arrays", "rows"):
+    for module in ("arrays", "grid"):
         monkeypatch.setattr(f"playground.data.{module}.open_regular", None)
     assert KIND.describe(given) == known
     with pytest.raises(DataError):

@@ -7,8 +7,8 @@
 //   tested   tests/data/test_vectors.py, against masks drawn much finer
 //
 // GeoJSON counts degrees on WGS 84; shapes in another reference system than the terrain's are
-// brought into that, by GDAL in the extra gis, which reads the other formats, too. A reference
-// system that a file does not name is taken for the terrain's.
+// transformed into that by GDAL. The extra gis reads the other formats. A reference system that
+// a file does not name is taken for the terrain's.
 #pragma source("vector_file", output = "mask:r32f")
 
 uniform sampler2D vectors;    //! file("sketches/data/jacksboro_grid.geojson") label("Vector data")
