@@ -29,6 +29,7 @@ EXTRAS = {
     "lsp": "diagnostics and completion in your editor",
     "microphone": "sound from a microphone",
     "midi": "MIDI controllers",
+    "models": "glTF models on the ground",
     "notebook": "widgets and lessons in notebooks",
     "osc": "Open Sound Control",
     "remote": "a remote in a browser",

@@ -16,7 +16,7 @@ from playground.data.content_hash import content_hash, content_key
 from playground.data.elevation import read_elevation
 from playground.data.image_files import picture_size, read_image, read_png
 from playground.data.media import film_of, open_media
-from playground.data.model_files import read_model
+from playground.data.models import read_model
 from playground.data.vectors import read_vectors
 from playground.engine.files import find_file
 from playground.errors import PlaygroundError

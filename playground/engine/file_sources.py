@@ -11,8 +11,7 @@ Texel by texel from the south-west, row by row: the three corners of the first t
 on, ``CORNERS`` in a row. The fourth number of a place is 1 where there is a corner, 0 after the last.
 
 Where the terrain lies is what an elevation file says; shapes in another reference system are brought into
-that one by GDAL. The datums WGS 84, NAD 83 and ETRS 89 are taken for one: they
-differ by two metres at most.
+that one by GDAL. The datums WGS 84, NAD 83 and ETRS 89 are taken for one: they differ by two metres at most.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ from playground.data.gaps import Voids, fill_no_data
 from playground.data.gis import transformed
 from playground.data.grid import Packing, check_grid, fitted
 from playground.data.image_files import Image, read_image, replacing
-from playground.data.model_files import Model, read_model
+from playground.data.models import Model, read_model
 from playground.data.place import Place
 from playground.data.resample import resample
 from playground.data.vectors import Grid, Line, Shape, draw, read_vectors
@@ -275,10 +274,8 @@ def make_model(
     model = _model(values)
     texels, corners = size[0] * size[1], 3 * len(model.corners)
     if corners > texels:
-        raise DataError(
-            f"this model has {corners} corners; {texels} texels were expected to hold them",
-            file=Path(str(values["model"])),
-        )
+        message = f"this model has {corners} corners; {texels} texels were expected to hold them"
+        raise DataError(message, file=Path(str(values["model"])))
     found = {}
     for name, numbers in (("place", model.corners), ("facing", model.normals), ("tint", model.colours)):
         rows = np.zeros((texels, 4), np.float32)

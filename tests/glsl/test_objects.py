@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from playground.data.model_files import read_model
+from playground.data.models import read_model
 from playground.paths import GLSL
 
-from ..terrain.test_model_files import PLACES, with_blob
+from ..terrain.test_models import PLACES, with_blob
 
 LIST = """
 #pragma kernel(output = "tree:rgba32f, total:r32f")

@@ -5,16 +5,18 @@ from __future__ import annotations
 import base64
 import json
 import os
+import re
 import struct
 
 import numpy as np
 import pytest
 
-from playground.data.model_document import MOST_NUMBERS, MOST_TRIANGLES
-from playground.data.model_files import MOST_PARTS, read_model
+from playground.data import models
+from playground.data.models import MAX_NUMBERS, MAX_PARTS, MAX_TRIANGLES, read_model
 from playground.engine import file_sources
 from playground.engine.file_sources import CORNERS, make_model, size_of_model
 from playground.errors import DataError
+from playground.extras import install_command
 
 from ..models import DATA, FILES
 
@@ -68,7 +70,7 @@ def indexed(kind, last):
     numbers = np.array([0, 1, 2, 0, 2, last], {5120: "i1", 5122: "<i2", 5123: "<u2", 5126: "<f4"}[kind])
     data = PLACES.tobytes() + numbers.tobytes()
     view = {"buffer": 0, "byteOffset": 48, "byteLength": numbers.nbytes}
-    return with_blob(data, accessors__1__componentType=kind, bufferViews__1=view)
+    return with_blob(data, accessors__1__componentType=kind, bufferViews__1=view, bufferViews__2=view)
 
 
 def placed_at(number):
@@ -173,52 +175,53 @@ GLB = struct.pack("<III", 0x46546C67, 2, 24) + struct.pack("<II", 4, 0x4E4F534A)
         (document(asset={"version": "1.0"}), "is glTF 1.0"),
         (document(extensionsRequired=["KHR_draco_mesh_compression"]), "needs KHR_draco_mesh_compression"),
         (document(nodes=[{"children": [0]}]), "a node inside itself"),
-        (document(nodes=[{"children": [1] * 200}, {"children": [2] * 200}, {}]), "has more than 16384 nodes"),
-        (document(scenes=[{"nodes": [3]}]), r"names nodes\[3\], which it does not have"),
+        (document(nodes=[{"children": [1] * 200}, {"children": [2] * 200}, {}]), "or inside two others"),
+        (document(nodes=[{}] * 20000), "has more than 16384 nodes"),
+        (document(scenes=[{"nodes": [3]}]), "names a node that is not among its 1"),
         (document(meshes=[]), r"names meshes\[0\]"),
         (document(scenes=[{"nodes": []}]), "has no triangles in its scene"),
         (document(meshes__0__primitives__0__mode=1), r"has lines; triangles \(mode 4\) were expected"),
         (document(meshes__0__primitives__0__attributes={}), "without POSITION"),
-        (document(accessors__0__count=9), "ends before its POSITION do"),
-        (document(accessors__0__componentType=5), "POSITION of a form that is not read"),
-        (document(accessors__1__count=5), "5 indices into 4 places"),
-        (document(accessors__0__count=2), "6 indices into 2 places"),
-        (document(accessors__1__count=10**9), "has 1000000000 of indices"),
-        (document(bufferViews__0__byteOffset=-4), "has POSITION at no place that can be"),
+        (document(accessors__0__count=9), "is not as glTF 2.0 has it: cannot reshape"),
+        (document(accessors__0__componentType=5), "is not as glTF 2.0 has it"),
+        (document(accessors__1__count=5), "is not as glTF 2.0 has it: cannot reshape array of size 5"),
+        (document(accessors__0__count=2), "has indices that are not those of its 2 places"),
+        (document(accessors__1__count=10**9), "has more than 4194304 numbers in its accessors"),
+        (document(bufferViews__0__byteOffset=-4), "is not as glTF 2.0 has it"),
         (document(buffers__0__uri="model.bin"), "has its data in another file, model.bin; one file, .glb"),
-        (document(buffers__0__uri="data:a/b;base64,%"), "has damaged data"),
-        (document(nodes=[{"mesh": 0, "matrix": [1, 2]}]), "has a matrix that is not 16 numbers"),
-        (document(nodes=[{"mesh": 0, "scale": [True, 1, 1]}]), "has a scale that is not 3 numbers"),
+        (document(buffers__0__uri="data:a/b;base64,%"), "is not as glTF 2.0 has it"),
+        (document(nodes=[{"mesh": 0, "matrix": [1, 2]}]), "is not as glTF 2.0 has it: cannot reshape"),
         # What is of another kind than it should be.
         (document(extensionsRequired=None), "has extensionsRequired None; a list was expected"),
         (document(extensionsRequired=7), "has extensionsRequired 7; a list was expected"),
         (document(scenes=3), "has scenes 3; a list was expected"),
         (document(scenes=[{"nodes": None}]), "has nodes None; a list was expected"),
         (document(scenes=[], nodes={"mesh": 0}), "has nodes {'mesh': 0}; a list was expected"),
-        (document(scenes=[], nodes=[4]), r"names nodes\[0\], which it does not have"),
-        (document(scenes=[], nodes=[{"children": [[]]}]), r"names nodes\[\[\]\], which it does not have"),
-        (document(scenes=[{"nodes": [True]}]), r"names nodes\[True\]"),
+        (document(scenes=[], nodes=[4]), r"has nodes \[4\]; a list was expected"),
+        (document(scenes=[], nodes=[{"children": [[]]}]), r"has children \[\[\]\]; a list was expected"),
+        (document(scenes=[{"nodes": [True]}]), r"has nodes \[True\]; a list was expected"),
         (document(nodes=[{"children": 5}]), "has children 5; a list was expected"),
         (document(meshes__0__primitives=None), "has primitives None; a list was expected"),
-        (document(meshes__0__primitives=[9]), "has primitives 9; an object was expected"),
-        (document(meshes__0__primitives__0__attributes=[0]), r"has attributes \[0\]; an object was"),
-        (document(meshes__0__primitives__0__attributes=None), "has attributes None; an object was"),
+        (document(meshes__0__primitives=[9]), r"has primitives \[9\]; a list was expected"),
+        (document(meshes__0__primitives__0__attributes=[0]), "a mesh without POSITION"),
+        (document(meshes__0__primitives__0__attributes=None), "is not as glTF 2.0 has it"),
         (document(meshes__0__primitives__0__mode=1.0), r"has mode 1.0; triangles \(mode 4\) were"),
         (document(meshes__0__primitives__0__mode=[]), r"has mode \[\]; triangles \(mode 4\) were"),
-        (document(meshes__0__primitives__0__indices=None), r"names accessors\[None\]"),
-        (rough(None), "has pbrMetallicRoughness None; an object was expected"),
-        (rough("grey"), "has pbrMetallicRoughness grey; an object was expected"),
-        (document(accessors__0__type=["VEC3"]), "POSITION of a form that is not read"),
-        (document(accessors__0__componentType=[5126]), "POSITION of a form that is not read"),
-        (document(accessors__0__count=True), "has True of POSITION"),
-        (document(bufferViews__0__buffer=[0]), r"names buffers\[\[0\]\]"),
+        (document(meshes__0__primitives__0__indices=None), "is not as glTF 2.0 has it"),
+        (rough(None), "is not as glTF 2.0 has it"),
+        (rough("grey"), "is not as glTF 2.0 has it"),
+        (document(accessors__0__type=["VEC3"]), "is not as glTF 2.0 has it"),
+        (document(accessors__0__componentType=[5126]), "is not as glTF 2.0 has it"),
+        (document(accessors__0__count=True), "has a count True; a whole number was expected"),
+        (document(bufferViews__0__buffer=[0]), "is not as glTF 2.0 has it"),
         # Indices are whole numbers from 0; none is no triangle.
-        *((indexed(kind, 0), "indices of a form that is not read") for kind in (5120, 5122, 5126)),
-        (indexed(5123, 4), "6 indices into 4 places"),
-        (document(accessors__1__count=0), "has 0 of indices; 1 to 196608 were expected"),
+        (indexed(5126, 0), "has indices that are not those of its 4 places"),
+        (indexed(5122, -1), "has indices that are not those of its 4 places"),
+        (indexed(5123, 4), "has indices that are not those of its 4 places"),
+        (document(accessors__1__count=0), "has indices that are not those of its 4 places"),
         (
             document(accessors__0__count=0, meshes__0__primitives__0__attributes={"POSITION": 0}),
-            "has 0 of POSITION; 1 to 196608 were expected",
+            "has indices that are not those of its 0 places",
         ),
         # Numbers that are none, or too far away to be a place.
         (placed_at(np.nan), "has POSITION that are no numbers"),
@@ -233,7 +236,7 @@ def test_what_is_wrong_is_said_in_a_sentence(read, wrong, message):
 
 
 def test_a_model_has_a_bound(read, tmp_path):
-    indices = np.zeros(3 * (MOST_TRIANGLES // 2 + 1), "<u2")
+    indices = np.zeros(3 * (MAX_TRIANGLES // 2 + 1), "<u2")
     blob = PLACES.tobytes() + indices.tobytes()
     found = document(
         buffers=[{"byteLength": len(blob), "uri": "data:a/b;base64," + base64.b64encode(blob).decode()}],
@@ -242,7 +245,7 @@ def test_a_model_has_a_bound(read, tmp_path):
         nodes=[{"mesh": 0}, {"mesh": 0}],
         scenes=[{"nodes": [0, 1]}],
     )
-    with pytest.raises(DataError, match=f"has more than {MOST_TRIANGLES} triangles"):
+    with pytest.raises(DataError, match=f"has more than {MAX_TRIANGLES} triangles"):
         read(found)
     with pytest.raises(DataError, match="cannot be read: No such file"):
         read_model(tmp_path / "none.glb")
@@ -261,7 +264,7 @@ def test_what_nothing_is_left_of_has_its_own_normals(read):
 
 
 PART = {"attributes": {"POSITION": 0, "NORMAL": 0, "COLOR_0": 0}, "indices": 1}
-MANY = np.zeros((3 * MOST_TRIANGLES, 3), "<f4").tobytes()
+MANY = np.zeros((3 * MAX_TRIANGLES, 3), "<f4").tobytes()
 
 
 def much(nodes=1, parts=1, **changes):
@@ -272,7 +275,7 @@ def much(nodes=1, parts=1, **changes):
         nodes=[{"mesh": 0}] * nodes,
         scenes=[{"nodes": list(range(nodes))}],
         meshes=[{"primitives": [PART] * parts}],
-        accessors__0__count=3 * MOST_TRIANGLES,
+        accessors__0__count=3 * MAX_TRIANGLES,
         accessors__1__count=3,
         bufferViews__0__byteLength=len(MANY),
         bufferViews__1={"buffer": 0, "byteOffset": len(MANY), "byteLength": 6},
@@ -280,30 +283,54 @@ def much(nodes=1, parts=1, **changes):
     )
 
 
-def test_places_are_read_once_however_often_they_are_used(read, monkeypatch):
-    """So that work is bound by triangles, as the file's size does not bound it."""
-    seen = []
-    stride = np.lib.stride_tricks.as_strided
-    monkeypatch.setattr(
-        np.lib.stride_tricks, "as_strided", lambda *given: seen.append(given[1]) or stride(*given)
-    )
-    model = read(much(nodes=20, parts=5))
-    assert len(model.corners) == 100
-    assert sorted(seen) == [(3, 2), (3 * MOST_TRIANGLES, 12)]
+def test_places_may_be_shared_by_many_parts(read):
+    assert len(read(much(nodes=20, parts=5)).corners) == 100
 
 
 @pytest.mark.slow
 def test_parts_and_numbers_have_bounds(read):
-    with pytest.raises(DataError, match=f"has more than {MOST_PARTS} parts"):
-        read(much(nodes=MOST_PARTS // 64 + 1, parts=64))
+    with pytest.raises(DataError, match=f"has more than {MAX_PARTS} parts"):
+        read(much(nodes=MAX_PARTS // 64 + 1, parts=64))
     # Accessor after accessor over the same bytes, each of which would be read.
     found = much()
     found["accessors"] += [found["accessors"][0]] * 64
     found["meshes"][0]["primitives"] = [
         {"attributes": {"POSITION": k}, "indices": 1} for k in range(3, 3 + 64)
     ]
-    with pytest.raises(DataError, match=f"has more than {MOST_NUMBERS} numbers"):
+    with pytest.raises(DataError, match=f"has more than {MAX_NUMBERS} numbers"):
         read(found)
+
+
+def test_a_whole_number_is_a_share_where_that_is_stated(read):
+    """As files of quantised meshes have it: places of 16 bits, made larger by their node."""
+    places = (PLACES * 10_000).astype("<i2")
+    data = places.tobytes() + INDICES.tobytes()
+    views = {f"bufferViews__{k}": {"buffer": 0, "byteOffset": 24, "byteLength": 12} for k in (1, 2)}
+    model = read(
+        with_blob(
+            data,
+            accessors__0__componentType=5122,
+            accessors__0__normalized=True,
+            nodes=[{"mesh": 0, "scale": [3.2767] * 3}],
+            extensionsRequired=["KHR_mesh_quantization"],
+            bufferViews__0={"buffer": 0, "byteLength": 24},
+            **views,
+        )
+    )
+    np.testing.assert_allclose(model.corners, upright(PLACES[INDICES]).reshape(2, 3, 3), atol=1e-6)
+
+
+def test_a_file_of_pictures_and_of_other_files_opens_none(read, tmp_path, monkeypatch):
+    found = document(images=[{"uri": "secret.png"}], textures=[{"source": 0}])
+    (tmp_path / "secret.png").write_bytes(b"no picture")
+    monkeypatch.setattr("PIL.Image.open", None)
+    assert len(read(found).corners) == 2
+
+
+def test_without_trimesh_the_extra_is_named(read, monkeypatch):
+    monkeypatch.setattr(models, "find_spec", lambda _: None)
+    with pytest.raises(DataError, match=f"a model needs trimesh: {re.escape(install_command('models'))}"):
+        read(document())
 
 
 def test_a_file_is_read_again_only_when_it_changes(tmp_path, monkeypatch):
