@@ -32,7 +32,17 @@ from playground.allowed_files import (
     vrt_document,
 )
 from playground.data.bounds import ALWAYS_FINE, refuse_bomb
-from playground.data.grid import EIGHT_BIT, PACKED, SIXTEEN_BIT, Band, Found, Packing, check_grid
+from playground.data.grid import (
+    EIGHT_BIT,
+    PACKED,
+    SIXTEEN_BIT,
+    Band,
+    Found,
+    Packing,
+    check_grid,
+    require_grey,
+    unpacked,
+)
 from playground.data.image_files import reason
 from playground.data.place import WGS_84, Crs, Place, gdal, gdal_crs
 from playground.errors import DataError
@@ -62,7 +72,6 @@ _EXPECTED = {
     ".hgt": "is no SRTM tile; expected 1201 x 1201 or 3601 x 3601 heights of 16 bits, and a name that says "
     "its corner, as N36W085.hgt",
 }
-_ESRI = (".asc", ".bil", ".flt")
 _HEIGHTS = ("elevation", "z", "height", "altitude", "topo", "dem", "band1", "band_data")  # names of variables
 _BAND = 2**22  # [texels] that are read at a time
 _ESRI_NO_DATA = -9999.0  # where an .asc or .flt does not say
@@ -114,13 +123,9 @@ class GdalRows:
 
     def _values(self, raster: rasterio.io.DatasetReader, window: Any) -> NDArray[Any]:
         samples = raster.read((1, 2, 3) if self.packed or self.coloured else (1,), window=window)
-        values: NDArray[Any] = samples[0]
-        if self.packed:
-            weights = np.array([65536.0, 256.0, 1.0], np.float32)
-            values = np.tensordot(weights, samples, 1)  # exact: below 2**24
-        elif self.coloured and not (samples[1:] == values).all():
-            message = "is a picture in colour; expected grey, or packing 'rgb' for heights in three channels"
-            raise DataError(message, file=self.path)
+        values: NDArray[Any] = unpacked(samples) if self.packed else samples[0]
+        if self.coloured:
+            require_grey(samples, self.path)
         if self.masked:
             values = values.astype(self.dtype)
             values[raster.read_masks(1, window=window) == 0] = np.nan
@@ -134,61 +139,53 @@ def read_raster(path: Path, packing: Packing = "grey") -> Found:
         DataError: what GDAL does not take for the format that its ending says, a rotated grid, a raster that
             is made of files which may not be read, or of no heights.
     """
-    ending = path.suffix.lower()
+    driver = _DRIVERS[path.suffix.lower()]
     _check_neighbours(path)
     name = _grid_in(path)
-    with _explained(path), _open(name, _DRIVERS[ending]) as raster:
+    with _explained(path), _open(name, driver) as raster:
         shape, dtype, bands = raster.shape, np.dtype(raster.dtypes[0]), raster.count
         check_grid(shape, dtype, path, in_turn=True)
         _check_size(raster, path)
         crs = Crs(raster.crs.to_wkt(version="WKT2_2019") if raster.crs else "")
         unit, scale, offset = raster.units[0] or "", raster.scales[0], raster.offsets[0]
         no_data, overviews = raster.nodata, len(raster.overviews(1))
-        pictures = len(raster.subdatasets) if _DRIVERS[ending] == "GTiff" else 0
+        pictures = len(raster.subdatasets) if driver == "GTiff" else 0
         masked = any(flag.name == "per_dataset" for flag in raster.mask_flag_enums[0])
         place, south_first, notes = _place(raster, crs, path)
         block_rows = raster.block_shapes[0][0]
     if not (math.isfinite(scale) and math.isfinite(offset) and scale):
         raise DataError("says that its numbers have a scale or an offset that is no number", file=path)
-    if packing == "rgb" and (bands < 3 or dtype != np.uint8):
+    packed = packing == "rgb"
+    if packed and (bands < 3 or dtype != np.uint8):
         what = f"packed heights need three channels of 8 bits; found {bands} of {8 * dtype.itemsize}"
         raise DataError(what, file=path)
     code_range = {"u1": EIGHT_BIT, "u2": SIXTEEN_BIT}.get(dtype.str[1:])
+    coloured = not packed and code_range is not None and bands >= 3
     has_meaning = place is not None or crs.facts.kind or unit or (scale, offset) != (1.0, 0.0)
-    in_metres = code_range is None or bool(packing == "grey" and has_meaning)
-    if packing == "rgb":
-        code_range, dtype = PACKED, np.dtype(np.float32)
-    elif masked:
+    in_metres = code_range is None or bool(not packed and has_meaning)
+    if masked or packed:
         dtype = np.promote_types(dtype, np.float32)
-    coloured = packing == "grey" and code_range is not None and bands >= 3
-    rows = GdalRows(
-        path, name, _DRIVERS[ending], shape, dtype, block_rows, packing == "rgb", coloured, masked
-    )
     if pictures > 1:
         notes += (f"the first of {pictures} pictures was read",)
     elif bands > 1 and code_range is None:
         notes += (f"the first of its {bands} bands was read",)
-    if place is not None and ending in _ESRI and not crs.text:
-        prj = path.with_suffix(".prj").name
-        notes = (f"there is no {prj} next to it, so its cells may be degrees or metres",)
-    spacing = None
-    if place is not None:
-        spacing, more = place.spacing
-        notes = notes if ending in _ESRI and not crs.text else (*more, *notes)
+    if no_data is None and path.suffix.lower() in (".asc", ".flt"):
+        no_data = _ESRI_NO_DATA
+    rows = GdalRows(path, name, driver, shape, dtype, block_rows, packed, coloured, masked)
     found = Found(
         rows,
-        spacing,
+        None if place is None else place.spacing[0],
         in_metres=in_metres,
-        code_range=None if in_metres else code_range,
-        no_data=_ESRI_NO_DATA if no_data is None and ending in (".asc", ".flt") else no_data,
-        scale=scale if in_metres else 1.0,
-        offset=offset if in_metres else 0.0,
+        code_range=None if in_metres else PACKED if packed else code_range,
+        no_data=no_data,
         place=place,
         south_first=south_first,
         overviews=tuple(_overview(rows, number) for number in range(overviews)),
         notes=notes,
     )
-    return found.in_unit(crs if place is None else place.crs, unit) if in_metres else found
+    if not in_metres:
+        return found
+    return replace(found, scale=scale, offset=offset).in_unit(place.crs if place else crs, unit)
 
 
 def _open(name: str, driver: str, overview: int | None = None) -> rasterio.io.DatasetReader:
@@ -262,7 +259,12 @@ def _place(
     north = at.f + (size[1] - 0.5 if south_first else 0.5) * at.e
     is_point = raster.tags().get("AREA_OR_POINT") == "Point"
     place = Place(at.c + 0.5 * at.a, north, (at.a, abs(at.e)), size, crs, is_point)
-    return place, south_first, notes
+    if raster.driver in ("AAIGrid", "EHdr") and not crs.text:
+        prj = path.with_suffix(".prj").name
+        more: tuple[str, ...] = (f"there is no {prj} next to it, so its cells may be degrees or metres",)
+    else:
+        more = place.spacing[1]
+    return place, south_first, (*more, *notes)
 
 
 def turned(path: Path, east: float, north: float) -> DataError:

@@ -118,7 +118,6 @@ class Found:
     spacing: tuple[float, float] | None = None
     in_metres: bool = True  # else heights are codes, as a picture's
     code_range: tuple[float, float] | None = None
-    void: NDArray[np.bool_] | None = None  # (rows, cols) where there is no data, besides NaN and ``no_data``
     no_data: float | None = None  # what stands for no data
     assumed: str = ""  # of the unit of its heights; "" where the file or its format says it
     scale: float = 1.0  # [m] height of one step of the file's numbers
@@ -139,15 +138,12 @@ class Found:
         metres, assumed = crs.height_unit(stated)
         return replace(self, scale=self.scale * metres, offset=self.offset * metres, assumed=assumed)
 
-    def heights(self, start: int, band: NDArray[Any]) -> NDArray[np.floating[Any]]:
-        """Return the heights that some rows mean, NaN for no data; ``start`` is the number of the first."""
+    def heights(self, band: NDArray[Any]) -> NDArray[np.floating[Any]]:
+        """Return the heights that some rows mean, NaN for no data."""
         void = void_of(band, self.no_data)
         if band.dtype.kind == "i" and band.dtype.itemsize == 2:
             short = band == _SHORT_VOID
             void = short if void is None else void | short
-        if self.void is not None:
-            own = self.void[start : start + len(band)]
-            void = own if void is None else void | own
         with np.errstate(all="ignore"):
             plain = (self.scale, self.offset) == (1.0, 0.0)
             heights = np.array(
@@ -206,25 +202,29 @@ def check_grid(shape: tuple[int, ...], dtype: np.dtype[Any], path: Path, *, in_t
 
 def from_channels(samples: NDArray[Any], packing: Packing, path: Path) -> Found:
     """Return the heights in a picture's samples (rows, cols, channels): grey, grey + alpha, RGB or RGBA."""
-    channels = samples.shape[2]
-    code_range = {"u1": EIGHT_BIT, "u2": SIXTEEN_BIT}.get(samples.dtype.str[1:])
-    void = None
-    pictured = samples.dtype.kind == "u"  # as greys and colours are, and bands of measured numbers are not
-    if channels in (2, 4) and pictured:
-        void = samples[..., -1] == 0
+    channels, bits = samples.shape[2], 8 * samples.dtype.itemsize
+    values: NDArray[Any] = samples[..., 0]
+    code_range = EIGHT_BIT if bits == 8 else SIXTEEN_BIT
     if packing == "rgb":
-        if channels < 3 or samples.dtype != np.uint8:
-            bits = 8 * samples.dtype.itemsize
-            raise DataError(
-                f"packed heights need three channels of 8 bits; found {channels} of {bits}", file=path
-            )
-        red, green, blue = (samples[..., k].astype(np.float32) for k in range(3))  # exact: below 2**24
-        packed = red * 65536.0 + green * 256.0 + blue
-        return in_memory(packed, in_metres=False, code_range=PACKED, void=void)
-    grey = samples[..., 0]
-    if pictured and channels >= 3 and not all(np.array_equal(grey, samples[..., k]) for k in (1, 2)):
-        raise DataError(
-            "is a picture in colour; expected grey, or packing 'rgb' for heights in three channels", file=path
-        )
-    notes = () if pictured or channels == 1 else (f"the first of its {channels} bands was read",)
-    return in_memory(grey, in_metres=code_range is None, code_range=code_range, void=void, notes=notes)
+        if channels < 3 or bits != 8:
+            what = f"packed heights need three channels of 8 bits; found {channels} of {bits}"
+            raise DataError(what, file=path)
+        values, code_range = unpacked(np.moveaxis(samples[..., :3], 2, 0)), PACKED
+    elif channels >= 3:
+        require_grey(np.moveaxis(samples[..., :3], 2, 0), path)
+    if channels in (2, 4):
+        values = np.where(samples[..., -1] == 0, np.float32(np.nan), values.astype(np.float32))
+    return in_memory(values, in_metres=False, code_range=code_range)
+
+
+def unpacked(channels: NDArray[Any]) -> NDArray[np.float32]:
+    """Return the numbers R*65536 + G*256 + B of three channels (3, rows, cols) of bytes: exact in float32."""
+    weights = np.array([65536.0, 256.0, 1.0], np.float32)
+    return np.asarray(np.tensordot(weights, channels.astype(np.float32), 1))
+
+
+def require_grey(channels: NDArray[Any], path: Path) -> None:
+    """Raise ``DataError`` for a picture in colour, of channels (3, rows, cols)."""
+    if not (channels[1:] == channels[0]).all():
+        message = "is a picture in colour; expected grey, or packing 'rgb' for heights in three channels"
+        raise DataError(message, file=path)

@@ -62,6 +62,7 @@ def gdal() -> Iterator[None]:
 
     with rasterio.Env(
         CPL_VSIL_CURL_ALLOWED_EXTENSIONS="none",
+        GDAL_CACHEMAX=2**26,  # [bytes] rows are read once
         GDAL_DISABLE_READDIR_ON_OPEN="YES",
         GDAL_GEOREF_SOURCES="PAM,INTERNAL,WORLDFILE",
         GDAL_HTTP_TIMEOUT="1",

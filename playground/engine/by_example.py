@@ -34,8 +34,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.data.content_hash import content_key
-from playground.data.elevation import Elevation, open_elevation
-from playground.data.gaps import fill_no_data
+from playground.data.elevation import Elevation, fill_no_data, open_elevation
 from playground.data.grid import fitted
 from playground.data.resample import resample
 from playground.engine.source_kinds import Material, Terrain

@@ -28,8 +28,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.data.content_hash import content_key
-from playground.data.elevation import Edge, Elevation, ElevationFile, open_elevation, read_elevation
-from playground.data.gaps import Voids, fill_no_data
+from playground.data.elevation import (
+    Edge,
+    Elevation,
+    ElevationFile,
+    Voids,
+    fill_no_data,
+    open_elevation,
+    read_elevation,
+)
 from playground.data.gis import transformed
 from playground.data.grid import Packing, check_grid, fitted
 from playground.data.image_files import Image, read_image, replacing

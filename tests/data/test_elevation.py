@@ -138,32 +138,6 @@ def test_tiff_of_every_kind_of_number(tmp_path, dtype, order):
     assert found.code_range == {"u1": (0, 255), "u2": (0, 65535)}.get(dtype)
 
 
-@pytest.mark.parametrize("compression", ["tiff_lzw", "tiff_adobe_deflate", "packbits"])
-@pytest.mark.parametrize("mode", ["u1", "u2", "f4"])
-def test_compressed_tiff(tmp_path, compression, mode):
-    heightmap = (HEIGHTMAP % 200).astype(mode)
-    PillowImage.fromarray(heightmap).save(tmp_path / "a.tif", compression=compression)
-    assert_heightmap(read_elevation(tmp_path / "a.tif"), heightmap)
-
-
-@pytest.mark.parametrize("predictor", [2, 3])
-def test_tiff_with_a_predictor(tmp_path, predictor):
-    heightmap = HEIGHTMAP.astype("u2" if predictor == 2 else "f4")
-    picture = PillowImage.fromarray(heightmap)
-    picture.save(tmp_path / "a.tif", compression="tiff_lzw", tiffinfo={317: predictor})
-    assert_heightmap(read_elevation(tmp_path / "a.tif"), heightmap)
-
-
-@pytest.mark.parametrize("dtype", [np.float32, np.int32])
-def test_zstd_is_read(tmp_path, dtype):
-    path, heightmap = tmp_path / "a.tif", HEIGHTMAP.astype(dtype)
-    try:
-        PillowImage.fromarray(heightmap).save(path, compression="zstd")
-    except OSError:
-        pytest.skip("this Pillow cannot write zstd")
-    assert_heightmap(read_elevation(path), heightmap)
-
-
 @pytest.mark.parametrize("bands", [2, 3, 5])
 def test_of_several_bands_the_first_is_read_and_that_is_reported(tmp_path, bands):
     heightmap = np.stack([HEIGHTMAP.astype(np.float32) + 100 * k for k in range(bands)])
@@ -182,12 +156,6 @@ def test_a_damaged_tag_is_one_sentence_and_no_log(tmp_path, capfd):
     (tmp_path / "a.tif").write_bytes(content)
     refused(tmp_path / "a.tif", "damaged or cut short")
     assert capfd.readouterr() == ("", "")
-
-
-def test_tiff_in_tiles_and_signed(tmp_path):
-    heightmap = RNG.integers(-3000, 3000, (40, 70)).astype(np.int16)
-    tifffile.imwrite(tmp_path / "a.tif", heightmap, tile=(16, 32), compression="zlib")
-    assert_heightmap(read_elevation(tmp_path / "a.tif"), heightmap)
 
 
 def test_the_first_of_several_pictures_is_read_and_that_is_reported(tmp_path):

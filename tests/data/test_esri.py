@@ -120,23 +120,6 @@ def test_floats_without_their_header_or_cut_short(tmp_path):
     refused(path, "needs a.hdr next to it")
 
 
-@pytest.mark.parametrize(
-    ("dtype", "kind"), [("i2", ""), ("u1", ""), ("i4", "SIGNEDINT"), ("f4", "FLOAT"), ("u2", "UNSIGNEDINT")]
-)
-@pytest.mark.parametrize("order", ["I", "M"])
-def test_bil_of_every_kind_of_number(tmp_path, dtype, kind, order):
-    heights = (HEIGHTS % 200).astype((">" if order == "M" else "<") + dtype)
-    (tmp_path / "a.bil").write_bytes(b"head" + heights.tobytes())
-    lines = ["NROWS 7", "NCOLS 5", f"NBITS {8 * heights.itemsize}", f"BYTEORDER {order}", "SKIPBYTES 4"]
-    lines += ["ULXMAP 10", "ULYMAP 50", "XDIM 0.5", "YDIM 0.25", "LAYOUT BIL"]
-    lines += [f"PIXELTYPE {kind}"] if kind else []
-    (tmp_path / "a.hdr").write_text("\n".join(lines))
-    (tmp_path / "a.prj").write_text(DEGREES)
-    found = read_elevation(tmp_path / "a.bil")
-    np.testing.assert_array_equal(found.heights[::-1], heights.astype(np.float32))
-    assert found.place.bounds == (10.0, 48.5, 12.0, 50.0), "the corner is the middle of the first cell"
-
-
 @pytest.mark.parametrize("name", ["a.asc", "a.flt"])
 def test_gdal_reads_the_same_in_the_same_place(tmp_path, name):
     path = (asc if name == "a.asc" else flt)(tmp_path / name)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from playground.data.elevation import Elevation
-from playground.data.gaps import fill_no_data
+from playground.data.elevation import Elevation, fill_no_data
 from playground.errors import DataError
 
 RNG = np.random.default_rng(12)

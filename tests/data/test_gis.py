@@ -52,6 +52,7 @@ FORMS = {
     "lerc": {"compress": "lerc", "max_z_error": 0.0, **TILES},
     "lerc and zstd": {"compress": "lerc_zstd", "max_z_error": 0.0, **TILES},
     "lzw and predictor 3": {"compress": "lzw", "predictor": 3, **TILES},
+    "packbits": {"compress": "packbits"},
 }
 
 
