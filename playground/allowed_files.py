@@ -71,10 +71,9 @@ def sidecar_places(path: Path) -> tuple[Path, ...]:
 
 
 def _places(path: Path) -> tuple[Path, ...]:
-    endings = _ENDINGS.get(path.suffix.lower(), ())
     return tuple(
         path.with_name(path.name + form) if ending in _APPENDED else path.with_suffix(form)
-        for ending in endings
+        for ending in _ENDINGS.get(path.suffix.lower(), ())
         for form in (ending, ending.upper())
     )
 
@@ -417,7 +416,8 @@ def leads_outside(text: str, folder: Path, declared_in: str = "") -> bool:
 def outside_sidecar(path: Path, roots: Iterable[Path]) -> Path | None:
     """Return a file next to a data file that says how to read it, and leads out of some folders; or None."""
     places, found = tuple(roots), real(path) or path
-    return next((file for file in sidecars(found) if not is_inside(file, places)), None)
+    with looking_once():
+        return next((file for file in sidecars(found) if not is_inside(file, places)), None)
 
 
 def is_absolute(text: str) -> bool:

@@ -11,8 +11,9 @@
 // another size than the file's it is resampled, corners on corners.
 #pragma source("elevation_file", output = "height:r32f")
 
-uniform sampler2D elevation;         //! file("sketches/data/jacksboro_fault_dem.npz") PNG, TIFF,
-                                     //! NPY, NPZ, R16, RAW, HGT, ASC, BIL, FLT or NC
+uniform sampler2D elevation;         //! file("sketches/data/jacksboro_fault_dem.npz") PNG, NPY,
+                                     //! NPZ, R16, RAW; by GDAL TIFF, VRT, IMG, JP2, GPKG, NC,
+                                     //! HGT, ASC, BIL, FLT
 uniform int longest = 0;             //! slider(0, 16384) label("Texels at most") Texels of the
                                      //! terrain's longer side, where the sketch has no size; 0:
                                      //! as many as the file has, and 4097 of a very large one

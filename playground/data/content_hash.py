@@ -22,14 +22,15 @@ def content_key(path: Path) -> str:
     The files next to it that say how to read it count as its contents.
     Raises ``DataError`` for a file that cannot be read.
     """
+    files = (path, *sidecars(path))
     try:
-        stat = require_regular(path)
+        stats = [require_regular(file) for file in files]
     except OSError as error:
         raise DataError(f"cannot be read: {error.strerror}", file=shown(path)) from None
-    if stat.st_size < _LARGE:
-        return content_hash(path)
-    own = f"{stat.st_mtime_ns} {stat.st_ctime_ns} {stat.st_size} {stat.st_ino}"
-    return " ".join((own, *(f"{file.suffix} {content_key(file)}" for file in sidecars(path))))
+    if sum(stat.st_size for stat in stats) < _LARGE:
+        return _hash_of(files)
+    times = (f"{stat.st_mtime_ns} {stat.st_ctime_ns} {stat.st_size} {stat.st_ino}" for stat in stats)
+    return " ".join(f"{file.suffix} {time}" for file, time in zip(files, times, strict=True))
 
 
 def content_hash(path: Path) -> str:
@@ -38,7 +39,11 @@ def content_hash(path: Path) -> str:
     The files next to it that say how to read it count as its contents.
     Raises ``DataError`` for a file that cannot be read.
     """
-    further = sidecars(path)
+    return _hash_of((path, *sidecars(path)))
+
+
+def _hash_of(files: tuple[Path, ...]) -> str:
+    path, *further = files
     if not further:
         return _own_hash(path)
     parts = [_own_hash(path), *(f"{file.suffix} {_own_hash(file)}" for file in further)]
@@ -56,7 +61,7 @@ def _own_hash(path: Path) -> str:
         raise DataError(f"cannot be read: {error.strerror}", file=shown(path)) from None
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=4096)  # as many as a mosaic may have sources
 def _hash(path: str, modified: int, changed: int, size: int, inode: int) -> str:
     with open_regular(Path(path)) as file:
         return hashlib.file_digest(file, lambda: hashlib.blake2b(digest_size=16)).hexdigest()

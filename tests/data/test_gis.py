@@ -13,6 +13,7 @@ from rasterio.transform import Affine
 from scipy.io import netcdf_file
 
 from playground.allowed_files import leads_outside, sidecars
+from playground.data import content_hash as hashes
 from playground.data import gis
 from playground.data.elevation import open_elevation, read_elevation
 from playground.data.grid import ArrayRows
@@ -339,7 +340,7 @@ def test_overviews_next_to_a_file_are_read(tmp_path):
     assert [rows.shape for rows in open_elevation(path).found.overviews] == [(320, 400), (160, 200)]
 
 
-def test_a_mosaic_is_read_as_one(tmp_path):
+def test_a_mosaic_is_read_as_one(tmp_path, monkeypatch):
     (tmp_path / "tiles").mkdir()
     heights = smooth(60, 100)
     west = raster(tmp_path / "tiles" / "w.tif", heights[:, :40])
@@ -348,6 +349,11 @@ def test_a_mosaic_is_read_as_one(tmp_path):
     found = read_elevation(tmp_path / "a.vrt")
     np.testing.assert_array_equal(found.heights[::-1], heights)
     assert set(sidecars(tmp_path / "a.vrt")) == {west, east}, "they go where it goes"
+    for large in (2**26, 1):  # judged by contents, or by times and sizes
+        monkeypatch.setattr(hashes, "_LARGE", large)
+        before = hashes.content_key(tmp_path / "a.vrt")
+        raster(west, heights[:, :40] + large)
+        assert hashes.content_key(tmp_path / "a.vrt") != before, "a source's contents are its own"
 
 
 def mosaic(*parts, size):
