@@ -46,7 +46,7 @@ from playground.data.grid import (
 from playground.data.image_files import reason
 from playground.data.place import WGS_84, Crs, Place, gdal, gdal_crs
 from playground.errors import DataError
-from playground.regular_file import irregularity, open_regular, read_regular
+from playground.regular_file import irregularity, read_regular
 
 if TYPE_CHECKING:
     import rasterio.io
@@ -314,15 +314,12 @@ def _check_neighbours(path: Path) -> None:
         elif _SOURCES.match(read_regular(file, 16)) is None:
             raise DataError("is a source of a VRT; expected GeoTIFF, ERDAS Imagine or JPEG 2000", file=file)
     for file in beside:
-        if file.name.lower().endswith(AUXILIARY) and re.search(rb"OVERVIEW_FILE|<Subdataset", _text(file)):
+        if file.name.lower().endswith(AUXILIARY) and re.search(
+            rb"OVERVIEW_FILE|<Subdataset", read_regular(file)
+        ):
             raise DataError("names further files, which are not read; gdaladdo makes overviews", file=file)
         if file.suffix.lower() in (OVERVIEWS, MASK) and _SOURCES.match(read_regular(file, 16)) is None:
             raise DataError("is no TIFF file, as an overview or a mask is", file=file)
-
-
-def _text(path: Path) -> bytes:
-    with open_regular(path) as handle:
-        return handle.read()
 
 
 def _check_vrt(path: Path) -> None:

@@ -166,22 +166,21 @@ def _facts(text: str) -> CrsFacts:
     if not text:
         return CrsFacts()
     try:
-        crs = gdal_crs(text)
-        flat = horizontal(text)
-    except DataError:
+        with gdal():
+            flat, *others = _parts(gdal_crs(text).to_dict(projjson=True))
+            axes, code = _axes(flat), flat.get("id", {})
+            is_own = code.get("authority") == "EPSG"
+            epsg = int(code["code"]) if is_own else horizontal(text).to_epsg() or 0
+    except (DataError, LookupError, ValueError):  # what is no system, or one of no parts
         return CrsFacts()
-    with gdal():
-        parts = list(_parts(crs.to_dict(projjson=True)))
-        axes = parts[0].get("coordinate_system", {}).get("axis", [])
-        kind = _KINDS.get(parts[0]["type"], "")
-        if not axes or axes[0]["direction"].startswith("geocentric"):
-            return CrsFacts()
-        unit = _unit(axes[0])[0]
-        code = parts[0].get("id", {})
-        epsg = code.get("code", 0) if code.get("authority") == "EPSG" else flat.to_epsg() or 0
-    upward = [axis for part in parts for axis in _axes(part) if axis["direction"] in ("up", "down")]
-    metres, name = _unit(upward[0]) if upward else (0.0, "")
-    return CrsFacts(kind, math.degrees(unit) if kind == "geographic" else unit, int(epsg), metres, name)
+    kind = _KINDS.get(flat["type"], "")
+    if not axes or axes[0]["direction"].startswith("geocentric"):
+        return CrsFacts()
+    upward = [axis for axis in (*axes, *(a for part in others for a in _axes(part)))
+              if axis["direction"] in ("up", "down")]  # fmt: skip
+    height_unit, name = _unit(upward[0]) if upward else (0.0, "")
+    unit = _unit(axes[0])[0]
+    return CrsFacts(kind, math.degrees(unit) if kind == "geographic" else unit, epsg, height_unit, name)
 
 
 def _parts(document: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:

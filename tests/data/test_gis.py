@@ -17,6 +17,7 @@ from playground.data import content_hash as hashes
 from playground.data import gis
 from playground.data.elevation import open_elevation, read_elevation
 from playground.data.grid import ArrayRows
+from playground.data.place import Crs, CrsFacts
 from playground.data.resample import decimate
 from playground.engine import file_sources
 from playground.engine.files import find_file
@@ -459,6 +460,14 @@ def test_a_text_of_a_system_is_no_address(tmp_path, listener, capfd):
     with pytest.raises(DataError, match="GDAL does not know a reference system"):
         gis.transformed(np.zeros((1, 2)), listener, "EPSG:4326")
     assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ['PROJCS["x"]', 'GEOGCS["x"]', "EPSG:99999", "FOO:BAR", "EPSG:4978", '{"type": "x"}', "PROJCS[" * 5000],
+)
+def test_of_an_odd_system_nothing_is_known(text, capfd):
+    assert Crs(text).facts == CrsFacts() and capfd.readouterr() == ("", "")
 
 
 def test_what_becomes_too_much_of_too_little_is_refused(tmp_path):
