@@ -279,15 +279,19 @@ def turned(path: Path, east: float, north: float) -> DataError:
 
 def _check_size(raster: rasterio.io.DatasetReader, path: Path) -> None:
     """Raise ``DataError`` for a raster that has more texels than its files can hold."""
-    unpacked = math.prod(raster.shape) * np.dtype(raster.dtypes[0]).itemsize
-    packed = sum(file.stat().st_size for file in (path, *sidecars(path)))
-    if raster.driver == "EHdr" and unpacked > path.stat().st_size:
-        nx, ny = raster.width, raster.height
-        have, bits = path.stat().st_size, unpacked * 8 // (nx * ny)
-        what = f"holds {have} bytes; {nx} x {ny} numbers of {bits} bits need {unpacked}"
-        raise DataError(f"is cut short: it {what}", file=path)
+    itemsize = np.dtype(raster.dtypes[0]).itemsize
+    unpacked = math.prod(raster.shape) * itemsize
+    if raster.driver == "EHdr":  # GDAL takes what is missing for zeros, and rows for packed
+        have, size = path.stat().st_size, f"{raster.width} x {raster.height} numbers of {8 * itemsize} bits"
+        if unpacked > have:
+            raise DataError(f"is cut short: it holds {have} bytes; {size} need {unpacked}", file=path)
+        header = next(file for file in sidecars(path) if file.suffix.lower() == ".hdr")
+        row = re.search(rb"(?im)^\s*totalrowbytes\s+(\d+)", read_regular(header, 2**16))
+        if row is not None and int(row[1]) != raster.width * itemsize:
+            message = f"says that a row takes {int(row[1])} bytes; {size} take {raster.width * itemsize} each"
+            raise DataError(message, file=header)
     if unpacked > ALWAYS_FINE and not _is_sparse(raster):
-        refuse_bomb(path, unpacked, packed)
+        refuse_bomb(path, unpacked, sum(file.stat().st_size for file in (path, *sidecars(path))))
 
 
 def _is_sparse(raster: rasterio.io.DatasetReader) -> bool:

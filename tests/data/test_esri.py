@@ -116,6 +116,10 @@ def test_floats_without_their_header_or_cut_short(tmp_path):
     path = flt(tmp_path / "a.flt")
     path.write_bytes(path.read_bytes()[:-1])
     refused(path, "is cut short: it holds 139 bytes; 5 x 7 numbers of 32 bits need 140")
+    path = flt(tmp_path / "a.flt")
+    with path.with_suffix(".hdr").open("a") as header:
+        header.write("\nTOTALROWBYTES 24")
+    refused(path, "says that a row takes 24 bytes; 5 x 7 numbers of 32 bits take 20 each")
     path.with_suffix(".hdr").unlink()
     refused(path, "needs a.hdr next to it")
 
