@@ -10,6 +10,7 @@ that the user types are the user's own affair and are not judged here.
 from __future__ import annotations
 
 import os
+import re
 import stat
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -49,7 +50,11 @@ _ENDINGS = {
     ".shp": (".shx", ".dbf", ".prj", ".cpg"),
 }
 _MAX_VRT_BYTES = 2**22
-_MAX_SOURCES = 2**12
+MAX_SOURCES = 2**12
+"""Files that a VRT may be made of."""
+
+_READ_ALIKE = re.compile(rb"\s*<VRTDataset\b(?:[^&<\0]++|<[^!?]|&(?:amp|apos|gt|lt|quot);)*+")
+"""A text of XML that every parser reads alike: without comments, entities of its own, or another encoding."""
 
 
 def sidecars(path: Path) -> tuple[Path, ...]:
@@ -82,7 +87,7 @@ def all_sources(path: Path) -> tuple[Path, ...]:
     """Return the files that a VRT is made of, those of VRTs inside it too; a few thousand at most."""
     found: dict[Path, None] = {}
     waiting = [path]
-    while waiting and len(found) < _MAX_SOURCES:
+    while waiting and len(found) < MAX_SOURCES:
         for text, source in sources_of(waiting.pop()):
             if source not in found and source != path:
                 found[source] = None
@@ -94,7 +99,7 @@ def sources_of(path: Path) -> list[tuple[str, Path]]:
     """Return the sources that a VRT names, and their paths; none where it is no VRT."""
     root = vrt_document(path)
     names = [] if root is None else [e for e in root.iter() if e.tag in ("SourceFilename", "SourceDataset")]
-    texts = [(e.text or "").strip() for e in names]
+    texts = [e.text or "" for e in names]
     return [(text, path.parent / text) for text in texts if text and "\0" not in text]
 
 
@@ -112,8 +117,9 @@ def vrt_document(path: Path) -> ElementTree.Element | None:
 def _document(path: Path, modified: int, size: int) -> ElementTree.Element | None:
     from xml.etree import ElementTree
 
+    text = read_regular(path)
     try:
-        return ElementTree.fromstring(read_regular(path))
+        return ElementTree.fromstring(text) if _READ_ALIKE.fullmatch(text) else None
     except ElementTree.ParseError:
         return None
 

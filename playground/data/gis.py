@@ -24,11 +24,11 @@ from numpy.typing import NDArray
 from playground.allowed_files import (
     AUXILIARY,
     MASK,
+    MAX_SOURCES,
     OVERVIEWS,
     all_sources,
     sidecar_places,
     sidecars,
-    sources_of,
     vrt_document,
 )
 from playground.data.bounds import ALWAYS_FINE, refuse_bomb
@@ -88,7 +88,16 @@ _VRT_TAGS = frozenset(
     "ReprojectTransformer ReprojectionTransformer SourceSRS TargetSRS SourceCRS TargetCRS Options BandList "
     "BandMapping SrcNoDataReal SrcNoDataImag DstNoDataReal DstNoDataImag SrcAlphaBand DstAlphaBand".split()
 )
-_VRT_CLASSES = (None, "VRTWarpedDataset", "VRTSourcedRasterBand", "VRTWarpedRasterBand")
+_VRT_KEYS = frozenset(
+    "rasterXSize rasterYSize dataType band subClass blockXSize blockYSize domain key name relativeToVRT "
+    "shared RasterXSize RasterYSize DataType BlockXSize BlockYSize xOff yOff xSize ySize "
+    "dataAxisToSRSAxisMapping coordinateEpoch resampling resample normalized src dst c1 c2 c3 c4".split()
+)
+_VRT_CLASSES = frozenset(f"{tag} VRTSourcedRasterBand" for tag in _VRT_TAGS) | {
+    "VRTDataset VRTWarpedDataset",
+    "VRTRasterBand VRTWarpedRasterBand",
+}
+_SYSTEM = re.compile(r"\s*(\w+\[|EPSG:\d+(\+\d+)?\s*$|\+proj=|$)")  # no address, and no file
 
 
 @dataclass(frozen=True, eq=False)
@@ -312,7 +321,10 @@ def _check_neighbours(path: Path) -> None:
     beside = sidecars(path)
     if ending in (".bil", ".flt") and not any(file.suffix.lower() == ".hdr" for file in beside):
         raise DataError(f"needs {path.with_suffix('.hdr').name} next to it, which says its size", file=path)
-    for file in (path, *all_sources(path)) if ending == ".vrt" else ():
+    sources = all_sources(path) if ending == ".vrt" else ()
+    if len(sources) >= MAX_SOURCES:
+        raise DataError(f"is made of {len(sources)} files or more; {MAX_SOURCES - 1} is the most", file=path)
+    for file in (path, *sources) if ending == ".vrt" else ():
         if file.suffix.lower() == ".vrt":
             _check_vrt(file)
         elif _SOURCES.match(read_regular(file, 16)) is None:
@@ -330,23 +342,25 @@ def _check_vrt(path: Path) -> None:
     """Raise ``DataError`` for a VRT of other parts than GDAL's mosaics and warps of files have."""
     root = vrt_document(path.resolve())
     if root is None or root.tag != "VRTDataset":
-        raise DataError("is no VRT; expected XML, <VRTDataset>, of 4 MiB at most", file=path)
+        raise DataError("is no VRT; expected <VRTDataset> in plain XML of 4 MiB at most", file=path)
     for element in root.iter():
-        domain = element.get("domain", "") if element.tag == "Metadata" else ""
-        kind = element.get("subClass")
-        if element.tag not in _VRT_TAGS or domain not in ("", "IMAGE_STRUCTURE") or kind not in _VRT_CLASSES:
-            what = kind if kind not in _VRT_CLASSES else domain or element.tag
-            raise DataError(
-                f"has a part {str(what)[:40]!r}, which is not read here; expected what gdalbuildvrt, "
-                "gdal_translate and gdalwarp write",
-                file=path,
-            )
-        if element.tag in ("SourceFilename", "SourceDataset") and element.get("relativeToVRT", "0") != "1":
-            if not Path((element.text or "").strip()).is_absolute():
+        text, kind = element.text or "", element.get("subClass", "VRTSourcedRasterBand")
+        parts = [element.tag, *element.keys(), f"{element.tag} {kind}", element.get("domain", "")]
+        known = (_VRT_TAGS, *[_VRT_KEYS] * len(element.keys()), _VRT_CLASSES, ("", "IMAGE_STRUCTURE"))
+        odd = [part for part, names in zip(parts, known, strict=True) if part not in names]
+        if element.tag.endswith(("SRS", "CRS")) and not _SYSTEM.match(text):
+            odd.append(text)
+        if odd:
+            message = f"has a part {odd[0][:40]!r}, which is not read here; expected what gdalbuildvrt, "
+            raise DataError(f"{message}gdal_translate and gdalwarp write", file=path)
+        if element.tag in ("SourceFilename", "SourceDataset"):
+            source = path.resolve().parent / text
+            if ":" in text[2:] or text.startswith(("/vsi", "\\\\", "//")) or not source.is_file():
+                raise DataError(f"names the source {text[:80]!r}, which is no file", file=path)
+            if text != text.strip() or len(element):
+                raise DataError(f"names the source {text[:80]!r} with more than its name", file=path)
+            if element.get("relativeToVRT", "0") != "1" and not Path(text).is_absolute():
                 raise DataError("names a source that is not relative to itself (relativeToVRT)", file=path)
-    for text, source in sources_of(path.resolve()):
-        if ":" in text[2:] or text.startswith(("/vsi", "\\\\", "//")) or not source.is_file():
-            raise DataError(f"names the source {text[:80]!r}, which is no file", file=path)
 
 
 # ── transformations ──────────────────────────────────────────────────────────

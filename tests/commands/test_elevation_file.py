@@ -46,7 +46,7 @@ def test_a_page_of_a_file_has_its_sketch_to_edit(tmp_path, monkeypatch):
         ("a.bil", b"0000", "a.bil: needs a.hdr next to it"),
         ("a.npy", b"\x93NUMPY", "a.npy: the file is damaged or cut short"),
         ("a.nc", b"CDF", "a.nc: "),
-        ("a.vrt", b"<VRTDataset", "a.vrt: is no VRT; expected XML"),
+        ("a.vrt", b"<VRTDataset", "a.vrt: is no VRT; expected <VRTDataset>"),
         ("a.img", b"EHFA", "a.img: is no .img file to GDAL's driver HFA"),
         ("a.jp2", b"jp2", "a.jp2: is no .jp2 file to GDAL's driver JP2OpenJPEG"),
         ("a.gpkg", b"SQLite", "a.gpkg: holds no raster"),

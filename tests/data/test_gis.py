@@ -10,6 +10,7 @@ import rasterio
 import rasterio.shutil
 from rasterio.enums import Resampling
 from rasterio.transform import Affine
+from rasterio.vrt import WarpedVRT
 from scipy.io import netcdf_file
 
 from playground.allowed_files import leads_outside, sidecars
@@ -369,6 +370,15 @@ def mosaic(*parts, size):
     return f'<VRTDataset rasterXSize="{size[0]}" rasterYSize="{size[1]}">{place}{band}</VRTDataset>'
 
 
+def test_a_warp_is_read(tmp_path):
+    path = raster(tmp_path / "a.tif", smooth(60, 100), Affine(10.0, 5.0, 4e5, 5.0, -10.0, 5.3e6))
+    with rasterio.open(path) as turned, WarpedVRT(turned, crs="EPSG:32633", nodata=-1) as straight:
+        rasterio.shutil.copy(straight, tmp_path / "a.vrt", driver="VRT")
+        wanted = straight.read(1)
+    found = read_elevation(tmp_path / "a.vrt").heights[::-1]
+    np.testing.assert_array_equal(np.where(np.isnan(found), -1, found), wanted)
+
+
 # What a stranger's file may name
 
 VRT = (
@@ -392,13 +402,17 @@ def listener():
     ("source", "relative", "words"),
     [
         ("{url}", 1, "names the source 'http://.*', which is no file"),
-        ("{url}", 0, "names a source that is not relative to itself"),
+        ("{url}", 0, "names the source 'http://.*', which is no file"),
         ("/vsicurl/{url}", 0, "names the source '/vsicurl/.*', which is no file"),
         ("/vsicurl/{url}", 1, "names the source '/vsicurl/.*', which is no file"),
         ('NETCDF:"b.tif":z', 1, "which is no file"),
         ("b.tif", 0, "names a source that is not relative to itself"),
         ("none.tif", 1, "names the source 'none.tif', which is no file"),
         ("service.xml", 1, "is a source of a VRT; expected GeoTIFF, ERDAS Imagine or JPEG 2000"),
+        ("b.tif ", 1, "names the source 'b.tif ', which is no file"),
+        ("b.tif<!-- -->", 1, "is no VRT; expected <VRTDataset> in plain XML"),
+        ("&#98;.tif", 1, "is no VRT; expected <VRTDataset> in plain XML"),
+        ("b.tif<Size/>", 1, "names the source 'b.tif' with more than its name"),
         ("far.vrt", 1, "far.vrt: names the source 'http"),
         ("text.tif", 1, "is a source of a VRT; expected GeoTIFF"),
     ],
@@ -420,8 +434,12 @@ def test_a_vrt_leads_to_files_alone(tmp_path, listener, source, relative, words,
     [
         ("<OpenOptions/>", "has a part 'OpenOptions', which is not read here"),
         ('<Metadata domain="GEOLOCATION"/>', "has a part 'GEOLOCATION'"),
-        ('<VRTRasterBand subClass="VRTRawRasterBand"/>', "has a part 'VRTRawRasterBand'"),
-        ('<VRTRasterBand subClass="VRTDerivedRasterBand"/>', "has a part 'VRTDerivedRasterBand'"),
+        ('<VRTRasterBand subClass="VRTRawRasterBand"/>', "has a part 'VRTRasterBand VRTRawRasterBand'"),
+        ('<VRTRasterBand subClass="VRTDerivedRasterBand"/>', "has a part 'VRTRasterBand VRTDerived"),
+        ('<SimpleSource SourceFilename="/vsicurl/a"/>', "has a part 'SourceFilename'"),
+        ("<sourcefilename/>", "has a part 'sourcefilename'"),
+        ("<SRS>http://127.0.0.1:9/a.prj</SRS>", "has a part 'http://127.0.0.1:9/a.prj'"),
+        ("<TargetSRS>/etc/a.prj</TargetSRS>", "has a part '/etc/a.prj'"),
     ],
 )
 def test_a_vrt_of_other_parts_is_refused(tmp_path, part, words):
@@ -430,6 +448,20 @@ def test_a_vrt_of_other_parts_is_refused(tmp_path, part, words):
     (tmp_path / "a.vrt").write_text(text)
     with pytest.raises(DataError, match=words):
         read_elevation(tmp_path / "a.vrt")
+
+
+def test_a_vrt_has_no_more_sources_than_are_looked_at(tmp_path, monkeypatch):
+    raster(tmp_path / "b.tif")
+    (tmp_path / "a.vrt").write_text(VRT.format(relative=1, source="b.tif"))
+    monkeypatch.setattr(gis, "MAX_SOURCES", 1)
+    with pytest.raises(DataError, match="is made of 1 files or more; 0 is the most"):
+        read_elevation(tmp_path / "a.vrt")
+
+
+def test_a_system_next_to_a_raster_is_no_address(tmp_path, listener, capfd):
+    path = raster(tmp_path / "a.tif", crs=None)
+    (tmp_path / "a.tif.aux.xml").write_text(f"<PAMDataset><SRS>{listener}</SRS></PAMDataset>")
+    assert read_elevation(path).spacing is None and capfd.readouterr() == ("", "")
 
 
 def test_a_vrt_s_sources_are_those_a_sketch_may_read(tmp_path):
