@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from playground.engine.engine import Engine
 from playground.errors import Diagnostic, PlaygroundError, ShaderError
-from playground.sketch.model import Sketch
+from playground.sketch.model import CpuSource, Sketch
 
 MOST = 200  # diagnostics; more help no one
 
@@ -27,7 +27,7 @@ def all_errors(
     _take(found, error)
     tried: set[tuple[int, str]] = set()
     for step in plan.walk():
-        if step.kernel.kind == "source" or len(found) >= MOST:
+        if isinstance(step.kernel, CpuSource) or len(found) >= MOST:
             continue
         try:
             kernel, driver = step.kernel, engine.internal.driver_for(step)

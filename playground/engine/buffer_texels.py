@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from playground.engine.gl_calls import Calls
 from playground.shader.buffer_reads import FIRST_UNIT, read_by_functions
-from playground.sketch.model import Buffer, Kernel
+from playground.sketch.model import Buffer, ComputeVariant
 
 if TYPE_CHECKING:
     import moderngl
@@ -38,7 +38,7 @@ class BufferTexels:
             self._call("glDeleteTextures", (ctypes.c_int, ctypes.c_void_p), 1, ctypes.addressof(name))
         self._textures.clear()
 
-    def read(self, kernel: Kernel, buffers: Mapping[str, moderngl.Buffer]) -> list[Buffer]:
+    def read(self, kernel: ComputeVariant, buffers: Mapping[str, moderngl.Buffer]) -> list[Buffer]:
         """Return the buffers that a kernel reads so; none where one is longer than a texture may be."""
         found = read_by_functions(kernel)
         longest = max([buffers[b.name].size // 4 for b in found], default=0)  # in texels of a float

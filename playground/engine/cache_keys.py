@@ -31,12 +31,17 @@ from playground.shader.expressions import counts_frames
 from playground.shader.fixed_texels import read_by_texels_alone
 from playground.shader.reserved_names import CLOCKED, GIVEN, MATCHES, PRESSED, TOWARDS
 from playground.sketch.flat import Fed, Ref, Shape, Source
-from playground.sketch.model import Kernel
+from playground.sketch.model import (
+    ComputeVariant,
+    CpuSource,
+    Draw,
+    ForeignShader,
+    Kernel,
+    TexelKernel,
+    VertexShader,
+)
 
 _MAX_TEXTS = 512
-_HEADER = ("kind", "outputs", "registry", "blend", "depth", "over", "samples", "local", "buffers",
-           "overwrites", "aligned", "stages", "in_place", "active")  # fmt: skip
-"""The fields of a kernel's header that its textures depend on, besides its counts and its inputs."""
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
 _FIXED = frozenset(GIVEN) - {"time", "clip_from_world", "world_from_clip", "eye"}
 """Given names that the same passes of the same terrain are given in every frame."""
@@ -127,37 +132,39 @@ class _Text:
 
 
 def _read_text(kernel: Kernel, text: str) -> _Text:
-    counts = [kernel.visits, kernel.groups, kernel.count, kernel.instances]
-    counts += [buffer.count for buffer in kernel.buffers]
-    if kernel.kind == "compute":
-        counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a compute variant's is not
-    header: list[Any] = [*(getattr(kernel, name) for name in _HEADER), counts]
+    header: list[Any] = [kernel.kind, kernel.outputs]
+    header += [(row.name, value) for row, value in kernel.options if row.keyed]
     header += [(i.name, i.sampling, i.fallback, i.shape) for i in kernel.inputs]
-    if kernel.dialect:
-        header += [kernel.prelude, kernel.epilogue, kernel.vertex, kernel.meanings]
-        header += [kernel.helpers, kernel.vertex_prelude, kernel.vertex_helpers]
-        header.append(kernel.vertex_source.canonical if kernel.vertex_source else "")
     used = {n for n, times in Counter(_IDENTIFIER.findall(kernel.source.code)).items() if times > 1}
-    used |= set(_IDENTIFIER.findall(" ".join((*counts, kernel.stride))))
+    used |= kernel.names_in_options
     used |= kernel.source.names & {"iterations"}
     used |= {p.name for p in kernel.parameters if kernel.reads(f"{TOWARDS}{p.name}")}
-    if kernel.dialect:  # what its tool declares is not in its text
-        used |= {p.name for p in kernel.parameters if kernel.reads(p.name)}
-    if kernel.kind == "source":
-        used |= {p.name for p in kernel.parameters}
-    if kernel.kind == "draw":
-        used |= set(mesh_parameters(kernel.registry))
+    match kernel:
+        case ForeignShader():  # what its tool declares is not in its text
+            header += [kernel.prelude, kernel.epilogue, kernel.helpers, kernel.usual]
+            header += _vertex(kernel.vertex)
+            used |= {p.name for p in kernel.parameters if kernel.reads(p.name)}
+        case CpuSource():
+            used |= {p.name for p in kernel.parameters}
+        case Draw():
+            used |= set(mesh_parameters(kernel.mesh))
     is_moving = (
-        kernel.kind not in ("kernel", "compute")
+        not isinstance(kernel, TexelKernel | ComputeVariant)
         or bool(kernel.file_parameters)
         or not _FIXED.issuperset(kernel.given)
         or any(parameter.widget.kind == "button" for parameter in kernel.parameters)
     )
     by_texels = frozenset[str]()
-    if kernel.kind == "kernel" and kernel.repeat == "1":
+    if isinstance(kernel, TexelKernel) and kernel.repeat == "1":
         by_texels = read_by_texels_alone(kernel.source)
         by_texels -= {name for name in by_texels if kernel.reads(f"{MATCHES}{name}")}
     return _Text(_digest([header, text]), frozenset(used), is_moving, by_texels)
+
+
+def _vertex(vertex: VertexShader | tuple[tuple[str, str], ...]) -> list[Any]:
+    if isinstance(vertex, VertexShader):
+        return [vertex.prelude, vertex.helpers, vertex.source.canonical]
+    return [vertex]
 
 
 class _Loops(NamedTuple):

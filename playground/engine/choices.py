@@ -25,7 +25,7 @@ from playground.shader.reserved_names import (
     UNWIRED,
 )
 from playground.shader.wrap import NOTHING_SKIPPED, ShaderStage, Wrapped, previous_name
-from playground.sketch.model import Kernel
+from playground.sketch.model import Kernel, TexelKernel
 
 QUICKER = NEAREST, OWN_SIZE, PLACE
 """Choices that change how a text is computed, and not what."""
@@ -117,7 +117,7 @@ def quicker_choices(kernel: Kernel) -> frozenset[str]:
     found = set()
     if kernel.fetched_alone.fetches or _reads_previous(kernel):
         found.add(NEAREST)
-    if kernel.kind == "kernel" and not kernel.dialect and not kernel.stride:
+    if isinstance(kernel, TexelKernel) and not kernel.fills_lattice:
         found.add(PLACE)
         # No texture but inputs may be asked for its size.
         if not kernel.file_parameters and (NEAREST in found or kernel.reads("textureSize")):

@@ -25,7 +25,7 @@ from playground.shader import expressions
 from playground.shader.buffer_reads import TEXELS
 from playground.shader.expressions import ExpressionError, Number
 from playground.shader.wrap import COMPUTE
-from playground.sketch.model import Buffer, Kernel
+from playground.sketch.model import Buffer, ComputeVariant
 
 if TYPE_CHECKING:
     import moderngl
@@ -64,27 +64,28 @@ class ComputeVariants:
 
     def run(self, job: Job) -> Result:
         """Run a compute variant; the result is the caller's."""
-        step, kernel = job.step, job.step.kernel
+        step, kernel = job.step, _variant_of(job)
+        storage = kernel.storage
         names = job.numbers()
         buffers: list[moderngl.Buffer] = []
         read: list[Buffer] = []
-        whole = all([output.name in kernel.overwrites for output in kernel.outputs])
+        whole = all([output.name in kernel.storage.overwrites for output in kernel.outputs])
         pool = self.kernels.pool
         result = pool.take(step.size, kernel.outputs) if whole else self.kernels.empty(step)
         try:
             repeat = expressions.evaluate(kernel.repeat, names)
-            for unit, declared in enumerate(kernel.buffers):
+            for unit, declared in enumerate(storage.buffers):
                 buffers.append(self._buffer(job, declared, names))
-                if declared.name == kernel.in_place:
+                if declared.name == storage.in_place:
                     self._begin(job, result, declared, buffers[-1])
                 buffers[-1].bind_to_storage_buffer(unit, size=self._size(declared, names))
-            named = dict(zip([declared.name for declared in kernel.buffers], buffers, strict=True))
+            named = dict(zip([declared.name for declared in storage.buffers], buffers, strict=True))
             if self.kernels.software:
                 read = self.texels.read(kernel, named)
                 self.texels.bind(read, named)
             self.kernels.images(result, read=True)
             program: Program | None = None
-            active = sum(self._size(b, names) for b in kernel.buffers if b.name == kernel.active)
+            active = sum(self._size(b, names) for b in storage.buffers if b.name == storage.active)
             iteration, check = 0, 2
             while iteration < repeat:
                 groups = expressions.evaluate_pair(kernel.groups, {**names, "iteration": iteration})
@@ -93,15 +94,15 @@ class ComputeVariants:
                     job.count(program, iteration, kernel.repeat, repeat)
                     program.run(max(groups[0], 1), max(groups[1], 1))
                 iteration += 1
-                if kernel.active and iteration == check:
+                if storage.active and iteration == check:
                     check += 1 + isqrt(iteration)  # as in settling.py: about √n steps too many
-                    if not any(named[kernel.active].read(active)):
+                    if not any(named[storage.active].read(active)):
                         iteration = max(iteration, repeat - 1)
             if program is None and repeat > 0:
                 raise kernel.error(f"pass '{step.path}': groups of 0 leave out every step at this size")
             for output in kernel.outputs:
-                if (held := kernel.buffer_of(output.name)) is not None:
-                    buffer = buffers[kernel.buffers.index(held)]
+                if (held := storage.of_output(output.name)) is not None:
+                    buffer = buffers[storage.buffers.index(held)]
                     self._copy(job, held, result.textures[output.name], buffer)
         except ExpressionError as error:
             pool.give(result)
@@ -123,7 +124,7 @@ class ComputeVariants:
         On a software renderer, there is one for each stage: otherwise what the others do would
         be computed as well, and discarded. One that ``reads`` buffers as textures is another.
         """
-        step, stages = job.step, job.step.kernel.stages
+        step, stages = job.step, _variant_of(job).stages
         stage = (("stage", stages[iteration]),) if stages else ()
         more = (*stage, (TEXELS, 1)) if reads else stage
         program = self.kernels.program(job, COMPUTE, *more)
@@ -134,7 +135,7 @@ class ComputeVariants:
         return program
 
     def _buffer(self, job: Job, declared: Buffer, names: dict[str, Number]) -> moderngl.Buffer:
-        kernel: Kernel = job.step.kernel
+        kernel = _variant_of(job)
         size = self._size(declared, names)
         if size > _MAX_BUFFER:
             message = f"buffer '{declared.name}' would be {size / 2**20:.0f} MiB; 2048 at most"
@@ -146,7 +147,7 @@ class ComputeVariants:
             found = taken.buffer
         else:
             found = self.ctx.buffer(reserve=size)
-        if declared.name not in kernel.overwrites:
+        if declared.name not in kernel.storage.overwrites:
             found.clear()
         return found
 
@@ -181,7 +182,7 @@ class ComputeVariants:
 
         OpenGL fills rows up to 8 bytes at most; for more, it is told the ``length`` of a row.
         """
-        aligned, texel = job.step.kernel.aligned, texture.components * 4
+        aligned, texel = _variant_of(job).storage.aligned, texture.components * 4
         row = -(-texture.width * texel // aligned) * aligned
         needed = row * texture.height
         if texture.dtype != "f4" or buffer.size < needed:
@@ -213,6 +214,11 @@ class ComputeVariants:
                 self._spare.remove(spare)
                 held -= spare.buffer.size
                 spare.buffer.release()
+
+
+def _variant_of(job: Job) -> ComputeVariant:
+    assert isinstance(job.step.kernel, ComputeVariant)
+    return job.step.kernel
 
 
 def _bytes(spare: Spare) -> int:

@@ -17,6 +17,7 @@ from playground.engine.plan import Step
 from playground.engine.results import Result
 from playground.engine.textures import make_framebuffer
 from playground.shader.reserved_names import SKIPS
+from playground.sketch.model import TexelKernel
 
 if TYPE_CHECKING:
     import moderngl
@@ -34,7 +35,7 @@ class CostlyRest:
     def has(self, step: Step) -> bool:
         """Return whether a step's kernel says where its costly rest begins; one that repeats has none."""
         kernel = step.kernel
-        return kernel.reads(SKIPS) and kernel.repeat == "1" and not kernel.stride and not kernel.until
+        return isinstance(kernel, TexelKernel) and kernel.runs_once and kernel.reads(SKIPS)
 
     @contextmanager
     def target(self, result: Result) -> Iterator[None]:

@@ -35,6 +35,7 @@ from playground.shader.expressions import follows_time
 from playground.shader.reserved_names import OF_THE_TERRAIN
 from playground.sketch.flat import Ref
 from playground.sketch.identity import Identity
+from playground.sketch.model import PlainShader
 
 _PASSING = ("time", "clip_from_world", "world_from_clip", "eye")  # given names that change while one looks
 
@@ -80,7 +81,7 @@ def _stops(loop: LoopStep) -> bool:
 def _passes(step: Step, frame_size: tuple[int, int], continued: Collection[str]) -> bool:
     kernel = step.kernel
     if (
-        kernel.kind.startswith("plain")
+        isinstance(kernel, PlainShader)
         or not set(kernel.depends) <= set(OF_THE_TERRAIN)
         or step.path in continued
         or step.window is not None

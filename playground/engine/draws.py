@@ -31,7 +31,7 @@ from playground.shader import expressions
 from playground.shader.expressions import ExpressionError
 from playground.shader.reserved_names import ZOOM
 from playground.sketch.flat import Ref
-from playground.sketch.model import Value
+from playground.sketch.model import Draw, Value
 
 if TYPE_CHECKING:
     import moderngl
@@ -70,7 +70,7 @@ class Draws:
 
     def run(self, job: Job) -> Result:
         """Draw a mesh over what the draw starts from; the result is the caller's."""
-        step, kernel, ctx = job.step, job.step.kernel, self.ctx
+        step, kernel, ctx = job.step, _draw_of(job), self.ctx
         program = self.kernels.program(job, "draw")
         loaded, array = self._array(program, job)
         instances = instances_of(job, self._texels) if step.repeat else 0
@@ -79,7 +79,7 @@ class Draws:
         result = pool.take(step.size, kernel.outputs) if job.samples == 1 else None
         try:
             surface = self._target(result) if result is not None else self._surface(job)
-            self._begin(job, surface)
+            self._begin(job, kernel, surface)
             if step.window is not None:
                 self._look_through(step.window, program)
             self.kernels.binder.bind(program, step, job.given, job.inputs)
@@ -175,24 +175,24 @@ class Draws:
             raise ContextError(f"the driver refused to draw {what}: {refusal}") from None
         return Surface(framebuffer, colours, depth, size, formats, samples, is_target=samples == 1)
 
-    def _begin(self, job: Job, surface: Surface) -> None:
+    def _begin(self, job: Job, kernel: Draw, surface: Surface) -> None:
         """Give a surface what a draw begins with, and bind it."""
-        surface.framebuffer.depth_mask = not job.step.kernel.over
-        if job.step.kernel.over:
-            self._take_depth(job, surface)
-        self._start_from(job, surface)
+        surface.framebuffer.depth_mask = not kernel.over
+        if kernel.over:
+            self._take_depth(job, kernel.over, surface)
+        self._start_from(job, kernel, surface)
         surface.framebuffer.use()
 
-    def _start_from(self, job: Job, surface: Surface) -> None:
+    def _start_from(self, job: Job, kernel: Draw, surface: Surface) -> None:
         """Begin with an earlier draw's samples and depth, with a texture's colours, or with nothing."""
         wired = job.inputs.get("initial", Wired())
         # Of what a draw over another's pixels starts from, the depth is that draw's.
-        earlier = wired.result.surface if wired.result is not None and not job.step.kernel.over else None
+        earlier = wired.result.surface if wired.result is not None and not kernel.over else None
         if earlier is not None and (earlier.size, earlier.samples) == (surface.size, surface.samples):
             _refuse_others(job, wired)
             self.ctx.copy_framebuffer(surface.framebuffer, earlier.framebuffer)
             return
-        begun = started(job.step.kernel.outputs, wired)
+        begun = started(kernel.outputs, wired)
         surface.framebuffer.use()
         if len(surface.formats) == 1:  # what is overwritten needs no clearing
             surface.framebuffer.color_mask = (not begun,) * 4
@@ -204,13 +204,12 @@ class Draws:
             # The same bits, on a software renderer in a tenth of the time.
             self.ctx.copy_framebuffer(surface.framebuffer, wired.result.framebuffer(self.ctx))
             return
-        for unit, output in enumerate(job.step.kernel.outputs):
+        for unit, output in enumerate(kernel.outputs):
             if output.name in begun:
                 self._copy_into(surface, unit, begun[output.name])
 
-    def _take_depth(self, job: Job, surface: Surface) -> None:
+    def _take_depth(self, job: Job, name: str, surface: Surface) -> None:
         """Begin with the depth of the draw whose pixels are drawn over; it is read and not written."""
-        name = job.step.kernel.over
         wired = job.inputs.get(name, Wired())
         earlier = wired.result.surface if wired.result is not None else None
         if earlier is None or (earlier.size, earlier.samples) != (surface.size, surface.samples):
@@ -231,13 +230,13 @@ class Draws:
 
     def _chosen(self, job: Job) -> Chosen:
         """Return what to draw of a mesh with levels of detail."""
-        kernel, given = job.step.kernel, job.given
-        chooser = CHOOSERS[kernel.registry]
+        kernel, given = _draw_of(job), job.given
+        chooser = CHOOSERS[kernel.mesh]
         wanted = ("clip_from_world", "eye", "extent", "relief")
         known = {*given, *job.step.values}
         missing = [name for name in (*wanted, *chooser.parameters) if name not in known]
         if missing:
-            raise kernel.error(f"mesh '{kernel.registry}' needs a draw that reads {', '.join(missing)}")
+            raise kernel.error(f"mesh '{kernel.mesh}' needs a draw that reads {', '.join(missing)}")
         matrix = np.array(given["clip_from_world"], np.float64).reshape(4, 4).T
         view = View(matrix, given["eye"], given["extent"], given["relief"], job.step.whole_size)
 
@@ -250,7 +249,7 @@ class Draws:
         """Return the texels of an input, read once each time that they are computed."""
         result, texture, output = job.inputs.get(name, Wired())
         if result is None or texture is None:
-            mesh = job.step.kernel.registry
+            mesh = _draw_of(job).mesh
             raise job.step.spec.error(f"mesh '{mesh}' at this detail needs the input '{name}' wired")
         read = self._tables.setdefault(result, {})
         if output not in read:
@@ -260,7 +259,8 @@ class Draws:
     def _array(self, program: Program, job: Job) -> tuple[_Loaded, moderngl.VertexArray]:
         step = job.step
         try:
-            key = (step.kernel.registry, mesh_key(step.kernel.registry, _mesh_values(job)))
+            name = _draw_of(job).mesh
+            key = (name, mesh_key(name, _mesh_values(job)))
         except (SketchError, ExpressionError) as error:
             raise step.spec.error(str(error)) from None
         if self.finest is not None:
@@ -295,13 +295,18 @@ def _refuse_others(job: Job, wired: Wired) -> None:
         raise job.step.spec.error(f"pass '{job.step.path}' goes on from '{earlier}', {what}")
 
 
+def _draw_of(job: Job) -> Draw:
+    assert isinstance(job.step.kernel, Draw)
+    return job.step.kernel
+
+
 def _mesh_values(job: Job) -> dict[str, Value]:
     """Return a draw's parameters, and the count that its header computes."""
-    step, kernel = job.step, job.step.kernel
+    step, kernel = job.step, _draw_of(job)
     if not kernel.count:
         return dict(step.values)
-    if "count" not in mesh_parameters(kernel.registry):
-        raise SketchError(f"mesh '{kernel.registry}' takes no count")
+    if "count" not in mesh_parameters(kernel.mesh):
+        raise SketchError(f"mesh '{kernel.mesh}' takes no count")
     sizes = {
         f"{name}.size.{axis}": wired.texture.size[k] if wired.texture else 1
         for name, wired in job.inputs.items()

@@ -19,6 +19,7 @@ from playground.engine.runner import Runner
 from playground.engine.unfinished import Deadline
 from playground.shader.expressions import follows_time
 from playground.sketch.flat import Fed, Ref, Source
+from playground.sketch.model import Draw, ForeignShader, TexelKernel
 
 Compute = Callable[[Step, Mapping[str, Wired], LoopIteration | None, Result | None], Result]
 """Runs a step: its inputs, where it is in the loops around it, the same step after fewer to go on from."""
@@ -83,7 +84,7 @@ class Execution:
         if isinstance(node, LoopStep):
             self._run_cached_loop(node)
             return
-        found = self._unchanged_draw(node) if node.kernel.kind == "draw" and not node.repeat else None
+        found = self._unchanged_draw(node) if isinstance(node.kernel, Draw) and not node.repeat else None
         if found is None:
             cached = self.cache.get(self.keys.steps[node.path])
             found = cached.result if cached else self._stale_result(node)
@@ -107,15 +108,14 @@ class Execution:
             return self._computed(step)
         cached = self.cache.get(self.keys.raw[step.path])
         raw = cached.result if cached else self._computed(step)
-        uniforms = {"k_stride": step.between.stride, "k_form": step.between.form}
-        found = self.runner.kernels.drawn_own("fill_between.frag", raw, **uniforms)
+        found = self.runner.kernels.drawn_own("fill_between.frag", raw, **step.between.uniforms)
         self.cache.put(self.keys.steps[step.path], Cached({step.path: found}))
         return found
 
     def _computed(self, step: Step) -> Result:
         """Run a step, from where its earlier iterations are cached, and cache its result."""
         key, unfinished = self.keys.raw[step.path], self.keys.unfinished[step.path]
-        goes_on = step.kernel.kind == "kernel" and step.kernel.repeat != "1"
+        goes_on = isinstance(step.kernel, TexelKernel) and step.kernel.repeat != "1"
         earlier = self._earlier(step, unfinished) if goes_on else None
         inputs = {name: self._wired(source, {}) for name, source in step.inputs}
         read = self._read(step, inputs)
@@ -354,7 +354,7 @@ class Execution:
         if found.texture is not None or not isinstance(source, Fed):
             return found
         declared = next((each for each in step.kernel.inputs if each.name == name), None)
-        if declared is None or not (step.kernel.dialect or declared.fallback == "zero"):
+        if declared is None or not (isinstance(step.kernel, ForeignShader) or declared.fallback == "zero"):
             return found
         origin, output = self._fed_from[source]
         if source not in self._zeros:
@@ -396,6 +396,6 @@ def _draws_nothing(step: Step, steps: Mapping[str, Step]) -> bool:
     """Return whether an earlier draw's result will be taken for a step's: see ``Execution``."""
     start = dict(step.inputs).get("initial")
     earlier = steps.get(start.path) if isinstance(start, Ref) else None
-    if step.kernel.kind != "draw" or step.repeat or earlier is None:
+    if not isinstance(step.kernel, Draw) or step.repeat or earlier is None:
         return False
-    return earlier.kernel.kind == "draw" and earlier.size == step.size
+    return isinstance(earlier.kernel, Draw) and earlier.size == step.size

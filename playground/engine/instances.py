@@ -17,7 +17,7 @@ from playground.engine.lod import CHOOSERS
 from playground.engine.results import Result, Wired
 from playground.shader import expressions
 from playground.shader.expressions import ExpressionError, Number
-from playground.sketch.model import Kernel, Technique
+from playground.sketch.model import Draw, Kernel, Technique
 
 if TYPE_CHECKING:
     import moderngl
@@ -56,10 +56,10 @@ def instances_of(job: Job, texels: Texels) -> int:
     Raises ``SketchError`` where that is not a whole number from 0 to ``MOST``.
     """
     step, kernel = job.step, job.step.kernel
-    if not kernel.instances:
+    if not isinstance(kernel, Draw) or not kernel.instances:
         return 1
-    if kernel.registry in CHOOSERS:
-        mesh = f"mesh '{kernel.registry}' is drawn once for each of its tiles"
+    if kernel.mesh in CHOOSERS:
+        mesh = f"mesh '{kernel.mesh}' is drawn once for each of its tiles"
         raise kernel.error(f"{mesh}; it takes no instances")
     numbers = job.numbers()
 
@@ -78,6 +78,8 @@ def instances_of(job: Job, texels: Texels) -> int:
 def counts_instances(technique: Technique, name: str) -> bool:
     """Return whether the first texel of an input of a technique says how often a draw in it is drawn."""
     if isinstance(technique, Kernel):
+        if not isinstance(technique, Draw):
+            return False
         named = (read.rpartition(".") for read in expressions.names_in(technique.instances or "0"))
         return any(declared == name and component in _COMPONENTS for declared, _, component in named)
     targets = (

@@ -52,7 +52,16 @@ from playground.paths import shown
 from playground.shader.wrap import COMPUTE, FRAGMENT
 from playground.sketch.flat import Ref
 from playground.sketch.load import load
-from playground.sketch.model import DEFAULT_PICTURE, DRIVERS, LARGEST_PICTURE, LARGEST_SIDE, Sketch
+from playground.sketch.model import (
+    DEFAULT_PICTURE,
+    DRIVERS,
+    LARGEST_PICTURE,
+    LARGEST_SIDE,
+    ComputeVariant,
+    PlainCompute,
+    Sketch,
+    TexelKernel,
+)
 
 if TYPE_CHECKING:
     import moderngl
@@ -436,12 +445,12 @@ class Internals(Recorded):
     def driver_for(self, step: Step) -> str:
         """Choose by which driver the kernel of a step runs."""
         kernel = step.kernel
-        if kernel.kind in ("compute", "plain_compute"):
+        if isinstance(kernel, ComputeVariant | PlainCompute):
             if not self._computes:
                 message = f"'{kernel.name}' is a compute shader; this context is {self.info.opengl}"
                 raise ContextError(f"{message}, and compute needs 4.3")
             return COMPUTE
-        if kernel.kind != "kernel" or not self._computes or self.driver == FRAGMENT:
+        if not isinstance(kernel, TexelKernel) or not self._computes or self.driver == FRAGMENT:
             return FRAGMENT
         return COMPUTE if self.driver == COMPUTE or kernel.visits else FRAGMENT
 

@@ -19,6 +19,7 @@ from playground.engine.binder import (
     wires_of,
 )
 from playground.engine.costly_rest import CostlyRest
+from playground.engine.lattice import shift_after
 from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
 from playground.engine.quicker_texts import quicker_texts
@@ -45,7 +46,7 @@ from playground.shader.reserved_names import (
     WIRED,
 )
 from playground.shader.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
-from playground.sketch.model import Kernel, Sampling
+from playground.sketch.model import ForeignShader, Kernel, PlainCompute, Sampling, TexelKernel
 from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
@@ -134,6 +135,8 @@ class Kernels:
     def run(self, job: Job, driver: str) -> Result:
         """Run a kernel by a driver; the result is the caller's."""
         step = job.step
+        kernel = step.kernel
+        assert isinstance(kernel, TexelKernel)
         wires = wires_of(step, job.inputs)
         program = self._known_program(job, driver, wires)
         if job.start is not None and job.start.settled:
@@ -145,9 +148,9 @@ class Kernels:
         if driver == FRAGMENT and self.software and self.costly_rest.has(step):
             return self._in_two_parts(job, program, state, wires)
         unit = self.binder.bind(program, step, job.given, job.inputs, wires)
-        if driver == COMPUTE and step.kernel.visits:
-            return self._in_place(job, program, state)
-        return self._alternately(job, program, driver, state, unit)
+        if driver == COMPUTE and kernel.visits:
+            return self._in_place(job, kernel, program, state)
+        return self._alternately(job, kernel, program, driver, state, unit)
 
     def _known_program(self, job: Job, driver: str, wires: tuple[int, ...]) -> Program:
         """Return the program of a step: the one that it had before in this frame, wired so."""
@@ -231,7 +234,8 @@ class Kernels:
     def plain(self, job: Job, usual: Mapping[str, tuple[float, ...]]) -> Result:
         """Run a plain shader; ``usual`` are the uniforms that such shaders know under several names."""
         step, kernel = job.step, job.step.kernel
-        driver = COMPUTE if kernel.kind == "plain_compute" else FRAGMENT
+        driver = COMPUTE if isinstance(kernel, PlainCompute) else FRAGMENT
+        foreign = kernel if isinstance(kernel, ForeignShader) else None
         program = self.programs.get(kernel, driver)
         unit = 0
         sizes: dict[str, tuple[int, int, int]] = {}  # [texels] of what each sampler reads
@@ -239,7 +243,7 @@ class Kernels:
             value = step.values[parameter.name]
             if parameter.widget.kind != "file":
                 program.set(parameter.name, job.given.get(f"{PRESSED}{parameter.name}", value))
-            elif parameter.name in program.uniforms or kernel.dialect:
+            elif parameter.name in program.uniforms or foreign:
                 texture = self.binder.file_texture(parameter, value, encoded=True)
                 sizes[parameter.name] = (*texture.size, 1)
                 unit = self.binder.texture(program, parameter.name, unit, texture, parameter.sampling)
@@ -271,25 +275,31 @@ class Kernels:
                     readable, _ = self.binder.shaped(element, job.inputs)
                 unit = self.binder.unit(unit, readable, element.sampling if element else Sampling())
         result = self.empty(step)
-        if driver == COMPUTE:
+        if isinstance(kernel, PlainCompute):
             self.images(result, read=True)
             program.run(-(-step.size[0] // kernel.local[0]), -(-step.size[1] // kernel.local[1]))
             return result
         result.framebuffer(self.ctx).use()
-        program.fill(6 if kernel.vertex_source else 3)
+        program.fill(6 if foreign and foreign.vertex_source else 3)
         return result
 
     # ── iterations ───────────────────────────────────────────────────────────
 
     def _alternately(
-        self, job: Job, program: Program, driver: str, state: Mapping[str, moderngl.Texture], unit: int
+        self,
+        job: Job,
+        kernel: TexelKernel,
+        program: Program,
+        driver: str,
+        state: Mapping[str, moderngl.Texture],
+        unit: int,
     ) -> Result:
-        step, kernel = job.step, job.step.kernel
+        step = job.step
         before, spare = job.start, None  # two sets of textures that change places
         iteration = before.iterations if before else 0
         at_once = 1 if kernel.at_once == "1" else max(self._evaluated("at_once", kernel.at_once, job), 1)
         # Where there is something to begin with, texels off the lattice count as well.
-        lattice = bool(kernel.stride) and driver == FRAGMENT and not state
+        lattice = kernel.fills_lattice and driver == FRAGMENT and not state
         shift = 0
         watch = self.settling.watch(iteration, unit + len(kernel.outputs)) if kernel.until else None
         previous = self.binder.previous_units(program, kernel, unit)
@@ -301,7 +311,8 @@ class Kernels:
                 job.count(program, iteration, kernel.repeat, step.whole, count)
                 if driver == FRAGMENT:
                     program.set("k_previous_shift", shift)
-                    shift = self._shift(job, iteration) if lattice else 0
+                    names = job.numbers(iterations=step.whole)
+                    shift = shift_after(kernel, step.path, iteration, names) if lattice else 0
                     program.set("k_shift", shift)
                 self.write(program, driver, result, shift)
                 iteration += count
@@ -337,15 +348,6 @@ class Kernels:
                     part.fill()
         result.iterations = step.repeat
         return result
-
-    def _shift(self, job: Job, iteration: int) -> int:
-        """Return the power of two that texels known after an iteration lie apart."""
-        kernel = job.step.kernel
-        stride = self._evaluated("stride", kernel.stride, job, iteration=iteration, iterations=job.step.whole)
-        if stride < 1 or stride & (stride - 1):
-            message = f"stride '{kernel.stride}' gives {stride} for iteration {iteration}"
-            raise kernel.error(f"pass '{job.step.path}': {message}; a power of two was expected")
-        return stride.bit_length() - 1
 
     def _evaluated(self, what: str, text: str, job: Job, **more: Number) -> int:
         try:
@@ -386,8 +388,10 @@ class Kernels:
         if shift:
             self.ctx.viewport = (0, 0, width, height)
 
-    def _in_place(self, job: Job, program: Program, state: Mapping[str, moderngl.Texture]) -> Result:
-        step, kernel = job.step, job.step.kernel
+    def _in_place(
+        self, job: Job, kernel: TexelKernel, program: Program, state: Mapping[str, moderngl.Texture]
+    ) -> Result:
+        step = job.step
         result = job.start or self._untouched(step, state)
         result.rewrite(self.ctx)
         self.images(result, read=True)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from playground.engine.cache_keys import Keys
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, sources_of, walk
 from playground.sketch.flat import Ref
+from playground.sketch.model import Draw
 
 
 def last_uses(plan: Plan, nodes: Sequence[PlanNode], keys: Keys, ref: Ref) -> dict[str, list[Step]]:
@@ -15,7 +16,7 @@ def last_uses(plan: Plan, nodes: Sequence[PlanNode], keys: Keys, ref: Ref) -> di
     ``nodes`` are run in order, for the texture ``ref``. Steps of loops are left out, as are draws, which may
     share textures, and what draws read: the terrain under the eye is looked at after the frame.
     """
-    draws = [step for step in plan.walk() if step.kernel.kind == "draw"]
+    draws = [step for step in plan.walk() if isinstance(step.kernel, Draw)]
     stays = {ref.path}.union(*(_read(draw) for draw in draws))
     own = {node.path: node for node in nodes if isinstance(node, Step)}
     # Steps of one key have the same textures.
@@ -24,7 +25,7 @@ def last_uses(plan: Plan, nodes: Sequence[PlanNode], keys: Keys, ref: Ref) -> di
     for node in nodes:
         for path in {*_read(node), *({node.path} & own.keys())}:
             step = own.get(path)
-            if step is not None and step.kernel.kind != "draw" and keys.steps[path] not in kept:
+            if step is not None and not isinstance(step.kernel, Draw) and keys.steps[path] not in kept:
                 last[keys.steps[path]] = node.path, step
     found: dict[str, list[Step]] = {}
     for path, step in last.values():

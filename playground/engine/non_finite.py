@@ -31,7 +31,7 @@ from playground.engine.results import Result, Wired
 from playground.engine.textures import read_bands, split_format
 from playground.shader.wrap import FRAGMENT
 from playground.sketch.flat import Ref
-from playground.sketch.model import Kernel
+from playground.sketch.model import Draw, Kernel, PlainFragment, TexelKernel
 
 if TYPE_CHECKING:
     import moderngl
@@ -148,7 +148,7 @@ class FiniteCheck:
     def _again(self, step: Step, form: str) -> tuple[Step, Mapping[str, Wired]] | None:
         """Return a step that writes floats, and what it reads; None if it is left as it is."""
         kernel = step.kernel
-        if kernel.kind not in ("kernel", "draw", "plain_fragment") or kernel.repeat != "1":
+        if not isinstance(kernel, TexelKernel | Draw | PlainFragment) or kernel.repeat != "1":
             return None
         inputs: dict[str, Wired] = {}
         for name, source in step.inputs:
@@ -156,7 +156,9 @@ class FiniteCheck:
                 inputs[name] = Wired()
                 continue
             found = self.source.record.results.get(source.path)
-            if found is None or (kernel.kind == "draw" and name == "initial" and found.surface is not None):
+            if found is None:
+                return None
+            if isinstance(kernel, Draw) and name == "initial" and found.surface is not None:
                 return None
             inputs[name] = Wired(found, found.textures[source.output], source.output)
         return replace(step, kernel=self._widened(kernel, form)), inputs

@@ -26,7 +26,7 @@ from playground.engine.textures import read_texture, write_texture
 from playground.errors import ParameterError, nearest
 from playground.paths import GLSL
 from playground.sketch.flat import Ref
-from playground.sketch.model import Kernel, Output, Parameter, PassSpec, Sketch, Technique
+from playground.sketch.model import Kernel, Output, Parameter, PassSpec, Sketch, Technique, TexelKernel
 from playground.sketch.techniques import read_technique
 from playground.sketch.wiring import initial_names, input_names, is_optional, output_names
 
@@ -177,9 +177,8 @@ class OnArrays:
 
 def _array_pass(name: str, shape: _Shape) -> PassSpec:
     """Return the pass that stands for an array: a kernel that never runs."""
-    kernel = Kernel(
+    kernel = TexelKernel(
         name="an array",
-        kind="kernel",
         source=text_of(_TEXT),
         outputs=(Output(name, _FORMATS[_channels(shape)]),),
         parameters=(Parameter(_NUMBER, "uint", 0),),

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
-from playground.engine.between import Between
 from playground.engine.camera import Eye
+from playground.engine.lattice import Between
 from playground.engine.source_kinds import Terrain
 from playground.shader.expressions import counts_frames
 from playground.sketch.flat import Flat, Ref, Source
 from playground.sketch.identity import Identity
-from playground.sketch.model import Kernel, PassSpec, Sketch, Value
+from playground.sketch.model import Draw, Kernel, PassSpec, Sketch, TexelKernel, Value
 
 _MOST_PLANS = 2  # of so many what follows from their passes alone is remembered: more would live long
 
@@ -147,13 +147,14 @@ def _steps(key: Identity[tuple[PlanNode, ...]]) -> tuple[Step, ...]:
 
 @lru_cache(maxsize=_MOST_PLANS)
 def _draws(key: Identity[tuple[PlanNode, ...]]) -> tuple[Step, ...]:
-    return tuple([step for step in _steps(key) if step.kernel.kind == "draw"])
+    return tuple([step for step in _steps(key) if isinstance(step.kernel, Draw)])
 
 
 @lru_cache(maxsize=_MOST_PLANS)
 def _continued(key: Identity[tuple[PlanNode, ...]]) -> frozenset[str]:
     draws = _draws(key)
-    sources = [s for step in draws for name, s in step.inputs if name in ("initial", step.kernel.over)]
+    over = {step.path: step.kernel.over for step in draws if isinstance(step.kernel, Draw)}
+    sources = [s for step in draws for name, s in step.inputs if name in ("initial", over[step.path])]
     return frozenset([source.path for source in sources if isinstance(source, Ref)])
 
 
@@ -189,7 +190,7 @@ def most_iterations(nodes: tuple[PlanNode, ...]) -> dict[str, int]:
     for node in every:
         if isinstance(node, Step):
             # Of a loop of one kernel, the loop is what counts, not the kernel in it.
-            if node.kernel.kind != "kernel" or node.kernel.repeat == "1" or node.path in loops:
+            if not isinstance(node.kernel, TexelKernel) or node.kernel.repeat == "1" or node.path in loops:
                 continue
         found[node.path] = max(node.whole, found.get(node.path, 0))
     return found

@@ -18,7 +18,16 @@ from playground.shader.expressions import ExpressionError, Number
 from playground.sketch.assign import effective_values
 from playground.sketch.flat import Flat, Ref, Source
 from playground.sketch.identity import Identity
-from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
+from playground.sketch.model import (
+    ComputeVariant,
+    CpuSource,
+    ForeignShader,
+    Graph,
+    Kernel,
+    Sketch,
+    TexelKernel,
+    kernels_of,
+)
 from playground.sketch.variants import INSIDE
 from playground.sketch.warnings import former_names_used, unheeded, warnings_of_kernel
 
@@ -91,12 +100,12 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
     found: dict[str, Diagnostic] = {}
     assumptions = _assumptions(plan)
     for step in _fed_from_outside(Identity(plan.nodes)):
-        if step.kernel.dialect:
+        if isinstance(step.kernel, ForeignShader):
             from playground.shader.dialects.foreign import unfed_warnings
 
             for warning in unfed_warnings(step.kernel, _wired(plan, step)):
                 found.setdefault(f"{step.kernel.path} {warning.message}", warning)
-        if step.kernel.kind == "source":
+        if isinstance(step.kernel, CpuSource):
             spec = plan.flat.user(step.path)
             kind, notes = source_kind(step.kernel.registry), tuple[str, ...]()
             with suppress(DataError):  # the file has gone since; drawing reports it
@@ -157,11 +166,14 @@ def _conditions(flat: Flat, step: Step) -> list[tuple[str, str, dict[str, Number
     Where a fast variant runs, which has only some of the parameters, they are those of the technique.
     """
     technique = flat.specs[step.path.partition(f".{INSIDE}.")[0]].technique
-    if technique is step.kernel or (step.kernel.kind != "compute" and f".{INSIDE}." not in step.path):
+    is_variant = isinstance(step.kernel, ComputeVariant) or f".{INSIDE}." in step.path
+    if not is_variant:
         technique = step.kernel
     values = effective_values(technique)
     found = []
     for path, kernel in kernels_of(technique):
+        if not isinstance(kernel, TexelKernel):
+            continue
         own = {p.name: values[f"{path}.{p.name}" if path else p.name] for p in kernel.parameters}
         found += [(condition, message, _numbers(own)) for condition, message in kernel.warns]
     return found
@@ -183,7 +195,7 @@ def _with_conditions(
 @lru_cache(maxsize=2)
 def _fed_from_outside(key: Identity[tuple[PlanNode, ...]]) -> tuple[Step, ...]:
     """Return the steps of sources, and of other tools' shaders."""
-    return tuple([step for step in walk(key.object) if step.kernel.dialect or step.kernel.kind == "source"])
+    return tuple([step for step in walk(key.object) if isinstance(step.kernel, ForeignShader | CpuSource)])
 
 
 def _readers(plan: Plan, source: Step) -> str:

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from playground.data.image_files import picture_size
-from playground.engine.between import between_of
 from playground.engine.camera import Eye, look
+from playground.engine.lattice import between_of
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, most_iterations
 from playground.engine.plan_request import (
     PlanRequest,
@@ -307,13 +307,12 @@ class _Planning:
         check_shapes(node, self.flat, self.sizes.size_of_source)
         numbers: dict[str, Number] = {"size.x": size[0], "size.y": size[1], **self.sizes.clocks()}
         numbers |= {k: v for k, v in values.items() if isinstance(v, int | float)}
-        if kernel.repeat != "1" or kernel.stride:
+        if kernel.counts != ("1",):
             self._note_names(node)
         whole = 1 if kernel.repeat == "1" else counted(kernel.repeat, node.path, kernel, numbers)
         # Of a kernel that repeats in a loop of the same path, the loop is what stops.
         repeat = whole if node.spec.repeat else self._stopped(node.path, whole, kernel.repeat)
-        fills = self.request.fills and kernel.between
-        between = between_of(node, repeat, whole, numbers) if fills else None
+        between = between_of(node, repeat, whole, numbers) if self.request.fills else None
         step = Step(
             path=node.path,
             kernel=kernel,
@@ -334,9 +333,7 @@ class _Planning:
 
     def _note_names(self, leaf: Leaf) -> None:
         """Note what a kernel's own counts name."""
-        names = frozenset[str]()
-        for text in (leaf.kernel.repeat, leaf.kernel.stride):
-            names |= expressions.names_in(text) if text else names
+        names = frozenset().union(*map(expressions.names_in, leaf.kernel.counts))
         self.sizes.by_time |= not names.isdisjoint(expressions.CLOCKS)
         self.sizes.named |= {path for name, path in self.flat.shape.paths[leaf.path] if name in names}
 

@@ -30,7 +30,7 @@ from playground.shader.reserved_names import FETCHES
 from playground.shader.source import Line, SourceText
 from playground.shader.stage_recipe import version_line
 from playground.shader.wrap import COMPUTE, CORNER, FRAGMENT, ShaderStage, Wrapped, wrap, wrap_library
-from playground.sketch.model import Kernel
+from playground.sketch.model import Kernel, PlainFragment, TexelKernel
 
 if TYPE_CHECKING:
     import moderngl
@@ -68,7 +68,7 @@ def compile_library(ctx: moderngl.Context, source: SourceText) -> None:
 
     Raises ``ShaderError`` with one diagnostic for each of the driver's complaints.
     """
-    kernel = Kernel(shown(source.path), "kernel", source, ())
+    kernel = TexelKernel(shown(source.path), source, ())
     for driver in (FRAGMENT, COMPUTE) if ctx.version_code >= 430 else (FRAGMENT,):
         compile_wrapped(ctx, wrap_library(kernel, driver)).release()
 
@@ -268,7 +268,7 @@ class Programs:
             return self._used(known[1])
         plain = wrap(kernel, driver, self.ctx.version_code)
         wrapped = with_choices(plain, choices) if choices else plain
-        if kernel.kind == "plain_fragment":
+        if isinstance(kernel, PlainFragment):
             from playground.shader.zero_values import with_zeros
 
             wrapped = with_zeros(wrapped)
@@ -296,7 +296,7 @@ class Programs:
             if _texts(as_written) == _texts(wrapped):
                 raise
             program = compile_wrapped(self.ctx, as_written)
-            if plain.kernel.kind == "plain_fragment":
+            if isinstance(plain.kernel, PlainFragment):
                 _log.warning("%s: variables without a value are undefined here", shown(plain.kernel.path))
             return program
 
@@ -366,7 +366,7 @@ def warnings_of(ctx: moderngl.Context, wrapped: Wrapped) -> tuple[Diagnostic, ..
         for entry in parse_log(_compile_log(load, _STAGES[name], f"{stage.text}// {time.time_ns()}\n")):
             if entry.severity == "error":
                 return ()
-            if wrapped.kernel.kind == "plain_fragment" and "uninitialized" in entry.message:
+            if isinstance(wrapped.kernel, PlainFragment) and "uninitialized" in entry.message:
                 continue  # it begins at 0: see zero_values
             if stage.locate(entry.line) is not None:
                 diagnostic = diagnostic_of(entry, stage, wrapped)

@@ -19,6 +19,7 @@ from playground.engine.programs import Program
 from playground.engine.results import Result, Wired
 from playground.shader.expressions import FRAME_RATE
 from playground.sketch.flat import Fed, Ref, Source
+from playground.sketch.model import TexelKernel
 
 if TYPE_CHECKING:
     import moderngl
@@ -116,7 +117,7 @@ def _pass_of(
 ) -> _Pass | None:
     """Return what a step that has just run binds, its inputs that the loop makes being ``made``."""
     kernel, binder = step.kernel, kernels.binder
-    if kernel.kind != "kernel" or kernel.repeat != "1" or step.repeat != 1 or kernel.visits or kernel.stride:
+    if not isinstance(kernel, TexelKernel) or not kernel.runs_once or step.repeat != 1:
         return None
     found = kernels.bound_for(step, driver, inputs)
     if found is None:

@@ -32,7 +32,7 @@ from playground.engine.textures import read_texture, split_format, write_texture
 from playground.errors import DataError
 from playground.shader.expressions import FRAME_RATE, last_frame_at
 from playground.shader.reserved_names import MOMENT, NEUTRAL, OF_THE_TERRAIN, PRESSED
-from playground.sketch.model import Kernel
+from playground.sketch.model import ComputeVariant, CpuSource, Draw, Kernel, PlainShader, TexelKernel
 
 if TYPE_CHECKING:
     import moderngl
@@ -67,13 +67,6 @@ class Runner:
         self.paint = PaintedTextures(ctx)
         self.works = SourceWorks()
         self.before_step: Callable[[Step], None] | None = None  # called before each step runs
-        self._other_kinds: dict[str, Callable[[Job], Result]] = {  # than kernels
-            "source": self._source,
-            "draw": self.draws.run,
-            "compute": self.compute_variants.run,
-            "plain_fragment": self._plain,
-            "plain_compute": self._plain,
-        }
         self._of_draws = ctx.BLEND | ctx.DEPTH_TEST | ctx.CULL_FACE
         self._plan: Plan | None = None
         self._given: dict[str, Any] = {}
@@ -116,13 +109,13 @@ class Runner:
         ``frame`` is that of the loop around it that counts frames: the time is that frame's.
         """
         kernel = step.kernel
-        if kernel.kind == "source":
+        if isinstance(kernel, CpuSource):
             return self._moment(step, frame) | self._of_the_terrain(step)
         found: dict[str, Any] = {}
         if self.pressed:
             names = (p.name for p in kernel.parameters if p.widget.kind == "button")
             found |= {f"{PRESSED}{name}": True for name in names if f"{step.path}.{name}" in self.pressed}
-        if kernel.kind.startswith("plain"):
+        if isinstance(kernel, PlainShader):
             return found | dict(usual_of(kernel, self._usual(step, frame)))
         for name in kernel.given:
             if name == "spacing":
@@ -145,12 +138,15 @@ class Runner:
     def given_for_key(self, step: Step) -> dict[str, Any]:
         """Return all that the engine gives a step and that its textures depend on."""
         given = self.given_for(step)
-        return {**given, "samples": self._samples_for(step.kernel)} if step.kernel.kind == "draw" else given
+        if not isinstance(step.kernel, Draw):
+            return given
+        return {**given, "samples": self._samples_for(step.kernel)}
 
     def _samples_for(self, kernel: Kernel) -> int:
         """Return how many samples a pixel of a draw has here."""
         assert self._plan is not None, "look_at() comes first"
-        return max(min(kernel.samples or self._plan.sketch.samples, self.info.max_samples), 1)
+        own = kernel.samples if isinstance(kernel, Draw) else 0
+        return max(min(own or self._plan.sketch.samples, self.info.max_samples), 1)
 
     def run(
         self,
@@ -173,7 +169,7 @@ class Runner:
         if self.before_step is not None:
             self.before_step(step)
         self.ctx.disable(self._of_draws)
-        if step.kernel.kind == "kernel":
+        if isinstance(step.kernel, TexelKernel):
             job = Job(step, self._given_now(step, iteration), inputs, iteration, start)
             with self._placed(step) if step.kernel.file_parameters else _NOTHING:
                 return self.kernels.run(job, driver)
@@ -181,7 +177,14 @@ class Runner:
         given, samples = self.given_for(step, frame), self._samples_for(step.kernel)
         job = Job(step, given, inputs, iteration, start, samples, keeps_surface, key)
         with self._placed(step):
-            return self._other_kinds[step.kernel.kind](job)
+            match step.kernel:
+                case Draw():
+                    return self.draws.run(job)
+                case ComputeVariant():
+                    return self.compute_variants.run(job)
+                case CpuSource():
+                    return self._source(job)
+            return self._plain(job)
 
     def _given_now(self, step: Step, iteration: LoopIteration | None) -> dict[str, Any]:
         """Return what the engine gives a kernel in this frame: the very same in every iteration, if it is."""

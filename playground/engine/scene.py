@@ -5,6 +5,7 @@ from __future__ import annotations
 from playground.engine.camera import unit_vector
 from playground.engine.plan import Plan
 from playground.shader.reserved_names import NEUTRAL
+from playground.sketch.model import Draw
 
 MEANINGS = frozenset({"camera", "light"})
 """What ``scene_of`` knows."""
@@ -27,6 +28,6 @@ def scene_of(plan: Plan) -> dict[str, tuple[float, ...]]:
     ]
     sun = min(directions, key=lambda found: found[0])[1] if directions else None
     return {
-        "camera": plan.eye.position if any(s.kernel.kind == "draw" for s in steps) else neutral,
+        "camera": plan.eye.position if any(isinstance(s.kernel, Draw) for s in steps) else neutral,
         "light": unit_vector(sun) if isinstance(sun, tuple) else neutral,
     }

@@ -23,7 +23,7 @@ from playground.sketch.assign import find_targets, resolve
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Shape, Source
 from playground.sketch.flatten import flatten
 from playground.sketch.identity import Identity
-from playground.sketch.model import LARGEST_SIDE, Kernel, PassSpec, Sketch, Value
+from playground.sketch.model import LARGEST_SIDE, ComputeVariant, Kernel, PassSpec, Sketch, Value
 from playground.sketch.variants import INSIDE
 
 CLOCK, SIZE, PICTURE, VALUE, COMPUTE = "clock", "size", "picture", "value", "compute"
@@ -127,7 +127,7 @@ def smallest_terrain(sketch: Sketch, least: int = 33) -> tuple[int, int]:
 
 def sizes_of_variant(leaf: Leaf, flat: Flat) -> tuple[str, str]:
     """Return which technique a fast variant's kernel runs for, and the sizes that it takes; else nothing."""
-    if leaf.kernel.kind == "compute":
+    if isinstance(leaf.kernel, ComputeVariant):
         return leaf.path, leaf.kernel.own_accepts
     path, inside, _ = leaf.path.partition(f".{INSIDE}.")
     is_variant = inside and flat.specs[path].technique.variants
@@ -385,7 +385,7 @@ def counted(text: str, name: str, owner: PassSpec | Kernel, names: Names) -> int
         count = expressions.evaluate(text, names)
     except ExpressionError as error:
         raise owner.error(f"pass '{name}': repeat {error}") from None
-    ends = isinstance(owner, Kernel) and (owner.until or owner.active)
+    ends = isinstance(owner, Kernel) and owner.ends_early
     limit = _MAX_BOUND if ends else MAX_REPEAT
     if not 0 <= count <= limit:
         raise owner.error(f"pass '{name}': repeat '{text}' gives {count}; 0 to {limit} were expected")

@@ -17,6 +17,7 @@ from playground.shader.own_shaders import own_shader
 from playground.shader.source import Line, SourceText
 from playground.sketch.assign import values_of
 from playground.sketch.model import (
+    Draw,
     Graph,
     Input,
     Kernel,
@@ -25,6 +26,7 @@ from playground.sketch.model import (
     PassSpec,
     Sketch,
     Technique,
+    TexelKernel,
     kernels_of,
 )
 
@@ -41,7 +43,7 @@ def standalone_sketch(
     """
     wanted = technique.needs_inputs if isinstance(technique, Kernel) else [e.name for e in technique.inputs]
     line = technique.pragma.number if isinstance(technique, Kernel) and technique.pragma else 0
-    over = technique.over if isinstance(technique, Kernel) else ""
+    over = technique.over if isinstance(technique, Draw) else ""
     passes = [
         PassSpec(name, "a placeholder", _DRAWN)
         if name == over
@@ -99,30 +101,26 @@ def text_of(code: str) -> SourceText:
     return SourceText("", tuple(Line(line, line, "", "", number) for number, line in enumerate(lines, 1)))
 
 
-_TERRAIN = Kernel(
+_TERRAIN = TexelKernel(
     name="a placeholder",
-    kind="kernel",
     source=text_of(own_shader("placeholder_terrain.glsl")),
     outputs=(Output("value", "rgba32f"),),
     parameters=(Parameter(SEED, "uint", 0),),
 )
-_DRAWN = Kernel(
+_DRAWN = Draw(
     name="a placeholder",
-    kind="draw",
     source=text_of(own_shader("placeholder_draw.glsl")),
     outputs=(Output("value", "rgba32f"),),
-    registry="sheet",
+    mesh="sheet",
     samples=1,
 )
-_COUNT = Kernel(
+_COUNT = TexelKernel(
     name="a placeholder",
-    kind="kernel",
     source=text_of(own_shader("placeholder_count.glsl")),
     outputs=(Output("value", "rgba32f"),),
 )
-_COPY = Kernel(
+_COPY = TexelKernel(
     name="a copy",
-    kind="kernel",
     source=text_of(own_shader("placeholder_view.glsl")),
     outputs=(Output("frame", "rgba16f"),),
     inputs=(Input("shown"),),

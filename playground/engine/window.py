@@ -25,7 +25,15 @@ from playground.shader.reserved_names import MATCHES, WINDOW, WIRED, ZOOM
 from playground.shader.source import SourceText
 from playground.sketch.flat import Ref
 from playground.sketch.identity import Identity
-from playground.sketch.model import Kernel
+from playground.sketch.model import (
+    ComputeVariant,
+    CpuSource,
+    Draw,
+    ForeignShader,
+    Kernel,
+    PlainCompute,
+    TexelKernel,
+)
 
 _KERNEL = re.compile(r"\bkernel\s*\(\s*(?:in\s+)?(ivec2\s+)(\w+)\b[^)]*\)\s*\{")
 _BLOCK = re.compile(r"^(?:\w+\s+\w+\s*\([^()]*\)|struct\s+\w+)\s*\{", re.MULTILINE)
@@ -57,13 +65,13 @@ def _in_window(node: PlanNode, of_pixels: set[str], window: Window) -> PlanNode:
             raise _refused(node, "it repeats")
         return node
     read = _read(node, of_pixels)
-    if node.kernel.kind == "kernel" and not node.repeat:  # it hands on what it begins with, or zeros
+    if isinstance(node.kernel, TexelKernel) and not node.repeat:  # it hands on what it begins with, or zeros
         return replace(node, size=window.size, window=window) if inside else node
     if not inside:
         if read:
             raise _refused(node, f"it reads '{read[0]}', whose size is another", _switch(node))
         return node
-    if node.kernel.kind in ("source", "compute", "plain_compute"):
+    if isinstance(node.kernel, CpuSource | ComputeVariant | PlainCompute):
         raise _refused(node, f"it is a {node.kernel.kind.replace('_', ' ')} shader")
     names = tuple(n for n, source in node.inputs if isinstance(source, Ref) and source.path in of_pixels)
     kernel = _changed(Identity(node.kernel), names)
@@ -92,8 +100,8 @@ def _changed(key: Identity[Kernel], inputs: tuple[str, ...]) -> Kernel | str:
     """Return a kernel that knows its window, or why there can be none."""
     kernel = key.object
     code = kernel.source.code
-    if kernel.kind == "kernel":
-        if kernel.repeat != "1" or kernel.visits or _names(code, "previous", *_previous(kernel)):
+    if isinstance(kernel, TexelKernel):
+        if not kernel.runs_once or _names(code, "previous", *_previous(kernel)):
             return "it goes by iterations"
         found = _kernel_code(kernel, code, inputs)
     else:
@@ -164,9 +172,9 @@ def _end_of_body(code: str, start: int) -> int:
 def _with_coordinates(kernel: Kernel, code: str) -> str:
     """Let ``gl_FragCoord`` count from the whole picture's corner."""
     changed = _COORDINATES.sub(f"(gl_FragCoord + vec4({WINDOW}, 0.0, 0.0))", code)
-    if kernel.kind == "draw":
+    if isinstance(kernel, Draw):
         return f"{changed}uniform vec4 {ZOOM};\n"  # a line of its own
-    if changed == code or kernel.dialect:  # whose wrapper declares it
+    if changed == code or isinstance(kernel, ForeignShader):  # whose wrapper declares it
         return changed
     # A plain shader declares for itself: before its first line that is neither blank nor of the preprocessor.
     lines, depth = changed.split("\n"), 0

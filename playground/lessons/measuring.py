@@ -18,6 +18,7 @@ from playground.errors import SketchError
 from playground.lessons.grid import Grid
 from playground.lessons.measures import MEASURES, OfTexture
 from playground.lessons.model import Lesson, Markdown, Measure, Scene
+from playground.sketch.model import TexelKernel
 
 _PLACE = re.compile(r"\{\{\s*([a-z0-9-]+)\s*\}\}")
 
@@ -120,7 +121,7 @@ def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
 
 def _texels(node: Step | LoopStep) -> int:
     if isinstance(node, Step):
-        return node.size[0] * node.size[1] * node.repeat if node.kernel.kind == "kernel" else 0
+        return node.size[0] * node.size[1] * node.repeat if isinstance(node.kernel, TexelKernel) else 0
     if len(node.bodies) == 1:
         return node.repeat * sum(_texels(inner) for inner in node.body)
     return sum(_texels(inner) for number in range(node.repeat) for inner in node.body_of(number))

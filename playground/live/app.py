@@ -52,7 +52,7 @@ from playground.shader.wrap import COMPUTE, FRAGMENT, wrap
 from playground.sketch.assign import current_paths
 from playground.sketch.find import find
 from playground.sketch.load import load
-from playground.sketch.model import DEFAULT_PICTURE, Kernel, Value
+from playground.sketch.model import DEFAULT_PICTURE, ComputeVariant, CpuSource, Kernel, PlainCompute, Value
 from playground.workbench.autosave import QUIET, Autosave, memory_of
 from playground.workbench.bench import Bench
 from playground.workbench.disk_caching import SessionCaching
@@ -471,9 +471,9 @@ class Live:
     def _review(self, kernel: Kernel) -> tuple[Diagnostic, ...]:
         """Return what the driver warns of in a kernel that it has drawn with."""
         try:
-            if kernel.kind == "source":
+            if isinstance(kernel, CpuSource):
                 return ()
-            driver = COMPUTE if kernel.kind in ("compute", "plain_compute") else FRAGMENT
+            driver = COMPUTE if isinstance(kernel, ComputeVariant | PlainCompute) else FRAGMENT
             ctx = self.window.ctx
             return warnings_of(ctx, wrap(kernel, driver, ctx.version_code))
         except PlaygroundError:

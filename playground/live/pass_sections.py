@@ -19,7 +19,7 @@ from playground.live.sliders import slide_whole
 from playground.live.theme import Theme
 from playground.shader.parameter import label_of
 from playground.sketch.composed import parts_of
-from playground.sketch.model import PassSpec, Sketch, kernels_of
+from playground.sketch.model import PassSpec, Sketch, TexelKernel, kernels_of
 from playground.sketch.replace_technique import choices
 from playground.workbench.bench import Bench
 from playground.workbench.channels import channels
@@ -251,7 +251,9 @@ def _steps(spec: PassSpec, session: Session) -> None:
             chosen = slide_whole(f"##steps of {path}", steps.get(path, whole), (0, whole), text)
             if chosen is not None:
                 session.stop_at(path, chosen)
-    if any(path in steps for path in mine) and any(k.between for _, k in kernels_of(spec.technique)):
+    if any(path in steps for path in mine) and any(
+        isinstance(k, TexelKernel) and k.between for _, k in kernels_of(spec.technique)
+    ):
         with row("Interpolated", "The heights between those that are known; else what is not reached is 0"):
             changed, on = imgui.checkbox("##interpolated", session.view.interpolated)
             if changed:

@@ -14,11 +14,12 @@ from playground.lsp import describe
 from playground.lsp.documents import Document, Documents, Text
 from playground.lsp.shader import Shader, is_code, library_declared, shader_of, word_at
 from playground.paths import GLSL, SKETCHES
-from playground.shader.header import CHOICES, FALLBACKS, FORMATS, MODIFIERS, PRAGMAS
+from playground.shader.header import FALLBACKS, MODIFIERS
 from playground.shader.libraries import libraries
 from playground.shader.outline import code_of, locals_of
 from playground.shader.parameter import WIDGETS
 from playground.shader.reserved_names import GLSL_WORDS
+from playground.sketch.kernel import FORMATS, PRAGMAS, Option, options_of
 
 Kind = types.CompletionItemKind
 _INCLUDE = re.compile(r"\s*#\s*include\s*[\"<]([^\">]*)$")
@@ -98,19 +99,25 @@ def _pragma(match: re.Match[str]) -> list[types.CompletionItem]:
     kind, inside, begun = match.groups()
     if begun is not None:
         return [item(name, Kind.Keyword) for name in PRAGMAS]
-    options = PRAGMAS.get(kind)
-    if options is None:
+    if kind not in PRAGMAS:
         return []
+    rows = options_of(PRAGMAS[kind])
     if value := _OPTION.search(inside):
-        key = value[1]
-        choices = {"output": FORMATS, "mesh": tuple(MESHES), "name": tuple(SOURCES)}.get(
-            key, CHOICES.get(key, ())
-        )
-        return [item(choice, Kind.EnumMember) for choice in choices]
-    if inside.count('"') % 2:  # a source's name has no key
-        return [item(name, Kind.EnumMember) for name in SOURCES] if kind == "source" else []
+        return _choices(rows.get(value[1]))
+    if inside.count('"') % 2:  # one that may stand without its name
+        return _choices(next((row for row in rows.values() if row.positional), None))
     given = re.findall(r"(\w+)\s*=", inside)
-    return [item(name, Kind.Property, f"#pragma {kind}") for name in options if name not in given]
+    found = [row for name, row in rows.items() if name not in given]
+    return [item(row.name, Kind.Property, f"#pragma {kind}", row.about) for row in found]
+
+
+def _choices(row: Option | None) -> list[types.CompletionItem]:
+    """Return what an option may be."""
+    if row is None:
+        return []
+    listed = {"mesh": tuple(MESHES), "name": tuple(SOURCES), "output": FORMATS}
+    names = listed.get(row.name, row.choices)
+    return [item(name, Kind.EnumMember) for name in names]
 
 
 def _uniform_above(text: str, line: int) -> str:

@@ -19,7 +19,7 @@ from playground.shader.header import parse_kernel, read_uniforms
 from playground.shader.outline import Declared, code_of, identifiers, local_at, locals_of, outline
 from playground.shader.reserved_names import GIVEN, MATCHES, SKIPS, TOWARDS, WIRED
 from playground.shader.source import SourceText, find_include, read_source, read_text
-from playground.sketch.model import Input, Kernel, Parameter
+from playground.sketch.model import Input, Kernel, Parameter, TexelKernel
 
 _INCLUDE = re.compile(r"^[ \t]*#[ \t]*(?:pragma[ \t]+)?include[ \t]*[\"<]([^\">\n]*)", re.MULTILINE)
 _PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(kernel|source|draw|compute)\b", re.MULTILINE)
@@ -74,7 +74,7 @@ class Shader:
                 meaning = f"the unit vector towards '{parameter.name}': east, north, up"
                 found[f"{TOWARDS}{parameter.name}"] = ("vec3", meaning)
         outputs = self.kernel.outputs if self.kernel is not None else ()
-        for output in outputs if self.kernel is not None and self.kernel.kind == "kernel" else ():
+        for output in outputs if isinstance(self.kernel, TexelKernel) else ():
             name = "previous" if len(outputs) == 1 else f"previous_{output.name}"
             meaning = "the texel of the step before, clamped to the edge: a function of ivec2"
             found[name] = (output.glsl, meaning)

@@ -17,7 +17,7 @@ from playground.shader.header import note_at
 from playground.shader.reserved_names import MATCHES, WIRED
 from playground.shader.source import SourceText, read_source_and_origin, without_guards
 from playground.sketch.flat import Ref, Source
-from playground.sketch.model import Kernel, Sketch, Value
+from playground.sketch.model import ForeignShader, Kernel, PlainFragment, PlainShader, Sketch, Value
 from playground.sketch.variants import active_variant
 
 _OF_SHADERS = (".fs", ".fragment", ".glsl", ".json")
@@ -35,14 +35,14 @@ def inline_sketch(
     plan = Planner().plan(sketch, frame_size=frame, time=time, steps=steps)
     leaves = list(plan.walk())
     alone = len(leaves) == 1 or Path(sketch.file).suffix != ".toml"  # the rest stands in for its channels
-    own = [leaf.kernel for leaf in leaves if leaf.kernel.dialect]
+    own = [leaf.kernel for leaf in leaves if isinstance(leaf.kernel, ForeignShader)]
     foreign = {_words(_whole_source(kernel, plan), as_written=True) for kernel in own}
     if alone and len(foreign) > 1:
         raise SketchError(
             f"{len(foreign)} passes of another tool's shader cannot be inlined; reduce a file of one of them",
             file=Path(sketch.file),
         )
-    if alone and leaves[-1].kernel.kind.startswith("plain"):
+    if alone and isinstance(leaves[-1].kernel, PlainShader):
         return _plain(leaves[-1], plan)
     if own:
         raise SketchError(
@@ -71,24 +71,26 @@ def inline_sketch(
 
 def _plain(step: Step, plan: Plan) -> Case:
     kernel, suffix = step.kernel, Path(step.kernel.path).suffix
-    name = "shader" if kernel.kind == "plain_fragment" else "compute"
-    vertex = kernel.vertex_source
+    foreign = kernel if isinstance(kernel, ForeignShader) else None
+    name = "shader" if isinstance(kernel, PlainFragment) else "compute"
+    vertex = foreign.vertex_source if foreign else None
+    is_isf = foreign is not None and foreign.dialect == "isf"
     one = Pass(
         name=name,
-        text=_words(_whole_source(kernel, plan), as_written=bool(kernel.dialect)),
+        text=_words(_whole_source(kernel, plan), as_written=foreign is not None),
         suffix=".frag" if suffix in _OF_SHADERS else suffix,
-        head=f"/*{json.dumps(read_header(kernel.source).table)}*/\n" if kernel.dialect == "isf" else "",
+        head=f"/*{json.dumps(read_header(kernel.source).table)}*/\n" if is_isf else "",
         beside=((Path(vertex.path).suffix, _words(vertex, as_written=True)),) if vertex else (),
     )
     named = [(p.default, step.values[p.name]) for p in kernel.file_parameters]
-    files = tuple((str(written), str(found)) for written, found in named if kernel.dialect)
+    files = tuple((str(written), str(found)) for written, found in named if foreign)
     return Case(passes=(one,), target=name, frame=plan.frame_size, time=plan.time, samples=1, files=files)
 
 
 def _whole_source(kernel: Kernel, plan: Plan) -> SourceText:
     """Return a kernel's text; where it is one pass of several of a text, and has some of its lines, all."""
     several = sum(step.kernel.path == kernel.path for step in plan.walk()) > 1
-    if kernel.dialect != "main" or not several:
+    if not isinstance(kernel, ForeignShader) or kernel.dialect != "main" or not several:
         return kernel.source
     return read_source_and_origin(Path(kernel.path), (Path(plan.sketch.folder),), foreign=True)[0]
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from playground.errors import PlaygroundError
 from playground.shader.header import parse_kernel
 from playground.shader.source import read_source
-from playground.sketch.model import Kernel
+from playground.sketch.model import ComputeVariant, Kernel
 from playground.sketch.variants import Verified, content_of, written
 
 
@@ -27,7 +27,7 @@ def _contents(name: str, text: str, variant_text: str) -> Verified | None:
         plain, variant = _kernel("case.glsl", text), _kernel(name, variant_text)
     except PlaygroundError:
         return None
-    if plain is None or variant is None:
+    if plain is None or not isinstance(variant, ComputeVariant):
         return None
     variant = replace(variant, outputs=plain.outputs, accepts=plain.accepts)
     return content_of(plain), content_of(variant)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from itertools import count
 
-from playground.shader.kernel import Buffer, Kernel
 from playground.shader.outline import outline
 from playground.shader.reserved_names import READ
 from playground.shader.stage_recipe import Part
+from playground.sketch.kernel import Buffer, ComputeVariant
 
 TEXELS = "k_texels_"
 """What begins the name of the sampler by which a buffer is read, and is the choice to read buffers so."""
@@ -20,14 +20,14 @@ _SWIZZLES = {"float": ".r", "vec2": ".rg", "vec4": ""}  # of the buffers that ma
 _FUNCTION = re.compile(rf"^(\w+) {READ}(\w+)\(int place\) {{ return \2\[place\]; }}$", re.MULTILINE)
 
 
-def read_by_functions(kernel: Kernel) -> list[Buffer]:
+def read_by_functions(kernel: ComputeVariant) -> list[Buffer]:
     """Return the buffers that a compute variant reads by these functions, unless it has its own."""
-    found = [b for b in kernel.buffers if b.type in _SWIZZLES and kernel.reads(f"{READ}{b.name}")]
+    found = [b for b in kernel.storage.buffers if b.type in _SWIZZLES and kernel.reads(f"{READ}{b.name}")]
     own = {one.name for one in outline(kernel.source.code)} if found else set()
     return [buffer for buffer in found if f"{READ}{buffer.name}" not in own]
 
 
-def reading(kernel: Kernel) -> list[Part]:
+def reading(kernel: ComputeVariant) -> list[Part]:
     """Return these functions."""
     return [
         Part(f"{buffer.type} {READ}{buffer.name}(int place) {{ return {buffer.name}[place]; }}")

@@ -39,10 +39,10 @@ from functools import cache
 from typing import Literal
 
 from playground.paths import GLSL, SKETCHES, shown
-from playground.shader.kernel import Kernel
 from playground.shader.own_shaders import own_part
 from playground.shader.reserved_names import GIVEN, GIVEN_INSTEAD, GLSL_WORDS, PLAIN_UNIFORMS
 from playground.shader.source import Line, SourceText
+from playground.sketch.kernel import ForeignShader, Kernel, PlainFragment, PlainShader
 
 Severity = Literal["error", "warning"]
 
@@ -539,7 +539,7 @@ def without_consequences(entries: Iterable[LogEntry]) -> Iterator[LogEntry]:
 
 def names_given(kernel: Kernel) -> frozenset[str]:
     """Return the names that a kernel, or the tool of another shader, is given without declaring them."""
-    if kernel.dialect:
+    if isinstance(kernel, ForeignShader):
         helpers = "\n".join(own_part(part) for part in kernel.helpers)
         found = [*FUNCTION.finditer(helpers), *DEFINE.finditer(helpers)]
         return frozenset({*(name for name, _ in kernel.tool_names), *(match[1] for match in found)})
@@ -579,8 +579,11 @@ def _given_elsewhere(name: str, kernel: Kernel) -> str:
     from playground.shader.dialects import isf, main
 
     kinds = {**isf.NAMES, **main.NAMES}
-    given = kernel.tool_names if kernel.dialect else tuple(_MEANINGS.items()) if _is_own(kernel) else ()
-    if kernel.kind == "plain_fragment" and not kernel.dialect and name in _PLAIN:
+    if isinstance(kernel, ForeignShader):
+        given = kernel.tool_names
+    else:
+        given = tuple(_MEANINGS.items()) if _is_own(kernel) else ()
+    if isinstance(kernel, PlainFragment) and not isinstance(kernel, ForeignShader) and name in _PLAIN:
         return WHEREABOUTS["undeclared"].format(name, kinds[name][0])
     if name in dict(given) or (_is_own(kernel) and name in GIVEN_INSTEAD):
         return ""
@@ -595,7 +598,7 @@ def _given_elsewhere(name: str, kernel: Kernel) -> str:
 
 def _is_own(kernel: Kernel) -> bool:
     """Return whether a kernel is one of ours, not a library file alone."""
-    return bool(kernel.outputs) and not kernel.kind.startswith("plain")
+    return bool(kernel.outputs) and not isinstance(kernel, PlainShader)
 
 
 def _head(message: str) -> str:

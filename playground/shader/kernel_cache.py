@@ -11,17 +11,19 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, cast
 
 from playground.shader.header import parse_kernel
-from playground.shader.kernel import Kernel, Variant
+from playground.shader.kernel import Variant
 from playground.shader.source import Origin, read_source_and_origin
+from playground.sketch.kernel import Kernel
 
 _MOST = 1024  # the library has some three hundred, each read in its sketches' folders as well
 
 _parsed: OrderedDict[tuple[str, Path, tuple[Path, ...]], tuple[Kernel | None, Origin]] = OrderedDict()
 # What each was made of is referenced too, so that its identity is not given to another object.
-_replaced: OrderedDict[tuple[Any, ...], tuple[Kernel, dict[str, Any], Kernel]] = OrderedDict()
+_replaced: OrderedDict[tuple[Any, ...], tuple[Kernel, dict[str, Any], Any]] = OrderedDict()
+_AnyKernel = TypeVar("_AnyKernel", bound=Kernel)
 
 
 def parsed_kernel(name: str, path: Path, roots: Sequence[Path]) -> Kernel | None:
@@ -37,7 +39,7 @@ def parsed_kernel(name: str, path: Path, roots: Sequence[Path]) -> Kernel | None
     return known[0]
 
 
-def replaced(kernel: Kernel, **changes: Any) -> Kernel:
+def replaced(kernel: _AnyKernel, **changes: Any) -> _AnyKernel:
     """Return a kernel with some fields replaced: the same object for the same kernel and changes."""
     key = (id(kernel), *((name, _identity(value)) for name, value in changes.items()))
     known = _replaced.get(key)
@@ -46,7 +48,7 @@ def replaced(kernel: Kernel, **changes: Any) -> Kernel:
         while len(_replaced) > _MOST:
             _replaced.popitem(last=False)
     _replaced.move_to_end(key)
-    return known[2]
+    return cast(_AnyKernel, known[2])
 
 
 def _identity(value: Any) -> Any:

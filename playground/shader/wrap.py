@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 from playground.errors import ShaderError
 from playground.shader.buffer_reads import reading
-from playground.shader.kernel import DRIVERS, Kernel, Output
 from playground.shader.own_shaders import TRIANGLE, own_part
 from playground.shader.reserved_names import (
     FETCHES,
@@ -29,6 +28,18 @@ from playground.shader.reserved_names import (
 )
 from playground.shader.source import Line, SourceText
 from playground.shader.stage_recipe import SIGNATURE, VERSION_NUMBER, Part, Recipe, version_line
+from playground.sketch.kernel import (
+    ComputeVariant,
+    Draw,
+    ForeignShader,
+    Kernel,
+    Output,
+    PlainCompute,
+    PlainFragment,
+    TexelKernel,
+    VertexShader,
+)
+from playground.sketch.model import DRIVERS
 
 _, FRAGMENT, COMPUTE = DRIVERS
 LOCAL = 8
@@ -79,18 +90,20 @@ def wrap(kernel: Kernel, driver: str, version_code: int = 330) -> Wrapped:
 
 def recipes_of(kernel: Kernel, driver: str, version_code: int = 330) -> tuple[str, dict[str, Recipe]]:
     """Return what runs a kernel (fragment, compute or draw), and the recipe of each stage."""
-    if kernel.kind == "draw":
-        return "draw", _draw(kernel)
-    if kernel.kind == "compute":
-        return COMPUTE, {"compute": _variant(kernel)}
-    if kernel.dialect:
-        return FRAGMENT, _foreign(kernel, version_code)
-    if kernel.kind == "plain_fragment":
-        version = version_line(kernel.source)
-        assert version is not None  # or it would be no plain shader
-        return FRAGMENT, {"vertex": _quad(kernel, version.code.strip()), "fragment": _whole(kernel)}
-    if kernel.kind == "plain_compute":
-        return COMPUTE, {"compute": _whole(kernel)}
+    match kernel:
+        case Draw():
+            return "draw", _draw(kernel)
+        case ComputeVariant():
+            return COMPUTE, {"compute": _variant(kernel)}
+        case ForeignShader():
+            return FRAGMENT, _foreign(kernel, version_code)
+        case PlainFragment():
+            version = version_line(kernel.source)
+            assert version is not None  # or it would be no plain shader
+            return FRAGMENT, {"vertex": _quad(kernel, version.code.strip()), "fragment": _whole(kernel)}
+        case PlainCompute():
+            return COMPUTE, {"compute": _whole(kernel)}
+    assert isinstance(kernel, TexelKernel)  # a source has no text to run
     _check_signature(kernel)
     if driver == COMPUTE:
         return COMPUTE, {"compute": _compute(kernel)}
@@ -154,7 +167,7 @@ def _whole(kernel: Kernel) -> Recipe:
     return Recipe(kernel.source, keeps_version=True, expected="void main()")
 
 
-def _foreign(kernel: Kernel, version_code: int) -> dict[str, Recipe]:
+def _foreign(kernel: ForeignShader, version_code: int) -> dict[str, Recipe]:
     """Wrap another tool's shader: its own version or the context's, what its tool declares, its lines."""
     own = version_line(kernel.source)
     version = own.code.strip() if own else f"#version {400 if version_code >= 400 else 330}"
@@ -162,8 +175,8 @@ def _foreign(kernel: Kernel, version_code: int) -> dict[str, Recipe]:
     before = [*begins, *kernel.prelude, f"uniform ivec2 {WINDOW};", *map(own_part, kernel.helpers)]
     after = f"{own_part(kernel.epilogue, window=WINDOW)}\n" if kernel.epilogue else ""
     extensions = [line for line in kernel.prelude if line.startswith("#extension")]
-    if kernel.vertex_source is not None:
-        vertex = _own_vertex(kernel, kernel.vertex_source, begins)
+    if isinstance(kernel.vertex, VertexShader):
+        vertex = _own_vertex(kernel.vertex, begins)
     else:
         triangle = own_part(
             "triangle_with_outputs.vert",
@@ -180,11 +193,11 @@ def _foreign(kernel: Kernel, version_code: int) -> dict[str, Recipe]:
     return {"vertex": vertex, "fragment": fragment}
 
 
-def _own_vertex(kernel: Kernel, source: SourceText, begins: Sequence[str]) -> Recipe:
+def _own_vertex(vertex: VertexShader, begins: Sequence[str]) -> Recipe:
     """Return the vertex stage of another tool's shader whose author wrote one."""
-    before = [*begins, *kernel.vertex_prelude]
-    before += [own_part(part, shares=PART) for part in kernel.vertex_helpers]
-    return Recipe(source, tuple(map(Part, before)), expected="void main()")
+    before = [*begins, *vertex.prelude]
+    before += [own_part(part, shares=PART) for part in vertex.helpers]
+    return Recipe(vertex.source, tuple(map(Part, before)), expected="void main()")
 
 
 def reads_unwired(kernel: Kernel) -> bool:
@@ -223,14 +236,14 @@ def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[Part]:
     return [*parts, Part(NOTHING_SKIPPED, (SKIPS,))]
 
 
-def _fragment(kernel: Kernel) -> Recipe:
-    strides = bool(kernel.stride)
-    before: list[str | Part] = ["#version 330", *_given(kernel, ("size",) if strides else ())]
-    if strides:
+def _fragment(kernel: TexelKernel) -> Recipe:
+    lattice = kernel.fills_lattice
+    before: list[str | Part] = ["#version 330", *_given(kernel, ("size",) if lattice else ())]
+    if lattice:
         before.append("uniform int k_shift, k_previous_shift;")
-    before += [_previous(kernel, output, "strided" if strides else "sampler") for output in kernel.outputs]
+    before += [_previous(kernel, output, "strided" if lattice else "sampler") for output in kernel.outputs]
     after = [f"layout(location = {i}) out {o.glsl} k_out_{o.name};" for i, o in enumerate(kernel.outputs)]
-    shift = " << k_shift" if strides else ""
+    shift = " << k_shift" if lattice else ""
     after.append(own_part("main_fragment.glsl", shift=shift, call=_call(kernel)))
     return _recipe(kernel, before, after, signature(kernel))
 
@@ -250,7 +263,7 @@ def _call(kernel: Kernel) -> str:
     return f"{names[0]} = kernel(k_texel);" if len(names) == 1 else f"kernel(k_texel, {', '.join(names)});"
 
 
-def _compute(kernel: Kernel) -> Recipe:
+def _compute(kernel: TexelKernel) -> Recipe:
     before: list[str | Part] = [
         "#version 430",
         f"layout(local_size_x = {LOCAL}, local_size_y = {LOCAL}) in;",
@@ -274,7 +287,7 @@ def _compute(kernel: Kernel) -> Recipe:
     return _recipe(kernel, before, after, signature(kernel))
 
 
-def _variant(kernel: Kernel) -> Recipe:
+def _variant(kernel: ComputeVariant) -> Recipe:
     before: list[str | Part] = [
         "#version 430",
         "#define COMPUTE_STAGE",
@@ -282,16 +295,16 @@ def _variant(kernel: Kernel) -> Recipe:
     ]
     before += _given(kernel)
     for unit, output in enumerate(kernel.outputs):
-        if kernel.buffer_of(output.name) is None:
+        if kernel.storage.of_output(output.name) is None:
             before.append(f"layout({output.format}, binding = {unit}) uniform image2D out_{output.name};")
-    for unit, buffer in enumerate(kernel.buffers):
+    for unit, buffer in enumerate(kernel.storage.buffers):
         block = f"buffer k_buffer_{buffer.name} {{ {buffer.type} {buffer.name}[]; }};"
         before.append(f"layout(std430, binding = {unit}) {block}")
     before += reading(kernel)
     return _recipe(kernel, before, [], "void main()")
 
 
-def _draw(kernel: Kernel) -> dict[str, Recipe]:
+def _draw(kernel: Draw) -> dict[str, Recipe]:
     vertex = _function(kernel, "vertex", "vec4 vertex(vec3 corner, out vec3 position)")
     fragment = _function(kernel, "fragment", "vec4 fragment(vec3 position)")
     several = kernel.outputs if len(kernel.outputs) > 1 else ()
@@ -370,7 +383,7 @@ def _line_of(kernel: Kernel, name: str) -> Line:
     return next((line for line in kernel.source.lines if pattern.search(line.code)), kernel.source.lines[0])
 
 
-def _check_signature(kernel: Kernel) -> None:
+def _check_signature(kernel: TexelKernel) -> None:
     code = kernel.source.code
     match = re.search(SIGNATURE.format(name="kernel"), code)
     if not match:

@@ -8,10 +8,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from playground.errors import ParameterError, nearest
-from playground.shader.kernel import ARRAY, Graph, Kernel, Output, PassSpec
+from playground.shader.kernel import ARRAY, Graph, PassSpec
 from playground.shader.parameter import Parameter, Widget
 from playground.shader.source import Line, SourceText
 from playground.sketch.arrays import ArrayFile, texels
+from playground.sketch.kernel import CpuSource, Kernel, Output
 from playground.sketch.wiring import initial_names, input_names, takes_input
 
 _FORMATS = {1: "r32f", 2: "rg32f", 4: "rgba32f"}
@@ -53,10 +54,9 @@ def _name(graph: Graph, path: str, before: str) -> str:
     return name
 
 
-def _kernel(channels: int) -> Kernel:
-    return Kernel(
+def _kernel(channels: int) -> CpuSource:
+    return CpuSource(
         name=ARRAY,
-        kind="source",
         source=SourceText("", (Line("", "", "", "", 1),)),
         outputs=(Output("values", _FORMATS[channels]),),
         parameters=(Parameter(_PARAMETER, "sampler2D", "", Widget("file")),),

@@ -14,7 +14,7 @@ from functools import lru_cache
 from playground.errors import Diagnostic, SketchError
 from playground.shader.kernel_cache import replaced
 from playground.sketch.identity import Identity
-from playground.sketch.model import Export, Graph, Kernel, Output, PassSpec, Technique
+from playground.sketch.model import Export, Graph, Kernel, Output, PassSpec, PlainFragment, Technique
 from playground.sketch.wiring import input_names, output_names
 
 _COMPOSED = re.compile(r"\s*([^()\s]+)\s*\((.*)\)\s*", re.DOTALL)
@@ -41,7 +41,7 @@ def is_foreign(technique: Technique) -> bool:
     """Return whether a technique's picture is that of another tool's shader, or of a plain one."""
     if isinstance(technique, Graph):
         return is_foreign(technique.parts[0]) if technique.parts else bool(technique.dialect)
-    return technique.kind == "plain_fragment"
+    return isinstance(technique, PlainFragment)
 
 
 def composed(use: str, outer: Technique, inner: Technique) -> Graph:

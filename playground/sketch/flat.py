@@ -8,7 +8,7 @@ from functools import cached_property
 from playground.errors import SketchError, nearest
 from playground.shader.expressions import is_accepted, nearest_accepted
 from playground.sketch.follows import Rule
-from playground.sketch.model import Graph, Kernel, PassSpec, Value
+from playground.sketch.model import CpuSource, Graph, Kernel, PassSpec, Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ class Flat:
     @cached_property
     def sources(self) -> list[Leaf]:
         """Every leaf that is a source."""
-        return [leaf for leaf in self.leaves if leaf.kernel.kind == "source"]
+        return [leaf for leaf in self.leaves if isinstance(leaf.kernel, CpuSource)]
 
     @cached_property
     def with_files(self) -> list[Leaf]:

@@ -30,7 +30,16 @@ from playground.shader.dialects import EXPORT, check_name
 from playground.sketch.assign import effective_values, shown_parameters
 from playground.sketch.find import find
 from playground.sketch.flatten import flatten
-from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value
+from playground.sketch.model import (
+    ComputeVariant,
+    Graph,
+    Kernel,
+    PassSpec,
+    PlainShader,
+    Sketch,
+    Technique,
+    Value,
+)
 from playground.sketch.techniques import (
     Techniques,
     check_kernel_count,
@@ -138,9 +147,9 @@ def _shader_alone(path: Path, techniques: Techniques) -> Sketch:
     found = techniques.shader(path, root_of(path), techniques.dialect)
     if found is None:
         raise nothing_to_run(path)
-    if isinstance(found, Kernel) and found.kind == "compute":
+    if isinstance(found, ComputeVariant):
         raise lonely_variant(path)
-    if isinstance(found, Kernel) and not found.kind.startswith("plain"):
+    if isinstance(found, Kernel) and not isinstance(found, PlainShader):
         return _in_plain_sketch(path, found)
     return plain_sketch(path, found, _folder_of(path))
 

@@ -17,15 +17,9 @@ from typing import Any
 
 from playground.errors import Diagnostic, ParameterError, SketchError, nearest
 from playground.shader.kernel import (
-    DRIVERS,
-    SHAPES,
     VARIANTS,
-    Buffer,
     Export,
     Graph,
-    Input,
-    Kernel,
-    Output,
     PassSpec,
     Technique,
     Variant,
@@ -34,6 +28,25 @@ from playground.shader.kernel import (
 )
 from playground.shader.parameter import LARGEST_SIDE, Follows, Parameter, Sampling, Value, Widget
 from playground.sketch.assign import TERRAIN_KEYS, check_value, current_paths, renamed
+from playground.sketch.kernel import (
+    FORMATS,
+    PRAGMAS,
+    SHAPES,
+    Buffer,
+    ComputeVariant,
+    CpuSource,
+    Draw,
+    ForeignShader,
+    Input,
+    Kernel,
+    Output,
+    PlainCompute,
+    PlainFragment,
+    PlainShader,
+    TexelKernel,
+    VertexShader,
+    options_of,
+)
 from playground.sketch.keyframes import Keyframe, at
 from playground.sketch.presence import as_wired
 
@@ -103,15 +116,21 @@ _CHOICES = f"{', '.join(TIERS)}, a number of levels of 255, or {{ levels = 6, sh
 __all__ = [
     "DEFAULT_PICTURE",
     "DRIVERS",
+    "FORMATS",
     "LARGEST_PICTURE",
     "LARGEST_SIDE",
     "MOST_SUPERSAMPLE",
+    "PRAGMAS",
     "SHAPES",
     "VARIANTS",
     "Buffer",
     "Camera",
+    "ComputeVariant",
+    "CpuSource",
+    "Draw",
     "Export",
     "Follows",
+    "ForeignShader",
     "Graph",
     "Input",
     "Kernel",
@@ -119,15 +138,21 @@ __all__ = [
     "Output",
     "Parameter",
     "PassSpec",
+    "PlainCompute",
+    "PlainFragment",
+    "PlainShader",
     "Preset",
     "Sampling",
     "Shot",
     "Sketch",
     "Technique",
+    "TexelKernel",
     "Value",
     "Variant",
+    "VertexShader",
     "Widget",
     "kernels_of",
+    "options_of",
     "with_inner",
 ]
 

@@ -27,7 +27,16 @@ from playground.sketch.assign import current_path, find_targets, resolve
 from playground.sketch.composed import composed, first_input, is_foreign, parts_of
 from playground.sketch.find import is_part, shipped_names
 from playground.sketch.flatten import flatten
-from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, with_inner
+from playground.sketch.model import (
+    ComputeVariant,
+    Graph,
+    Kernel,
+    PassSpec,
+    Sketch,
+    Technique,
+    Value,
+    with_inner,
+)
 from playground.sketch.techniques import Techniques
 from playground.sketch.wiring import output_names, outputs_with_formats, takes_input
 
@@ -85,7 +94,7 @@ def _parsed_again(kernel: Kernel, texts: Mapping[str, str], folder: Path) -> Ker
     found = parse_kernel(kernel.name, read_source(path, (root,), texts))
     if found is None:
         raise DataError("no kernel is left of this text", file=path)
-    if kernel.kind == "compute":  # a compute variant has these of its technique
+    if isinstance(found, ComputeVariant):  # a compute variant has these of its technique
         return replace(found, outputs=kernel.outputs, accepts=kernel.accepts)
     return found
 

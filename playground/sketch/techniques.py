@@ -27,7 +27,17 @@ from playground.shader.kernel_cache import parsed_kernel, replaced
 from playground.shader.source import EncodingError
 from playground.sketch.composed import composed, parts_of
 from playground.sketch.find import shipped_names
-from playground.sketch.model import Graph, Kernel, Technique, Variant
+from playground.sketch.model import (
+    ComputeVariant,
+    Draw,
+    Graph,
+    Kernel,
+    PlainFragment,
+    PlainShader,
+    Technique,
+    TexelKernel,
+    Variant,
+)
 from playground.sketch.toml_graph import read_graph
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.variants import check_shape, content_of, verified, without_variants
@@ -69,7 +79,7 @@ def technique_beside(path: Path) -> Path | None:
     if not is_variant(path):
         return None
     kernel = read_kernel(path, root_of(path)) if path.suffix == ".comp" else None
-    return None if kernel is not None and kernel.kind.startswith("plain") else canonical_of(path)
+    return None if isinstance(kernel, PlainShader) else canonical_of(path)
 
 
 def lonely_variant(path: Path) -> SketchError:
@@ -141,7 +151,11 @@ class Techniques:
                 kernel = self.kernel(path, folder)
             except (ShaderError, EncodingError) as error:
                 wrong = error
-        if (kernel is None or kernel.kind == "plain_fragment") and path.suffix != ".comp" and dialect != OWN:
+        if (
+            (kernel is None or isinstance(kernel, PlainFragment))
+            and path.suffix != ".comp"
+            and dialect != OWN
+        ):
             found = read_foreign(path, name_of(path), folder, self.read, dialect)
             if found is not None:
                 for _, own in found.kernels:
@@ -158,7 +172,7 @@ class Techniques:
         if kernel is None:
             return None
         _check_files(kernel, folder)
-        if path.suffix == ".glsl" and kernel.kind in ("kernel", "draw"):
+        if path.suffix == ".glsl" and isinstance(kernel, TexelKernel | Draw):
             variants = self._variants(path, kernel, folder)
             return replaced(kernel, variants=variants) if variants else kernel
         return kernel
@@ -196,11 +210,13 @@ class Techniques:
     def _variant(self, path: Path, of: Technique, root: Path) -> Variant:
         if not is_inside(path, (root, GLSL)):
             raise SketchError("lies outside the sketch's own folder and glsl/", file=path)
-        found: Technique
+        found: ComputeVariant | Graph
         if path.suffix == ".comp":
             found = _compute_variant(path, root, of)
         else:
-            found = without_variants(self._graph(path, name_of(path), root))
+            plain = without_variants(self._graph(path, name_of(path), root))
+            assert isinstance(plain, Graph)
+            found = plain
         agreed, record = verified(Path(found.path))
         if agreed is None or agreed[0] == content_of(of):
             check_shape(found, of)  # else it is left out anyway
@@ -270,9 +286,9 @@ def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
     raise SketchError(f"there is no technique '{use}'{ending}{nearest(use, names)}")
 
 
-def _compute_variant(path: Path, folder: Path, of: Technique) -> Kernel:
+def _compute_variant(path: Path, folder: Path, of: Technique) -> ComputeVariant:
     found = parsed_kernel(path.stem, path, (folder,))
-    if found is None or found.kind != "compute":
+    if not isinstance(found, ComputeVariant):
         message = 'a .comp next to a kernel begins with #pragma compute(groups = "…", agrees = "…")'
         raise SketchError(message, file=path)
     outputs = of.outputs if isinstance(of, Kernel) else outputs_with_formats(of)

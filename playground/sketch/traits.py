@@ -8,7 +8,7 @@ from functools import lru_cache
 
 from playground.shader.expressions import follows_time
 from playground.sketch.identity import Identity
-from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Technique, kernels_of
+from playground.sketch.model import Draw, Graph, Kernel, Parameter, PlainShader, Sketch, Technique, kernels_of
 
 _MOVING = frozenset({"time", "bands", "frame", "frame_of_time", "delta", "date", "date_from_1"})
 _DEVICES = frozenset({"microphone", "camera"})
@@ -27,7 +27,7 @@ class Traits:
     keys: bool  # a source reads the keyboard
     devices: bool  # a source reads a microphone or a camera
     files: tuple[tuple[str, Parameter], ...]  # parameters that name files, by the paths of the leaves
-    draws: tuple[tuple[str, Kernel], ...]  # kernels that draw meshes
+    draws: tuple[tuple[str, Draw], ...]  # kernels that draw meshes
     faster: tuple[tuple[str, Kernel], ...]  # kernels with a menu of which previews have another choice
 
 
@@ -49,7 +49,7 @@ def has_moving_counts(sketch: Sketch) -> bool:
 @lru_cache(maxsize=64)
 def _traits(key: Identity[Graph]) -> Traits:
     kernels = list(kernels_of(key.object))
-    plain = {id(kernel) for _, kernel in kernels if kernel.kind.startswith("plain")}
+    plain = {id(kernel) for _, kernel in kernels if isinstance(kernel, PlainShader)}
     files = [(f"{at}.{p.name}", p) for at, k in kernels for p in k.parameters if p.widget.kind == "file"]
     counts = any(follows_time(text) for text in _counts_of(key.object))
     return Traits(
@@ -62,7 +62,7 @@ def _traits(key: Identity[Graph]) -> Traits:
         keys=any("keys" in kernel.depends for _, kernel in kernels),
         devices=any(not _DEVICES.isdisjoint(kernel.depends) for _, kernel in kernels),
         files=tuple(files),
-        draws=tuple((path, kernel) for path, kernel in kernels if kernel.kind == "draw"),
+        draws=tuple((path, kernel) for path, kernel in kernels if isinstance(kernel, Draw)),
         faster=tuple(
             (path, kernel)
             for path, kernel in kernels
@@ -74,7 +74,7 @@ def _traits(key: Identity[Graph]) -> Traits:
 def _counts_of(technique: Technique) -> Iterator[str]:
     """Yield the expressions of a technique's sizes and numbers of steps."""
     if isinstance(technique, Kernel):
-        yield from (technique.repeat, technique.stride, technique.count)
+        yield from technique.counts
         return
     for spec in technique.passes:
         yield from (spec.repeat, *(spec.size or ()))

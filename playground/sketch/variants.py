@@ -37,6 +37,8 @@ from playground.shader.source import read_text
 from playground.sketch.identity import Identity
 from playground.sketch.model import (
     VARIANTS,
+    ComputeVariant,
+    Draw,
     Graph,
     Kernel,
     Output,
@@ -81,27 +83,18 @@ def _of_graph(graph: Graph) -> list[Any]:
 
 
 def _of_kernel(kernel: Kernel) -> list[Any]:
-    header: list[Any] = [kernel.kind, kernel.registry, kernel.blend, kernel.depth, kernel.samples]
-    header += [kernel.repeat, kernel.accepts, kernel.visits, kernel.stride, kernel.at_once, kernel.count]
-    header += [kernel.groups, kernel.local, kernel.aligned, kernel.stages, kernel.overwrites]
-    header += [(b.name, b.type, b.count) for b in kernel.buffers]
-    header += [(o.name, o.format) for o in kernel.outputs]
+    options = sorted((row.name, repr(value)) for row, value in kernel.options if row.compared)
+    header: list[Any] = [kernel.kind, options, [(o.name, o.format) for o in kernel.outputs]]
     header += [(i.name, _sampling(i), i.fallback) for i in kernel.inputs]
     header += [_parameter(p) for p in kernel.parameters]
-    # Only where it is there, as in ``_of_graph``.
-    more = [kernel.own_accepts] if kernel.own_accepts else []
-    more += [kernel.instances] if kernel.instances else []
-    more += [f"in place: {kernel.in_place}"] if kernel.in_place else []
-    more += [f"active: {kernel.active}"] if kernel.active else []
-    more += [f"over: {kernel.over}"] if kernel.over else []
-    return [header, kernel.agrees, compiled_text(kernel.source.code), *more]
+    return [header, compiled_text(kernel.source.code)]
 
 
 def _parameter(parameter: Parameter) -> tuple[Any, ...]:
     widget = parameter.widget
     what: tuple[Any, ...] = (widget.kind, widget.low, widget.high, widget.choices)
     more = (widget.values, widget.axes, widget.raw)
-    what += more if any(more) else ()  # as in ``_of_kernel``
+    what += more if any(more) else ()  # only where it is there, as in ``_of_graph``
     return parameter.name, parameter.type, parameter.default, what, _sampling(parameter)
 
 
@@ -203,9 +196,9 @@ INSIDE = "fast"
 _HELD = {1: ("float", "vec4"), 2: ("vec2", "vec4"), 4: ("vec4",)}  # types of a buffer that is an output
 
 
-def check_shape(variant: Technique, of: Technique) -> None:
+def check_shape(variant: ComputeVariant | Graph, of: Technique) -> None:
     """Raise ``SketchError`` or ``ShaderError`` where a fast variant has what its technique has not."""
-    starts = initial_names(of) if isinstance(of, Kernel) and of.kind == "draw" else ()
+    starts = initial_names(of) if isinstance(of, Draw) else ()
     names = [one.name for one in of.parameters], [*(one.name for one in of.inputs), *starts]
     for declared, valid in zip((variant.parameters, variant.inputs), names, strict=True):
         for one in declared:
@@ -223,15 +216,16 @@ def check_shape(variant: Technique, of: Technique) -> None:
         raise variant.error(wrong)
 
 
-def _check_compute(variant: Kernel, outputs: tuple[Output, ...]) -> None:
-    written = [*(o.name for o in outputs), *(b.name for b in variant.buffers)]
-    for name in variant.overwrites:
+def _check_compute(variant: ComputeVariant, outputs: tuple[Output, ...]) -> None:
+    storage = variant.storage
+    written = [*(o.name for o in outputs), *(b.name for b in storage.buffers)]
+    for name in storage.overwrites:
         if name not in written:
             raise variant.error(f"overwrites: no output or buffer '{name}'{nearest(name, written)}")
-    if variant.in_place and len(outputs) != 1:
+    if storage.in_place and len(outputs) != 1:
         raise variant.error(f"in_place: one output was expected, not {', '.join(o.name for o in outputs)}")
     for output in outputs:
-        buffer = variant.buffer_of(output.name)
+        buffer = storage.of_output(output.name)
         held = buffer.type if buffer else ""
         if held and not (output.format.endswith("32f") and held in _HELD[output.components]):
             raise variant.error(f"a buffer of {held} cannot be the output {output.name}:{output.format}")

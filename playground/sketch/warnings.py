@@ -23,7 +23,19 @@ from playground.shader.parameter import write
 from playground.shader.reserved_names import GLSL_WORDS
 from playground.shader.source import SourceText
 from playground.sketch.assign import apply, effective_values, resolve
-from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Value, kernels_of
+from playground.sketch.model import (
+    CpuSource,
+    Draw,
+    ForeignShader,
+    Graph,
+    Kernel,
+    Parameter,
+    PlainFragment,
+    PlainShader,
+    Sketch,
+    Value,
+    kernels_of,
+)
 
 if TYPE_CHECKING:
     from playground.shader.declarations import Declarations, Variable
@@ -119,10 +131,11 @@ def warnings_of_kernel(kernel: Kernel) -> tuple[Diagnostic, ...]:
 
 def unheeded(kernel: Kernel) -> tuple[Diagnostic, ...]:
     """Return what a picture does not show though the text says it: unfed samplers, ``1/4``, ``#line``."""
-    is_plain = kernel.kind.startswith("plain") and not kernel.dialect
+    is_plain = isinstance(kernel, PlainShader) and not isinstance(kernel, ForeignShader)
     found = [*(unfed_samplers(kernel.source) if is_plain else ())]
     found += whole_divisions(kernel.source)
-    found += whole_divisions(kernel.vertex_source) if kernel.vertex_source else ()
+    if isinstance(kernel, ForeignShader) and kernel.vertex_source:
+        found += whole_divisions(kernel.vertex_source)
     found += [
         line.diagnostic("#line is left out, so that errors name the file's own lines", severity="warning")
         for line in kernel.source.lines
@@ -342,7 +355,7 @@ def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
     reads counts as read, and so does what a size or a repeat of the technique around it names. Sources
     and draws are left alone: the engine reads their uniforms.
     """
-    if kernel.kind in ("source", "draw"):
+    if isinstance(kernel, CpuSource | Draw):
         return ()
     variants = [inner for v in kernel.variants for _, inner in kernels_of(v.technique)]
     texts = [each.source for each in (kernel, *variants)]
@@ -413,7 +426,7 @@ def unwritten(kernel: Kernel) -> tuple[Diagnostic, ...]:
     OpenGL gives it no value. Where the order of the text is not that of the run, as in loops, and where a
     part of it or a function may write, none is given. Other tools' shaders begin with zeros.
     """
-    if kernel.kind == "plain_fragment":
+    if isinstance(kernel, PlainFragment):
         return ()
     from playground.shader.declarations import Declarations
     from playground.shader.preprocessor import readings

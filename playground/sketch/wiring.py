@@ -7,9 +7,10 @@ from dataclasses import replace
 from playground.errors import SketchError, nearest
 from playground.shader import expressions
 from playground.shader.expressions import ExpressionError
-from playground.shader.kernel import Export, Graph, Kernel, Output, PassSpec, Technique
+from playground.shader.kernel import Export, Graph, PassSpec, Technique
 from playground.shader.parameter import SCALARS
 from playground.sketch.assign import find_targets, resolve
+from playground.sketch.kernel import Draw, Kernel, Output, TexelKernel
 
 _GIVEN = (*expressions.CLOCKS, *expressions.COUNTERS, "compute", "size.x", "size.y")
 """What every expression may name."""
@@ -33,9 +34,9 @@ def input_names(technique: Technique) -> tuple[str, ...]:
 
 def initial_names(kernel: Kernel) -> dict[str, str]:
     """Map the optional inputs that a repeated kernel or a draw starts from to the outputs they start."""
-    if kernel.kind == "draw":
+    if isinstance(kernel, Draw):
         return {"initial": kernel.outputs[0].name}
-    if kernel.kind != "kernel" or kernel.repeat == "1":
+    if not isinstance(kernel, TexelKernel) or kernel.repeat == "1":
         return {}
     if len(kernel.outputs) == 1:
         return {"initial": kernel.outputs[0].name}

@@ -43,7 +43,16 @@ from playground.sketch.assign import values_of
 from playground.sketch.find import ENDING, is_pack, unpacked
 from playground.sketch.flatten import withheld
 from playground.sketch.load import is_technique, load, plain_sketch
-from playground.sketch.model import VARIANTS, Graph, Sketch, Technique, kernels_of
+from playground.sketch.model import (
+    VARIANTS,
+    ComputeVariant,
+    Graph,
+    PlainCompute,
+    PlainShader,
+    Sketch,
+    Technique,
+    kernels_of,
+)
 from playground.sketch.presence import deciding_inputs
 from playground.sketch.techniques import (
     Techniques,
@@ -189,14 +198,14 @@ class _Check:
                 self.warnings |= dict.fromkeys(warnings_of_kernel(one))
         if kernel is None:
             self.attempt(TryLibrary(str(self.path), str(self.root), tuple(unsaved_texts().items())))
-        elif isinstance(kernel, Graph) or kernel.kind.startswith("plain"):
+        elif isinstance(kernel, Graph) or isinstance(kernel, PlainShader):
             sketch = with_pictures(plain_sketch(self.path, kernel, self.root), self.picture)
             if isinstance(kernel, Graph):
                 self.notes = (f"read as {kernel.dialect}",)
                 self.warnings |= dict.fromkeys(former_names_used(sketch))
                 self.warnings |= dict.fromkeys(source_warnings(Planner().plan(sketch, frame_size=_FRAME)))
             self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="all"))
-        elif kernel.kind == "compute":
+        elif isinstance(kernel, ComputeVariant):
             raise lonely_variant(self.path)
         else:
             self.check_standalone(kernel)
@@ -215,7 +224,9 @@ class _Check:
             self.notes = (f"it does not run, the plain form does: {why_not(technique, own)}",)
         if not self.plain:
             alone = trusted(replace(without_variants(technique), variants=(own,)))
-            self.attempt(self.request(alone, (COMPUTE,) if own.kind == "compute" else BOTH))
+            self.attempt(
+                self.request(alone, (COMPUTE,) if isinstance(own.technique, ComputeVariant) else BOTH)
+            )
 
     def technique(self) -> None:
         if is_variant(self.path):
@@ -339,5 +350,5 @@ def _names_files(sketch: Sketch) -> bool:
 
 def _drivers(sketch: Sketch) -> tuple[str, ...]:
     """Return the drivers that a sketch can be drawn by: a plain compute shader has one only."""
-    only_compute = any(kernel.kind == "plain_compute" for _, kernel in kernels_of(sketch.graph))
+    only_compute = any(isinstance(kernel, PlainCompute) for _, kernel in kernels_of(sketch.graph))
     return (COMPUTE,) if only_compute else BOTH

@@ -34,6 +34,7 @@ from playground.sketch.model import (
     PassSpec,
     Sketch,
     Technique,
+    TexelKernel,
     Value,
     Variant,
     kernels_of,
@@ -196,7 +197,7 @@ def _standalone(technique: Technique, seed: int, picture: Path, variant: Variant
 def _starts(technique: Technique, name: str) -> bool:
     """Return whether a repeat starts from an input; wired, it has the plain form run (see ``flatten``)."""
     if isinstance(technique, Kernel):
-        return technique.kind == "kernel" and name in initial_names(technique)
+        return isinstance(technique, TexelKernel) and name in initial_names(technique)
     targets = [t.rpartition(".") for e in technique.inputs if e.name == name for t in e.targets]
     found = [(inner(technique, path), last) for path, _, last in targets]
     return any(below is not None and _starts(below, last) for below, last in found)

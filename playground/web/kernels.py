@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,18 @@ from playground.engine.meshes import mesh_parameters
 from playground.engine.textures import split_format
 from playground.shader.expressions import counts_frames, follows_time
 from playground.shader.wrap import FRAGMENT, previous_name, recipes_of
-from playground.sketch.model import Kernel, Parameter, Sampling
+from playground.sketch.model import (
+    ComputeVariant,
+    CpuSource,
+    Draw,
+    ForeignShader,
+    Kernel,
+    Parameter,
+    PlainCompute,
+    PlainShader,
+    Sampling,
+    options_of,
+)
 from playground.sketch.wiring import initial_names
 from playground.web.es_lacks import lacking
 from playground.web.expression_trees import accepted, tree
@@ -20,8 +30,6 @@ from playground.web.texts import Texts
 
 UNITS = 16
 """Textures that a fragment shader of WebGL2 may read at least, and on many devices at most."""
-
-_IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
 
 
 class Kernels:
@@ -68,26 +76,16 @@ class Kernels:
             "vertex": {},
             "fragment": {},
         }
-        if kernel.stride:
-            found |= {"stride": tree(kernel.stride), "between": kernel.between}
-        if kernel.at_once != "1":
-            found["atOnce"] = tree(kernel.at_once)
-        if kernel.until:
-            found["until"] = kernel.until
+        rows = [(row, row.of(kernel)) for row in options_of(type(kernel)).values() if row.page]
+        found |= {row.page: tree(value) if row.expressions else value for row, value in rows if value != ""}
         if kernel.accepts:
-            found |= {"accepts": kernel.accepts, "accepted": accepted(kernel.accepts)}
-        if kernel.kind == "draw":
-            found |= {"mesh": kernel.registry, "blend": kernel.blend, "depth": kernel.depth}
-            found["samples"] = kernel.samples
-            if kernel.count:
-                found["count"] = tree(kernel.count)
-            if kernel.instances:
-                found["instances"] = tree(kernel.instances)
-        if kernel.kind.startswith("plain"):
-            found |= {"usual": [list(pair) for pair in kernel.usual], "dialect": kernel.dialect}
+            found["accepted"] = accepted(kernel.accepts)
+        if isinstance(kernel, PlainShader):
+            found["usual"] = [list(pair) for pair in kernel.usual]
+            found["dialect"] = kernel.dialect if isinstance(kernel, ForeignShader) else ""
         if used := _used(kernel):
             found["used"] = used
-        if kernel.kind != "source":
+        if not isinstance(kernel, CpuSource):
             found |= self._stages(kernel)
         return found
 
@@ -95,7 +93,7 @@ class Kernels:
         _, recipes = recipes_of(kernel, FRAGMENT)
         found = {}
         for name, recipe in recipes.items():
-            own = kernel.vertex_source if name == "vertex" else None
+            own = kernel.vertex_source if name == "vertex" and isinstance(kernel, ForeignShader) else None
             file = self.texts.add(own, self.folder, f"{_name(kernel)} vertex") if own else ""
             found[name] = stage_data(recipe, file)
         return found
@@ -128,27 +126,29 @@ def _uniform(parameter: Parameter) -> dict[str, Any]:
 
 def _used(kernel: Kernel) -> list[str]:
     """Return the names that a kernel's textures depend on though its text may not name them twice."""
-    used = set(_IDENTIFIER.findall(f"{kernel.count} {kernel.instances} {kernel.stride} {kernel.at_once}"))
-    if kernel.kind == "draw":
-        used |= set(mesh_parameters(kernel.registry))
-    if kernel.kind == "source":
-        used |= {parameter.name for parameter in kernel.parameters}
-    if kernel.dialect:  # what its tool declares is not in its text
-        used |= {p.name for p in kernel.parameters if kernel.reads(p.name)}
+    used = set(kernel.names_in_options)
+    match kernel:
+        case Draw():
+            used |= set(mesh_parameters(kernel.mesh))
+        case CpuSource():
+            used |= {parameter.name for parameter in kernel.parameters}
+        case ForeignShader():  # what its tool declares is not in its text
+            used |= {p.name for p in kernel.parameters if kernel.reads(p.name)}
     return sorted(used)
 
 
 def _refuse(kernel: Kernel) -> None:
     """Raise ``SketchError`` for a kernel that WebGL2 cannot run."""
-    if kernel.kind in ("compute", "plain_compute"):
+    if isinstance(kernel, ComputeVariant | PlainCompute):
         raise kernel.error(f"{_name(kernel)} is a compute shader, which no web page can run")
-    if kernel.kind == "source":
+    if isinstance(kernel, CpuSource):
         return
     if name := lacking(kernel.source.code):
         raise kernel.error(f"{_name(kernel)} names {name}, which the GLSL of web pages has not")
-    if kernel.over:
+    if isinstance(kernel, Draw) and kernel.over:
         raise kernel.error(f"{_name(kernel)} draws over the pixels of another draw, which no web page does")
-    if kernel.blend != "none" and any(split_format(o.format)[1] == "f4" for o in kernel.outputs):
+    floats = any(split_format(output.format)[1] == "f4" for output in kernel.outputs)
+    if isinstance(kernel, Draw) and kernel.blend != "none" and floats:
         raise kernel.error(f"{_name(kernel)} blends 32-bit floats, which many browsers cannot; 16f can")
     names = [declared.name for declared in kernel.inputs]
     names += [parameter.name for parameter in kernel.file_parameters]

@@ -16,7 +16,7 @@ from playground.engine.sources import source_kind
 from playground.shader.expressions import names_in
 from playground.sketch.flat import Fed, Leaf, Loop, Ref, Source
 from playground.sketch.flatten import is_exported
-from playground.sketch.model import Graph
+from playground.sketch.model import CpuSource, Graph
 from playground.sketch.variants import INSIDE
 
 _METRES = {
@@ -33,7 +33,7 @@ class Locks:
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
         self.flat = plan.flat
-        self.sources = {leaf.path: leaf for leaf in self.flat.leaves if leaf.kernel.kind == "source"}
+        self.sources = {leaf.path: leaf for leaf in self.flat.leaves if isinstance(leaf.kernel, CpuSource)}
         self._own = {path: self._has_own_size(leaf) for path, leaf in self.sources.items()}
         self._needed_by: dict[str, str] = {}  # path of a value, or a base → the source whose size it sets
         self._read_by = self._readers()  # path of a leaf → the source that was made of it

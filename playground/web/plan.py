@@ -31,7 +31,7 @@ from playground.sketch.assign import Shown, values_of
 from playground.sketch.flat import Fed, Leaf, Loop, Node, Source
 from playground.sketch.load import elevation_text
 from playground.sketch.map_sketch import map_kernel, refs_of
-from playground.sketch.model import DEFAULT_PICTURE, Sketch, Value
+from playground.sketch.model import DEFAULT_PICTURE, CpuSource, PlainShader, Sketch, Value
 from playground.sketch.traits import is_animated
 from playground.web.kernels import Kernels
 from playground.web.locks import Locks, made_by
@@ -135,12 +135,12 @@ class _Writing:
         if parameter is None or parameter.widget.kind != "file":
             return Path(value).name if isinstance(value, str) else value
         assert leaf is not None
-        if leaf.kernel.kind == "source":
+        if isinstance(leaf.kernel, CpuSource):
             return Path(str(value)).name
         file = Path(str(self.steps[leaf.path].values[parameter.name]))
         if value != self.flat.values[path]:
             file = find_file(str(value), leaf.folder, parameter.file, path)
-        plain = leaf.kernel.kind.startswith("plain")
+        plain = isinstance(leaf.kernel, PlainShader)
         return self.shared.images.add(file, encoded=plain and not parameter.sampling.decode)
 
     def _constants(self) -> dict[str, Value]:
@@ -178,7 +178,7 @@ class _Writing:
             "values": paths,
             "base": leaf.path,
         }
-        if leaf.kernel.kind == "source":
+        if isinstance(leaf.kernel, CpuSource):
             step = self.steps[leaf.path]
             made = source_data(step, made_by(leaf), self.shared.blobs, partial(self._drawn, step))
             found["inputs"] = []  # what it was made of is not drawn again

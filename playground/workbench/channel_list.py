@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from playground.data.media import SOUND_FILES, VIDEO_FILES
 from playground.paths import GLSL
-from playground.sketch.model import Kernel, Parameter, Sketch, Technique
+from playground.sketch.model import Kernel, Parameter, Sketch, Technique, TexelKernel
 from playground.sketch.techniques import read_technique
 from playground.workbench.channels import Channel, channels, is_technique, sources
 
@@ -70,7 +70,7 @@ def endings_of(sketch: Sketch, source: str) -> tuple[str, ...]:
     kernel = _technique(sketch, source)
     if not isinstance(kernel, Kernel):
         return ()
-    return MEDIA.get(kernel.registry, PICTURES if kernel.kind == "kernel" else ())
+    return MEDIA.get(kernel.registry, PICTURES if isinstance(kernel, TexelKernel) else ())
 
 
 def _technique(sketch: Sketch, source: str) -> Technique:

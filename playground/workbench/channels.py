@@ -21,7 +21,17 @@ from playground.sketch.find import shipped_names
 from playground.sketch.flat import Ref, Source, leaves_of
 from playground.sketch.flatten import flatten
 from playground.sketch.identity import Identity
-from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, kernels_of
+from playground.sketch.model import (
+    ForeignShader,
+    Graph,
+    Kernel,
+    PassSpec,
+    Sketch,
+    Technique,
+    TexelKernel,
+    Value,
+    kernels_of,
+)
 from playground.sketch.techniques import read_technique
 from playground.sketch.wiring import input_names, is_optional, output_names
 
@@ -283,7 +293,7 @@ def _size(
     if use in _HEARD and before is not None and before.use == "foreign/spectrum":
         return before.size
     files = [p for p in kernel.parameters if p.widget.kind == "file"] if kernel is not None else []
-    if files and kernel is not None and kernel.kind == "kernel":
+    if files and isinstance(kernel, TexelKernel):
         wide, high = (f"{name}.{files[0].name}.size.{axis}" for axis in "xy")
         return (wide, f"6 * {wide}") if use in _CUBES else (wide, high)
     if use in SIZES:
@@ -296,10 +306,10 @@ def _size(
 def _names(technique: Technique) -> Iterator[str]:
     """Yield the inputs of other tools' shaders in a technique, as its user wires them."""
     if isinstance(technique, Kernel):
-        if technique.dialect:
+        if isinstance(technique, ForeignShader):
             yield from input_names(technique)
         return
-    if not any(kernel.dialect for _, kernel in kernels_of(technique)):
+    if not any(isinstance(kernel, ForeignShader) for _, kernel in kernels_of(technique)):
         return
     exported = dict[str, None]()
     for export in technique.inputs:
@@ -314,7 +324,7 @@ def _names(technique: Technique) -> Iterator[str]:
 
 
 def _is_foreign(graph: Graph, target: str) -> bool:
-    return _reader(graph, target)[0].dialect != ""
+    return isinstance(_reader(graph, target)[0], ForeignShader)
 
 
 def _leaf(spec: PassSpec, name: str) -> str:

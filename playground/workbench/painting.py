@@ -25,7 +25,7 @@ from playground.engine.textures import split_format
 from playground.engine.view_inputs import view_height
 from playground.errors import DataError, PlaygroundError
 from playground.sketch.assign import resolve, shown_parameters, value_of, values_of
-from playground.sketch.model import Parameter, Sketch
+from playground.sketch.model import CpuSource, Parameter, Sketch
 from playground.workbench.brush import TOOLS, Brush, Tool
 from playground.workbench.canvas import MOST_TEXELS, Canvas
 from playground.workbench.erode_tool import ErodeTool, technique_at
@@ -319,7 +319,7 @@ class Painting:
 
     def _shows(self, step: Step, path: Path, size: tuple[int, int]) -> bool:
         """Say whether the picture can show a canvas from memory: a source reads it, texel for texel."""
-        if step.kernel.kind != "source" or size != step.size:
+        if not isinstance(step.kernel, CpuSource) or size != step.size:
             return False
         name = self.target.rpartition(".")[2]
         return source_kind(step.kernel.registry).picture({**step.values, name: str(path)}, size) == path
@@ -418,5 +418,5 @@ def _painted(sketch: Sketch | None) -> tuple[str, ...]:
 def _kind_of(step: Step) -> type[Mask] | type[Sculpture]:
     """Return what is painted: a number a texel where a source gives one, else a mask."""
     outputs = step.kernel.outputs
-    one = step.kernel.kind == "source" and len(outputs) == 1 and split_format(outputs[0].format)[0] == 1
+    one = isinstance(step.kernel, CpuSource) and len(outputs) == 1 and split_format(outputs[0].format)[0] == 1
     return Sculpture if one else Mask

@@ -35,7 +35,7 @@ def as_preview(
     whose menus have the choices of previews.
     """
     traits = traits_of(sketch)
-    draws = [(path, k) for path, k in traits.draws if _RESOLUTION in mesh_parameters(k.registry)]
+    draws = [(path, k) for path, k in traits.draws if _RESOLUTION in mesh_parameters(k.mesh)]
     fewer = pixels[0] < size[0]
     quick = [(path, k) for path, k in traits.faster if path in faster or fewer]
     values = values_of(sketch) if draws or quick else {}

@@ -17,7 +17,7 @@ from typing import Any
 from playground.engine.engine import Engine
 from playground.engine.plan import LoopStep, Plan, every_node, walk
 from playground.shader.expressions import follows_time
-from playground.sketch.model import Sketch
+from playground.sketch.model import Draw, Sketch
 from playground.workbench.pass_costs import PassCosts
 
 BUDGETS = {1: 0.04, 2: 0.1, 3: 0.15, 4: 0.2}
@@ -71,7 +71,7 @@ class PreviewSize:
 
         ``in_full``: its draws had more samples and vertices than those of a preview, and are left out.
         """
-        draws = {step.path for step in plan.walk() if step.kernel.kind == "draw"} if in_full else set()
+        draws = {step.path for step in plan.walk() if isinstance(step.kernel, Draw)} if in_full else set()
         taken = {path: spent for path, spent in times.items() if path not in draws}
         self._costs.take(_texels(plan), taken)
 

@@ -17,7 +17,7 @@ from playground.errors import DataError
 from playground.paths import GLSL
 from playground.sketch.assign import TERRAIN_KEYS, find_targets
 from playground.sketch.load import elevation_text, load
-from playground.sketch.model import PassSpec, Sketch, kernels_of
+from playground.sketch.model import ForeignShader, PassSpec, Sketch, kernels_of
 from playground.sketch.save import save, written_size, written_terrain_value, written_value
 from playground.sketch.toml_text import key_text, text_of
 from playground.workbench.channels import Channel, channels, in_order, source_of
@@ -72,7 +72,8 @@ def _save_elevation(draft: Draft, file: Path, folder: Path) -> Draft:
 
 
 def _dialects(sketch: Sketch) -> set[str]:
-    return {kernel.dialect for _, kernel in kernels_of(sketch.graph)}
+    kernels = [kernel for _, kernel in kernels_of(sketch.graph)]
+    return {kernel.dialect if isinstance(kernel, ForeignShader) else "" for kernel in kernels}
 
 
 # ── the text before the edits ────────────────────────────────────────────────

@@ -18,7 +18,7 @@ from playground.reduce.inline import inline_sketch
 from playground.shader.dialects.foreign import unfed_warnings
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.load import load
-from playground.sketch.model import kernels_of
+from playground.sketch.model import ForeignShader, kernels_of
 from playground.sketch.replace_technique import with_texts
 from playground.sketch.traits import traits_of
 from playground.verify.check import check_file
@@ -429,7 +429,9 @@ def test_a_text_s_own_packing_is_its_own(any_engine, ctx, folder):
         text = f"#version {version}\nuniform vec2 u_tex0Resolution;\nout vec4 o;\n"
         text += "void main() { o = vec4(unpackHalf2x16(3u), u_tex0Resolution); }\n"
         sketch = load(folder.write("v.frag", text))
-        (kernel,) = [k for _, k in kernels_of(sketch.graph.find("view").technique) if k.dialect]
+        (kernel,) = [
+            k for _, k in kernels_of(sketch.graph.find("view").technique) if isinstance(k, ForeignShader)
+        ]
         assert ("packing.glsl" in kernel.helpers) == packs
         stages = wrap(kernel, FRAGMENT, version).stages
         ctx.program(vertex_shader=stages["vertex"].text, fragment_shader=stages["fragment"].text).release()

@@ -10,6 +10,7 @@ from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError, ShaderError
 from playground.shader.wrap import FRAGMENT, wrap
+from playground.sketch.model import ForeignShader
 from tests.engine.test_dialects import DEPRECATED, colours
 from tests.isf_texts import STATEFUL, TEXTS, VERTEX, with_mistake
 
@@ -44,7 +45,7 @@ def drawn(engine, path, time=0.0, size=SIZE, **values):
 
 
 def kernels(path):
-    return [kernel for _, kernel in load(path).graph.kernels if kernel.dialect]
+    return [kernel for _, kernel in load(path).graph.kernels if isinstance(kernel, ForeignShader)]
 
 
 @pytest.mark.parametrize("name", TEXTS)
@@ -194,7 +195,9 @@ def test_places_in_pixels_without_a_range_are_kept(isf):
 def sizes(engine, path, size=(64, 36), **values):
     plan = engine.internal.plan_for(load(path).with_values(values), size)
     return {
-        step.path: (step.size, step.kernel.outputs[0].format) for step in plan.walk() if step.kernel.dialect
+        step.path: (step.size, step.kernel.outputs[0].format)
+        for step in plan.walk()
+        if isinstance(step.kernel, ForeignShader)
     }
 
 

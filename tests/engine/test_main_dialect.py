@@ -12,7 +12,7 @@ from playground.engine.planner import Planner
 from playground.errors import ShaderError, SketchError
 from playground.reduce.inline import inline_sketch
 from playground.shader.wrap import FRAGMENT, wrap
-from playground.sketch.model import kernels_of
+from playground.sketch.model import ForeignShader, kernels_of
 from playground.sketch.replace_technique import with_texts
 from playground.sketch.warnings import warnings_of_kernel
 from tests.dialect_texts import with_mistake
@@ -54,7 +54,12 @@ def test_a_mistake_is_at_its_own_line(any_engine, folder, name):
 @pytest.mark.parametrize("name", MAIN_TEXTS)
 def test_the_driver_gets_no_deprecated_name(folder, name):
     kernels = kernels_of(load(folder.write(f"{name}.frag", MAIN_TEXTS[name])).graph.find("view").technique)
-    texts = [s.text for _, k in kernels if k.dialect for s in wrap(k, FRAGMENT, 450).stages.values()]
+    texts = [
+        s.text
+        for _, k in kernels
+        if isinstance(k, ForeignShader)
+        for s in wrap(k, FRAGMENT, 450).stages.values()
+    ]
     assert texts
     assert not [word for text in texts for line in text.split("\n") for word in DEPRECATED.findall(line)]
 

@@ -11,7 +11,7 @@ from playground.errors import PlaygroundError, ShaderError
 from playground.paths import GLSL
 from playground.shader.header import parse_kernel
 from playground.shader.source import read_source
-from playground.sketch.model import Kernel, Parameter
+from playground.sketch.model import PRAGMAS, Kernel, Parameter, options_of
 from playground.sketch.techniques import read_kernel
 
 from ..cases import each
@@ -227,7 +227,7 @@ def test_sources_draws_and_compute_variants(parse):
         '#pragma draw(mesh = "grid", blend = "alpha", depth = "none", repeat = "1 if sea else 0")\n'
         "uniform bool sea;\n"
     )
-    assert (found.kind, found.registry, found.blend, found.depth) == ("draw", "grid", "alpha", "none")
+    assert (found.kind, found.mesh, found.blend, found.depth) == ("draw", "grid", "alpha", "none")
     assert (found.outputs[0].name, found.outputs[0].format) == ("frame", "rgba16f")
     assert (found.count, found.samples) == ("", 0)
     found = parse(
@@ -241,7 +241,7 @@ def test_sources_draws_and_compute_variants(parse):
         'buffers = "stack:vec4:size.x * 64; n:uint:1")\n'
     )
     assert (found.kind, found.groups, found.local) == ("compute", "size.y, 1", (256, 1))
-    assert [(b.name, b.type, b.count) for b in found.buffers] == [
+    assert [(b.name, b.type, b.count) for b in found.storage.buffers] == [
         ("stack", "vec4", "size.x * 64"),
         ("n", "uint", "1"),
     ]
@@ -274,6 +274,16 @@ def test_every_shipped_file_has_a_header_that_can_be_read(path):
     if found is not None:
         assert found.title and found.outputs
         assert all(p.tooltip for p in found.parameters)
+
+
+def test_the_readme_lists_every_option_of_a_pragma():
+    pragmas: dict[tuple[str, str], list[str]] = {}
+    for pragma, kind in PRAGMAS.items():
+        for name, row in options_of(kind).items():
+            pragmas.setdefault((name, row.about), []).append(pragma)
+    rows = [f"| `{name}` | {', '.join(kinds)} | {about} |" for (name, about), kinds in pragmas.items()]
+    table = "\n".join(["| option | of | says |", "|---|---|---|", *rows])
+    assert f"\n\n{table}\n\n" in (GLSL / "README.md").read_text("utf-8"), table
 
 
 # Mistakes
@@ -312,7 +322,7 @@ def test_every_shipped_file_has_a_header_that_can_be_read(path):
         ('#pragma source(output = "h:r32f")', "needs its name"),
         ('#pragma source("x")', "needs output"),
         ("#pragma draw()", "needs a mesh"),
-        ('#pragma draw(mesh = "grid", blend = "alfa")', "expected one of none, alpha, add"),
+        ('#pragma draw(mesh = "grid", blend = "alfa")', "did you mean 'alpha'"),
         ('#pragma draw(mesh = "grid", instances = "lost.x")', "names 'lost.x', which is not known"),
         ('#pragma draw(mesh = "grid", samples = 4)', "samples = 4: expected 1, or 0 for as many as"),
         ('#pragma draw(mesh = "triangles", count = "pionts")', "count: 'pionts' names 'pionts'"),

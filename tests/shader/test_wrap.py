@@ -9,7 +9,7 @@ from playground.errors import ShaderError
 from playground.shader.header import parse_kernel
 from playground.shader.source import read_source
 from playground.shader.wrap import COMPUTE, FRAGMENT, wrap, wrap_library
-from playground.sketch.model import Kernel
+from playground.sketch.model import Kernel, TexelKernel
 
 ONE = """// a title
 #include "lib.glsl"
@@ -147,7 +147,7 @@ def test_a_library_file_compiles_alone_by_both_drivers(kernel, ctx, tmp_path):
     if source is None:
         kernel(ONE)
         source = read_source(tmp_path / "lib.glsl", (tmp_path,))
-    library = Kernel("lib", "kernel", source, ())
+    library = TexelKernel("lib", source, ())
     fragment = wrap_library(library, FRAGMENT)
     ctx.program(
         vertex_shader=fragment.stages["vertex"].text, fragment_shader=fragment.stages["fragment"].text

@@ -171,7 +171,7 @@ def test_where_applies_to_groups_and_the_counts_of_buffers_not_their_names(folde
         '                buffers = "row:float:row * size.y * float")\n'
     )
     assert found.groups == "(size.x + 1), 1"
-    assert [(b.name, b.type, b.count) for b in found.buffers] == [
+    assert [(b.name, b.type, b.count) for b in found.storage.buffers] == [
         ("row", "float", "(size.x + 1) * size.y * (2)")
     ]
 

@@ -11,7 +11,7 @@ from playground.shader.wrap import wrap
 from playground.sketch.find import shipped_sketches
 from playground.sketch.flat import leaves_of
 from playground.sketch.flatten import flatten
-from playground.sketch.model import Kernel
+from playground.sketch.model import ForeignShader, Kernel, PlainFragment
 
 from ..cases import each
 from ..loading import load
@@ -53,8 +53,8 @@ def test_every_program_of_another_tool_that_ships_compiles_as_es(node: Node, ctx
     if "GL_ARB_ES3_compatibility" not in ctx.extensions:
         pytest.skip("this driver compiles no GLSL ES")
     leaves = [leaf for name in shipped_sketches() for leaf in leaves_of(flatten(load(name)).nodes)]
-    found = {leaf.kernel.name: leaf.kernel for leaf in leaves if leaf.kernel.kind == "plain_fragment"}
-    assert {kernel.dialect for kernel in found.values()} >= {"main", "shadertoy", "isf"}
+    found = {leaf.kernel.name: leaf.kernel for leaf in leaves if isinstance(leaf.kernel, PlainFragment)}
+    assert {k.dialect for k in found.values() if isinstance(k, ForeignShader)} >= {"main", "shadertoy", "isf"}
     for kernel in found.values():
         vertex, fragment = (es(node, text) for text in stages_of(kernel))
         ctx.program(vertex_shader=vertex, fragment_shader=fragment).release()
@@ -66,7 +66,9 @@ def test_what_packs_numbers_compiles_as_es(node: Node, ctx: moderngl.Context, tm
     calls = [f"vec4(unpack{kind}2x16(pack{kind}2x16(p)), 0.0, 1.0)" for kind in ("Half", "Snorm", "Unorm")]
     path = tmp_path / "a.frag"
     path.write_text(f"void mainImage(out vec4 c, in vec2 p) {{ c = {' + '.join(calls)}; }}\n")
-    (leaf,) = [leaf for leaf in leaves_of(flatten(load(path)).nodes) if leaf.kernel.dialect]
+    (leaf,) = [
+        leaf for leaf in leaves_of(flatten(load(path)).nodes) if isinstance(leaf.kernel, ForeignShader)
+    ]
     vertex, fragment = (es(node, text) for text in stages_of(leaf.kernel))
     ctx.program(vertex_shader=vertex, fragment_shader=fragment).release()
 

@@ -26,7 +26,7 @@ from playground.data.image_files import reason
 from playground.engine.plan import Plan
 from playground.errors import DataError
 from playground.regular_file import read_regular
-from playground.sketch.model import Sketch
+from playground.sketch.model import PlainFragment, Sketch
 
 MADE_BY = "terrain shader playground"
 
@@ -103,7 +103,7 @@ def _texts(found: Leaving, host: Host, shows: str) -> list[PassText]:
 
 
 def _is_foreign(one: ShaderPass) -> bool:
-    return one.step.kernel.kind == "plain_fragment" and not one.copies.name
+    return isinstance(one.step.kernel, PlainFragment) and not one.copies.name
 
 
 def _foreign(one: ShaderPass, host: Host) -> PassText:

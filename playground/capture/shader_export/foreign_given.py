@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from playground.shader.reserved_names import NEUTRAL, SIZES
-from playground.sketch.model import Kernel
+from playground.sketch.model import ForeignShader, Kernel
 
 _COMPONENTS = {"float": 1, "int": 1, "uint": 1, "bool": 1}
 MOUSE = ("mouse", "hover", "drag", "hover_share")
@@ -15,7 +15,7 @@ MOUSE = ("mouse", "hover", "drag", "hover_share")
 def reason_to_stay(kernel: Kernel) -> str:
     """Return what of another tool's shader cannot leave, as the end of a sentence; "" if all of it can."""
     name = Path(kernel.path).name
-    if kernel.helpers or kernel.vertex_source is not None:
+    if isinstance(kernel, ForeignShader) and (kernel.helpers or kernel.vertex_source):
         return f"is {name}, whose own tool gives it functions or a vertex shader that others have not"
     shaped = [i.name for i in kernel.inputs if i.shape or i.sampling.flip or i.sampling.decode]
     if shaped:

@@ -18,7 +18,7 @@ from playground.errors import SketchError
 from playground.shader.declarations import uniforms
 from playground.shader.reserved_names import NEUTRAL, SIZES
 from playground.shader.source import Line
-from playground.sketch.model import Kernel
+from playground.sketch.model import ForeignShader, Kernel
 
 _LEFT_OUT = re.compile(r"\s*(?:#\s*(?:version|extension)\b|precision\s)")
 _OUT = re.compile(r"\s*(?:layout\s*\([^)]*\)\s*)?out\s+(?:highp\s+|mediump\s+|lowp\s+)?vec([34])\s+(\w+)\s*;")
@@ -35,8 +35,10 @@ _PRECISION = re.compile(r"\s*#\s*if(?:def\s+GL_ES|\s+defined\s*\(?\s*GL_ES\s*\)?
 def foreign_text(one: ShaderPass, host: Host, given: Mapping[str, Callable[[str], str]]) -> PassText:
     """Return a pass's text; ``given`` has an expression of each meaning by the type that is wanted."""
     kernel = one.step.kernel
+    foreign = kernel if isinstance(kernel, ForeignShader) else None
+    prelude = foreign.prelude if foreign else ()
     lines, output = _own_lines(kernel)
-    found = [d for line in kernel.prelude if (d := _prelude(line))]
+    found = [d for line in prelude if (d := _prelude(line))]
     statements: list[str] = []
     reads: list[Sampled] = []
     unwired: dict[str, str] = {}
@@ -58,7 +60,7 @@ def foreign_text(one: ShaderPass, host: Host, given: Mapping[str, Callable[[str]
         own, setting = host.parameter(one, parameter, one.step.values[parameter.name])
         found += own
         statements += setting
-    for declaration, setting_text in kernel.vertex:
+    for declaration, setting_text in foreign.vertex if foreign and isinstance(foreign.vertex, tuple) else ():
         match = _VERTEX_OUT.fullmatch(declaration)
         if not match:
             message = (
@@ -70,7 +72,7 @@ def foreign_text(one: ShaderPass, host: Host, given: Mapping[str, Callable[[str]
         text = setting_text.replace("k_share", share).replace("k_place", f"({share} * 2.0 - 1.0)")
         statements.append(text)
     declarations = [without_unwired(d, unwired) for d in declarations_of(lines)]
-    if kernel.epilogue:
+    if foreign and foreign.epilogue:
         entry, result = f"{one.name}_image", "vec4(picture.rgb, 1.0)"
         call = ["vec4 picture = vec4(0.0, 0.0, 0.0, 1.0);", f"{entry}(picture, {host.pixel});"]
         declarations = [d.renamed({"mainImage": entry}) for d in declarations]
@@ -120,7 +122,7 @@ def _kinds(kernel: Kernel) -> dict[str, tuple[str, str]]:
     """Return the type of each uniform, and the brackets of an array."""
     kinds = {
         match[2]: (match[1], match[3] or "")
-        for line in kernel.prelude
+        for line in (kernel.prelude if isinstance(kernel, ForeignShader) else ())
         if (match := _PRELUDE_UNIFORM.match(line))
     }
     for name, declared in uniforms(kernel.source.code).items():

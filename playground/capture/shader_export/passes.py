@@ -19,7 +19,17 @@ from playground.shader import expressions
 from playground.shader.reserved_names import GLSL_WORDS
 from playground.shader.wrap import previous_name
 from playground.sketch.flat import Fed, Ref, Source
-from playground.sketch.model import Input, Output, Sketch
+from playground.sketch.model import (
+    ComputeVariant,
+    CpuSource,
+    Draw,
+    Input,
+    Output,
+    PlainCompute,
+    PlainFragment,
+    Sketch,
+    TexelKernel,
+)
 from playground.sketch.wiring import initial_names
 
 PROBES = ((640, 360), (484, 272))
@@ -159,13 +169,13 @@ class _Passes:
         kernel = node.kernel
         twin = self.other.step(node.path)
         assert twin is not None  # the plans are of one sketch
-        if kernel.kind == "draw":
-            return f"{who} draws a mesh ({kernel.registry}), which these formats have not"
-        if kernel.kind == "source":
+        if isinstance(kernel, Draw):
+            return f"{who} draws a mesh ({kernel.mesh}), which these formats have not"
+        if isinstance(kernel, CpuSource):
             return f"{who} is a source ({kernel.registry}), which a processor computes"
-        if kernel.kind in ("plain_compute", "compute"):
+        if isinstance(kernel, PlainCompute | ComputeVariant):
             return f"{who} is a compute shader, which these formats have not"
-        if kernel.kind == "plain_fragment" and (reason := reason_to_stay(kernel)):
+        if isinstance(kernel, PlainFragment) and (reason := reason_to_stay(kernel)):
             return f"{who} {reason}"
         camera = [name for name in CAMERA if kernel.reads(name)]
         if camera:
@@ -274,11 +284,12 @@ class _Passes:
 
     def _at_once(self, step: Step) -> int:
         """Return how many steps one pass may take: however they are grouped, they give the same."""
-        if step.kernel.at_once == "1":
+        kernel = step.kernel
+        if not isinstance(kernel, TexelKernel) or kernel.at_once == "1":
             return 1
         numbers = {"size.x": step.size[0], "size.y": step.size[1]}
         numbers |= {k: v for k, v in step.values.items() if isinstance(v, int | float)}  # type: ignore[misc]
-        return expressions.evaluate(step.kernel.at_once, numbers)
+        return expressions.evaluate(kernel.at_once, numbers)
 
     def _free(self, step: Step, output: Output, more: str, several: bool) -> str:
         name = self._name(step, output, more, several)

@@ -17,10 +17,10 @@ from playground.paths import PART_OF_FILE, shown
 from playground.shader.declarations import Declared, is_declared, takes, uniforms, vertex_outputs
 from playground.shader.dialects.es import Rewritten, version_of
 from playground.shader.header import read_uniforms, title_of
-from playground.shader.kernel import SHAPES, Input, Kernel, Output
 from playground.shader.parameter import Parameter, Sampling, Value, Widget
 from playground.shader.reserved_names import ELEMENT
 from playground.shader.source import Line, Origin, SourceText, normalised, read_source_and_origin, read_text
+from playground.sketch.kernel import SHAPES, ForeignShader, Input, Output, VertexShader
 
 Names = Mapping[str, tuple[str, str]]
 """Name → GLSL type and meaning: a key of ``Runner``'s values; of a sampler "noise 0", "picture 3", "none"."""
@@ -169,7 +169,7 @@ class ForeignKernel:
         self.shapes |= {element: SHAPES[one.type] for element, one in self._elements()}
         self.channels = {name: self._channel(name) for name in self.shapes}
 
-    def kernel(self, name: str) -> Kernel:
+    def kernel(self, name: str) -> ForeignShader:
         """Return the kernel as a technique called ``name``."""
         shader, parameters = self.shader, self._parameters()
         own = {p.name for p in parameters}
@@ -179,10 +179,14 @@ class ForeignKernel:
             for n, (kind, meaning) in self.rules.names.items()
             if n in given and n not in own and "sampler" not in kind
         ]
-        ours = not shader.vertex
-        return Kernel(
+        vertex: VertexShader | tuple[tuple[str, str], ...]
+        if shader.vertex and self.vertex:
+            prelude = tuple(self._prelude(shader.vertex, self.vertex_missing))
+            vertex = VertexShader(self.vertex, prelude, (*_packing(self.vertex), *self.rules.vertex_helpers))
+        else:
+            vertex = vertex_outputs("\n".join([*shader.text.prelude, *self._varyings(), self.code]))
+        return ForeignShader(
             name,
-            "plain_fragment",
             self.source,
             (Output("frame", shader.format),),
             parameters,
@@ -195,18 +199,13 @@ class ForeignKernel:
             prelude=(*self._prelude(shader.text, self.missing), *self._varyings()),
             epilogue=self.rules.epilogue,
             helpers=(*_packing(self.source), *self.rules.helpers),
-            vertex=vertex_outputs("\n".join([*shader.text.prelude, *self._varyings(), self.code]))
-            if ours
-            else (),
-            vertex_source=self.vertex,
-            vertex_prelude=tuple(self._prelude(shader.vertex, self.vertex_missing)) if shader.vertex else (),
-            vertex_helpers=(*_packing(self.vertex), *self.rules.vertex_helpers) if self.vertex else (),
+            vertex=vertex,
             tool_names=(
                 *((n, m) for n, (_, m) in self.rules.names.items()),
                 *((p.name, "") for p in shader.parameters),
                 *((one.rstrip(";").split()[-1], "") for one in self.rules.varyings),
             ),
-            meanings=tuple(meanings),
+            usual=tuple(meanings),
             unfed=tuple(self._unfed(own)),
         )
 
@@ -355,7 +354,7 @@ class ForeignKernel:
                 yield one.name, _NO_IMAGE if _IMAGE.match(one.type) else _NO_PANEL
 
 
-def unfed_warnings(kernel: Kernel, wired: Collection[str]) -> tuple[Diagnostic, ...]:
+def unfed_warnings(kernel: ForeignShader, wired: Collection[str]) -> tuple[Diagnostic, ...]:
     """Return a warning for each thing that another tool's shader lacks; ``wired`` are inputs that are fed."""
     names: dict[str, list[str]] = {}
     for name, instead in kernel.unfed:

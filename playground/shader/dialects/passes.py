@@ -16,7 +16,8 @@ from pathlib import Path
 from playground.errors import Diagnostic, ShaderError, nearest
 from playground.paths import GLSL, shown
 from playground.shader.dialects.foreign import Channel, ForeignKernel, Made, Shader
-from playground.shader.kernel import Export, Graph, Kernel, PassSpec, Technique
+from playground.shader.kernel import Export, Graph, PassSpec, Technique
+from playground.sketch.kernel import ForeignShader, Kernel
 
 Read = Callable[[str, Path, Path], Technique]
 """Return the technique that ``use`` names: see ``Techniques.read``."""
@@ -55,7 +56,7 @@ class _Passes:
                 self.techniques.append(foreign.kernel(name))
                 self.channels.append(foreign.channels)
         self._drop_unread()
-        self.kernels = [kernel for kernel in self.techniques if isinstance(kernel, Kernel) and kernel.dialect]
+        self.kernels = [kernel for kernel in self.techniques if isinstance(kernel, ForeignShader)]
         # Of each shader: samplers, and the passes of this frame that they read.
         self.wires: list[list[tuple[str, str]]] = [[] for _ in shaders]
         self.state: dict[str, list[str]] = {}  # target → the samplers that read it as it was, as paths
@@ -87,13 +88,13 @@ class _Passes:
 
     def _drop_unread(self) -> None:
         """Drop the parameters that a pass declares and only other passes read."""
-        kernels = [one for one in self.techniques if isinstance(one, Kernel) and one.dialect]
+        kernels = [one for one in self.techniques if isinstance(one, ForeignShader)]
         reads = {id(one): _names_read(one) for one in kernels}
         declared = {p.name for one in kernels for p in one.parameters}
         anywhere = set().union(*reads.values())
         anywhere |= {name for one in kernels for name in declared if one.source.counts[name] > 1}
         for index, one in enumerate(self.techniques):
-            if isinstance(one, Kernel) and id(one) in reads:
+            if isinstance(one, ForeignShader):
                 kept = [p for p in one.parameters if p.name in reads[id(one)] or p.name not in anywhere]
                 if len(kept) < len(one.parameters):
                     self.techniques[index] = replace(one, parameters=tuple(kept))
@@ -205,7 +206,7 @@ class _Passes:
                 yield from (Export(_own_name(owner, name), (f"{owner}.{name}",)) for owner, _ in owners)
 
 
-def _names_read(kernel: Kernel) -> set[str]:
+def _names_read(kernel: ForeignShader) -> set[str]:
     """Return the parameters that a text names besides declaring them."""
     return {p.name for p in kernel.parameters if kernel.source.counts[p.name] > 1 or kernel.vertex_source}
 

@@ -18,7 +18,16 @@ from playground.shader.reserved_names import PLAIN_UNIFORMS
 from playground.shader.source import read_text
 from playground.shots.mutants.model import DoesNotApply, Edit, Rendering
 from playground.sketch.assign import resolve, value_of, values_of
-from playground.sketch.model import Camera, Graph, Kernel, PassSpec, Sketch, Technique, kernels_of
+from playground.sketch.model import (
+    Camera,
+    Graph,
+    Kernel,
+    PassSpec,
+    Sketch,
+    Technique,
+    TexelKernel,
+    kernels_of,
+)
 from playground.sketch.replace_technique import with_texts
 from playground.sketch.wiring import input_names
 
@@ -115,8 +124,9 @@ def _with_steps(graph: Graph, more: int) -> Graph:
 
 def _with_more_steps(technique: Technique, more: int) -> Technique:
     if isinstance(technique, Kernel):
-        repeats = technique.kind == "kernel" and technique.repeat != "1"
-        return replace(technique, repeat=f"({technique.repeat}) + {more}") if repeats else technique
+        if not isinstance(technique, TexelKernel) or technique.repeat == "1":
+            return technique
+        return replace(technique, repeat=f"({technique.repeat}) + {more}")
     passes = tuple(
         replace(
             spec,

@@ -7,6 +7,7 @@ import pytest
 from playground.shader.declarations import is_declared, uniforms, vertex_outputs
 from playground.shader.dialects import dialect_of
 from playground.sketch.load import load
+from playground.sketch.model import PlainFragment
 
 
 @pytest.mark.parametrize(
@@ -55,7 +56,7 @@ def test_a_plain_shader_that_needs_no_more_stays_one(tmp_path, version):
     path.write_text(
         f"#version {version}\nuniform float iTime;\nout vec4 c;\nvoid main() {{ c = vec4(iTime); }}\n"
     )
-    assert load(path).graph.find("view").technique.dialect == ""
+    assert type(load(path).graph.find("view").technique) is PlainFragment
     path.write_text(path.read_text().replace("uniform float iTime", "in vec2 uv; uniform float iTime"))
     assert load(path).graph.find("view").technique.dialect == "main"
 

@@ -1,7 +1,8 @@
-"""Interpolate between the texels that a run computed which is stopped early.
+"""The lattice that a kernel fills ever more closely, and what is shown between its nodes.
 
 A kernel with a ``stride`` sets, iteration by iteration, the nodes of an ever closer lattice; all else is
-still 0. Its header says how the nodes are joined (``between``). Only pictures are interpolated:
+still 0: the fragment driver fills no more than the lattice. A picture of a run that is stopped early joins
+the nodes, as the header says (``between``). Only pictures are interpolated:
 values that are read stay as they are, and a run goes on from those. ``fill_between.frag`` does it.
 """
 
@@ -13,7 +14,7 @@ from typing import NamedTuple
 from playground.shader import expressions
 from playground.shader.expressions import ExpressionError, Number
 from playground.sketch.flat import Leaf
-from playground.sketch.model import Kernel
+from playground.sketch.model import TexelKernel
 from playground.sketch.wiring import initial_names
 
 SQUARES, TRIANGLES, CENTRES = 0, 1, 2
@@ -25,6 +26,11 @@ class Between(NamedTuple):
     stride: int  # texels from one node of the lattice to the next
     form: int  # SQUARES, TRIANGLES, or CENTRES: of the lattice only squares' corners and centres are known
 
+    @property
+    def uniforms(self) -> dict[str, int]:
+        """What ``fill_between.frag`` is given."""
+        return {"k_stride": self.stride, "k_form": self.form}
+
 
 def between_of(leaf: Leaf, repeat: int, whole: int, names: Mapping[str, Number]) -> Between | None:
     """Return how the texels known after ``repeat`` iterations of ``whole`` are joined; None where nothing is.
@@ -33,7 +39,9 @@ def between_of(leaf: Leaf, repeat: int, whole: int, names: Mapping[str, Number])
     squares' centres and the second the rest. Raises ``ShaderError`` at a stride that is none.
     """
     kernel = leaf.kernel
-    if not kernel.between or not 0 < repeat < whole or _begins_with_something(leaf):
+    if not isinstance(kernel, TexelKernel) or not kernel.between or not 0 < repeat < whole:
+        return None
+    if _begins_with_something(leaf):
         return None
     now, coming = (_stride(kernel, {**names, "iterations": whole}, done) for done in (repeat - 1, repeat))
     if now < 1:
@@ -44,11 +52,23 @@ def between_of(leaf: Leaf, repeat: int, whole: int, names: Mapping[str, Number])
     return Between(now, TRIANGLES if kernel.between == "triangles" else SQUARES)
 
 
-def _stride(kernel: Kernel, names: Mapping[str, Number], iteration: int) -> int:
+def shift_after(kernel: TexelKernel, path: str, iteration: int, names: Mapping[str, Number]) -> int:
+    """Return the power of two that the texels of a pass known after an iteration lie apart.
+
+    Raises ``ShaderError`` at a stride that is no power of two.
+    """
+    stride = _stride(kernel, names, iteration, f"pass '{path}': ")
+    if stride < 1 or stride & (stride - 1):
+        message = f"stride '{kernel.stride}' gives {stride} for iteration {iteration}"
+        raise kernel.error(f"pass '{path}': {message}; a power of two was expected")
+    return stride.bit_length() - 1
+
+
+def _stride(kernel: TexelKernel, names: Mapping[str, Number], iteration: int, where: str = "") -> int:
     try:
         return expressions.evaluate(kernel.stride, {**names, "iteration": iteration})
     except ExpressionError as error:
-        raise kernel.error(f"stride {error}") from None
+        raise kernel.error(f"{where}stride {error}") from None
 
 
 def _begins_with_something(leaf: Leaf) -> bool:
