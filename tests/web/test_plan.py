@@ -36,7 +36,7 @@ ASK = """async (sketch, shared, states, load) => {
     const flat = (node) => node.loop
         ? [["loop", node.path, node.repeat, node.whole, node.countsFrames], ...node.body.flatMap(flat)]
         : [[node.kernel.name, node.path, node.repeat, node.whole, node.size,
-            node.between && [node.between.stride, node.between.form], node.values]];
+            node.between && Object.values(node.between), node.values]];
     return states.map((state) => {
         try {
             const plan = makePlan(sketch, shared, state), { eye, target, distance } = plan.eye;

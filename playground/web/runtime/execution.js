@@ -110,8 +110,8 @@ export const createExecution = (plan, nodes, around) => {
     if (!step.between) return yield* computed(step);
     const raw = cache.get(/** @type {string} */ (keys.raw.get(step.path)), used);
     const from = raw ? [...raw.results.values()][0] : yield* computed(step);
-    const { stride, form } = step.between, how = { k_stride: stride, k_form: form };
-    const made = kernels.drawnOwn("fill_between.frag", from, how, step.kernel.outputs, isTall(step));
+    const { kernel, between } = step;
+    const made = kernels.drawnOwn("fill_between.frag", from, between, kernel.outputs, isTall(step));
     return keep(key, step, made);
   };
 

@@ -15,6 +15,7 @@ import { setUniform } from "./programs.js";
 import { createSettling } from "./settling.js";
 import { toES } from "./es.js";
 import { ownNames } from "./counts.js";
+import { fillsLattice, shiftAfter } from "./lattice.js";
 
 /** @typedef {import("./textures.js").Result} Result */
 /** @typedef {import("./textures.js").Texture} Texture */
@@ -217,7 +218,7 @@ export const createKernels = (context, textures, programs, binder, shared, often
     const program = programOf(job), reads = readsOf(job);
     let unit = binder.bind(program, job, reads);
     const atOnce = kernel.atOnce === undefined ? 1 : Math.max(whole(kernel.atOnce, namesOf(job)), 1);
-    const lattice = kernel.stride !== undefined && !state.size;
+    const lattice = fillsLattice(kernel) && !state.size;
     let before = start, iteration = start ? start.iterations : 0, shift = 0;
     const watch = kernel.until ? settling.watch(iteration) : null;
     /** @type {Result | null} */
@@ -225,7 +226,7 @@ export const createKernels = (context, textures, programs, binder, shared, often
     try {
       while (iteration < step.repeat) {
         const turns = Math.min(atOnce, step.repeat - iteration), was = shift;
-        if (lattice) shift = shiftOf(job, iteration);
+        if (lattice) shift = shiftAfter(step, iteration, (counts) => namesOf(job, counts));
         const target = result = textures.take(size, kernel.outputs, job.tall), from = before;
         const [width, height] = size.map((side) => ((side - 1) >> shift) + 1), now = iteration;
         const begin = () => {
@@ -290,18 +291,6 @@ export const createKernels = (context, textures, programs, binder, shared, often
       low = high;
     }
     return paused;
-  };
-
-  /** Return the power of two that texels known after an iteration lie apart.
-   *  @param {Job} job @param {number} iteration */
-  const shiftOf = (job, iteration) => {
-    const { step } = job, counts = { iteration: BigInt(iteration), iterations: BigInt(step.whole) };
-    const stride = whole(/** @type {any} */ (step.kernel.stride), namesOf(job, counts));
-    if (stride < 1 || stride & (stride - 1)) {
-      const where = `pass '${step.path}': stride gives ${stride} for iteration ${iteration}`;
-      throw failure("sketch", `${where}; a power of two was expected`);
-    }
-    return 31 - Math.clz32(stride);
   };
 
   /** Return the state before the first iteration to run, by output; what is missing is zero.

@@ -4,10 +4,6 @@
 /** @typedef {import("./schema.js").Value} Value */
 /** @typedef {{path: string, output: string}} Ref */
 
-/** How the texels that a stopped run knows are joined: texels from one node of the lattice to the next;
- *  form 0: squares, 1: triangles, 2: squares of which only corners and centres are known.
- *  @typedef {{stride: number, form: 0 | 1 | 2}} Between */
-
 /** A leaf pass made concrete.
  *  @typedef {object} Step
  *  @property {string} path
@@ -18,7 +14,7 @@
  *  @property {[number, number]} size                    texels
  *  @property {number} repeat                            iterations to run
  *  @property {number} whole                             iterations in all
- *  @property {Between | null} between */
+ *  @property {ReturnType<typeof import("./lattice.js").betweenOf>} between */
 
 /** A loop made concrete. bodies: of each iteration, one where all are the same; body: of the last.
  *  @typedef {{path: string, loop: true, repeat: number, whole: number, countsFrames: boolean,

@@ -5,7 +5,8 @@
 
 import { isAccepted, nearestAccepted } from "./accepts.js";
 import { look } from "./camera.js";
-import { betweenOf, ownNames } from "./counts.js";
+import { ownNames } from "./counts.js";
+import { betweenOf, countsOf } from "./lattice.js";
 import { namesIn, planError } from "./expressions.js";
 import { checkShapes } from "./input_shapes.js";
 import { everyVersion, isLoop, stepsOf } from "./plan_nodes.js";
@@ -113,8 +114,7 @@ function namedBy(sketch) {
     if ("loop" in node) {
       node.body.forEach(visit);
     } else {
-      const { repeat, stride } = sketch.kernels[node.kernel];
-      add([repeat, stride ?? 1], node.values);
+      add(countsOf(sketch.kernels[node.kernel]), node.values);
     }
   };
   sketch.nodes.forEach(visit);

@@ -112,7 +112,7 @@ export function keysOf(plan, known) {
       if (used.has("iterations")) parts.push(step.whole);
       const raw = hash(JSON.stringify([step.repeat, parts]));
       const { between } = step;
-      const shown = between ? hash(JSON.stringify([raw, between.stride, between.form])) : raw;
+      const shown = between ? hash(JSON.stringify([raw, between])) : raw;
       found = { reads, unfinished: hash(JSON.stringify([path, parts])), raw, shown };
       lastKeys.set(step, found);
     }
