@@ -17,28 +17,27 @@ import numpy as np
 from playground.data.content_hash import content_hash
 from playground.data.image_files import MAX_HALF, read_image
 from playground.engine.camera import unit_vector
-from playground.engine.gl_calls import mirror, surround
+from playground.engine.gl_calls import mirror
 from playground.engine.plan import Step
-from playground.engine.programs import Program
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Wired
 from playground.engine.textures import FACES, Shaped, check_size, copied, drain, shaped_size
 from playground.errors import ContextError
 from playground.paths import shown
-from playground.shader.fixed_texels import fixed_texels, read_by_texels_alone
 from playground.shader.parameter import srgb_to_linear
 from playground.shader.reserved_names import MATCHES, PRESSED, TOWARDS, UNWIRED, WINDOW, WIRED
-from playground.shader.wrap import reads_unwired
 from playground.sketch.model import Input, Kernel, Parameter, Sampling, Value
 
 if TYPE_CHECKING:
     import moderngl
 
+    from playground.engine.programs import Program
+    from playground.engine.software import Software
+
     Readable = moderngl.Texture | Shaped
 
 _SRGB8_ALPHA8 = 0x8C43  # GL_SRGB8_ALPHA8: the sampler decodes, before it filters
 _MAX_FILES = 32
-_MOST_READ_BACK = 2**16  # texels of an input whose fixed ones become uniforms
 _ANISOTROPY = 8.0  # of textures with mipmaps; on a software renderer it costs a hundred times as much
 _EXACT = Sampling()  # what reads one texel as it is
 _CONSTANTS = {"white": (1, 1, 1, 1), "black": (0, 0, 0, 1), "zero": (0, 0, 0, 0)}
@@ -61,12 +60,11 @@ class Bound:
 class Binder:
     """Binds textures and sets uniforms on one context."""
 
-    def __init__(self, ctx: moderngl.Context, *, software: bool) -> None:
+    def __init__(self, ctx: moderngl.Context, software: Software | None) -> None:
         self.ctx = ctx
         self._anisotropy = 1.0 if software else min(_ANISOTROPY, float(ctx.max_anisotropy or 1.0))
         self._software = software
         self._samplers: dict[Sampling, moderngl.Sampler] = {}
-        self._texels: moderngl.Sampler | None = None  # gives texels, and 0 around them
         self._constants: dict[str, moderngl.Texture] = {}
         self._shaped: dict[tuple[str, str], Shaped] = {}  # constants, by name and shape
         self._files: OrderedDict[tuple[str, bool, bool, bool], moderngl.Texture] = OrderedDict()
@@ -79,10 +77,9 @@ class Binder:
             texture.release()
         for shaped in self._shaped.values():
             shaped.release()
-        for sampler in (*self._samplers.values(), *([self._texels] if self._texels else [])):
+        for sampler in self._samplers.values():
             sampler.release()
         self._samplers.clear()
-        self._texels = None
         self._constants.clear()
         self._shaped.clear()
         self._files.clear()
@@ -108,8 +105,8 @@ class Binder:
         keep their values, and only the textures of the inputs are bound.
         """
         wires = wires_of(step, inputs) if wires is None else wires
-        if program.fixed:
-            program.set_all(fixed_texels_of(program, step.kernel, inputs))
+        if self._software and program.fixed:
+            program.set_all(self._software.fixed_texels_of(program, step.kernel, inputs))
         bound = program.bound
         if isinstance(bound, Bound) and bound.step is step and bound.given is given and bound.wires == wires:
             for declared, unit, sampler in bound.units:
@@ -216,19 +213,9 @@ class Binder:
         return found
 
     def sampler_of(self, kernel: Kernel, declared: Input) -> moderngl.Sampler:
-        """Return the sampler that reads an input of a kernel.
-
-        What it reads by ``texelFetch`` alone is the same by any. A software renderer has one that gives
-        by coordinates what ``texelFetch`` gives by places: see ``gpu.choices.quicker_choices``.
-        """
-        if not self._software or declared.name not in kernel.fetched_alone.inputs:
-            return self.sampler(declared.sampling)
-        if self._texels is None:
-            self._texels = self.ctx.sampler(repeat_x=False, repeat_y=False)
-            self._texels.filter = self.ctx.NEAREST, self.ctx.NEAREST
-            surround(self.ctx, self._texels)
-            self._put_back()
-        return self._texels
+        """Return the sampler that reads an input of a kernel."""
+        quicker = self._software.sampler_of(kernel, declared, self._put_back) if self._software else None
+        return quicker or self.sampler(declared.sampling)
 
     def _put_back(self) -> None:
         """Put back the sampler of unit 0, where a new one may have been while it was made."""
@@ -334,50 +321,6 @@ def wires_of(step: Step, inputs: Mapping[str, Wired]) -> tuple[int, ...]:
 def are_of_own_size(step: Step, inputs: Mapping[str, Wired]) -> bool:
     """Return whether each input of a step reads a texture that is as large as those that it makes."""
     return all(wire == _MATCHING for wire in wires_of(step, inputs))
-
-
-def is_read_back(name: str, inputs: Mapping[str, Wired]) -> bool:
-    """Return whether texels of an input can be read back: few texels, of floats, whose bits stay the same."""
-    result, texture, _ = inputs.get(name, NOT_WIRED)
-    if result is None or texture is None or result.surface is not None:
-        return False
-    return texture.width * texture.height <= _MOST_READ_BACK and texture.dtype in ("f2", "f4")
-
-
-def fixed_texels_of(
-    program: Program, kernel: Kernel, inputs: Mapping[str, Wired]
-) -> dict[str, tuple[float, ...]]:
-    """Return the values of a program's uniforms that are texels of inputs."""
-    found = {}
-    unwired = reads_unwired(kernel) and has_unwired(kernel, inputs)
-    for uniform, name, x, y in program.fixed:
-        result, _, output = inputs[name]
-        assert result is not None, "only such an input is written so: see is_read_back"
-        if unwired and result.size == (1, 1):  # where one input is unwired, so it goes with each of one texel
-            x = y = 0
-        found[uniform] = result.texel(output, x, y)
-    return found
-
-
-def texels_alone(kernel: Kernel, inputs: Mapping[str, Wired]) -> list[float] | None:
-    """Return all that a text reads of those inputs of which it reads single texels only.
-
-    Of each texel the components that it takes. None where one of the inputs cannot be read back.
-    """
-    found: list[float] = []
-    names = [name for name in read_by_texels_alone(kernel.source) if name in inputs]
-    names = [name for name in names if inputs[name].texture is not None]
-    if not all(is_read_back(name, inputs) for name in names):
-        return None
-    for texel in fixed_texels(kernel.source):
-        if texel.input in names:
-            result, _, output = inputs[texel.input]
-            assert result is not None, "it can be read back"
-            # With another input unwired, one of a single texel gives that at every place.
-            at = (0, 0) if result.size == (1, 1) else (texel.x, texel.y)
-            values = result.texel(output, *at)
-            found += [values[component] for component in sorted(texel.components)]
-    return found
 
 
 def has_unwired(kernel: Kernel, inputs: Mapping[str, Wired]) -> bool:

@@ -26,9 +26,9 @@ from typing import Any, NamedTuple
 from playground.data.content_hash import content_hash
 from playground.engine.meshes import mesh_parameters
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_version, sources_of, walk
+from playground.engine.software import read_by_texels_alone
 from playground.engine.source_kinds import Terrain
 from playground.shader.expressions import counts_frames
-from playground.shader.fixed_texels import read_by_texels_alone
 from playground.shader.reserved_names import CLOCKED, GIVEN, MATCHES, PRESSED, TOWARDS
 from playground.sketch.flat import Fed, Ref, Shape, Source
 from playground.sketch.model import (

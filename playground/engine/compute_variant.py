@@ -16,13 +16,12 @@ from contextlib import contextmanager
 from math import isqrt
 from typing import TYPE_CHECKING, NamedTuple
 
-from playground.engine.buffer_texels import BufferTexels
 from playground.engine.gl_calls import Calls
 from playground.engine.kernels import Job, Kernels
 from playground.engine.programs import Program
 from playground.engine.results import UNWIRED, Result
+from playground.engine.software import Choices
 from playground.shader import expressions
-from playground.shader.buffer_reads import TEXELS
 from playground.shader.expressions import ExpressionError, Number
 from playground.shader.wrap import COMPUTE
 from playground.sketch.model import Buffer, ComputeVariant
@@ -51,7 +50,6 @@ class ComputeVariants:
     def __init__(self, ctx: moderngl.Context, kernels: Kernels) -> None:
         self.ctx = ctx
         self.kernels = kernels
-        self.texels = BufferTexels(ctx)
         self._spare: list[Spare] = []  # newest last
         self._runs = 0
 
@@ -60,15 +58,14 @@ class ComputeVariants:
         for spare in self._spare:
             spare.buffer.release()
         self._spare.clear()
-        self.texels.release()
 
     def run(self, job: Job) -> Result:
         """Run a compute variant; the result is the caller's."""
         step, kernel = job.step, _variant_of(job)
-        storage = kernel.storage
+        storage, software = kernel.storage, self.kernels.software
         names = job.numbers()
         buffers: list[moderngl.Buffer] = []
-        read: list[Buffer] = []
+        reading: Choices = ()
         whole = all([output.name in kernel.storage.overwrites for output in kernel.outputs])
         pool = self.kernels.pool
         result = pool.take(step.size, kernel.outputs) if whole else self.kernels.empty(step)
@@ -80,9 +77,8 @@ class ComputeVariants:
                     self._begin(job, result, declared, buffers[-1])
                 buffers[-1].bind_to_storage_buffer(unit, size=self._size(declared, names))
             named = dict(zip([declared.name for declared in storage.buffers], buffers, strict=True))
-            if self.kernels.software:
-                read = self.texels.read(kernel, named)
-                self.texels.bind(read, named)
+            if software:
+                reading = software.begin_reading(kernel, named)
             self.kernels.images(result, read=True)
             program: Program | None = None
             active = sum(self._size(b, names) for b in storage.buffers if b.name == storage.active)
@@ -90,7 +86,7 @@ class ComputeVariants:
             while iteration < repeat:
                 groups = expressions.evaluate_pair(kernel.groups, {**names, "iteration": iteration})
                 if not kernel.stages or 0 not in groups:  # a 0: a step that this size does not need
-                    program = self._program(job, iteration, program, reads=bool(read))
+                    program = self._program(job, iteration, program, reading)
                     job.count(program, iteration, kernel.repeat, repeat)
                     program.run(max(groups[0], 1), max(groups[1], 1))
                 iteration += 1
@@ -111,23 +107,22 @@ class ComputeVariants:
             pool.give(result)
             raise
         finally:
-            if read:
-                self.texels.let_go()
+            if software and reading:
+                software.end_reading()
             self._runs += 1
             self._spare += [Spare(buffer, self._runs) for buffer in buffers]
             self._trim()
         return result
 
-    def _program(self, job: Job, iteration: int, bound: Program | None, *, reads: bool) -> Program:
+    def _program(self, job: Job, iteration: int, bound: Program | None, reading: Choices) -> Program:
         """Return the program of an iteration with all that it reads, if it is not the one that is ``bound``.
 
         On a software renderer, there is one for each stage: otherwise what the others do would
-        be computed as well, and discarded. One that ``reads`` buffers as textures is another.
+        be computed as well, and discarded. One with ``reading`` buffers as textures is another.
         """
         step, stages = job.step, _variant_of(job).stages
         stage = (("stage", stages[iteration]),) if stages else ()
-        more = (*stage, (TEXELS, 1)) if reads else stage
-        program = self.kernels.program(job, COMPUTE, *more)
+        program = self.kernels.program(job, COMPUTE, *stage, *reading)
         if program is not bound:  # a program that was bound before may find other textures on its units
             self.kernels.binder.bind(program, step, job.given, job.inputs)
         for name, number in stage:

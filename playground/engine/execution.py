@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 
-from playground.engine.binder import texels_alone
 from playground.engine.cache import Cache, Cached
 from playground.engine.cache_keys import Keys
 from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step, walk
@@ -140,10 +139,10 @@ class Execution:
         Of an input of which it reads single texels, as of a daylight the day of the year, these are all. Only
         on a software renderer, which reads them back anyway: there they are uniforms.
         """
-        apart = self.keys.apart.get(step.path)
-        if apart is None or not self.runner.kernels.software:
+        apart, software = self.keys.apart.get(step.path), self.runner.software
+        if apart is None or software is None:
             return ""
-        texels = texels_alone(step.kernel, inputs)
+        texels = software.texels_read(step.kernel, inputs)
         return "" if texels is None else f"{apart} {texels}"  # where 0 is not -0
 
     def _earlier(self, step: Step, unfinished: str) -> Result | None:

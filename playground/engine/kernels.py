@@ -8,49 +8,34 @@ lattice ever more closely fills, in fragment, as small a part of its textures as
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from playground.engine.binder import (
     Binder,
     Bound,
-    has_unwired,
-    is_read_back,
     wires_of,
 )
-from playground.engine.costly_rest import CostlyRest
 from playground.engine.lattice import shift_after
 from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
-from playground.engine.quicker_texts import quicker_texts
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.settling import Settling
 from playground.engine.textures import make_framebuffer
 from playground.shader import expressions
 from playground.shader.expressions import FRAME_RATE, ExpressionError, Number, counts_frames
-from playground.shader.fixed_texels import fixed_texels
 from playground.shader.own_shaders import own_shader
-from playground.shader.reserved_names import (
-    DEPTH,
-    ELEMENT,
-    FIXED,
-    MATCHES,
-    PART,
-    PRESSED,
-    SIZES,
-    SKIPS,
-    UNWIRED,
-    VALUE,
-    WINDOW,
-    WIRED,
-)
-from playground.shader.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
+from playground.shader.reserved_names import DEPTH, ELEMENT, PART, PRESSED, SIZES, VALUE, WINDOW
+from playground.shader.wrap import COMPUTE, FRAGMENT, LOCAL
 from playground.sketch.model import ForeignShader, Kernel, PlainCompute, Sampling, TexelKernel
 from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
     import moderngl
+
+    from playground.engine.software import Software
 
 _SAMPLERS = frozenset(
     {*range(0x8B5D, 0x8B65), *range(0x8DC0, 0x8DC6), *range(0x8DC9, 0x8DD9), *range(0x9108, 0x910E)}
@@ -59,7 +44,6 @@ _SAMPLERS = frozenset(
 _MOST_LEVELS = 12  # of a pyramid of another tool
 _SHAPES = {0x8B5D: "line", 0x8B5F: "volume", 0x8B60: "cube", 0x8DC1: "layers"}
 """GL_SAMPLER_1D, 3D, CUBE and 2D_ARRAY, with the shapes of what they read."""
-_COLOR_LOGIC_OP = 0x0BF2
 
 
 @dataclass(slots=True)
@@ -92,42 +76,20 @@ class Job:
         return found | {k: v for k, v in self.step.values.items() if isinstance(v, int | float)}
 
 
-class Filling:
-    """Within it, a context draws over the whole of a framebuffer.
-
-    With a logic operation enabled, whose default is to copy, llvmpipe compiles a text
-    once, not a second time for tiles whose old texels it need not load: half of what a
-    save waits for. Blending "all of the new, nothing of the old" would do as well, but
-    there it works out (new - old) + old, which is not the new.
-    """
-
-    def __init__(self, ctx: moderngl.Context, *, software: bool) -> None:
-        self.ctx = ctx
-        self.software = software
-
-    def __enter__(self) -> None:
-        if self.software:
-            self.ctx.enable_direct(_COLOR_LOGIC_OP)
-
-    def __exit__(self, *_: object) -> None:
-        if self.software:
-            self.ctx.disable_direct(_COLOR_LOGIC_OP)
-
-
 class Kernels:
     """Runs kernels and plain shaders on one context."""
 
     def __init__(
-        self, ctx: moderngl.Context, programs: Programs, binder: Binder, pool: Pool, *, software: bool
+        self, ctx: moderngl.Context, programs: Programs, binder: Binder, pool: Pool, software: Software | None
     ) -> None:
         self.ctx = ctx
-        self.software = software  # whether it is a software renderer
+        self.software = software  # None: the renderer is a GPU
         self.programs = programs
         self.binder = binder
         self.pool = pool
-        self.filling = Filling(ctx, software=software)
-        self.costly_rest = CostlyRest(ctx)
-        self.settling = Settling(ctx, programs, binder, pool, software=software)
+        # Within it, a program is drawn over the whole of a framebuffer.
+        self.filling = software.filling if software else nullcontext()
+        self.settling = Settling(ctx, programs, binder, pool, software=software is not None)
         # Programs of this frame's steps, by the step's identity; the step is held with it.
         self._known: dict[tuple[int, str, tuple[int, ...]], tuple[Step, Program]] = {}
         self._frame = 0
@@ -145,8 +107,8 @@ class Kernels:
         state = self._initial(job)
         if step.repeat == 0:
             return self._untouched(step, state)
-        if driver == FRAGMENT and self.software and self.costly_rest.has(step):
-            return self._in_two_parts(job, program, state, wires)
+        if driver == FRAGMENT and self.software and self.software.runs_in_parts(kernel):
+            return self.software.run_in_parts(self, job, program, state, wires)
         unit = self.binder.bind(program, step, job.given, job.inputs, wires)
         if driver == COMPUTE and kernel.visits:
             return self._in_place(job, kernel, program, state)
@@ -163,34 +125,10 @@ class Kernels:
         return self._known[key][1]
 
     def program(self, job: Job, driver: str, *more: tuple[str, int]) -> Program:
-        """Return the program of a step.
-
-        On a software renderer there is one for each choice of menus, and of what is wired, written as it is
-        quicker there.
-        ``more`` are whole numbers to compile in as well.
-        """
-        kernel, values = job.step.kernel, job.step.values
-        if not self.software:
-            return self.programs.get(kernel, driver)
-        choices = [
-            (p.name, int(values[p.name]))  # type: ignore[arg-type]
-            for p in kernel.parameters
-            if (p.type == "bool" or p.widget.kind == "menu") and p.widget.kind != "button"
-        ]
-        for declared in kernel.inputs:
-            name, texture = declared.name, job.inputs.get(declared.name, NOT_WIRED).texture
-            if kernel.reads(f"{WIRED}{name}"):
-                choices.append((f"{WIRED}{name}", int(texture is not None)))
-            if kernel.reads(f"{MATCHES}{name}"):
-                matches = texture is not None and texture.size == job.step.size
-                choices.append((f"{MATCHES}{name}", int(matches)))
-        if reads_unwired(kernel):
-            choices.append((UNWIRED, int(has_unwired(kernel, job.inputs))))
-        choices += [(name, 1) for name in quicker_texts(job.step, job.inputs, driver)]
-        if job.loop_iteration is None:  # in a loop, each iteration would wait for what it reads back
-            inputs = {texel.input for texel in fixed_texels(kernel.source)}
-            choices += [(f"{FIXED}{name}", 1) for name in sorted(inputs) if is_read_back(name, job.inputs)]
-        return self.programs.get(kernel, driver, (*choices, *more))
+        """Return the program of a step; on a software renderer one with ``more`` written into it as well."""
+        if self.software is None:
+            return self.programs.get(job.step.kernel, driver)
+        return self.programs.get(job.step.kernel, driver, (*self.software.choices(job, driver), *more))
 
     def draw_own(
         self, shader: str, target: moderngl.Framebuffer, source: moderngl.Texture, **uniforms: Any
@@ -333,22 +271,6 @@ class Kernels:
         before.iterations = step.repeat
         return before
 
-    def _in_two_parts(
-        self, job: Job, program: Program, state: Mapping[str, moderngl.Texture], wires: tuple[int, ...]
-    ) -> Result:
-        """Run a kernel once: first the part of it that ends early, then the rest where it did not."""
-        step = job.step
-        result = self.pool.take(step.size, step.kernel.outputs)
-        with self.costly_rest.target(result):
-            for part in (self.program(job, FRAGMENT, (SKIPS, 1)), program):
-                unit = self.binder.bind(part, step, job.given, job.inputs, wires)
-                self.binder.previous(self.binder.previous_units(part, step.kernel, unit), state)
-                job.count(part, 0, step.kernel.repeat, step.whole)
-                with self.filling:
-                    part.fill()
-        result.iterations = step.repeat
-        return result
-
     def _evaluated(self, what: str, text: str, job: Job, **more: Number) -> int:
         try:
             return expressions.evaluate(text, job.numbers(**more))
@@ -363,7 +285,9 @@ class Kernels:
         """
         wires = wires_of(step, inputs)
         _, program = self._known.get((id(step), driver, wires), (None, None))
-        if program is None or (driver == FRAGMENT and self.software and self.costly_rest.has(step)):
+        if program is None:
+            return None
+        if driver == FRAGMENT and self.software and self.software.runs_in_parts(step.kernel):
             return None
         bound = program.bound
         if not isinstance(bound, Bound) or bound.step is not step or bound.wires != wires:

@@ -22,7 +22,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 from unicodedata import name as name_of
 
-from playground.engine.choices import QUICKER, fixed_texel, with_choices
+from playground.engine.software import QUICKER, Choices, fixed_texel, specialise
 from playground.errors import Diagnostic, ShaderError
 from playground.paths import shown
 from playground.shader.own_shaders import TRIANGLE
@@ -174,9 +174,6 @@ def _column_of(message: str, code: str) -> int:
 
 _log = logging.getLogger(__name__)
 
-Choices = tuple[tuple[str, int], ...]
-"""Checkboxes and menus with their values."""
-
 _CORNERS = struct.pack("6f", -1.0, -1.0, 3.0, -1.0, -1.0, 3.0)  # of a triangle over the whole picture
 _SPARE = 64  # programs cached beyond those of the current frame
 
@@ -191,7 +188,7 @@ class Program:
         self.bound: object = None  # what its uniforms were last bound for: see ``Binder.bind``
         self._last: dict[str, Any] = {}  # the values that uniforms have
         self.arrays: dict[object, moderngl.VertexArray] = {}  # by mesh; None: the whole picture
-        # Uniforms that are texels of inputs, and which: see ``gpu.choices.with_choices``.
+        # Uniforms that are texels of inputs, and which: see ``software``.
         self.fixed = [(name, *of) for name in self.uniforms if (of := fixed_texel(name)) is not None]
         self.frame = 0  # when it was last used
         self._corners: moderngl.Buffer | None = None
@@ -267,7 +264,7 @@ class Programs:
             self._texts.move_to_end(wanted)
             return self._used(known[1])
         plain = wrap(kernel, driver, self.ctx.version_code)
-        wrapped = with_choices(plain, choices) if choices else plain
+        wrapped = specialise(plain, choices) if choices else plain
         if isinstance(kernel, PlainFragment):
             from playground.shader.zero_values import with_zeros
 
@@ -292,7 +289,7 @@ class Programs:
         try:
             return compile_wrapped(self.ctx, wrapped)
         except ShaderError:
-            as_written = with_choices(plain, own)
+            as_written = specialise(plain, own)
             if _texts(as_written) == _texts(wrapped):
                 raise
             program = compile_wrapped(self.ctx, as_written)

@@ -25,6 +25,7 @@ from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.scene import MEANINGS as OF_THE_SCENE
 from playground.engine.scene import scene_of
+from playground.engine.software import Software
 from playground.engine.source_kinds import Material, SourceKind
 from playground.engine.source_works import Arrays, SourceWorks, Task
 from playground.engine.sources import source_kind
@@ -59,8 +60,9 @@ class Runner:
         self.delta = 1 / 60  # [s] since the last one
         self.date = (1970.0, 0.0, 1.0, 0.0)  # year, month from 0, day, seconds
         self.programs = Programs(ctx)
-        self.binder = Binder(ctx, software=info.software)
-        self.kernels = Kernels(ctx, self.programs, self.binder, pool, software=info.software)
+        self.software = Software(ctx) if info.software else None
+        self.binder = Binder(ctx, self.software)
+        self.kernels = Kernels(ctx, self.programs, self.binder, pool, self.software)
         self.compute_variants = ComputeVariants(ctx, self.kernels)
         self.draws = Draws(ctx, self.kernels)
         self.painted = PaintedFiles() if painted is None else painted
@@ -99,7 +101,8 @@ class Runner:
         self.paint.release()
         self.draws.release()
         self.compute_variants.release()
-        self.kernels.costly_rest.release()
+        if self.software:
+            self.software.release()
         self.binder.release()
         self.programs.release()
 

@@ -28,7 +28,7 @@ GIVEN: dict[str, tuple[str, str]] = {
 """Name → (GLSL type, meaning) of what every kernel and draw is given; declared where its text names it."""
 
 SKIPS = "skips_rest"
-"""A function that is true in what a software renderer draws first of a kernel: see ``engine.costly_rest``."""
+"""A function that is true in what a software renderer draws first of a kernel: see ``engine.software``."""
 RESERVED: frozenset[str] = frozenset({"previous", "kernel", "visit", "vertex", "fragment", SKIPS})
 """Functions that the engine gives or calls; ``previous_`` begins more of them."""
 
@@ -49,22 +49,6 @@ UNWIRED = "k_unwired"
 FETCHES = {"texelFetch": "k_fetch_in", "texelFetchOffset": "k_fetch_in_shift"}
 """What replaces GLSL's own functions, as long as these, where an input may stay unwired: the one
 texel of its white or black answers for every place."""
-
-NEAREST = "k_nearest"
-"""A choice: what is read texel by texel alone is fetched as a software renderer is quick to."""
-
-QUICK_FETCHES = {"texelFetch": "k_texel_of", "k_fetch_in": "k_texel_in"}
-"""What replaces functions that fetch texels then, each as long."""
-
-OWN_SIZE = "k_size_here"
-"""A choice: all inputs have the size of the pass. So is called what replaces textureSize, as long, then."""
-
-PLACE = "k_place"
-"""A choice: a kernel is told its texel's place by the vertex shader."""
-
-FIXED = "k_fixed_"
-"""What begins the name of a uniform with one texel of an input, in place of a fetch at a place written as
-numbers: x, y and the input follow, as in k_fixed_5_0_daylight. On software renderers only."""
 
 PRESSED = "pressed "
 """What begins the name of a button among what a step is given, while the button is pressed."""

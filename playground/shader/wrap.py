@@ -12,13 +12,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from playground.errors import ShaderError
-from playground.shader.buffer_reads import reading
+from playground.shader.outline import outline
 from playground.shader.own_shaders import TRIANGLE, own_part
 from playground.shader.reserved_names import (
     FETCHES,
     GIVEN,
     MATCHES,
     PART,
+    READ,
     SKIPS,
     TOWARDS,
     UNWIRED,
@@ -29,6 +30,7 @@ from playground.shader.reserved_names import (
 from playground.shader.source import Line, SourceText
 from playground.shader.stage_recipe import SIGNATURE, VERSION_NUMBER, Part, Recipe, version_line
 from playground.sketch.kernel import (
+    Buffer,
     ComputeVariant,
     Draw,
     ForeignShader,
@@ -51,6 +53,7 @@ CORNER = "k_corner"
 NOTHING_SKIPPED = f"bool {SKIPS}() {{ return false; }}"
 """What a kernel calls where none of it is skipped."""
 _PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|draw|compute)\b")
+_READABLE = ("float", "vec2", "vec4")  # types of the buffers that functions read
 _PROTOTYPE = re.compile(r"^(\w+)\s+(\w+)\s*\(([^()]*)\)\s*;", re.MULTILINE)
 
 
@@ -300,8 +303,19 @@ def _variant(kernel: ComputeVariant) -> Recipe:
     for unit, buffer in enumerate(kernel.storage.buffers):
         block = f"buffer k_buffer_{buffer.name} {{ {buffer.type} {buffer.name}[]; }};"
         before.append(f"layout(std430, binding = {unit}) {block}")
-    before += reading(kernel)
+    before += [
+        Part(f"{buffer.type} {READ}{buffer.name}(int place) {{ return {buffer.name}[place]; }}")
+        for buffer in read_by_functions(kernel)
+    ]
     return _recipe(kernel, before, [], "void main()")
+
+
+def read_by_functions(kernel: ComputeVariant) -> list[Buffer]:
+    """Return the buffers that a compute variant reads by ``read_NAME(place)``, unless it has its own."""
+    buffers = kernel.storage.buffers
+    found = [b for b in buffers if b.type in _READABLE and kernel.reads(f"{READ}{b.name}")]
+    own = {one.name for one in outline(kernel.source.code)} if found else set()
+    return [buffer for buffer in found if f"{READ}{buffer.name}" not in own]
 
 
 def _draw(kernel: Draw) -> dict[str, Recipe]:

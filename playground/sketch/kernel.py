@@ -17,7 +17,6 @@ from typing import Any, ClassVar
 from playground.errors import ShaderError, nearest
 from playground.shader import expressions
 from playground.shader.expressions import CLOCKS, COUNTERS, ExpressionError
-from playground.shader.fetched_alone import FetchedAlone, fetched_alone
 from playground.shader.kernel import Bound, read_agreement
 from playground.shader.parameter import AS_IT_IS, Parameter, Sampling
 from playground.shader.reserved_names import GIVEN, OF_THE_TERRAIN, PLAIN_UNIFORMS
@@ -369,11 +368,6 @@ class Kernel:
         """Which names the text reads of those that the engine gives: see ``reserved_names.GIVEN``."""
         return tuple(name for name in GIVEN if self.reads(name))
 
-    @cached_property
-    def fetched_alone(self) -> FetchedAlone:
-        """What of it reads inputs by ``texelFetch`` alone; nothing of a plain or another tool's shader."""
-        return fetched_alone(self.source, frozenset([declared.name for declared in self.inputs]))
-
     @property
     def options(self) -> tuple[tuple[Option, Any], ...]:
         """The options of its pragma that are not at their defaults, with their values."""
@@ -666,11 +660,6 @@ class PlainShader(Kernel):
         return tuple(
             (n, meaning) for meaning, names in PLAIN_UNIFORMS.items() for n in names if self.reads(n)
         )
-
-    @property
-    def fetched_alone(self) -> FetchedAlone:
-        """Nothing."""
-        return FetchedAlone()
 
 
 @dataclass(frozen=True)

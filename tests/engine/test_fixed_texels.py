@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 
 from playground.engine import results
-from playground.engine.choices import with_choices
 from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
 from playground.engine.results import Result
-from playground.shader.fixed_texels import fixed_texels
-from playground.shader.reserved_names import FIXED
+from playground.engine.software import FIXED, fixed_texels, specialise
 from playground.shader.wrap import FRAGMENT, wrap
 
 from .conftest import Folder, on_both_kinds
@@ -145,7 +143,7 @@ def test_no_line_and_no_column_changes(folder: Folder):
     kernel = sketch_of(folder).graph.passes[1].technique
     plain = wrap(kernel, FRAGMENT)
     before = plain.stages["fragment"]
-    after = with_choices(plain, [(f"{FIXED}row", 1)]).stages["fragment"]
+    after = specialise(plain, [(f"{FIXED}row", 1)]).stages["fragment"]
     assert "k_fixed_2_1_row" in after.text and "k_fixed_0_0_more" not in after.text
     old, new = before.text.split("\n"), after.text.split("\n")
     texels = [each for each in fixed_texels(kernel.source) if each.input == "row"]

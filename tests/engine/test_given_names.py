@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from playground.engine.software import Software
 from playground.errors import ShaderError
 
 ASKS = """#pragma kernel(output = "given:rgba32f")
@@ -37,7 +38,8 @@ void main() {
 @pytest.fixture(params=["compiled in", "set as uniforms"])
 def each_engine(request, any_engine):
     """Give an engine that compiles in what is wired, as where the processor draws, and one that does not."""
-    any_engine.internal.runner.kernels.software = request.param == "compiled in"
+    software = Software(any_engine.ctx) if request.param == "compiled in" else None
+    any_engine.internal.runner.kernels.software = software
     return any_engine
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from playground.engine.choices import quicker_choices, with_choices
 from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
+from playground.engine.software import NEAREST, OWN_SIZE, PLACE, quicker_choices, specialise
 from playground.errors import ShaderError
-from playground.shader.reserved_names import NEAREST, OWN_SIZE, PLACE, UNWIRED
+from playground.shader.reserved_names import UNWIRED
 from playground.shader.wrap import COMPUTE, FRAGMENT, wrap
 
 from .conftest import Folder, on_both_kinds
@@ -158,7 +158,7 @@ def test_a_texture_of_the_passs_own_size_is_not_asked_for_it(folder: Folder):
     kernel = folder.sketch(PASSES.partition("inputs")[0]).graph.passes[1].technique
     assert OWN_SIZE in quicker_choices(kernel)
     before = wrap(kernel, COMPUTE).stages["compute"]
-    after = with_choices(wrap(kernel, COMPUTE), [(NEAREST, 1), (OWN_SIZE, 1)]).stages["compute"]
+    after = specialise(wrap(kernel, COMPUTE), [(NEAREST, 1), (OWN_SIZE, 1)]).stages["compute"]
     own, changed = before.text.split("\n")[before.first - 1 :], after.text.split("\n")[after.first - 1 :]
     assert [line.replace("texelFetch", "k_texel_of") for line in own] == changed
     assert after.locate(after.first) == kernel.source.lines[0]
@@ -185,7 +185,7 @@ def test_no_line_and_no_column_changes(folder: Folder):
     kernel = sketch_of(folder).graph.passes[1].technique
     assert NEAREST in quicker_choices(kernel)
     before = wrap(kernel, FRAGMENT).stages["fragment"]
-    after = with_choices(wrap(kernel, FRAGMENT), [(UNWIRED, 0), (NEAREST, 1)]).stages["fragment"]
+    after = specialise(wrap(kernel, FRAGMENT), [(UNWIRED, 0), (NEAREST, 1)]).stages["fragment"]
     own, changed = before.text.split("\n")[before.first - 1 :], after.text.split("\n")[after.first - 1 :]
     assert [len(line) for line in own] == [len(line) for line in changed]
     assert sum(line.count("k_texel_in(") for line in changed) == 2, "at(…) and of open"
@@ -249,7 +249,7 @@ def test_each_texel_knows_its_place(any_engine: Engine, folder: Folder, monkeypa
     folder.write("places.glsl", PLACES)
     sketch = folder.sketch(f'[[pass]]\nname = "a"\nuse = "./places"\nsize = [{size}]\n')
     kernel = sketch.graph.passes[0].technique
-    written = with_choices(wrap(kernel, FRAGMENT), [(PLACE, 1)]).stages["fragment"]
+    written = specialise(wrap(kernel, FRAGMENT), [(PLACE, 1)]).stages["fragment"]
     assert "ivec2(k_place_at)" in written.text and written.locate(written.first) == kernel.source.lines[0]
     with Engine(any_engine.ctx, driver=FRAGMENT) as engine:
         found = engine.read(sketch, "a")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from playground.engine.choices import with_choices
+from playground.engine.software import specialise
 from playground.errors import ShaderError
 from playground.shader.header import parse_kernel
 from playground.shader.source import read_source
@@ -178,7 +178,7 @@ float kernel(ivec2 texel) { return on ? float(way) : float(ways); }
 """
     plain = wrap(kernel(text), FRAGMENT)
     before = plain.stages["fragment"].text.split("\n")
-    after = with_choices(plain, (("on", 1), ("way", 1))).stages["fragment"].text.split("\n")
+    after = specialise(plain, (("on", 1), ("way", 1))).stages["fragment"].text.split("\n")
     changed = {b.strip(): a.strip() for b, a in zip(before, after, strict=True) if a != b}
     assert changed == {
         "uniform bool on = false;": "const   bool on = true;",

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine.choices import with_choices
 from playground.engine.engine import Engine
+from playground.engine.software import specialise
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.web.page_data import page_data
 
@@ -75,7 +75,7 @@ def test_choices_are_written_as_the_engine_writes_them(node: Node):
       return cases.map(([text, choices]) => withChoices(text, choices));
     }"""
     stages = [
-        (name, stage.text, with_choices(wrapped, choices).stages[kind].text, choices)
+        (name, stage.text, specialise(wrapped, choices).stages[kind].text, choices)
         for name, wrapped, choices in cases
         for kind, stage in wrapped.stages.items()
     ]

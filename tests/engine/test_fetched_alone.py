@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from playground.shader.fetched_alone import fetched_alone
+from playground.engine.software import fetched_alone
 from playground.shader.source import SourceText, read_source
+from playground.sketch.model import Input, TexelKernel
 
 HEAD = """uniform sampler2D sun;
 uniform sampler2D moon;
@@ -162,7 +163,8 @@ def source_of(folder: Path, text: str) -> SourceText:
 def test_what_is_read_by_fetches_alone(tmp_path: Path, how: str):
     marked, expected = TEXTS[how]
     source = source_of(tmp_path, marked.replace("■", ""))
-    found = fetched_alone(source, frozenset(BOTH))
+    inputs = tuple(Input(name) for name in sorted(BOTH))
+    found = fetched_alone(TexelKernel("main", source, (), inputs=inputs))
     lines = [line.code for line in source.lines]
     for line, column in reversed(found.fetches):
         assert lines[line][column:].startswith("texelFetch")
