@@ -19,8 +19,9 @@ from playground.data.image_files import MAX_HALF, read_image
 from playground.engine.camera import unit_vector
 from playground.engine.gl_calls import mirror
 from playground.engine.plan import Step
+from playground.engine.results import MATCHING, OPEN, Wired, has_unwired, wires_of
 from playground.engine.results import UNWIRED as NOT_WIRED
-from playground.engine.results import Wired
+from playground.engine.software import Software
 from playground.engine.textures import FACES, Shaped, check_size, copied, drain, shaped_size
 from playground.errors import ContextError
 from playground.paths import shown
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     import moderngl
 
     from playground.engine.programs import Program
-    from playground.engine.software import Software
 
     Readable = moderngl.Texture | Shaped
 
@@ -41,9 +41,6 @@ _MAX_FILES = 32
 _ANISOTROPY = 8.0  # of textures with mipmaps; on a software renderer it costs a hundred times as much
 _EXACT = Sampling()  # what reads one texel as it is
 _CONSTANTS = {"white": (1, 1, 1, 1), "black": (0, 0, 0, 1), "zero": (0, 0, 0, 0)}
-
-
-_OPEN, _WIRED, _MATCHING = range(3)  # of an input: nothing is wired, something, something of the step's size
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +103,7 @@ class Binder:
         """
         wires = wires_of(step, inputs) if wires is None else wires
         if self._software and program.fixed:
-            program.set_all(self._software.fixed_texels_of(program, step.kernel, inputs))
+            program.set_all(self._software.values_of(program.fixed, step.kernel, inputs))
         bound = program.bound
         if isinstance(bound, Bound) and bound.step is step and bound.given is given and bound.wires == wires:
             for declared, unit, sampler in bound.units:
@@ -131,8 +128,8 @@ class Binder:
             uniforms[UNWIRED] = has_unwired(kernel, inputs)
         units: list[tuple[Input, int, moderngl.Sampler]] = []
         for declared, wire in zip(kernel.inputs, wires, strict=True):
-            uniforms[f"{WIRED}{declared.name}"] = wire != _OPEN
-            uniforms[f"{MATCHES}{declared.name}"] = wire == _MATCHING
+            uniforms[f"{WIRED}{declared.name}"] = wire != OPEN
+            uniforms[f"{MATCHES}{declared.name}"] = wire == MATCHING
             if declared.name in program.uniforms:
                 sampler = self.sampler_of(kernel, declared)
                 units.append((declared, unit, sampler))
@@ -307,22 +304,3 @@ class Binder:
             texture = self.ctx.texture(size, 4, half.tobytes(), alignment=1, dtype="f2")
         drain(self.ctx)
         return texture
-
-
-def wires_of(step: Step, inputs: Mapping[str, Wired]) -> tuple[int, ...]:
-    """Return how each input of a step is wired: by nothing, by a texture, by one of the step's size."""
-    found = []
-    for declared in step.kernel.inputs:
-        texture = inputs.get(declared.name, NOT_WIRED).texture
-        found.append(_OPEN if texture is None else _MATCHING if texture.size == step.size else _WIRED)
-    return tuple(found)
-
-
-def are_of_own_size(step: Step, inputs: Mapping[str, Wired]) -> bool:
-    """Return whether each input of a step reads a texture that is as large as those that it makes."""
-    return all(wire == _MATCHING for wire in wires_of(step, inputs))
-
-
-def has_unwired(kernel: Kernel, inputs: Mapping[str, Wired]) -> bool:
-    """Return whether nothing is wired to some input that may stay so."""
-    return any([i.fallback and inputs.get(i.name, NOT_WIRED).texture is None for i in kernel.inputs])

@@ -12,17 +12,14 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from playground.engine.binder import (
-    Binder,
-    Bound,
-    wires_of,
-)
+from playground.engine.binder import Binder, Bound
 from playground.engine.lattice import shift_after
 from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
 from playground.engine.results import UNWIRED as NOT_WIRED
-from playground.engine.results import Pool, Result, Wired
+from playground.engine.results import Pool, Result, Wired, wires_of
 from playground.engine.settling import Settling
+from playground.engine.software import FIRST_PART, Software
 from playground.engine.textures import make_framebuffer
 from playground.shader import expressions
 from playground.shader.expressions import FRAME_RATE, ExpressionError, Number, counts_frames
@@ -34,8 +31,6 @@ from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
     import moderngl
-
-    from playground.engine.software import Software
 
 _SAMPLERS = frozenset(
     {*range(0x8B5D, 0x8B65), *range(0x8DC0, 0x8DC6), *range(0x8DC9, 0x8DD9), *range(0x9108, 0x910E)}
@@ -108,7 +103,7 @@ class Kernels:
         if step.repeat == 0:
             return self._untouched(step, state)
         if driver == FRAGMENT and self.software and self.software.runs_in_parts(kernel):
-            return self.software.run_in_parts(self, job, program, state, wires)
+            return self._in_parts(self.software, job, program, state, wires)
         unit = self.binder.bind(program, step, job.given, job.inputs, wires)
         if driver == COMPUTE and kernel.visits:
             return self._in_place(job, kernel, program, state)
@@ -128,7 +123,9 @@ class Kernels:
         """Return the program of a step; on a software renderer one with ``more`` written into it as well."""
         if self.software is None:
             return self.programs.get(job.step.kernel, driver)
-        return self.programs.get(job.step.kernel, driver, (*self.software.choices(job, driver), *more))
+        in_loop = job.loop_iteration is not None
+        choices = self.software.choices(job.step, job.inputs, driver, in_loop=in_loop)
+        return self.programs.get(job.step.kernel, driver, (*choices, *more))
 
     def draw_own(
         self, shader: str, target: moderngl.Framebuffer, source: moderngl.Texture, **uniforms: Any
@@ -270,6 +267,27 @@ class Kernels:
             self.pool.give(close)
         before.iterations = step.repeat
         return before
+
+    def _in_parts(
+        self,
+        software: Software,
+        job: Job,
+        program: Program,
+        state: Mapping[str, moderngl.Texture],
+        wires: tuple[int, ...],
+    ) -> Result:
+        """Run a kernel once: first the part of it that ends early, then the rest where it did not."""
+        step = job.step
+        result = self.pool.take(step.size, step.kernel.outputs)
+        with software.drawing_once(result):
+            for part in (self.program(job, FRAGMENT, FIRST_PART), program):
+                unit = self.binder.bind(part, step, job.given, job.inputs, wires)
+                self.binder.previous(self.binder.previous_units(part, step.kernel, unit), state)
+                job.count(part, 0, step.kernel.repeat, step.whole)
+                with self.filling:
+                    part.fill()
+        result.iterations = step.repeat
+        return result
 
     def _evaluated(self, what: str, text: str, job: Job, **more: Number) -> int:
         try:

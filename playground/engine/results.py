@@ -6,12 +6,13 @@ A ``Result`` is the textures of one pass; the ``Pool`` keeps spare ones.
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from playground.engine.plan import Step
 from playground.engine.textures import (
     Shaped,
     bytes_of,
@@ -20,7 +21,7 @@ from playground.engine.textures import (
     read_texture,
     release_framebuffer,
 )
-from playground.sketch.model import Output
+from playground.sketch.model import Kernel, Output
 
 if TYPE_CHECKING:
     import moderngl
@@ -278,3 +279,26 @@ class Pool:
         self._spare.clear()
         self._alike.clear()
         self._bytes = 0
+
+
+OPEN, WIRED, MATCHING = range(3)
+"""How an input is wired: by nothing, by a texture, by one of the step's size."""
+
+
+def wires_of(step: Step, inputs: Mapping[str, Wired]) -> tuple[int, ...]:
+    """Return how each input of a step is wired: by nothing, by a texture, by one of the step's size."""
+    found = []
+    for declared in step.kernel.inputs:
+        texture = inputs.get(declared.name, UNWIRED).texture
+        found.append(OPEN if texture is None else MATCHING if texture.size == step.size else WIRED)
+    return tuple(found)
+
+
+def are_of_own_size(step: Step, inputs: Mapping[str, Wired]) -> bool:
+    """Return whether each input of a step reads a texture that is as large as those that it makes."""
+    return all(wire == MATCHING for wire in wires_of(step, inputs))
+
+
+def has_unwired(kernel: Kernel, inputs: Mapping[str, Wired]) -> bool:
+    """Return whether nothing is wired to some input that may stay so."""
+    return any([i.fallback and inputs.get(i.name, UNWIRED).texture is None for i in kernel.inputs])

@@ -33,11 +33,10 @@ from functools import cached_property, lru_cache
 from itertools import count
 from typing import TYPE_CHECKING
 
-from playground.engine.binder import are_of_own_size, has_unwired
 from playground.engine.gl_calls import Calls, surround
 from playground.engine.plan import Step
 from playground.engine.results import UNWIRED as NOT_WIRED
-from playground.engine.results import Result, Wired
+from playground.engine.results import Result, Wired, are_of_own_size, has_unwired
 from playground.engine.textures import make_framebuffer
 from playground.shader.outline import Declared, outline
 from playground.shader.own_shaders import own_part, own_shader
@@ -57,8 +56,11 @@ from playground.sketch.model import ComputeVariant, Input, Kernel, PlainShader, 
 if TYPE_CHECKING:
     import moderngl
 
-    from playground.engine.kernels import Job, Kernels
-    from playground.engine.programs import Program
+Fixed = tuple[str, str, int, int]
+"""A uniform that is a texel of an input: its name, the input, the place."""
+
+FIRST_PART = SKIPS, 1
+"""The choice of the part of a kernel that ends before its costly rest."""
 
 Choices = tuple[tuple[str, int], ...]
 """What is written into a text: checkboxes and menus with their values, and the choices below."""
@@ -137,9 +139,11 @@ class Software:
             self._call("glDeleteTextures", (ctypes.c_int, ctypes.c_void_p), 1, ctypes.addressof(name))
         self._textures.clear()
 
-    def choices(self, job: Job, driver: str) -> Choices:
+    def choices(
+        self, step: Step, inputs: Mapping[str, Wired], driver: str, *, in_loop: bool
+    ) -> list[tuple[str, int]]:
         """Return what is known of a step that is about to run, and how it is quickest."""
-        step, inputs, kernel = job.step, job.inputs, job.step.kernel
+        kernel = step.kernel
         choices = [
             (p.name, int(step.values[p.name]))  # type: ignore[arg-type]
             for p in kernel.parameters
@@ -154,10 +158,10 @@ class Software:
         if reads_unwired(kernel):
             choices.append((UNWIRED, int(has_unwired(kernel, inputs))))
         choices += [(name, 1) for name in _quicker(step, inputs, driver)]
-        if job.loop_iteration is None:  # in a loop, each iteration would wait for what it reads back
+        if not in_loop:  # where each iteration would wait for what it reads back
             names = {texel.input for texel in fixed_texels(kernel.source)}
             choices += [(f"{FIXED}{name}", 1) for name in sorted(names) if _is_read_back(name, inputs)]
-        return tuple(choices)
+        return choices
 
     def sampler_of(
         self, kernel: Kernel, declared: Input, made: Callable[[], None]
@@ -175,13 +179,13 @@ class Software:
             made()
         return self._nearest
 
-    def fixed_texels_of(
-        self, program: Program, kernel: Kernel, inputs: Mapping[str, Wired]
+    def values_of(
+        self, fixed: Sequence[Fixed], kernel: Kernel, inputs: Mapping[str, Wired]
     ) -> dict[str, tuple[float, ...]]:
-        """Return the values of a program's uniforms that are texels of inputs."""
+        """Return the values of uniforms that are texels of inputs."""
         found = {}
         unwired = reads_unwired(kernel) and has_unwired(kernel, inputs)
-        for uniform, name, x, y in program.fixed:
+        for uniform, name, x, y in fixed:
             result, _, output = inputs[name]
             assert result is not None, "only such an input is written so: see ``_is_read_back``"
             if unwired and result.size == (1, 1):  # where one input is unwired, so is each of one texel
@@ -215,30 +219,9 @@ class Software:
         """Return whether a kernel says where its costly rest begins; one that repeats has none."""
         return isinstance(kernel, TexelKernel) and kernel.runs_once and kernel.reads(SKIPS)
 
-    def run_in_parts(
-        self,
-        kernels: Kernels,
-        job: Job,
-        program: Program,
-        state: Mapping[str, moderngl.Texture],
-        wires: tuple[int, ...],
-    ) -> Result:
-        """Run a kernel once: first the part of it that ends early, then the rest where it did not."""
-        step, binder = job.step, kernels.binder
-        result = kernels.pool.take(step.size, step.kernel.outputs)
-        with self._marking(result):
-            for part in (kernels.program(job, FRAGMENT, (SKIPS, 1)), program):
-                unit = binder.bind(part, step, job.given, job.inputs, wires)
-                binder.previous(binder.previous_units(part, step.kernel, unit), state)
-                job.count(part, 0, step.kernel.repeat, step.whole)
-                with self.filling:
-                    part.fill()
-        result.iterations = step.repeat
-        return result
-
     @contextmanager
-    def _marking(self, result: Result) -> Iterator[None]:
-        """Draw to a result: what is drawn first is done, and later draws leave it."""
+    def drawing_once(self, result: Result) -> Iterator[None]:
+        """Draw to a result: first the part of a kernel that ends early, then all where that has not."""
         ctx, size = self.ctx, result.size
         depth = self._depths.pop(size, None) or ctx.depth_renderbuffer(size)
         self._depths[size] = depth

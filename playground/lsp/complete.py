@@ -15,11 +15,12 @@ from playground.lsp.documents import Document, Documents, Text
 from playground.lsp.shader import Shader, is_code, library_declared, shader_of, word_at
 from playground.paths import GLSL, SKETCHES
 from playground.shader.header import FALLBACKS, MODIFIERS
+from playground.shader.kernel import PRAGMAS, options_of
 from playground.shader.libraries import libraries
 from playground.shader.outline import code_of, locals_of
 from playground.shader.parameter import WIDGETS
 from playground.shader.reserved_names import GLSL_WORDS
-from playground.sketch.kernel import FORMATS, PRAGMAS, Option, options_of
+from playground.sketch.options import FORMATS, Option
 
 Kind = types.CompletionItemKind
 _INCLUDE = re.compile(r"\s*#\s*include\s*[\"<]([^\">]*)$")

@@ -39,10 +39,10 @@ from functools import cache
 from typing import Literal
 
 from playground.paths import GLSL, SKETCHES, shown
+from playground.shader.kernel import ForeignShader, Kernel, PlainFragment, PlainShader
 from playground.shader.own_shaders import own_part
 from playground.shader.reserved_names import GIVEN, GIVEN_INSTEAD, GLSL_WORDS, PLAIN_UNIFORMS
 from playground.shader.source import Line, SourceText
-from playground.sketch.kernel import ForeignShader, Kernel, PlainFragment, PlainShader
 
 Severity = Literal["error", "warning"]
 

@@ -20,6 +20,18 @@ from playground.errors import Diagnostic, ParameterError, ShaderError, nearest
 from playground.paths import shown
 from playground.shader import expressions
 from playground.shader import parameter as values
+from playground.shader.kernel import (
+    PRAGMAS,
+    RECORDS,
+    CpuSource,
+    Input,
+    Kernel,
+    Output,
+    PlainCompute,
+    PlainFragment,
+    TexelKernel,
+    options_of,
+)
 from playground.shader.parameter import SCALARS, VECTORS, WIDGETS, Follows, Parameter, Sampling, Value, Widget
 from playground.shader.reserved_names import (
     DRIVER_BOUND,
@@ -34,22 +46,7 @@ from playground.shader.reserved_names import (
     WIRED,
 )
 from playground.shader.source import Line, SourceText
-from playground.sketch.kernel import (
-    FORMATS,
-    PRAGMAS,
-    RECORDS,
-    SIZE,
-    CpuSource,
-    Input,
-    Kernel,
-    Output,
-    PlainCompute,
-    PlainFragment,
-    Scope,
-    TexelKernel,
-    check_expression,
-    options_of,
-)
+from playground.sketch.options import FORMATS, SIZE, Scope, check_expression
 
 _ARGUMENT = re.compile(r'\s*(?:(\w+)\s*=\s*)?("(?:[^"\\]|\\.)*"|[^,()"]+)\s*(,|$)')
 _WORD = re.compile(r"\s*([A-Za-z_]\w*)(\s*\()?")

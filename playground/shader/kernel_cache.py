@@ -14,9 +14,8 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from playground.shader.header import parse_kernel
-from playground.shader.kernel import Variant
+from playground.shader.kernel import Kernel, Variant
 from playground.shader.source import Origin, read_source_and_origin
-from playground.sketch.kernel import Kernel
 
 _MOST = 1024  # the library has some three hundred, each read in its sketches' folders as well
 

@@ -12,6 +12,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from playground.errors import ShaderError
+from playground.shader.kernel import (
+    DRIVERS,
+    ComputeVariant,
+    Draw,
+    ForeignShader,
+    Kernel,
+    Output,
+    PlainCompute,
+    PlainFragment,
+    TexelKernel,
+    VertexShader,
+)
 from playground.shader.outline import outline
 from playground.shader.own_shaders import TRIANGLE, own_part
 from playground.shader.reserved_names import (
@@ -29,19 +41,7 @@ from playground.shader.reserved_names import (
 )
 from playground.shader.source import Line, SourceText
 from playground.shader.stage_recipe import SIGNATURE, VERSION_NUMBER, Part, Recipe, version_line
-from playground.sketch.kernel import (
-    Buffer,
-    ComputeVariant,
-    Draw,
-    ForeignShader,
-    Kernel,
-    Output,
-    PlainCompute,
-    PlainFragment,
-    TexelKernel,
-    VertexShader,
-)
-from playground.sketch.model import DRIVERS
+from playground.sketch.options import Buffer
 
 _, FRAGMENT, COMPUTE = DRIVERS
 LOCAL = 8

@@ -8,11 +8,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from playground.errors import ParameterError, nearest
-from playground.shader.kernel import ARRAY, Graph, PassSpec
+from playground.shader.kernel import ARRAY, CpuSource, Graph, Kernel, Output, PassSpec
 from playground.shader.parameter import Parameter, Widget
 from playground.shader.source import Line, SourceText
 from playground.sketch.arrays import ArrayFile, texels
-from playground.sketch.kernel import CpuSource, Kernel, Output
 from playground.sketch.wiring import initial_names, input_names, takes_input
 
 _FORMATS = {1: "r32f", 2: "rg32f", 4: "rgba32f"}

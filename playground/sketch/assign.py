@@ -13,10 +13,9 @@ from functools import lru_cache
 from typing import Protocol
 
 from playground.errors import ParameterError, nearest
-from playground.shader.kernel import NOT, Export, Graph, Technique
+from playground.shader.kernel import NOT, Export, Graph, Kernel, Technique
 from playground.shader.parameter import LARGEST_SIDE, Parameter, Value, coerce, spell
 from playground.sketch.identity import Identity
-from playground.sketch.kernel import Kernel
 
 # How many numbers at most, which, and what a message expects.
 _TERRAIN: dict[str, tuple[int, Callable[[float], bool], str]] = {

@@ -17,37 +17,35 @@ from typing import Any
 
 from playground.errors import Diagnostic, ParameterError, SketchError, nearest
 from playground.shader.kernel import (
+    DRIVERS,
+    PRAGMAS,
+    SHAPES,
     VARIANTS,
+    ComputeVariant,
+    CpuSource,
+    Draw,
     Export,
+    ForeignShader,
     Graph,
+    Input,
+    Kernel,
+    Output,
     PassSpec,
+    PlainCompute,
+    PlainFragment,
+    PlainShader,
     Technique,
+    TexelKernel,
     Variant,
+    VertexShader,
     kernels_of,
+    options_of,
     with_inner,
 )
 from playground.shader.parameter import LARGEST_SIDE, Follows, Parameter, Sampling, Value, Widget
 from playground.sketch.assign import TERRAIN_KEYS, check_value, current_paths, renamed
-from playground.sketch.kernel import (
-    FORMATS,
-    PRAGMAS,
-    SHAPES,
-    Buffer,
-    ComputeVariant,
-    CpuSource,
-    Draw,
-    ForeignShader,
-    Input,
-    Kernel,
-    Output,
-    PlainCompute,
-    PlainFragment,
-    PlainShader,
-    TexelKernel,
-    VertexShader,
-    options_of,
-)
 from playground.sketch.keyframes import Keyframe, at
+from playground.sketch.options import FORMATS, Buffer
 from playground.sketch.presence import as_wired
 
 Given = str | int | Mapping[str, object]

@@ -60,7 +60,10 @@ def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
         if not any(file in texts for file in technique.files):
             return technique
         if id(technique) not in known:
-            variants = tuple(replace(v, technique=reread(v.technique)) for v in technique.variants)
+            again = [(v, reread(v.technique)) for v in technique.variants]
+            variants = tuple(
+                replace(v, technique=t) for v, t in again if isinstance(t, ComputeVariant | Graph)
+            )
             if isinstance(technique, Graph) and technique.parts:
                 known[id(technique)] = composed(technique.name, *map(reread, technique.parts))
             elif isinstance(technique, Graph) and technique.dialect:
@@ -92,7 +95,7 @@ def _parsed_again(kernel: Kernel, texts: Mapping[str, str], folder: Path) -> Ker
     path = Path(kernel.path)
     root = folder if not path.is_relative_to(GLSL) else GLSL
     found = parse_kernel(kernel.name, read_source(path, (root,), texts))
-    if found is None:
+    if found is None or isinstance(found, ComputeVariant) != isinstance(kernel, ComputeVariant):
         raise DataError("no kernel is left of this text", file=path)
     if isinstance(found, ComputeVariant):  # a compute variant has these of its technique
         return replace(found, outputs=kernel.outputs, accepts=kernel.accepts)

@@ -7,10 +7,9 @@ from dataclasses import replace
 from playground.errors import SketchError, nearest
 from playground.shader import expressions
 from playground.shader.expressions import ExpressionError
-from playground.shader.kernel import Export, Graph, PassSpec, Technique
+from playground.shader.kernel import Draw, Export, Graph, Kernel, Output, PassSpec, Technique, TexelKernel
 from playground.shader.parameter import SCALARS
 from playground.sketch.assign import find_targets, resolve
-from playground.sketch.kernel import Draw, Kernel, Output, TexelKernel
 
 _GIVEN = (*expressions.CLOCKS, *expressions.COUNTERS, "compute", "size.x", "size.y")
 """What every expression may name."""

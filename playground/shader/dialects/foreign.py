@@ -17,10 +17,10 @@ from playground.paths import PART_OF_FILE, shown
 from playground.shader.declarations import Declared, is_declared, takes, uniforms, vertex_outputs
 from playground.shader.dialects.es import Rewritten, version_of
 from playground.shader.header import read_uniforms, title_of
+from playground.shader.kernel import SHAPES, ForeignShader, Input, Output, VertexShader
 from playground.shader.parameter import Parameter, Sampling, Value, Widget
 from playground.shader.reserved_names import ELEMENT
 from playground.shader.source import Line, Origin, SourceText, normalised, read_source_and_origin, read_text
-from playground.sketch.kernel import SHAPES, ForeignShader, Input, Output, VertexShader
 
 Names = Mapping[str, tuple[str, str]]
 """Name → GLSL type and meaning: a key of ``Runner``'s values; of a sampler "noise 0", "picture 3", "none"."""

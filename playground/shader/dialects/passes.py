@@ -16,8 +16,7 @@ from pathlib import Path
 from playground.errors import Diagnostic, ShaderError, nearest
 from playground.paths import GLSL, shown
 from playground.shader.dialects.foreign import Channel, ForeignKernel, Made, Shader
-from playground.shader.kernel import Export, Graph, PassSpec, Technique
-from playground.sketch.kernel import ForeignShader, Kernel
+from playground.shader.kernel import Export, ForeignShader, Graph, Kernel, PassSpec, Technique
 
 Read = Callable[[str, Path, Path], Technique]
 """Return the technique that ``use`` names: see ``Techniques.read``."""

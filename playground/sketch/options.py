@@ -1,0 +1,225 @@
+"""What an option of a pragma is, and how its text is read; ``technique`` has the table of them, by kind.
+
+Functions that read a text take the option's name, the text, and what it may name; they raise ``ValueError``
+in a sentence.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from operator import attrgetter
+from typing import Any
+
+from playground.errors import nearest
+from playground.shader import expressions
+from playground.shader.expressions import ExpressionError
+from playground.shader.kernel import Bound, read_agreement
+from playground.shader.reserved_names import OF_THE_TERRAIN
+
+FORMATS: tuple[str, ...] = tuple(f"{c}{d}" for c in ("r", "rg", "rgba") for d in ("8", "16", "16f", "32f"))
+"""Formats of textures."""
+
+SIZE = ("size.x", "size.y")
+SOURCE_READS = ("time", "keys", "microphone", "camera", *OF_THE_TERRAIN)
+_BUFFER_TYPES = ("float", "int", "uint", "vec2", "vec4", "ivec2", "ivec4", "uvec2", "uvec4")
+
+
+@dataclass(frozen=True, slots=True)
+class Buffer:
+    """A storage buffer of a compute variant."""
+
+    name: str
+    type: str  # GLSL scalar or vec4
+    count: str  # expression
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """What the options of a file may name."""
+
+    numbers: tuple[str, ...]  # parameters that are one number
+    inputs: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Option:
+    """One option of a pragma."""
+
+    help: str  # Markdown
+    default: Any = ""
+    # Its name, its text and what that may name → its value; raises ``ValueError`` in a sentence.
+    parse: Callable[[str, str, Scope], Any] = lambda name, text, scope: text
+    # The kernel with all its options → what is wrong with this one; "" for nothing.
+    check: Callable[[Any], str] = lambda kernel: ""
+    excludes: tuple[str, ...] = ()  # options that may not stand beside it
+    choices: tuple[str, ...] = ()  # what it may be, where that is one of a few; for completion
+    # Its value → its expressions, which may use the names of ``where``; None: it has none.
+    expressions: Callable[[Any], tuple[str, ...]] | None = None
+    required: str = ""  # what a pragma without it lacks
+    positional: bool = False  # it may stand first, without its name
+    keyed: bool = True  # the textures depend on it, beyond what a step's size and repeat say
+    compared: bool = True  # part of what a fast variant was verified against
+    page: str = ""  # its name in a page's data; "": pages have no use for it
+    name: str = ""
+    attribute: str = ""  # path of the kernel's field; "": the header reader replaces it by what it means
+
+    def of(self, kernel: object) -> Any:
+        """Return its value in a kernel."""
+        return attrgetter(self.attribute)(kernel)
+
+    @property
+    def about(self) -> str:
+        """What it says, with its choices and its default, as Markdown."""
+        choices = f": {', '.join(f'`{one}`' for one in self.choices)}" if self.choices else ""
+        default = ", ".join(map(str, self.default)) if isinstance(self.default, tuple) else self.default
+        return f"{self.help}{choices}{f' (`{default}`)' if default not in ('', 0) else ''}"
+
+
+def option(help: str, default: Any = "", **more: Any) -> Any:
+    """Declare an option, as a field of a kernel."""
+    return field(default=default, metadata={"option": Option(help, default, **more)})
+
+
+def expression(
+    help: str,
+    default: str = "",
+    *,
+    names: tuple[str, ...] = (),
+    of_inputs: tuple[str, ...] = (),
+    count: int = 1,
+    **more: Any,
+) -> Any:
+    """Declare an option with ``count`` expressions of sizes, parameters, ``names``, and parts of inputs."""
+
+    def parse(name: str, text: str, scope: Scope) -> str:
+        known = (
+            *SIZE,
+            *names,
+            *scope.numbers,
+            *(f"{one}{part}" for one in scope.inputs for part in of_inputs),
+        )
+        check_expression(name, text, known, count)
+        if expressions.counts_frames(text) and "frames" in names and "frames" in scope.numbers:
+            raise ValueError(f"{name} '{text}': 'frames' {expressions.TWO_FRAMES}")
+        return text
+
+    return option(help, default, parse=parse, expressions=lambda text: (text,), **more)
+
+
+def check_expression(name: str, text: str, known: tuple[str, ...], count: int = 1) -> None:
+    """Raise ``ValueError`` for an expression that is none, or names something else than what is known."""
+    try:
+        expressions.check(text, known, count=count)
+    except ExpressionError as error:
+        raise ValueError(f"{name}: {error}") from None
+
+
+def choice(help: str, default: str, choices: tuple[str, ...], **more: Any) -> Any:
+    """Declare an option that is one of a few words."""
+
+    def parse(name: str, text: str, scope: Scope) -> str:
+        if text not in choices:
+            hint = nearest(text, choices).replace("; there are", ": expected one of")
+            raise ValueError(f'{name} = "{text}"{hint}')
+        return text
+
+    return option(help, default, parse=parse, choices=choices, **more)
+
+
+def read_accepts(name: str, text: str, scope: Scope) -> str:
+    """Return a form of sizes, where it is one."""
+    try:
+        expressions.accepted_sizes(text)
+    except ExpressionError as error:
+        raise ValueError(f'{name}: {error}; as accepts = "2**n + 1"') from None
+    return text
+
+
+def read_warnings(name: str, text: str, scope: Scope) -> tuple[tuple[str, str], ...]:
+    """Return conditions, and what is warned of where one holds."""
+    found: list[tuple[str, str]] = []
+    for part in parts_of(text, ";"):
+        condition, colon, message = (piece.strip() for piece in part.partition(":"))
+        if not colon or not message:
+            example = "frequency <= tiles: no detail is left (several are separated by ;)"
+            raise ValueError(f"{name} '{part}': expected condition: message, as {example}")
+        check_expression(name, condition, (*SIZE, *scope.numbers))
+        found.append((condition, " ".join(message.split())))
+    return tuple(found)
+
+
+def read_reads(name: str, text: str, scope: Scope) -> tuple[str, ...]:
+    """Return what a source depends on."""
+    found = parts_of(text, ",")
+    for one in found:
+        if one not in SOURCE_READS:
+            raise ValueError(f"{name} = '{text}': a source cannot read '{one}'{nearest(one, SOURCE_READS)}")
+    return found
+
+
+def read_samples(name: str, text: str, scope: Scope) -> int:
+    """Return the samples of a pixel."""
+    if text not in ("0", "1"):
+        raise ValueError(f"{name} = {text}: expected 1, or 0 for as many as the view has")
+    return int(text)
+
+
+def read_input(name: str, text: str, scope: Scope) -> str:
+    """Return the name of an input that there is."""
+    if text not in scope.inputs:
+        raise ValueError(f"{name}: there is no input '{text}'{nearest(text, scope.inputs)}")
+    return text
+
+
+def read_local(name: str, text: str, scope: Scope) -> tuple[int, int]:
+    """Return the threads of a work group, along x and y."""
+    parts = [part.strip() for part in text.split(",")]
+    if len(parts) != 2 or not all(re.fullmatch(r"[1-9][0-9]{0,4}", part) for part in parts):
+        raise ValueError(f'{name} = "{text}": expected two whole numbers, as "256, 1"')
+    return int(parts[0]), int(parts[1])
+
+
+def read_buffers(name: str, text: str, scope: Scope) -> tuple[Buffer, ...]:
+    """Return storage buffers."""
+    found: list[Buffer] = []
+    for part in parts_of(text, ";"):
+        pieces = [piece.strip() for piece in part.split(":", 2)]
+        if len(pieces) != 3 or not re.fullmatch(r"[A-Za-z_]\w*", pieces[0], re.ASCII):
+            example = "stack:vec4:size.x * 64 (several separated by ;)"
+            raise ValueError(f"buffer '{part}': expected name:type:count, as {example}")
+        if pieces[1] not in _BUFFER_TYPES:
+            hint = nearest(pieces[1], _BUFFER_TYPES)
+            raise ValueError(f"buffer '{pieces[0]}' has no type '{pieces[1]}'{hint}")
+        check_expression(f"buffer '{pieces[0]}'", pieces[2], (*SIZE, *scope.numbers))
+        found.append(Buffer(*pieces))
+    return tuple(found)
+
+
+def read_stages(name: str, text: str, scope: Scope) -> tuple[int, ...]:
+    """Return the numbers of stages."""
+    parts = parts_of(text, ",")
+    if not all(re.fullmatch(r"[0-9]{1,4}", part, re.ASCII) for part in parts):
+        raise ValueError(f'{name} = "{text}": expected whole numbers separated by commas')
+    return tuple(map(int, parts))
+
+
+def read_aligned(name: str, text: str, scope: Scope) -> int:
+    """Return the bytes that rows are filled up to."""
+    if text not in ("4", "8", "16", "32"):
+        raise ValueError(f'{name} = "{text}": expected 4, 8, 16 or 32, the bytes that rows are filled up to')
+    return int(text)
+
+
+def read_agrees(name: str, text: str, scope: Scope) -> tuple[Bound, ...]:
+    """Return the bounds of an agreement."""
+    try:
+        return read_agreement(text)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+
+
+def parts_of(text: str, separator: str) -> tuple[str, ...]:
+    """Return the parts of a text that are not empty."""
+    return tuple(filter(None, (part.strip() for part in text.split(separator))))
