@@ -17,10 +17,10 @@ from playground.paths import GLSL, SKETCHES
 from playground.shader.header import FALLBACKS, MODIFIERS
 from playground.shader.kernel import PRAGMAS, options_of
 from playground.shader.libraries import libraries
+from playground.shader.options import FORMATS, Option
 from playground.shader.outline import code_of, locals_of
 from playground.shader.parameter import WIDGETS
 from playground.shader.reserved_names import GLSL_WORDS
-from playground.sketch.options import FORMATS, Option
 
 Kind = types.CompletionItemKind
 _INCLUDE = re.compile(r"\s*#\s*include\s*[\"<]([^\">]*)$")

@@ -32,6 +32,7 @@ from playground.shader.kernel import (
     TexelKernel,
     options_of,
 )
+from playground.shader.options import FORMATS, SIZE, Scope, check_expression
 from playground.shader.parameter import SCALARS, VECTORS, WIDGETS, Follows, Parameter, Sampling, Value, Widget
 from playground.shader.reserved_names import (
     DRIVER_BOUND,
@@ -46,7 +47,6 @@ from playground.shader.reserved_names import (
     WIRED,
 )
 from playground.shader.source import Line, SourceText
-from playground.sketch.options import FORMATS, SIZE, Scope, check_expression
 
 _ARGUMENT = re.compile(r'\s*(?:(\w+)\s*=\s*)?("(?:[^"\\]|\\.)*"|[^,()"]+)\s*(,|$)')
 _WORD = re.compile(r"\s*([A-Za-z_]\w*)(\s*\()?")

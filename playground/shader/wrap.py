@@ -24,6 +24,7 @@ from playground.shader.kernel import (
     TexelKernel,
     VertexShader,
 )
+from playground.shader.options import Buffer
 from playground.shader.outline import outline
 from playground.shader.own_shaders import TRIANGLE, own_part
 from playground.shader.reserved_names import (
@@ -41,7 +42,6 @@ from playground.shader.reserved_names import (
 )
 from playground.shader.source import Line, SourceText
 from playground.shader.stage_recipe import SIGNATURE, VERSION_NUMBER, Part, Recipe, version_line
-from playground.sketch.options import Buffer
 
 _, FRAGMENT, COMPUTE = DRIVERS
 LOCAL = 8

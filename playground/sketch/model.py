@@ -42,10 +42,10 @@ from playground.shader.kernel import (
     options_of,
     with_inner,
 )
+from playground.shader.options import FORMATS, Buffer
 from playground.shader.parameter import LARGEST_SIDE, Follows, Parameter, Sampling, Value, Widget
 from playground.sketch.assign import TERRAIN_KEYS, check_value, current_paths, renamed
 from playground.sketch.keyframes import Keyframe, at
-from playground.sketch.options import FORMATS, Buffer
 from playground.sketch.presence import as_wired
 
 Given = str | int | Mapping[str, object]

@@ -12,7 +12,8 @@ from typing import Any
 from playground.allowed_files import is_variant, leads_outside
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
-from playground.shader.kernel import NOT, read_agreement
+from playground.shader.kernel import NOT
+from playground.shader.options import read_agreement
 from playground.shader.parameter import coerce, spell
 from playground.sketch import toml_table, wiring
 from playground.sketch.assign import (

@@ -32,7 +32,7 @@ from playground.allowed_files import is_file
 from playground.errors import SketchError, nearest
 from playground.json_text import read_json
 from playground.paths import GLSL, shown
-from playground.shader.kernel import Bound
+from playground.shader.options import Bound
 from playground.shader.source import read_text
 from playground.sketch.identity import Identity
 from playground.sketch.model import (

@@ -22,7 +22,7 @@ from playground.engine.standalone import free_name, standalone_sketch
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, shown
 from playground.shader import expressions
-from playground.shader.kernel import Bound, bound_of
+from playground.shader.options import Bound, bound_of
 from playground.sketch.assign import all_paths, resolve
 from playground.sketch.find import find, shipped_names, shipped_sketches
 from playground.sketch.load import load

@@ -1,5 +1,5 @@
 #version 330
-// What lies between the nodes of a lattice, joined as engine/between.py says; k_form is its number
+// What lies between the nodes of a lattice, joined as engine/lattice.py says; k_form is its number
 // there.
 uniform sampler2D k_picture;
 uniform int k_stride;

@@ -1,4 +1,4 @@
-"""What an option of a pragma is, and how its text is read; ``technique`` has the table of them, by kind.
+"""What an option of a pragma is, and how its text is read; ``kernel`` has the table of them, by kind.
 
 Functions that read a text take the option's name, the text, and what it may name; they raise ``ValueError``
 in a sentence.
@@ -6,6 +6,7 @@ in a sentence.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -15,7 +16,6 @@ from typing import Any
 from playground.errors import nearest
 from playground.shader import expressions
 from playground.shader.expressions import ExpressionError
-from playground.shader.kernel import Bound, read_agreement
 from playground.shader.reserved_names import OF_THE_TERRAIN
 
 FORMATS: tuple[str, ...] = tuple(f"{c}{d}" for c in ("r", "rg", "rgba") for d in ("8", "16", "16f", "32f"))
@@ -24,6 +24,12 @@ FORMATS: tuple[str, ...] = tuple(f"{c}{d}" for c in ("r", "rg", "rgba") for d in
 SIZE = ("size.x", "size.y")
 SOURCE_READS = ("time", "keys", "microphone", "camera", *OF_THE_TERRAIN)
 _BUFFER_TYPES = ("float", "int", "uint", "vec2", "vec4", "ivec2", "ivec4", "uvec2", "uvec4")
+_BOUND = re.compile(
+    r"(?:(?P<names>[A-Za-z_]\w*(?:\s*,\s*[A-Za-z_]\w*)*)\s*:\s*)?"
+    r"(?:(?P<exact>exact)|(?P<most>\d+\.?\d*(?:e[+-]?\d+)?)(?P<degrees>\s+degrees)?(?P<rms>\s+rms)?)",
+    re.ASCII,
+)
+EXAMPLE = 'agrees = "exact", agrees = "1e-5" or agrees = "sky: 0.01 rms; exact"'
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,6 +224,50 @@ def read_agrees(name: str, text: str, scope: Scope) -> tuple[Bound, ...]:
         return read_agreement(text)
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from None
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """How far numbers may be apart."""
+
+    output: str = ""  # "": every output without a bound of its own
+    most: float = 0.0  # 0: every bit is the same
+    degrees: bool = False  # of angles, whose tangents the numbers are
+    rms: bool = False  # of the root of the mean square, instead of every difference
+
+    def __str__(self) -> str:
+        words = f"{self.most:g}" if self.most else "the last bit"
+        return f"{words}{' degrees' if self.degrees else ''}{' (rms)' if self.rms else ''}"
+
+
+def read_agreement(text: str) -> tuple[Bound, ...]:
+    """Return the bounds that a text states; raise ``ValueError`` with what is wrong with it.
+
+    ``agrees = "exact"`` is every bit; ``"1e-5"`` the most that any number of any output may differ by. Bounds
+    of single outputs are separated by semicolons, and may count otherwise:
+
+        "sky: 0.012 rms; ahead, behind: 0.9 degrees rms; exact"
+
+    ``rms`` bounds the root of the mean square of the differences, ``degrees`` compares tangents as angles. A
+    bound without a name is for all outputs that have none of their own.
+    """
+    found: list[Bound] = []
+    for part in (part.strip() for part in text.split(";")):
+        match = _BOUND.fullmatch(part)
+        if match is None or (match["most"] and not 0.0 < float(match["most"]) < math.inf):
+            raise ValueError(f"'{part}' states no bound; expected {EXAMPLE}")
+        for name in [n.strip() for n in (match["names"] or "").split(",")]:
+            if name in [bound.output for bound in found]:
+                raise ValueError(f"'{part}': {name or 'all other outputs'} appears twice")
+            most = float(match["most"] or 0.0)
+            found.append(Bound(name, most, bool(match["degrees"]), bool(match["rms"])))
+    return tuple(found)
+
+
+def bound_of(bounds: tuple[Bound, ...], output: str) -> Bound | None:
+    """Return the bound of an output; None where none is stated."""
+    named = {bound.output: bound for bound in bounds}
+    return named.get(output, named.get(""))
 
 
 def parts_of(text: str, separator: str) -> tuple[str, ...]:
