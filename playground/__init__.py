@@ -76,19 +76,12 @@ _NAMES = {
 }
 _HOMES = {name: home for home, names in _NAMES.items() for name in names.split()}
 
-_RENAMED = {"TrialError": "SandboxError", "TrialTimeout": "SandboxTimeout", "TrialCrash": "SandboxCrash"}
-
 __all__ = [*_HOMES, "__version__"]
 
 
 def __getattr__(name: str) -> object:
     import importlib
-    import warnings
 
-    if name in _RENAMED:
-        message = f"playground.{name} is called {_RENAMED[name]} now"
-        warnings.warn(message, DeprecationWarning, stacklevel=2)
-        name = _RENAMED[name]
     if name in _HOMES:
         return getattr(importlib.import_module(_HOMES[name]), name)
     raise AttributeError(f"module 'playground' has no attribute '{name}'")

@@ -29,7 +29,7 @@ from playground.sketch.model import (
     kernels_of,
 )
 from playground.sketch.variants import INSIDE
-from playground.sketch.warnings import former_names_used, unheeded, warnings_of_kernel
+from playground.sketch.warnings import unheeded, warnings_of_kernel, warnings_of_sketch
 
 
 class PlanWarnings:
@@ -40,13 +40,13 @@ class PlanWarnings:
         self.report: Callable[[Diagnostic], None] | None = None  # None: nothing is reported
         self._reported: set[tuple[str, str]] = set()  # about what, and of which file
         self._graph: Graph | None = None  # whose kernels were looked at last
-        self._sketch: Sketch | None = None  # whose former names were looked at last
+        self._sketch: Sketch | None = None  # whose file's warnings were looked at last
 
     def look(self, plan: Plan) -> None:
         """Report the warnings of a plan that were not reported yet."""
         if self.report is None:
             return
-        found = list(former_names_used(plan.sketch)) if self._names_anew(plan.sketch) else []
+        found = list(warnings_of_sketch(plan.sketch)) if self._is_from_another_file(plan.sketch) else []
         self._sketch = plan.sketch
         found += source_warnings(plan, self.inputs())
         if plan.sketch.graph is not self._graph:
@@ -57,8 +57,8 @@ class PlanWarnings:
         for path, warning in _stops_past_the_end(plan):
             self.once(warning, f"steps of {path}")  # in a film each frame would have another number
 
-    def _names_anew(self, sketch: Sketch) -> bool:
-        """Return whether a sketch may name parameters otherwise than the last one did."""
+    def _is_from_another_file(self, sketch: Sketch) -> bool:
+        """Return whether a sketch may have other warnings than the last one."""
         last = self._sketch
         return last is None or sketch.graph is not last.graph or sketch.warnings is not last.warnings
 

@@ -20,9 +20,6 @@ from playground.sketch.toml_table import TomlFile
 
 B = TypeVar("B", bound=model.Named)
 
-RENAMED = {"mend": "fix", "turns": "iterations"}
-"""Keys and measures of older lessons, by their names of today."""
-
 
 @dataclass(frozen=True)
 class Fence:
@@ -84,7 +81,6 @@ def measure_of(
     """Return the name of the measure that a table asks for, its arguments, and what it must lie between."""
     file = fence.file
     what = file.take(table, "what", str, "", *place)
-    what = RENAMED.get(what, what)
     if not what:
         raise fence.error(f'a {fence.kind} of a measure needs what = "…"', *place)
     if what not in MEASURES:

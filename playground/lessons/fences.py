@@ -8,7 +8,7 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.lessons import model
-from playground.lessons.fence import RENAMED, Fence, check_path, measure_of, shader
+from playground.lessons.fence import Fence, check_path, measure_of, shader
 from playground.lessons.markdown import Piece
 from playground.lessons.scenes import FRAME, STATE, Sketches, read_scene, with_steps, with_value
 from playground.lessons.task_fences import read_challenge, read_exercise
@@ -31,7 +31,6 @@ def open_fence(piece: Piece, path: Path, line: int, sketches: Sketches) -> Fence
         message = f"{kind} '{name}': behind its kind a block has a name of small letters, digits and -"
         raise SketchError(message, file=path, line=line)
     file = TomlFile(path, GLSL / "sketches", piece.inside, line)
-    file.table = {RENAMED.get(key, key): value for key, value in file.table.items()}
     return Fence(kind, name, piece, line, file, sketches)
 
 

@@ -31,7 +31,7 @@ TASK_SECONDS, KERNEL_SECONDS = 240.0, 360.0
 _TASKS = ("exercise", "challenge")
 _READ = (
     *("caption", "captions", "label", "labels", "text"),
-    *("ask", "choices", "answer", "hint", "fix", "mend", "solution"),
+    *("ask", "choices", "answer", "hint", "fix", "solution"),
 )
 _UNREAD = re.compile(r"\]\([^)]*\)|[#*`|]+")  # addresses of links, and marks
 _FORMULA = re.compile(r"(\$\$?)[^$]+\1")

@@ -13,7 +13,7 @@ from playground.lessons.picture_difference import SHARE
 from playground.lessons.scenes import STATE, read_scene
 from playground.lessons.tasks.texts import EXERCISES, answer_text, path_of, starter_text
 from playground.shader.parameter import spell
-from playground.sketch.assign import TERRAIN_KEYS, check_value, current_path, resolve
+from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Value, kernels_of
 
@@ -93,17 +93,20 @@ def _task(fence: Fence, kind: type[T]) -> T:
 def _begin(fence: Fence, task: model.Task, scene: model.Scene) -> model.Scene:
     """Return the picture that a student begins from, but for the text of a kernel."""
     answer, begin = (fence.take(key, dict, {}) for key in ("set", "begin"))
-    sliders = {_current(fence, scene, path, "sliders") for path in task.sliders}
-    set_by = {path: _current(fence, scene, path, "set", path) for path in answer}
-    if not task.file and (lacking := sorted(sliders - set(set_by.values()))):
+    for path in task.sliders:
+        _check_path(fence, scene, path, "sliders")
+    for path in answer:
+        _check_path(fence, scene, path, "set", path)
+    if not task.file and (lacking := sorted(set(task.sliders) - set(answer))):
         message = f"sliders: the answer sets no {', '.join(lacking)}; give it in set"
         raise fence.error(message, "sliders")
     for path in begin:
-        if _current(fence, scene, path, "begin", path) not in sliders:
+        _check_path(fence, scene, path, "begin", path)
+        if path not in task.sliders:
             raise fence.error(f"begin: '{path}' is none of the sliders", "begin", path)
     if isinstance(task, model.Exercise) and task.file:  # the kernel is judged, at the answer's values
         return scene
-    others = {path: value for path, value in answer.items() if set_by[path] not in sliders}
+    others = {path: value for path, value in answer.items() if path not in task.sliders}
     return _scene(fence, task, {**fence.state, "set": {**others, **begin}})
 
 
@@ -171,14 +174,14 @@ def _at(
 ) -> tuple[tuple[str, Value], ...]:
     """Return the values that a check sets; raise ``SketchError`` for one that it cannot."""
     assert task.scene is not None
-    own = () if task.file else {_current(fence, task.scene, path, "sliders") for path in task.sliders}
+    own = () if task.file else task.sliders
     found = []
     for path, value in given.items():
         try:
             found.append((path, check_value(task.scene.sketch, path, value)))
         except PlaygroundError as error:
             raise fence.error(error.diagnostics[0].message, *place, path) from None
-        if current_path(task.scene.sketch.graph, path) in own:
+        if path in own:
             raise fence.error(f"at: '{path}' is what the student sets", *place, path)
     return tuple(found)
 
@@ -195,13 +198,11 @@ def _check_text(fence: Fence, key: str, name: str, file: str) -> None:
         raise fence.error(f"{key} = '{name}': not in lessons/exercises/{nearest(name, names)}", key)
 
 
-def _current(fence: Fence, scene: model.Scene, path: str, *place: str) -> str:
-    """Return a parameter's path by present names; raise ``SketchError`` where there is none."""
-    graph = scene.sketch.graph
+def _check_path(fence: Fence, scene: model.Scene, path: str, *place: str) -> None:
+    """Raise ``SketchError`` where the picture has no such parameter."""
     if path in TERRAIN_KEYS:
-        return path
+        return
     try:
-        resolve(graph, current_path(graph, path))
+        resolve(scene.sketch.graph, path)
     except PlaygroundError as error:
         raise fence.error(error.diagnostics[0].message, *place) from None
-    return current_path(graph, path)

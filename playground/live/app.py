@@ -49,7 +49,6 @@ from playground.live.window_place import Place
 from playground.paths import DEFAULT_SKETCH
 from playground.remote.remotes import Remotes
 from playground.shader.wrap import COMPUTE, FRAGMENT, wrap
-from playground.sketch.assign import current_paths
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, ComputeVariant, CpuSource, Kernel, PlainCompute, Value
@@ -181,8 +180,7 @@ def _checked(path: Path, values: Mapping[str, object], dialect: str) -> dict[str
     if sketch is None:
         return cast(dict[str, Value], dict(values))
     taken = dict(sketch.with_values(values).overrides)
-    names = current_paths(sketch.graph, values)
-    return {name: taken.get(name, cast(Value, values[path])) for path, name in names.items()}
+    return {path: taken.get(path, cast(Value, value)) for path, value in values.items()}
 
 
 class Live:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -168,9 +168,7 @@ _LONGEST_LITERAL = 64
 _TYPES = frozenset(SCALARS + VECTORS)
 _ROLES = WIDGETS.keys() - {"number"} | {"input"}
 _BARE = frozenset(word for word in _ROLES if word == "input" or WIDGETS[word].bare)
-MODIFIERS = frozenset(
-    {"step", "unit", "group", "label", "parts", "values", "follows", "was", "erode", "preview"}
-)
+MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "values", "follows", "erode", "preview"})
 """Words of an annotation that may follow its widget."""
 
 Calls = dict[str, list[str]]
@@ -232,7 +230,6 @@ def read_uniforms(
     for number, words, line in following:
         found = read_follows(parameters[number], words, parameters, line)
         parameters[number] = replace(parameters[number], follows=found)
-    _check_former_names(parameters, seen)
     return tuple(parameters), tuple(inputs)
 
 
@@ -308,8 +305,6 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
     is_file = "file" in calls
     if "erode" in calls and not (is_file and "paint" in calls["file"]):
         raise line.error(f"'{name}' is not painted on; erode is for a file with the word \"paint\"")
-    if "was" in calls and not is_file:
-        raise line.error(f"'{name}' is an input; was is for a parameter")
     words = list(calls.get("file" if is_file else "input", []))
     path = words.pop(0) if is_file and words else ""
     if "\0" in path:
@@ -345,7 +340,6 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
         painted="paint" in words,
         erode=_text(calls, "erode", line),
         **_described(calls, tooltip, line),
-        former=_former_names(name, calls, line),
     )
 
 
@@ -368,24 +362,22 @@ def _parameter(
     if step is not None and step <= 0:
         raise line.error(f"step of '{name}': expected a number above 0")
     widget = _widget(name, kind, calls.get(kind, []), line)
-    widget = replace(widget, values=_menu_values(name, widget, calls, line))
     parameter = Parameter(
         name,
         glsl_type,
         0,
-        replace(widget, renamed=_renamed_choices(name, widget, calls, line)),
+        replace(widget, values=_menu_values(name, widget, calls, line)),
         step,
         _text(calls, "unit", line),
         parts=_parts(name, glsl_type, kind, calls, line),
         **_described(calls, tooltip, line),
-        former=_former_names(name, calls, line),
     )
     default = _literal(name, glsl_type, initial, line)
-    if widget.values:
-        if default not in widget.values:
-            listed = ", ".join(map(str, widget.values))
+    if numbers := parameter.widget.values:
+        if default not in numbers:
+            listed = ", ".join(map(str, numbers))
             raise line.error(f"the default of '{name}' is {default}; its menu's values are {listed}")
-        default = widget.values.index(default)
+        default = numbers.index(default)
     if kind == "button" and default:
         raise line.error(f"the default of '{name}' must be false: a button is true while it is pressed")
     try:
@@ -434,39 +426,6 @@ def _menu_values(name: str, widget: Widget, calls: Calls, line: Line) -> tuple[i
         wanted = f"{len(widget.choices)} whole numbers" if widget.choices else "a menu before it"
         raise line.error(f'values of \'{name}\': expected {wanted}, as menu("soft", "hard") values(1, 4)')
     return numbers
-
-
-def _former_names(name: str, calls: Calls, line: Line) -> tuple[str, ...]:
-    """Return the names that ``was("stride")`` gives; ``was("mended: removed")`` is of a menu's choices."""
-    found = tuple(word for word in calls.get("was", ()) if ":" not in word)
-    wrong = next((word for word in found if not word.isidentifier()), None)
-    if wrong is not None or ("was" in calls and not calls["was"]):
-        example = 'as was("stride"), or of a choice was("former: present")'
-        raise line.error(f"was of '{name}': expected its former name, {example}")
-    return found
-
-
-def _renamed_choices(name: str, widget: Widget, calls: Calls, line: Line) -> tuple[tuple[str, str], ...]:
-    """Return former choices of a menu with what each is called now."""
-    pairs = [word.partition(":") for word in calls.get("was", ()) if ":" in word]
-    found = tuple((former.strip(), present.strip()) for former, _, present in pairs)
-    for former, present in found:
-        if present not in widget.choices:
-            raise line.error(f"was of '{name}': no choice '{present}'{nearest(present, widget.choices)}")
-        if former in widget.choices:
-            raise line.error(f"was of '{name}': '{former}' is one of its choices still")
-    return found
-
-
-def _check_former_names(parameters: Sequence[Parameter], seen: Mapping[str, Line]) -> None:
-    """Raise ``ShaderError`` for a former name that something else of the file has, or had."""
-    owners: dict[str, str] = {}
-    for parameter in parameters:
-        for former in parameter.former:
-            other = former if former in seen else owners.setdefault(former, parameter.name)
-            if other != parameter.name or former in seen:
-                message = f"was of '{parameter.name}': '{former}' is the name of '{other}'"
-                raise seen[parameter.name].error(message)
 
 
 def _widget(name: str, kind: str, arguments: list[str], line: Line) -> Widget:

@@ -246,11 +246,6 @@ class Kernel:
         return self._parameters_by_name.get(name)
 
     @cached_property
-    def former_names(self) -> dict[str, str]:
-        """Former name → name of its parameters that were renamed."""
-        return {former: parameter.name for parameter in self.parameters for former in parameter.former}
-
-    @cached_property
     def _parameters_by_name(self) -> dict[str, Parameter]:
         return {parameter.name: parameter for parameter in reversed(self.parameters)}
 
@@ -636,7 +631,7 @@ class Graph:
     agrees: tuple[Bound, ...] = ()  # of a fast variant: how closely, with the technique that it replaces
     variants: tuple[Variant, ...] = ()  # its fast variants, the fastest first
     line: int = 0  # of its outputs
-    warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)  # former names that its file uses
+    warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)  # of its file
     parts: tuple[Technique, ...] = ()  # of "A(B)": A and B; see sketch/composed.py
     whole: Graph | None = field(default=None, compare=False)  # of one form of it: all of it; see presence.py
     wired: frozenset[str] = field(default=frozenset(), compare=False)  # likewise: the inputs that are wired

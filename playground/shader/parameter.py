@@ -168,7 +168,6 @@ class Widget:
     low: float | None = None  # None: unbounded
     high: float | None = None
     choices: tuple[str, ...] = ()  # of a menu
-    renamed: tuple[tuple[str, str], ...] = ()  # former choice → choice; a former one is still read
     values: tuple[int, ...] = ()  # of a menu: what the uniform gets for each choice; (): its number, from 0
     raw: bool = False  # of a colour: as it is shown, not linear
     axes: tuple[tuple[float, float], ...] = ()  # of a point: each number's range, where they differ
@@ -242,7 +241,6 @@ class Parameter:
     # where that has fewer pixels
     follows: Follows | None = None  # where its value comes from while it is not set
     parts: tuple[str, ...] = ()  # what a vector's components are, one name each; (): x, y, z, w
-    former: tuple[str, ...] = ()  # names that it had, which are still read
     file: str = ""
     line: int = 0
 
@@ -424,7 +422,6 @@ def _digits(value: float | int | bool) -> str:
 def _menu(parameter: Parameter, given: object, name: str) -> int:
     choices = parameter.widget.choices
     if isinstance(given, str):
-        given = dict(parameter.widget.renamed).get(given, given)
         if given in choices:
             return choices.index(given)
         raise ParameterError(

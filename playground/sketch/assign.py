@@ -79,16 +79,16 @@ def resolve(technique: Technique, path: str) -> tuple[Target, ...]:
 
 
 def find_targets(technique: Technique, path: str) -> tuple[Target, ...]:
-    """Resolve a path, present or former, to leaf parameters; none where there is no such parameter."""
+    """Resolve a path to leaf parameters; none where there is no such parameter."""
     if isinstance(technique, Kernel):
-        parameter = technique.parameter(path) or technique.parameter(technique.former_names.get(path, ""))
+        parameter = technique.parameter(path)
         return (Target(parameter.name, parameter),) if parameter else ()
     head, _, rest = path.partition(".")
     if rest:
         spec = technique.find(head)
         found = find_targets(spec.technique, rest) if spec else ()
         return tuple([Target(f"{head}.{t.path}", t.parameter) for t in found])
-    export = _export(technique, head) or _export(technique, former_names(technique).get(head, ""))
+    export = _export(technique, head)
     # A target is a path inside: one without a dot would be another export, perhaps this one.
     targets = [target for target in export.targets if "." in target] if export else []
     return tuple([found for target in targets for found in find_targets(technique, target)])
@@ -121,60 +121,6 @@ def unmet(when: Iterable[str], wired: Collection[str]) -> str:
         if (name in wired) == (term != name):
             return term
     return ""
-
-
-def current_path(technique: Technique, path: str) -> str:
-    """Return a path by present names: a parameter may be named as it was before it was renamed."""
-    head, dot, rest = path.partition(".")
-    if dot:
-        spec = technique.find(head) if isinstance(technique, Graph) else None
-        return f"{head}.{current_path(spec.technique, rest)}" if spec else path
-    known = technique.parameters
-    return path if any(one.name == path for one in known) else former_names(technique).get(path, path)
-
-
-def current_paths(technique: Technique, paths: Iterable[str]) -> dict[str, str]:
-    """Return each path by present names; raise ``ParameterError`` where two are of one parameter."""
-    found: dict[str, str] = {}
-    for path in paths:
-        name = current_path(technique, path)
-        if name in found.values():
-            other = next(old for old, new in found.items() if new == name)
-            former = path if path != name else other
-            raise ParameterError(f"'{former}' is the former name of '{name}': set one of them, not both")
-        found[path] = name
-    return found
-
-
-def renamed(technique: Technique, path: str, given: object) -> str:
-    """Return the sentence that names what is written by a former name, "" where nothing is."""
-    name = current_path(technique, path)
-    if name != path:
-        return f"'{path}' is called '{name}' now; the former name is still read"
-    found = find_targets(technique, path)
-    choices = dict(found[0].parameter.widget.renamed) if found else {}
-    if isinstance(given, str) and given in choices:
-        return f"{path} = '{given}' is called '{choices[given]}' now; the former name is still read"
-    return ""
-
-
-def former_names(technique: Technique) -> Mapping[str, str]:
-    """Return former name → name of a technique's parameters.
-
-    A name that a technique of several passes exports has the former names of its parameter, if it is
-    that parameter's own name.
-    """
-    return technique.former_names if isinstance(technique, Kernel) else _former_exports(Identity(technique))
-
-
-@lru_cache(maxsize=512)
-def _former_exports(key: Identity[Graph]) -> Mapping[str, str]:
-    found: dict[str, str] = {}
-    for export in key.object.parameters:
-        for target in find_targets(key.object, export.name)[:1]:
-            if target.parameter.name == export.name:
-                found |= dict.fromkeys(target.parameter.former, export.name)
-    return found
 
 
 def all_paths(technique: Technique) -> list[str]:
@@ -230,7 +176,6 @@ def check_value(sketch: Settable, path: str, given: object) -> Value:
     """Return a value as the parameter, or the part of the terrain, takes it; raise ``ParameterError``."""
     if path in TERRAIN_KEYS:
         return _terrain_value(path, given)
-    path = current_path(sketch.graph, path)
     targets = find_targets(sketch.graph, path)
     if not targets:
         if why := why_absent(sketch.graph, path):

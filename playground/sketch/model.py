@@ -44,7 +44,7 @@ from playground.shader.kernel import (
 )
 from playground.shader.options import FORMATS, Buffer
 from playground.shader.parameter import LARGEST_SIDE, Follows, Parameter, Sampling, Value, Widget
-from playground.sketch.assign import TERRAIN_KEYS, check_value, current_paths, renamed
+from playground.sketch.assign import TERRAIN_KEYS, check_value
 from playground.sketch.keyframes import Keyframe, at
 from playground.sketch.presence import as_wired
 
@@ -247,7 +247,7 @@ class Sketch:
     keyframes: tuple[Keyframe, ...] = ()  # by time; user edits override them
     plain: bool = False  # every technique in its canonical form: no fast variant runs
     main: tuple[str, ...] = ()  # paths of the parameters that it is about: a panel shows them first
-    warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)  # of former names that are used
+    warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)  # of its file
 
     def __post_init__(self) -> None:
         """Leave out the passes whose condition does not hold for what is wired."""
@@ -281,8 +281,7 @@ class Sketch:
     def with_values(self, values: Mapping[str, object]) -> Sketch:
         """Return the sketch with ``values`` of parameters set, by path; text is read as on the command line.
 
-        ``size``, ``extent``, ``relief`` and ``base_elevation`` may be set as well; a former name of a
-        parameter sets it under its present one.
+        ``size``, ``extent``, ``relief`` and ``base_elevation`` may be set as well.
 
         Where a parameter takes a file, an array does as well: NumPy's, xarray's, and what has
         ``__array__``. It is copied, into a read-only file that goes with the last sketch that has it. A
@@ -296,20 +295,16 @@ class Sketch:
             hills = numpy.hypot(*numpy.mgrid[-1:1:33j, -1:1:33j])
             sketch = playground.load("jacksboro").with_values({"height.elevation": hills, "relief": 300.0})
 
-        Raises ``ParameterError`` naming the nearest path or the
-        range, or a parameter that is set by both its names.
+        Raises ``ParameterError`` naming the nearest path or the range.
         """
         overrides, changes = dict(self.overrides), dict[str, Any]()
-        names = current_paths(self.graph, values)
         for path, given in values.items():
             found = check_value(self, path, given)
             if path in TERRAIN_KEYS:
                 changes[path] = found
             else:
-                overrides.pop(names[path], None)  # what is set last comes last, and wins
-                overrides[names[path]] = found
-        if former := [sentence for p, v in values.items() if (sentence := renamed(self.graph, p, v))]:
-            changes["warnings"] = (*self.warnings, *(Diagnostic(one, severity="warning") for one in former))
+                overrides.pop(path, None)  # what is set last comes last, and wins
+                overrides[path] = found
         return replace(self, overrides=tuple(overrides.items()), **changes)
 
     def with_inputs(self, arrays: Mapping[str, object]) -> Sketch:

@@ -23,7 +23,7 @@ from playground.shader.dialects import read_foreign
 from playground.shader.header import parse_kernel
 from playground.shader.parameter import coerce
 from playground.shader.source import read_source
-from playground.sketch.assign import current_path, find_targets, resolve
+from playground.sketch.assign import find_targets, resolve
 from playground.sketch.composed import composed, first_input, is_foreign, parts_of
 from playground.sketch.find import is_part, shipped_names
 from playground.sketch.flatten import flatten
@@ -245,7 +245,7 @@ def _refilled(sketch: Sketch, spec: PassSpec, use: str, technique: Technique) ->
     overrides = [pair for pair in sketch.overrides if not pair[0].startswith(prefix)]
     overrides += [(prefix + path, value) for path, value in _values_taken(technique, own)]
     graph = replace(sketch.graph, passes=passes)
-    main = tuple(current_path(graph, path) for path in sketch.main if find_targets(graph, path))
+    main = tuple(path for path in sketch.main if find_targets(graph, path))
     result = replace(sketch, graph=graph, main=main, overrides=tuple(overrides))
     flatten(result)
     return result
@@ -256,5 +256,5 @@ def _values_taken(technique: Technique, values: Iterable[tuple[str, Value]]) -> 
     for path, value in values:
         with suppress(ParameterError):
             coerced = coerce(resolve(technique, path)[0].parameter, value, path)
-            found.append((current_path(technique, path), coerced))
+            found.append((path, coerced))
     return tuple(found)

@@ -31,10 +31,10 @@ from playground.regular_file import read_regular
 from playground.shader.kernel import ARRAY
 from playground.shader.parameter import is_whole, parse_hex, shortest, to_hex
 from playground.shader.source import normalised
-from playground.sketch.assign import TERRAIN_KEYS, current_path, resolve, values_of
+from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.keyframes import EASES
 from playground.sketch.load import load, load_with
-from playground.sketch.model import Camera, Keyframe, Parameter, PassSpec, Sketch, Technique, Value
+from playground.sketch.model import Camera, Keyframe, Parameter, PassSpec, Sketch, Value
 from playground.sketch.techniques import Techniques
 from playground.sketch.toml_text import Place, TomlPlaces, append, drop, key_text, newline_of, put, text_of
 
@@ -84,43 +84,6 @@ def written_terrain_value(value: Value) -> str:
     if isinstance(value, tuple) and len(set(value)) == 1:
         value = value[0]
     return str(value) if isinstance(value, str) else written_number(value)
-
-
-def with_current_names(text: str, sketch: Sketch) -> str:
-    """Return a sketch's text with the present names of what it sets, or lists in ``main``, by former ones."""
-    while (span := _former_name(text, sketch)) is not None:
-        start, end, name = span
-        text = text[:start] + name + text[end:]
-    main = TomlPlaces(text).pairs.get(("main",))
-    if main is None:
-        return text
-    listed = _QUOTED.sub(lambda path: current_path(sketch.graph, path.group()), text[main.value : main.end])
-    return text[: main.value] + listed + text[main.end :]
-
-
-def _former_name(text: str, sketch: Sketch) -> tuple[int, int, str] | None:
-    """Return where the text has a former name, and the present one; None where it has none."""
-    places = TomlPlaces(text)
-    for place, pair in places.pairs.items():
-        at = next((n for n, part in enumerate(place) if part == "set"), 0)
-        path = ".".join(map(str, place[at + 1 :]))
-        technique = _set_at(sketch, place[:at])
-        if technique is None or current_path(technique, path) == path:
-            continue
-        former, name = (some.rpartition(".")[2] for some in (path, current_path(technique, path)))
-        start = text.rindex(former, pair.key, pair.value)
-        return start, start + len(former), name
-    return None
-
-
-def _set_at(sketch: Sketch, table: Place) -> Technique | None:
-    """Return the technique, or the sketch's graph, whose parameters a table sets; None for other tables."""
-    if table == ("view",):
-        view = sketch.graph.find("view")
-        return view.technique if view else None
-    if len(table) == 2 and table[0] == "pass":
-        return sketch.graph.passes[int(table[1])].technique
-    return sketch.graph if len(table) == 2 and table[0] in ("preset", "shot", "keyframe") else None
 
 
 def written_so_far(text: str, table: Place, key: str) -> str:
@@ -365,7 +328,7 @@ def write_over(
     if not _same_text(load(path), file):
         raise SketchError(_CHANGED, file=path)
     mark = "\ufeff" if text.startswith("\ufeff") else ""
-    new = mark + change(with_current_names(text.removeprefix(mark), file))
+    new = mark + change(text.removeprefix(mark))
     if new == text:
         return
     try:

@@ -19,11 +19,9 @@ from playground.sketch import toml_table, wiring
 from playground.sketch.assign import (
     TERRAIN_KEYS,
     check_value,
-    current_paths,
     effective_values,
     find_targets,
     flat_values,
-    renamed,
     resolve,
     why_absent,
 )
@@ -73,10 +71,6 @@ def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
     wiring.check_graph(graph)
     if is_conditional(graph):
         check_forms(graph)
-    for export in graph.parameters:
-        for target in export.targets:
-            if sentence := renamed(graph, target, None):
-                file.warn(f"{export.name}: {sentence}", "parameters", export.name)
     return replace(graph, warnings=tuple(file.warnings))
 
 
@@ -205,7 +199,6 @@ def _read_values(
     """
     try:
         given = flat_values(technique, file.take(table, "set", dict, {}, *place))
-        names = current_paths(technique, given)
     except ParameterError as error:
         raise file.error(f"{who}: {error.diagnostics[0].message}", *place, "set") from None
     found = []
@@ -227,9 +220,7 @@ def _read_values(
         if value and any(leads_outside(str(value), file.root, declared_in) for declared_in in files):
             message = f"{who}: {path} = {spell(value)} lies outside the sketch's own folder and glsl/"
             raise file.error(message, *place, "set", path)
-        if sentence := renamed(technique, path, raw):
-            file.warn(f"{who}: {sentence}", *place, "set", path)
-        found.append((names[path], value))
+        found.append((path, value))
     return tuple(found)
 
 
@@ -237,8 +228,7 @@ def _set_lines(
     file: TomlFile, place: Place, given: Mapping[str, Any], technique: Technique
 ) -> tuple[tuple[str, int], ...]:
     """Return the line of each path that a pass's ``set`` has."""
-    paths = current_paths(technique, flat_values(technique, given))
-    return tuple((name, file.line(*place, "set", path)) for path, name in paths.items())
+    return tuple((path, file.line(*place, "set", path)) for path in flat_values(technique, given))
 
 
 def read_set(

@@ -15,8 +15,6 @@ from playground.sketch import toml_table
 from playground.sketch.assign import (
     TERRAIN_KEYS,
     check_value,
-    current_paths,
-    renamed,
     resolve,
     why_absent,
 )
@@ -311,12 +309,7 @@ def _main(file: TomlFile, sketch: Sketch) -> tuple[str, ...]:
         there.append(path)
         if paths.count(path) > 1:
             raise file.error(f"main: '{path}' appears twice", "main")
-        if sentence := renamed(sketch.graph, path, None):
-            file.warn(f"main: {sentence}", "main")
-    try:
-        return tuple(current_paths(sketch.graph, there).values())
-    except ParameterError as error:
-        raise file.error(f"main: {error.diagnostics[0].message}", "main") from None
+    return tuple(there)
 
 
 def _samples(file: TomlFile, table: Mapping[str, Any], default: int, place: Place) -> int:

@@ -404,8 +404,8 @@ def _counted(path: Path) -> frozenset[str]:
     return frozenset(found)
 
 
-def former_names_used(sketch: Sketch) -> tuple[Diagnostic, ...]:
-    """Return a warning for each former name in a sketch, in its own techniques or in what is set over it."""
+def warnings_of_sketch(sketch: Sketch) -> tuple[Diagnostic, ...]:
+    """Return the warnings of a sketch's file and of its own techniques' files."""
     return tuple(dict.fromkeys([*sketch.warnings, *_of_graph(sketch.graph)]))
 
 

@@ -70,7 +70,7 @@ from playground.sketch.variants import (
     why_not,
     without_variants,
 )
-from playground.sketch.warnings import former_names_used, shadowed_by_files, warnings_of_kernel
+from playground.sketch.warnings import shadowed_by_files, warnings_of_kernel, warnings_of_sketch
 
 BOTH = (FRAGMENT, COMPUTE)
 _FRAME = (64, 36)  # pixels
@@ -202,7 +202,7 @@ class _Check:
             sketch = with_pictures(plain_sketch(self.path, kernel, self.root), self.picture)
             if isinstance(kernel, Graph):
                 self.notes = (f"read as {kernel.dialect}",)
-                self.warnings |= dict.fromkeys(former_names_used(sketch))
+                self.warnings |= dict.fromkeys(warnings_of_sketch(sketch))
                 self.warnings |= dict.fromkeys(source_warnings(Planner().plan(sketch, frame_size=_FRAME)))
             self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="all"))
         elif isinstance(kernel, ComputeVariant):
@@ -236,7 +236,7 @@ class _Check:
     def sketch(self) -> None:
         sketch = load(self.path).plainly(self.plain)
         self.notes = (*left_out(sketch), *withheld(sketch, VARIANTS))
-        self.warnings |= dict.fromkeys(former_names_used(sketch))
+        self.warnings |= dict.fromkeys(warnings_of_sketch(sketch))
         request = TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="any")
         if reads := _names_files(sketch):  # a plan asks its files for their size: the child reads them first
             self.attempt(request)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import asdict
 from typing import Any
 
-from playground.sketch.assign import Shown, check_value, current_path, find_targets, resolve, shown_parameters
+from playground.sketch.assign import Shown, check_value, find_targets, resolve, shown_parameters
 from playground.sketch.catalogue import described
 from playground.sketch.flat import Flat
 from playground.sketch.keyframes import Track, tracks_of
@@ -57,12 +57,11 @@ def presets_data(
                 notes.append(f"preset '{preset.name}' leaves {path} out: this technique does not have it")
                 continue
             value = check_value(sketch, path, given)
-            name = current_path(sketch.graph, path)
-            if "." not in name:
-                values[name] = value
+            if "." not in path:
+                values[path] = value
                 continue
-            target = resolve(sketch.graph, name)[0].path
-            shown = by_path.get(name) or by_target[target]
+            target = resolve(sketch.graph, path)[0].path
+            shown = by_path.get(path) or by_target[target]
             if shown["locked"]:
                 notes.append(f"preset '{preset.name}' leaves {shown['path']} as it is: {shown['locked']}")
             else:

@@ -31,7 +31,7 @@ from functools import cached_property
 
 from playground.errors import ParameterError, PlaygroundError
 from playground.shader.parameter import is_whole, write
-from playground.sketch.assign import TERRAIN_KEYS, check_value, current_path, resolve, values_of
+from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve, values_of
 from playground.sketch.model import Camera, Parameter, Sketch, Value
 from playground.sketch.replace_technique import with_technique
 from playground.workbench.channels import channels, find_channel, in_order, with_source
@@ -80,7 +80,7 @@ class Draft:
     def applied(self) -> dict[str, Value]:
         """The values edited that fit the sketch of the moment, by path; the others wait."""
         found = ((path, taken(self.base, path, value)) for path, value in self.edits.values)
-        return {current_path(self.base.graph, p): value for p, value in found if value is not None}
+        return {path: value for path, value in found if value is not None}
 
     @cached_property
     def sketch(self) -> Sketch:
@@ -94,7 +94,6 @@ class Draft:
 
     def with_value(self, path: str, given: object) -> Draft:
         """Return the draft with one parameter set; raise ``ParameterError`` where it cannot be."""
-        path = current_path(self.base.graph, path)
         sketch = self.sketch.with_values({path: given})
         value = dict(sketch.overrides).get(path, given)
         made = self.with_edits(self.edits.with_value(path, value))  # type: ignore[arg-type]
@@ -102,7 +101,7 @@ class Draft:
         return made
 
     def without(self, path: str) -> Draft:
-        """Return the draft with a parameter as the file says, by any name that it was set by."""
+        """Return the draft with a parameter as the file says, by any path that it was set by."""
         mine = leaves(self.base, path)
         return self.with_edits(
             replace(
@@ -261,7 +260,7 @@ def _after_reload(old: Draft, base: Sketch, notes: list[str]) -> list[tuple[str,
             left.append((path, stays))
         if note:
             notes.append(note)
-    return [(current_path(base.graph, path), value) for path, value in left]
+    return left
 
 
 def _with_locked(old: Draft, after: dict[str, Value]) -> list[tuple[str, Value]]:

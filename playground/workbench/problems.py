@@ -20,7 +20,7 @@ from playground.paths import GLSL, without_part
 from playground.regular_file import read_regular
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.techniques import Techniques
-from playground.sketch.warnings import former_names_used, warnings_of_kernel
+from playground.sketch.warnings import warnings_of_kernel, warnings_of_sketch
 from playground.workbench.dependencies import path_named
 
 AROUND = 2
@@ -180,7 +180,7 @@ class Warnings:
         if self._plan is not plan:
             self._plan, self._of_sources = plan, source_warnings(plan, inputs) if plan is not None else ()
         of_kernels = (d for text in self._kernels for d in self._found.get(text, ()))
-        return [*former_names_used(sketch), *of_kernels, *self._of_sources]
+        return [*warnings_of_sketch(sketch), *of_kernels, *self._of_sources]
 
     def look(self) -> None:
         """Look at one kernel that has not been looked at yet."""

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from playground.errors import PlaygroundError
-from playground.sketch.assign import current_path
 from playground.sketch.model import Camera, Sketch, Value
 from playground.workbench.channels import in_order
 from playground.workbench.edit_merge import FileValue, file_values, newer_value, notice
@@ -55,7 +54,7 @@ def first_draft(loaded: Sketch, start: StoredEdits) -> tuple[Draft, list[str]]:
     for path, value in edits.values:
         newer = newer_value(path, start.in_file, now, edits.locked)
         if newer is None:
-            values.append((current_path(draft.base.graph, path), value))
+            values.append((path, value))
         else:
             notes += filter(None, [notice(draft.base, path, value, newer)])
     return draft.with_edits(replace(draft.edits, values=tuple(values))), notes

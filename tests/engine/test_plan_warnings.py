@@ -97,20 +97,6 @@ def test_check_shows_them_and_fails_for_none(sketch, capsys):
     assert report["ok"] and SECOND in [w["message"] for w in report["warnings"]]
 
 
-@pytest.mark.slow
-def test_a_former_name_of_a_parameter_is_reported_once(folder, monkeypatch, capsys):
-    renamed = KERNEL.replace("slider(0, 2)", 'slider(0, 2) was("lazy")').replace("return 1.0", "return idle")
-    loaded = folder.one(renamed.replace("#line 7\n", ""), more="set = { lazy = 2.0 }")
-    monkeypatch.chdir(folder.path)
-    of_file = "warning: sketch.toml:6: pass 'a': 'lazy' is called 'idle' now; the former name is still read"
-    of_set = "warning: 'a.lazy' is called 'a.idle' now; the former name is still read"
-    assert cli.main(["render", ".", "--size", "16x9", "-o", "a.png", "--set", "a.lazy=0.5"]) == 0
-    assert sorted(capsys.readouterr().err.splitlines()) == sorted([of_file, of_set])
-    assert cli.main(["check", "sketch.toml"]) == 0
-    assert capsys.readouterr().out.count(of_file) == 1
-    assert [w.message for w in Warnings(lambda kernel: ()).of(loaded)] == [of_file.split(": ", 2)[2]]
-
-
 def test_the_window_lists_them(any_engine, sketch):
     known = Warnings(lambda kernel: ())
     loaded = load(sketch)

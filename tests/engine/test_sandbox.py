@@ -472,14 +472,6 @@ def test_no_module_of_the_user_s_folder_is_run(two):
     assert not (two / "was_run").exists()
 
 
-def test_the_errors_old_names_are_read_with_a_note():
-    import playground
-
-    for kind in ("Error", "Timeout", "Crash"):
-        with pytest.warns(DeprecationWarning, match=f"Trial{kind} is called Sandbox{kind} now"):
-            assert getattr(playground, f"Trial{kind}") is getattr(playground, f"Sandbox{kind}")
-
-
 @pytest.mark.slow
 def test_an_answer_is_announced(tmp_path: Path) -> None:
     path = tmp_path / "a.glsl"

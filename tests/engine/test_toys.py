@@ -16,7 +16,7 @@ from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import Planner
 from playground.errors import PlaygroundError, ShaderError
 from playground.reduce.inline import inline_sketch
-from playground.sketch.warnings import former_names_used
+from playground.sketch.warnings import warnings_of_sketch
 from playground.workbench.channels import with_source
 from tests.toy_texts import (
     CUBE,
@@ -58,7 +58,7 @@ def drawn(engine, sketch, time=0.0, size=SIZE):
 
 def notes(sketch):
     plan = Planner().plan(sketch, frame_size=SIZE)
-    return [str(d.message) for d in (*former_names_used(sketch), *source_warnings(plan))]
+    return [str(d.message) for d in (*warnings_of_sketch(sketch), *source_warnings(plan))]
 
 
 @pytest.mark.parametrize("name", TOYS)

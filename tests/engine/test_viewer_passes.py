@@ -11,7 +11,7 @@ from scipy.ndimage import distance_transform_edt
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import Planner
 from playground.errors import ShaderError
-from playground.sketch.warnings import former_names_used, warnings_of_kernel
+from playground.sketch.warnings import warnings_of_kernel, warnings_of_sketch
 
 from ..loading import load
 
@@ -140,8 +140,8 @@ def test_a_pass_that_nothing_reads_is_named(read, define):
     name = define.lower().replace("_3", "3")
     sampler = {"DOUBLE_BUFFER_3": "u_doubleBuffer3"}.get(define, f"u_{name}")
     used = text_of(define, "vec4(1.0)", f"texture2D({sampler}, st)")
-    assert former_names_used(read(used, "")) == ()
-    (note,) = former_names_used(read(text_of(define, f"texture2D({sampler}, st)", "vec4(st, 0.0, 1.0)"), ""))
+    assert warnings_of_sketch(read(used, "")) == ()
+    (note,) = warnings_of_sketch(read(text_of(define, f"texture2D({sampler}, st)", "vec4(st, 0.0, 1.0)"), ""))
     assert re.match(
         rf"the picture reads nothing of {name}\b|the picture reads nothing of {name}_", note.message
     )

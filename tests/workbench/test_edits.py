@@ -10,7 +10,6 @@ import pytest
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
 from playground.workbench.edits import Draft, Edits, reload_draft
-from playground.workbench.resume import StoredEdits, first_draft
 
 from ..loading import load
 from ..sketch_texts import map_of, passes
@@ -237,18 +236,3 @@ def test_choosing_what_the_file_says_is_no_edit(folder: Path) -> None:
     assert draft.edits.techniques == (("height", "generation/diamond_square"),)
     assert draft.choose("height", "./terrain").edits.techniques == ()
     assert draft.with_all(Edits()).base is sketch
-
-
-def test_edits_follow_a_parameter_that_is_renamed(folder: Path) -> None:
-    """Both while the window is open, and those that an earlier session has stored."""
-    old = edited(folder, level=0.9, other=0.8)
-    text = KERNEL.replace("float level", "float floor_height").replace("level +", "floor_height +")
-    (folder / "terrain.glsl").write_text(
-        text.replace("slider(0, 1)", 'slider(0, 1) was("level")', 1), encoding="utf-8"
-    )
-    draft, notes = reload_draft(old, load(folder))
-    assert dict(draft.edits.values) == {"height.floor_height": 0.9, "height.other": 0.8} and notes == []
-    resumed, notes = first_draft(load(folder), StoredEdits(old.edits))
-    assert resumed.edits.values == draft.edits.values and notes == []
-    assert values_of(resumed.sketch)["height.floor_height"] == 0.9
-    assert resumed.with_value("height.level", 0.7).edits.has("height.floor_height")

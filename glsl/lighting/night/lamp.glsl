@@ -27,7 +27,7 @@ uniform vec3 lamp_colour = vec3(1.0, 0.6, 0.25);  //! colour group("Lamp") Colou
 uniform float lamp_gain = 0.0;   //! slider(0, 8) step(0.05) group("Lamp")
                                  //! Its light is multiplied by it; at 0 there is none
 uniform float max_distance = 800.0;  //! log_slider(1, 100000) group("Lamp") unit("m")
-                                     //! was("reach") How far it shines
+                                     //! How far it shines
 uniform int falloff = 0;         //! menu("inverse square", "soft") group("Lamp")
                                  //! How its light falls off; "soft" ends at the max distance
 #include "lighting/parameters/normal.glsl"

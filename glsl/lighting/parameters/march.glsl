@@ -11,11 +11,9 @@ uniform sampler2D height;        //! input
 uniform sampler2D block_maxima;  //! input
 uniform sampler2D range;         //! input
 uniform float step_length = 1.0; //! slider(0.25, 4) step(0.25) group("March") unit("texels")
-                                 //! was("stride")
                                  //! Length of a step, along the axis that the ray follows more.
                                  //! Long steps jump over ridges
 uniform int sampling = 0;        //! menu("interpolated", "cut down") group("March")
-                                 //! was("reading")
                                  //! Heights between texels, or of the texel that a place is cut
                                  //! down to, as in the thesis
 #endif

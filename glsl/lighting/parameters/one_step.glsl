@@ -10,7 +10,7 @@
 uniform vec2 sun = vec2(135.0, 25.0);  //! direction group("Sun")
                                        //! Azimuth clockwise from north; this method knows no
                                        //! elevation
-uniform float step_length = 1.0;       //! slider(0, 16) step(0.5) unit("texels") was("reach")
+uniform float step_length = 1.0;       //! slider(0, 16) step(0.5) unit("texels")
                                        //! How far away that place is, along the axis that the sun
                                        //! is nearer to
 #endif

@@ -39,7 +39,7 @@ uniform int growth = 0;        //! menu("per unit of path", "per step") group("C
                                //! long they are
 #include "lighting/parameters/form.glsl"
 #include "lighting/parameters/march.glsl"
-uniform int max_distance = 0;  //! slider(0, 4096) group("March") unit("texels") was("reach")
+uniform int max_distance = 0;  //! slider(0, 4096) group("March") unit("texels")
                                //! In the march, terrain farther than this throws no shadow, and in
                                //! the last quarter less of one; 0: all of it does
 

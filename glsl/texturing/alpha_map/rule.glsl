@@ -47,7 +47,7 @@ uniform float curvature_fade = 1.0;   //! slider(0, 10) step(0.1) unit("1/km") g
                                       //! label("Fade")
                                       //! Over how much curvature it begins and ends
 uniform float curvature_distance = 60.0;  //! log_slider(1, 2000) unit("m") group("Curvature")
-                                      //! label("Distance") was("reach")
+                                      //! label("Distance")
                                       //! How far away the terrain is looked at
 uniform float strength = 1.0;         //! slider(0, 1) step(0.01) How much it covers where it does
 uniform float ragged = 0.0;           //! slider(0, 4) step(0.05) group("Chance")

@@ -17,6 +17,5 @@ uniform float detail_strength = 1.0;   //! slider(0, 2) step(0.01) group("Detail
                                        //! have it
 uniform float detail_max_distance = 2500.0;  //! log_slider(10, 50000) unit("m")
                                        //! group("Detail image") label("Max distance")
-                                       //! was("detail_reach")
                                        //! Distance from the eye at which nothing of it is left
 #endif

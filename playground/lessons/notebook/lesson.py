@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from base64 import b64encode
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -10,7 +9,7 @@ from functools import cache
 from typing import Any
 
 from playground.engine.frame import Frame
-from playground.errors import PlaygroundWarning, SketchError, nearest
+from playground.errors import SketchError, nearest
 from playground.lessons import model
 from playground.lessons.book.live_files import widget_page
 from playground.lessons.bugs import bug_region
@@ -143,11 +142,6 @@ class NotebookLesson:
         if not checks_itself(block):
             raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' does not check itself")
         return block
-
-    def mend(self, name: str, lines: str) -> Fixed:
-        """Fix a bug, as notebooks of earlier versions call it."""
-        warnings.warn("lesson.mend is called lesson.fix now", PlaygroundWarning, stacklevel=2)
-        return self.fix(name, lines)
 
     def _block(self, name: str) -> model.Named:
         named = self.lesson.named

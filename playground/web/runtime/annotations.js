@@ -36,7 +36,7 @@ const WIDGETS = {
   input: { types: /^sampler2D$/ },
 };
 const ROLES = Object.keys(WIDGETS).filter((word) => word !== "number");
-const MODIFIERS = ["step", "unit", "group", "label", "parts", "values", "follows", "was", "erode", "preview"];
+const MODIFIERS = ["step", "unit", "group", "label", "parts", "values", "follows", "erode", "preview"];
 const WORDS = [...ROLES, ...MODIFIERS];
 const BARE = ROLES.filter((word) => !["range", "choices"].includes(WIDGETS[word].takes ?? ""));
 const ANNOTATION = /^\s*\/\/!(.*)$/;

@@ -15,7 +15,7 @@ from typing import Any
 from playground.engine.frame import Frame
 from playground.errors import ContextError, ParameterError, PlaygroundError, SketchError, nearest
 from playground.shader.parameter import spell
-from playground.sketch.assign import check_value, current_paths, find_targets, value_of, values_of
+from playground.sketch.assign import check_value, find_targets, value_of, values_of
 from playground.sketch.model import Sketch, Value
 from playground.workbench.bench import Bench
 from playground.workbench.control.described import parameters_of, state_of
@@ -78,8 +78,7 @@ class Controls:
         draft = self._shown()
         if not isinstance(values, Mapping):
             raise ParameterError(f"set = {spell(values)}: expected values by path, as light.sun: [135, 25]")
-        names = current_paths(draft.base.graph, values)
-        found = {names[path]: _checked(draft, path, given) for path, given in values.items()}
+        found = {path: _checked(draft, path, given) for path, given in values.items()}
         for path, value in self.session.without_buttons(found).items():
             self._waiting.pop(path, None)  # what is set last comes last, and wins
             self._waiting[path] = value

@@ -41,7 +41,7 @@ uniform int left_out = 0;        //! slider(0, 8) Of these layers, so many of th
                                  //! out
 uniform int tiles = 1;           //! slider(1, 64) This is one of so many parts a side, and has its
                                  //! share of the intervals
-uniform int seams = 1;           //! menu("removed", "left") was("mended: removed")
+uniform int seams = 1;           //! menu("removed", "left")
                                  //! Whether its last nodes are its first
                                  //! ones again
 
