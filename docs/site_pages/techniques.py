@@ -8,12 +8,12 @@ from functools import cache
 from pathlib import Path
 
 from playground.paths import GLSL
-from playground.shader.kernel import NOT
 from playground.sketch.catalogue import Choice, Entry
 from playground.sketch.catalogue import techniques as listed
 from playground.sketch.model import Graph, Kernel, Technique, Variant, kernels_of
-from playground.sketch.presence import deciding_inputs
+from playground.sketch.presence import deciding_inputs, form_of
 from playground.sketch.techniques import Techniques
+from playground.sketch.wiring import input_names
 
 from .markdown import code, escaped, fenced, folded, table
 from .shots import picture_of
@@ -186,12 +186,18 @@ def _wiring(entry: Entry, technique: Technique) -> str:
 
 
 def _deciding(graph: Graph, name: str) -> str:
-    """Return which passes of a technique are there by one of its inputs."""
-    there = [code(spec.name) for spec in graph.passes if name in spec.when]
-    gone = [code(spec.name) for spec in graph.passes if f"{NOT}{name}" in spec.when]
-    parts = [f"only where it is wired: {', '.join(there)}"] if there else []
-    parts += [f"only where it is not: {', '.join(gone)}"] if gone else []
-    return "; ".join(parts) or "passes inside are there only where it is wired"
+    """Return which passes of a technique are present by one of its inputs."""
+    every = set(input_names(graph))
+    present, without = ([spec.name for spec in form_of(graph, w).passes] for w in (every, every - {name}))
+    parts = [
+        (text, [code(one) for one in some if one not in others])
+        for text, some, others in (
+            ("only where it is wired", present, without),
+            ("only where it is not", without, present),
+        )
+    ]
+    listed = "; ".join(f"{text}: {', '.join(names)}" for text, names in parts if names)
+    return listed or "passes inside are present only where it is wired"
 
 
 def _parameters(entry: Entry) -> str:

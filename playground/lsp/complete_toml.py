@@ -123,10 +123,6 @@ class _Completion:
             return [self._text(name, Kind.Field) for name in output_names(technique)]
         if key == "preset" and head == "shot":
             return [self._text(name, Kind.EnumMember) for name in self.whole.names("preset")]
-        if key == "when":
-            return [
-                self._text(str(p[-1]), Kind.Field) for p in self.sketch.places.pairs if p[:1] == ("inputs",)
-            ]
         if key == "main" and not head:
             found = []
             for name in (*self.sketch.names("pass"), "view"):
@@ -154,7 +150,8 @@ class _Completion:
             outputs = output_names(technique) if technique is not None else ()
             if len(outputs) > 1:
                 found += [self._text(f"{name}:{output}", Kind.Field, 6) for output in outputs]
-        return found
+        inputs = [str(place[-1]) for place in self.sketch.places.pairs if place[:1] == ("inputs",)]
+        return [*found, *(self._text(name, Kind.Field) for name in inputs)]
 
     def _inside(self, head: str) -> list[types.CompletionItem]:
         """Return what a technique shows outside: paths of parameters, or outputs, of its passes."""

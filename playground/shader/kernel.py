@@ -49,9 +49,6 @@ is slow on a GPU.
 """
 
 
-NOT = "not "
-"""Begins a condition of a pass that an input is not wired."""
-
 ARRAY = "an array"
 """What the pass of an array uses, which no sketch's file can name."""
 
@@ -606,8 +603,7 @@ class PassSpec:
     size: tuple[str, str] | None = None  # expressions; None: the size of what it is in
     repeat: str = ""
     feedback: tuple[tuple[str, str], ...] = ()  # input → own output
-    when: tuple[str, ...] = ()  # inputs of the technique it is in, "dome" or "not dome"; () always
-    choices: tuple[tuple[str, tuple[str, ...]], ...] = ()  # input → its sources: the first that is there
+    choices: tuple[tuple[str, tuple[str, ...]], ...] = ()  # input → its sources: the first present
     file: str = ""
     line: int = 0
     set_lines: tuple[tuple[str, int], ...] = ()  # parameter path of ``values`` → line of the file
@@ -634,16 +630,16 @@ class Graph:
     warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)  # of its file
     parts: tuple[Technique, ...] = ()  # of "A(B)": A and B; see sketch/composed.py
     whole: Graph | None = field(default=None, compare=False)  # of one form of it: all of it; see presence.py
-    wired: frozenset[str] = field(default=frozenset(), compare=False)  # likewise: the inputs that are wired
+    absent: tuple[tuple[str, str], ...] = field(default=(), compare=False)  # pass → the input that it lacks
 
     @property
     def written(self) -> Graph:
-        """All of it as its file has it, where this is one form of it: with passes that are not there."""
+        """All of it as its file has it, where this is one form of it: with its absent passes."""
         return self.whole or self
 
     @property
     def files(self) -> tuple[str, ...]:
-        """Absolute paths of every file the technique is made of, those of passes that are not there too."""
+        """Absolute paths of every file the technique is made of, those of absent passes too."""
         if self.whole is not None:
             return self.whole.files
         parts = (*(spec.technique for spec in self.passes), *self.variants, *self.parts)

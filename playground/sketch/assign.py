@@ -7,13 +7,13 @@ targets inside; every inner parameter can be reached as well.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Protocol
 
 from playground.errors import ParameterError, nearest
-from playground.shader.kernel import NOT, Export, Graph, Kernel, Technique
+from playground.shader.kernel import Export, Graph, Kernel, Technique
 from playground.shader.parameter import LARGEST_SIDE, Parameter, Value, coerce, spell
 from playground.sketch.identity import Identity
 
@@ -95,32 +95,19 @@ def find_targets(technique: Technique, path: str) -> tuple[Target, ...]:
 
 
 def why_absent(technique: Technique, path: str) -> str:
-    """Return why a parameter that the technique's file has is not there now; "" where it has none such."""
+    """Return why a parameter, or a pass, of a technique's file is absent now; "" where there is none such."""
     if isinstance(technique, Kernel):
         return ""
     head, _, rest = path.partition(".")
-    if not rest:
-        export = _export(technique.written, head)
-        is_there = export is None or _export(technique, head) is not None
-        return "" if is_there or export is None else why_absent(technique, export.targets[0])
-    spec, whole = technique.find(head), technique.written.find(head)
-    if spec is not None:
+    if (spec := technique.find(head)) is not None:
         return why_absent(spec.technique, rest)
-    if whole is None or not find_targets(whole.technique, rest):
-        return ""
-    term = unmet(whole.when, technique.wired)
-    name = term.removeprefix(NOT)
-    only = "no effect where" if name != term else "an effect only where"
-    return f"has {only} '{name}' is wired" if term else ""
-
-
-def unmet(when: Iterable[str], wired: Collection[str]) -> str:
-    """Return the first term that keeps a pass from being there, as ``when`` has it; "" where none does."""
-    for term in when:
-        name = term.removeprefix(NOT)
-        if (name in wired) == (term != name):
-            return term
-    return ""
+    whole = technique.written.find(head)
+    if whole is not None and (not rest or find_targets(whole.technique, rest)):
+        lacking = dict(technique.absent).get(head)
+        only = f"has an effect only where '{lacking}' is wired"
+        return only if lacking else "has no effect: another source takes the place of its pass"
+    export = None if rest or _export(technique, head) else _export(technique.written, head)
+    return why_absent(technique, export.targets[0]) if export else ""
 
 
 def all_paths(technique: Technique) -> list[str]:

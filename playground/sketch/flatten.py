@@ -35,7 +35,7 @@ from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Ref, Shape, Sour
 from playground.sketch.follows import follow, rules_of
 from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, Variant
-from playground.sketch.presence import decides, why_unfed
+from playground.sketch.presence import deciding_inputs, why_unfed
 from playground.sketch.variants import INSIDE, active_variant
 from playground.sketch.wiring import (
     initial_names,
@@ -468,7 +468,7 @@ class _Flattener:
             if other.name == name:
                 outputs = self.outputs[_join(prefix, other.name)]
                 return outputs.get(name, next(iter(outputs.values())))
-        for other in reversed(earlier if not decides(spec.technique, name) else []):
+        for other in reversed(earlier if name not in deciding_inputs(spec.technique) else []):
             outputs = self.outputs[_join(prefix, other.name)]
             if name in outputs:
                 return outputs[name]

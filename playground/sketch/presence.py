@@ -1,12 +1,13 @@
-"""Leave out the passes of a technique that are there only where something is wired.
+"""Leave out the passes of a technique whose sources are absent.
 
-A pass of a technique may say ``when = "density"``: it is there only where its technique's input
-``density`` is wired, by its user or by a pass of that name; ``"not dome"``, only where that is not. An
-input may list its sources, ``["wooded:albedo", "cover"]``: it reads the first that is there.
+A pass of a technique may name an input of its technique as a source, ``inputs = { density = "density" }``:
+it is absent where nothing is wired to that input. So is a pass that names an absent pass, a technique
+of which an output is absent, and a pass that others name and none of those present reads. A list of
+sources, ``["wooded:albedo", "cover"]``, is read from the first that is present, and unwired without one.
 
 What remains is a form of the technique, a ``Graph`` like any other, so that all that reads a sketch
-sees only what is there; ``Graph.written`` is all of it. An output's name alone wires no input that
-decides on passes: else a technique that happens to give a ``density`` would plant trees.
+sees only what is present; ``Graph.written`` is all of it. An output's name alone wires no input that
+a pass names: else a technique that happens to give a ``density`` would plant trees.
 """
 
 from __future__ import annotations
@@ -14,20 +15,18 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from itertools import product
 
-from playground.errors import SketchError
-from playground.shader.kernel import NOT, Export, Graph, PassSpec, Technique, Variant
-from playground.sketch.assign import find_targets, unmet
+from playground.shader.kernel import Export, Graph, PassSpec, Technique, Variant
+from playground.sketch.assign import find_targets, why_absent
 from playground.sketch.identity import Identity
-from playground.sketch.wiring import check_graph, inner, input_names, is_optional, output_names, takes_input
-
-_ALL_FORMS = 4
-"""With more inputs that decide, only some of their combinations are checked."""
+from playground.sketch.wiring import check_graph, input_names, output_names, takes_input
 
 
 def as_wired(sketch: Graph) -> Graph:
-    """Return the passes of a sketch, the techniques in them in the forms that its wiring gives them."""
+    """Return the passes of a sketch, the techniques in them in the forms that its wiring gives them.
+
+    Raises ``SketchError`` at a pass whose technique has no output without an input that is not wired.
+    """
     return _as_wired(Identity(sketch))
 
 
@@ -36,9 +35,15 @@ def _as_wired(key: Identity[Graph]) -> Graph:
     sketch = key.object
     if not is_conditional(sketch):
         return sketch
-    passes = _present(sketch.passes, sketch, frozenset())
+    passes: list[PassSpec] = []
+    for spec in sketch.passes:
+        form, lacking = _in_form(spec, spec.inputs, (), passes)
+        if lacking:
+            example = f'as inputs = {{ {lacking} = "…" }}'
+            raise spec.error(f"pass '{spec.name}' needs its input '{lacking}' wired, {example}")
+        passes.append(form)
     same = all(one is other for one, other in zip(passes, sketch.passes, strict=True))
-    return sketch if same else replace(sketch, passes=passes)
+    return sketch if same else replace(sketch, passes=tuple(passes))
 
 
 def form_of(technique: Graph, wired: Iterable[str]) -> Graph:
@@ -50,8 +55,9 @@ def form_of(technique: Graph, wired: Iterable[str]) -> Graph:
 @lru_cache(maxsize=1024)
 def _form(key: Identity[Graph], wired: frozenset[str]) -> Graph:
     whole = key.object
-    form = replace(whole, passes=_present(whole.passes, whole, wired), whole=whole, wired=wired)
-    return replace(
+    passes, absent = _present(whole, wired)
+    form = replace(whole, passes=tuple(passes), whole=whole, absent=tuple(absent.items()))
+    form = replace(
         form,
         inputs=tuple(_narrowed(e, [t for t in e.targets if takes_input(form, t)]) for e in whole.inputs),
         parameters=tuple(
@@ -61,10 +67,9 @@ def _form(key: Identity[Graph], wired: frozenset[str]) -> Graph:
         ),
         variants=tuple(_variant(variant, wired) for variant in whole.variants),
     )
-
-
-def _narrowed(export: Export, targets: Sequence[str]) -> Export:
-    return export if len(targets) == len(export.targets) else replace(export, targets=tuple(targets))
+    if absent and not missing_input(form):
+        check_graph(form)
+    return form
 
 
 def _variant(variant: Variant, wired: frozenset[str]) -> Variant:
@@ -72,41 +77,67 @@ def _variant(variant: Variant, wired: frozenset[str]) -> Variant:
     return replace(variant, technique=form_of(technique, wired)) if isinstance(technique, Graph) else variant
 
 
+def _narrowed(export: Export, targets: Sequence[str]) -> Export:
+    return export if len(targets) == len(export.targets) else replace(export, targets=tuple(targets))
+
+
+def missing_input(form: Graph) -> str:
+    """Return the input that one of a technique's outputs lacks in this form of it; "" for none."""
+    absent = dict(form.absent)
+    return next((absent[name] for name in _output_passes(form.written) if name in absent), "")
+
+
+def _output_passes(graph: Graph) -> list[str]:
+    return [_head(target) for _, target in graph.outputs] or [graph.passes[-1].name]
+
+
+def _head(source: str) -> str:
+    return source.partition(":")[0].partition(".")[0]
+
+
 def is_conditional(technique: Technique) -> bool:
-    """Return whether any pass inside may not be there."""
+    """Return whether any pass inside may be absent."""
     return isinstance(technique, Graph) and _is_conditional(Identity(technique))
 
 
 @lru_cache(maxsize=1024)
 def _is_conditional(key: Identity[Graph]) -> bool:
     graph = key.object
-    return graph.whole is not None or any(
-        spec.when or spec.choices or is_conditional(spec.technique) for spec in graph.passes
+    return (
+        graph.whole is not None
+        or bool(_named_inputs(graph))
+        or any(spec.choices or is_conditional(spec.technique) for spec in graph.passes)
     )
 
 
-def decides(technique: Technique, name: str) -> bool:
-    """Return whether some pass of a technique is there or not by one of its inputs."""
-    return name in deciding_inputs(technique)
+def _named_inputs(graph: Graph) -> set[str]:
+    """Return the inputs of a technique that its passes name as sources."""
+    names = {export.name for export in graph.inputs} - {spec.name for spec in graph.passes}
+    return names & {text for spec in graph.passes for _, texts in sources_of(spec) for text in texts}
+
+
+def sources_of(spec: PassSpec) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield the inputs of a pass and what feeds each: several sources, where its file lists them."""
+    choices = dict(spec.choices)
+    for name, text in spec.inputs:
+        yield name, choices.get(name, (text,))
 
 
 def deciding_inputs(technique: Technique) -> tuple[str, ...]:
-    """Return the inputs of a technique by which some pass in it is there or not."""
+    """Return the inputs of a technique by which some pass in it is present or absent."""
     return _deciding(Identity(technique.written)) if isinstance(technique, Graph) else ()
 
 
 @lru_cache(maxsize=512)
 def _deciding(key: Identity[Graph]) -> tuple[str, ...]:
     graph = key.object
-    if not is_conditional(graph):
-        return ()
-    terms = {term.removeprefix(NOT) for spec in graph.passes for term in spec.when}
-    for export in graph.inputs:
+    named = _named_inputs(graph) if is_conditional(graph) else set()
+    for export in graph.inputs if is_conditional(graph) else ():
         for head, _, rest in (target.partition(".") for target in export.targets):
             spec = graph.find(head)
-            if spec is not None and decides(spec.technique, rest):
-                terms.add(export.name)
-    return tuple(export.name for export in graph.inputs if export.name in terms)
+            if spec is not None and rest in deciding_inputs(spec.technique):
+                named.add(export.name)
+    return tuple(export.name for export in graph.inputs if export.name in named)
 
 
 def why_unfed(technique: Technique, name: str) -> str:
@@ -116,122 +147,90 @@ def why_unfed(technique: Technique, name: str) -> str:
     if spec is not None:
         return why_unfed(spec.technique, rest)
     whole = technique.written.find(head) if isinstance(technique, Graph) else None
-    if whole is None or not isinstance(technique, Graph):
-        return "there is no such input"
-    term = unmet(whole.when, technique.wired)
-    name = term.removeprefix(NOT)
-    return f"pass '{head}' is there only where '{name}' is {'not wired' if name != term else 'wired'}"
+    return f"pass '{head}' is absent; it {why_absent(technique, head)}" if whole else "there is no such input"
 
 
-def _present(passes: Sequence[PassSpec], graph: Graph, wired: frozenset[str]) -> tuple[PassSpec, ...]:
-    """Return the passes that are there, each in its form."""
-    there = [spec for spec in passes if not unmet(spec.when, wired)]
-    names = {spec.name: spec.technique for spec in there}
-    absent = {spec.name for spec in passes} - names.keys()
+def _present(graph: Graph, wired: frozenset[str]) -> tuple[list[PassSpec], dict[str, str]]:
+    """Return the passes that are present, each in its form, and of the others the input that each lacks."""
+    named = _named_inputs(graph)
     inside = {name for name in wired if "." in name}
     inside |= {target for e in graph.inputs if e.name in wired for target in e.targets}
-    found: list[PassSpec] = []
-    for spec in there:
-        inputs = tuple(_chosen(spec, names, absent))
-        given = {name.partition(".")[2] for name in inside if name.partition(".")[0] == spec.name}
-        given |= {name for name, _ in (*inputs, *spec.feedback)}
-        own = _in_form(spec, inputs, given, found)
-        names[own.name] = own.technique
-        found.append(own)
-    return tuple(found)
+    absent: dict[str, str] = {}
+    while True:
+        found: list[PassSpec] = []
+        lost: dict[str, str] = {}
+        lacks = {name: name for name in named - wired} | absent
+        for spec in graph.passes:
+            if spec.name in absent:
+                continue
+            inputs, lacking = _chosen(spec, named, lacks)
+            if not lacking:
+                given = [t.partition(".")[2] for t in inside if t.partition(".")[0] == spec.name]
+                form, name = _in_form(spec, inputs, given, found)
+                path = f"{spec.name}.{name}"
+                lacking = next((e.name for e in graph.inputs if path in e.targets), name)
+            if lacking:
+                lost[spec.name] = lacking
+            else:
+                found.append(form)
+        lost = lost or _unread(graph, found, absent)
+        if not lost:
+            return found, absent
+        absent |= lost
+
+
+def _chosen(
+    spec: PassSpec, named: Collection[str], lacks: Mapping[str, str]
+) -> tuple[tuple[tuple[str, str], ...], str]:
+    """Return what each input of a pass reads inside its technique, and what a source that it needs lacks."""
+    inputs: list[tuple[str, str]] = []
+    for name, sources in sources_of(spec):
+        source = next((source for source in sources if _head(source) not in lacks), None)
+        if source is None and name not in dict(spec.choices):
+            return (), lacks[_head(sources[0])]
+        if source is not None and source not in named:  # else the technique's own input feeds it
+            inputs.append((name, source))
+    return tuple(inputs), ""
 
 
 def _in_form(
-    spec: PassSpec, inputs: tuple[tuple[str, str], ...], given: set[str], earlier: Sequence[PassSpec]
-) -> PassSpec:
-    technique = spec.technique
+    spec: PassSpec,
+    inputs: tuple[tuple[str, str], ...],
+    given: Collection[str],
+    earlier: Sequence[PassSpec],
+) -> tuple[PassSpec, str]:
+    """Return a pass with its technique in its form, and the input that an output of it lacks."""
+    technique, values = spec.technique, spec.values
     if isinstance(technique, Graph) and is_conditional(technique):
-        names = [name for name in input_names(technique) if name not in given]
-        technique = form_of(technique, {*given, *(n for n in names if _is_found(technique, n, earlier))})
-    values = spec.values
-    if technique is not spec.technique:
+        wired = {*given, *(name for name, _ in (*inputs, *spec.feedback))}
+        names = [name for name in input_names(technique) if name not in wired]
+        technique = form_of(technique, wired | {n for n in names if _is_found(technique, n, earlier)})
+        if lacking := missing_input(technique):
+            return spec, lacking
         values = tuple((path, value) for path, value in values if find_targets(technique, path))
     if technique is spec.technique and inputs == spec.inputs and not spec.choices:
-        return spec
-    return replace(spec, technique=technique, inputs=inputs, choices=(), values=values)
+        return spec, ""
+    return replace(spec, technique=technique, inputs=inputs, choices=(), values=values), ""
 
 
 def _is_found(technique: Technique, name: str, earlier: Sequence[PassSpec]) -> bool:
     """Return whether an earlier pass feeds an input that nothing is wired to: see ``flatten``."""
     if any(spec.name == name for spec in earlier):
         return True
-    return not decides(technique, name) and any(name in output_names(spec.technique) for spec in earlier)
+    decides = name in deciding_inputs(technique)
+    return not decides and any(name in output_names(spec.technique) for spec in earlier)
 
 
-def _chosen(
-    spec: PassSpec, there: Mapping[str, Technique], absent: Collection[str]
-) -> Iterator[tuple[str, str]]:
-    """Yield what each input of a pass reads, of several sources the first that is there; else it is unwired.
-
-    A source that the technique never has is yielded as well: ``flatten`` names the nearest.
-    """
-    choices = dict(spec.choices)
-    for name, text in spec.inputs:
-        for source in choices.get(name, (text,)):
-            path = source.partition(":")[0]
-            head, _, rest = path.partition(".")
-            if head not in absent and not _is_lost(there.get(head), rest):
-                yield name, source
-                break
-
-
-def _is_lost(technique: Technique | None, path: str) -> bool:
-    """Return whether a technique's file has a pass inside, by its path, that is not there."""
-    if not path or not isinstance(technique, Graph):
-        return False
-    return inner(technique, path) is None and inner(technique.written, path) is not None
-
-
-# ── checking a technique's file ──────────────────────────────────────────────
-
-
-def check_forms(graph: Graph) -> None:
-    """Raise ``SketchError`` for what one of a technique's forms lacks, and say where it is so."""
-    deciding = deciding_inputs(graph)
-    others = [name for name in input_names(graph) if name not in deciding]
-    for wired in _combinations(deciding):
-        form = form_of(graph, [*others, *wired])
-        lacking = [name for name in deciding if name not in wired]
-        where = f"where nothing is wired to {' and '.join(lacking)}" if lacking else "where all is wired"
-        last = graph.passes[-1]
-        if not graph.outputs and form.find(last.name) is None:
-            message = f"pass '{last.name}' gives the outputs and is not there {where}"
-            raise last.error(f"{message}; [outputs] can name another's")
-        try:
-            check_graph(form)
-        except SketchError as error:
-            one = error.diagnostics[0]
-            raise SketchError(f"{one.message} ({where})", file=one.file, line=one.line) from None
-        for spec, name in _unfed(form):
-            message = f"pass '{spec.name}' needs its input '{name}' wired, as inputs = {{ {name} = \"…\" }}"
-            raise spec.error(f"{message} ({where})")
-
-
-def _combinations(deciding: Sequence[str]) -> list[set[str]]:
-    if len(deciding) <= _ALL_FORMS:
-        return [
-            {name for name, on in zip(deciding, chosen, strict=True) if on}
-            for chosen in product((True, False), repeat=len(deciding))
-        ]
-    whole = set(deciding)
-    return [whole, set(), *({name} for name in deciding), *(whole - {name} for name in deciding)]
-
-
-def _unfed(form: Graph) -> Iterator[tuple[PassSpec, str]]:
-    """Yield each input that must be wired and that nothing in a form, nor its user, can feed."""
-    exported = {target for export in form.inputs for target in export.targets}
-    earlier: list[PassSpec] = []
-    for spec in form.passes:
-        wired = {name for name, _ in (*spec.inputs, *spec.feedback)}
-        for name in input_names(spec.technique):
-            if name in wired or f"{spec.name}.{name}" in exported or is_optional(spec.technique, name):
-                continue
-            inside = any(target.startswith(f"{spec.name}.") and target.count(".") > 1 for target in exported)
-            if not inside and not _is_found(spec.technique, name, earlier):
-                yield spec, name
-        earlier.append(spec)
+def _unread(graph: Graph, found: Sequence[PassSpec], absent: Mapping[str, str]) -> dict[str, str]:
+    """Return the passes that others name and none reads, with the input that one of those lacks."""
+    readers: dict[str, list[str]] = {}
+    for spec in graph.passes:
+        for _, sources in sources_of(spec):
+            for source in sources:
+                readers.setdefault(_head(source), []).append(spec.name)
+    read = {_head(source) for spec in found for _, source in spec.inputs} | {*_output_passes(graph)}
+    return {
+        spec.name: next((absent[name] for name in readers[spec.name] if name in absent), "")
+        for spec in found
+        if spec.name in readers.keys() - read
+    }

@@ -12,7 +12,6 @@ from typing import Any
 from playground.allowed_files import is_variant, leads_outside
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
-from playground.shader.kernel import NOT
 from playground.shader.options import read_agreement
 from playground.shader.parameter import coerce, spell
 from playground.sketch import toml_table, wiring
@@ -26,7 +25,7 @@ from playground.sketch.assign import (
     why_absent,
 )
 from playground.sketch.model import Export, Graph, PassSpec, Sketch, Technique, Value
-from playground.sketch.presence import check_forms, is_conditional
+from playground.sketch.presence import sources_of
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.toml_text import Place
 
@@ -51,7 +50,7 @@ def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
     except ValueError as error:
         raise file.error(f"agrees: {error}", "agrees") from None
     inputs = _exports(file, "inputs")
-    passes = read_passes(file, read, [export.name for export in inputs])
+    passes = read_passes(file, read, inside=True)
     graph = Graph(
         use,
         str(file.path),
@@ -69,13 +68,29 @@ def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
         if not name.isidentifier():
             raise file.error(f"'{name}': expected a name of letters, digits and _", key, name)
     wiring.check_graph(graph)
-    if is_conditional(graph):
-        check_forms(graph)
+    _check_sources(graph)
     return replace(graph, warnings=tuple(file.warnings))
 
 
-def read_passes(file: TomlFile, read: Read, inside: Sequence[str] | None = None) -> tuple[PassSpec, ...]:
-    """Return what the ``[[pass]]`` tables say: of a sketch, or of a technique with some inputs."""
+def _check_sources(graph: Graph) -> None:
+    """Raise ``SketchError`` for a source that is neither a pass nor an input for it."""
+    names = [spec.name for spec in graph.passes]
+    exports = {export.name: export.targets for export in graph.inputs if export.name not in names}
+    for spec in graph.passes:
+        for name, sources in sources_of(spec):
+            target = f"{spec.name}.{name}"
+            for source in sources:
+                head = source.partition(":")[0].partition(".")[0]
+                if head not in names and source not in exports:
+                    hint = nearest(source, [*(other for other in names if other != spec.name), *exports])
+                    raise spec.error(f"input '{name}' names no pass '{source}'{hint}")
+                if source in exports and target not in exports[source]:
+                    message = f"input '{source}' of the technique is not for '{target}'; list it in [inputs]"
+                    raise spec.error(f"pass '{spec.name}': {message}")
+
+
+def read_passes(file: TomlFile, read: Read, *, inside: bool = False) -> tuple[PassSpec, ...]:
+    """Return what the ``[[pass]]`` tables of a sketch say, or, ``inside``, those of a technique."""
     tables, view = file.tables("pass"), file.table.get("view")
     own = str(view.get("use", "")) if isinstance(view, dict) else ""
     if not tables and not own.startswith("./"):  # a shader of the sketch's own may be the whole picture
@@ -94,7 +109,7 @@ def read_passes(file: TomlFile, read: Read, inside: Sequence[str] | None = None)
             wrong = "a pass may not be named 'view'; that is the [view] table's name"
         if wrong:
             raise file.error(wrong, *place, "name")
-        found[name] = read_pass(file, table, place, name, read, inside)
+        found[name] = read_pass(file, table, place, name, read, inside=inside)
     return tuple(found.values())
 
 
@@ -104,7 +119,8 @@ def read_pass(
     place: Place,
     name: str,
     read: Read,
-    inside: Sequence[str] | None = None,
+    *,
+    inside: bool = False,
 ) -> PassSpec:
     """Return what one table, a pass's or the view's, says of a pass; ``inside`` as in ``read_passes``."""
     use = file.take(table, "use", str, "", *place)
@@ -125,11 +141,11 @@ def read_pass(
         message = f"pass '{name}': repeat needs feedback{example}: without, each step gives the same"
         raise file.error(message, *place, "repeat")
     sources = file.sources(table, "inputs", *place)
-    choices = tuple(pair for pair in sources if len(pair[1]) > 1)
-    if choices and inside is None:
-        message = "one source each: all passes of a sketch are there, so none is needed in place of another"
+    choices = tuple((name, texts) for name, texts in sources if isinstance(texts, tuple))
+    if choices and not inside:
+        message = "one source each: all passes of a sketch are present, so none is needed in place of another"
         raise file.error(f"pass '{name}': {choices[0][0]}: {message}", *place, "inputs", choices[0][0])
-    inputs = tuple((wanted, texts[0]) for wanted, texts in sources)
+    inputs = tuple((name, text if isinstance(text, str) else text[0]) for name, text in sources)
     for key, pairs in (("inputs", inputs), ("feedback", feedback)):
         for wanted, _ in pairs:
             if not wiring.takes_input(technique, wanted):
@@ -154,33 +170,11 @@ def read_pass(
         size=_size(file, table, place),
         repeat=repeat,
         feedback=feedback,
-        when=_when(file, table, place, inside),
         choices=choices,
         file=shown(file.path),
         line=file.line(*place),
         set_lines=_set_lines(file, place, table.get("set", {}), technique),
     )
-
-
-def _when(
-    file: TomlFile, table: Mapping[str, Any], place: Place, inputs: Sequence[str] | None
-) -> tuple[str, ...]:
-    """Return the conditions of a pass: inputs of the technique it is in, or "not " and such an input."""
-    given = table.get("when", [])
-    terms = given if isinstance(given, list) else [given]
-    if not all(isinstance(term, str) for term in terms) or given == []:
-        if "when" in table:
-            message = f'when = {spell(given)}: expected an input, as "density" or "not density"'
-            raise file.error(f"{message}, or a list of them", *place, "when")
-        return ()
-    if inputs is None:
-        message = 'a sketch has no inputs; "when" is for the passes of a technique'
-        raise file.error(f"when = {spell(given)}: {message}", *place, "when")
-    for term in terms:
-        if term.removeprefix(NOT) not in inputs:
-            hint = nearest(term.removeprefix(NOT), inputs)
-            raise file.error(f"when = {spell(given)}: this technique has no such input{hint}", *place, "when")
-    return tuple(terms)
 
 
 def _read_values(

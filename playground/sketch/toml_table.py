@@ -60,7 +60,6 @@ PASS: dict[str, str] = {
     "size": 'Texels, an expression or two, as "height.size // 2"; of the technique\'s own without it.',
     "repeat": "How often a technique of several passes runs, a number or an expression; needs feedback.",
     "feedback": "Input → its own output, which it reads from the second step on.",
-    "when": "In a technique: the input, or a list of them, without which the pass is not there.",
 }
 
 VIEW: dict[str, str] = {
@@ -246,15 +245,15 @@ class TomlFile:
 
     def sources(
         self, table: Mapping[str, Any], key: str, *place: str | int
-    ) -> tuple[tuple[str, tuple[str, ...]], ...]:
-        """Return the pairs of a table whose values are texts or lists of texts, each as a tuple."""
+    ) -> tuple[tuple[str, str | tuple[str, ...]], ...]:
+        """Return the pairs of a table whose values are texts, or lists of texts, as tuples."""
 
         def fits(value: object) -> bool:
             texts = value if isinstance(value, list) else [value]
             return bool(texts) and all(isinstance(text, str) for text in texts)
 
         pairs = self._pairs(table, key, place, f"{_NOUNS[str]}, or a list of such", fits)
-        return tuple((name, tuple(v) if isinstance(v, list) else (v,)) for name, v in pairs)
+        return tuple((name, tuple(v) if isinstance(v, list) else v) for name, v in pairs)
 
     def whole_numbers(
         self, table: Mapping[str, Any], key: str, *place: str | int

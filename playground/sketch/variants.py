@@ -78,7 +78,7 @@ def _of_graph(graph: Graph) -> list[Any]:
         for p in graph.passes
     ]
     # Only where it is there: hashes of others in records stay valid.
-    more = [[p.when, p.choices] for p in graph.passes if p.when or p.choices]
+    more = [p.choices for p in graph.passes if p.choices]
     return [*exports, graph.outputs, passes, graph.agrees, *more]
 
 

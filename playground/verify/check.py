@@ -53,7 +53,7 @@ from playground.sketch.model import (
     Technique,
     kernels_of,
 )
-from playground.sketch.presence import deciding_inputs
+from playground.sketch.presence import deciding_inputs, form_of, missing_input
 from playground.sketch.techniques import (
     Techniques,
     lonely_variant,
@@ -263,7 +263,8 @@ class _Check:
         self.notes = () if self.plain else left_out(self.standalone_sketch(technique))
         plain = without_variants(technique)
         self.attempt(self.request(plain, BOTH))
-        if deciding := deciding_inputs(plain):
+        deciding = deciding_inputs(plain)
+        if isinstance(plain, Graph) and deciding and not missing_input(form_of(plain, ())):
             whole = self.standalone_sketch(plain)
             passes = tuple(spec for spec in whole.graph.passes if spec.name not in deciding)
             least = replace(whole, graph=replace(whole.graph, passes=passes))

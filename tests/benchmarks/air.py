@@ -23,9 +23,9 @@ from playground.engine.engine import Engine
 from playground.sketch.load import load
 
 ROWS = (
-    ("air in front of the terrain, with shafts", "view.air:scattered", {}),
-    ("flat layer of clouds", "view.heaven.flat", {"view.clouds": "flat"}),
-    ("heaped clouds, 16 steps", "view.heaven.heaped", {}),
+    ("air in front of the terrain, with shafts", "view.heaven:scattered", {}),
+    ("flat layer of clouds", "view.heaven.sky.flat", {"view.clouds": "flat"}),
+    ("heaped clouds, 16 steps", "view.heaven.sky.heaped", {}),
     ("air and sky without clouds", "view.heaven", {"view.clouds": "none"}),
     ("air and sky, flat layer", "view.heaven", {"view.clouds": "flat"}),
     ("air and sky, heaped clouds", "view.heaven", {}),

@@ -1,4 +1,6 @@
-"""Passes that are there only where something is wired: ``when``, lists of sources, exports by "*"."""
+"""Passes that are present only where something is wired: named inputs, lists of sources, exports by "*"."""
+
+from itertools import compress, product
 
 import numpy as np
 import pytest
@@ -8,7 +10,7 @@ from playground.paths import GLSL
 from playground.sketch.assign import shown_parameters
 from playground.sketch.catalogue import one
 from playground.sketch.flatten import flatten
-from playground.sketch.presence import as_wired, check_forms, deciding_inputs, form_of
+from playground.sketch.presence import as_wired, deciding_inputs, form_of, missing_input
 from playground.sketch.techniques import read_technique
 from playground.sketch.wiring import input_names
 
@@ -39,15 +41,14 @@ INNER = """
 [[pass]]
 name = "plain"
 use = "./plain"
-when = "not density"
 [[pass]]
 name = "added"
 use = "./added"
-when = "density"
+inputs = { density = "density" }
 [[pass]]
 name = "sum"
 use = "./sum"
-inputs = { base = ["added:more", "plain"], extra = "added:twice" }
+inputs = { base = ["added:more", "plain"], extra = ["added:twice"] }
 [inputs]
 density = "added.density"
 [parameters]
@@ -61,6 +62,15 @@ use = "./inner"
 density = "within.density"
 [parameters]
 by = "within.by"
+"""
+END = """
+[[pass]]
+name = "plain"
+use = "./plain"
+[[pass]]
+name = "end"
+use = "./sum"
+inputs = { base = ["within", "plain"] }
 """
 VIEW = '[view]\nuse = "view/map"\ninputs = { shown = "it" }\n'
 
@@ -128,7 +138,7 @@ def test_setting_what_is_not_there_says_why(make):
     for path in ("it.by", "it.added.by"):
         with pytest.raises(ParameterError, match=rf"^{path}: has an effect only where 'density' is wired$"):
             bare.with_values({path: 2.0})
-    with pytest.raises(ParameterError, match=r"it\.plain_is: has no effect where 'density' is wired"):
+    with pytest.raises(ParameterError, match=r"it\.plain_is: has no effect: another source takes the place"):
         wired.with_values({"it.plain_is": 2.0})
     with pytest.raises(ParameterError, match=r"did you mean 'it\.added\.by'"):
         wired.with_values({"it.added.bye": 2.0})
@@ -158,7 +168,7 @@ def test_the_latest_earlier_pass_is_one_that_is_there(make):
     [[pass]]
     name = "second"
     use = "./density"
-    when = "water"
+    inputs = { water = "water" }
     [[pass]]
     name = "end"
     use = "./added"
@@ -187,36 +197,50 @@ def changed(text, *pairs):
 @pytest.mark.parametrize(
     ("pairs", "words", "line"),
     [
-        ((('when = "density"', 'when = "densty"'),), "no such input; did you mean 'density'", 8),
-        ((('when = "density"', "when = []"),), "when = []: expected an input", 8),
-        ((('when = "density"', "when = 3"),), "when = 3: expected an input", 8),
-        ((('["added:more", "plain"]', '["added:more"]'),), "needs its input 'base' wired", 9),
-        ((('["added:more", "plain"]', "[]"),), "expected text in quotes, or a list of such", 12),
-        ((('["added:more", "plain"]', '["plain"]'),), "(where all is wired)", 9),
+        ((('= "density" }', '= "densty" }'),), "input 'density' names no pass 'densty'; did you mean", 4),
         (
-            (('use = "./sum"', 'use = "./sum"\nsize = "added.size.x"'),),
-            "where nothing is wired to density",
-            9,
+            (('["added:more", "plain"]', '["addd", "plain"]'),),
+            "names no pass 'addd'; did you mean 'added'",
+            8,
         ),
-        ((("[parameters]", '[outputs]\nmore = "added:more"\n[parameters]'),), "no pass 'added' inside", None),
-        (
-            (('name = "sum"', 'name = "sum"\nwhen = "density"'),),
-            "'sum' gives the outputs and is not there",
-            9,
-        ),
+        ((('["added:more", "plain"]', "[]"),), "expected text in quotes, or a list of such", 11),
+        ((('base = ["added:more", "plain"]', 'base = "density"'),), "is not for 'sum.base'; list it in", 8),
+        ((("[parameters]", '[outputs]\nmore = "aded:more"\n[parameters]'),), "no pass 'aded' inside", None),
     ],
 )
-def test_each_form_of_a_technique_is_checked_with_its_file(make, pairs, words, line):
+def test_a_source_that_is_none_is_refused(make, pairs, words, line):
     make.folder.write("inner.toml", changed(INNER.removeprefix("\n"), *pairs))
     make.folder.refused(words, line, "inner.toml", body='[[pass]]\nname = "it"\nuse = "./inner"\n', tail=VIEW)
+
+
+def test_a_size_that_names_an_absent_pass_is_refused(make):
+    sized = INNER.replace('use = "./sum"', 'use = "./sum"\nsize = "added.size.x"')
+    assert make(*WIRED, inner=sized)
+    with pytest.raises(SketchError, match=r"pass 'sum': size: .*added\.size\.x"):
+        make(*BARE, inner=sized)
+
+
+def test_an_output_needs_its_passes(make):
+    """Inside a technique such a pass is absent, and what names it; in a sketch it is refused."""
+    needy = INNER.replace("[parameters]", '[outputs]\nmore = "added:more"\n[parameters]')
+    with pytest.raises(SketchError, match=r"pass 'it' needs its input 'density' wired, as inputs"):
+        make(*BARE, inner=needy)
+    assert make(*WIRED, inner=needy)
+    outer = OUTER.split("[parameters]")[0].replace("[inputs]", f"{END}[inputs]")
+    for sketch, inner in (
+        (make("it outer", inner=needy, outer=outer), "end plain"),
+        (make(*WIRED), "added sum"),
+    ):
+        assert {leaf.path for leaf in flatten(sketch).leaves} >= {f"it.{name}" for name in inner.split()}
+    assert not [path for path in flatten(make("it outer")).specs if "within" in path]
 
 
 @pytest.mark.parametrize(
     ("more", "words"),
     [
-        ("when = 'density'", "a sketch has no inputs"),
-        ("inputs = { density = ['a', 'b'] }", "all passes of a sketch are there"),
-        ("inputs = { 'added.density' = 'late' }", "pass 'added' is there only where 'density' is wired"),
+        ("inputs = { density = ['a', 'b'] }", "all passes of a sketch are present"),
+        ("inputs = { 'added.density' = 'late' }", "'added' is absent; it has an effect only where 'density'"),
+        ("when = 'density'", "no key 'when' here"),
     ],
 )
 def test_a_sketch_itself_has_no_conditions(make, more, words):
@@ -253,18 +277,22 @@ def test_the_catalogue_lists_what_any_form_has():
     assert {"trees", "mist", "zenith", "exposure"} <= listed
 
 
-def test_the_scene_offers_every_parameter_of_every_pass_once(monkeypatch):
+def test_the_scene_offers_every_parameter_of_every_pass_once():
     """In each of its forms; all combinations of what may be wired are whole."""
     scene = read_technique("scene/terrain", GLSL, GLSL)
     deciding = deciding_inputs(scene)
-    monkeypatch.setattr("playground.sketch.presence._ALL_FORMS", len(deciding))
-    check_forms(scene)
-    assert {"dome", "density"} <= set(deciding)
+    assert set(deciding) == {"dome", "density", "rocks", "tufts", "water", "sky_picture"}
     others = set(input_names(scene)) - set(deciding)
-    for wired in (deciding, (), *((name,) for name in deciding)):
-        form = form_of(scene, {*others, *wired})
+    for chosen in product((True, False), repeat=len(deciding)):
+        wired = set(compress(deciding, chosen))
+        form = form_of(scene, others | wired)
+        assert missing_input(form) == ""
         offered = [target for export in form.parameters for target in export.targets]
         own = [f"{s.name}.{p.name}" for s in form.passes for p in s.technique.parameters]
         assert sorted(offered) == sorted(own)
-        names = [spec.name for spec in form.passes]
-        assert ("heaven" in names) == ("dome" in wired) and ("wooded" in names) == ("density" in wired)
+        names = {spec.name for spec in form.passes}
+        assert ("heaven" in names) == ("dome" in wired) and ("watered" in names) == ("water" in wired)
+        assert ("sky" in names) == wired.isdisjoint({"dome", "sky_picture"})
+        assert ("strewn" in names) == ("rocks" in wired) and ("grown" in names) == ("tufts" in wired)
+        trees = {"place", "species", "crowns", "near_trees", "seen", "shade", "wood", "leaves", "wooded"}
+        assert trees & names == (trees if "density" in wired else set())
