@@ -18,7 +18,6 @@ from playground.live.parameter_row import Rows
 from playground.live.sliders import slide_whole
 from playground.live.theme import Theme
 from playground.shader.parameter import label_of
-from playground.sketch.composed import parts_of
 from playground.sketch.model import PassSpec, Sketch, TexelKernel, kernels_of
 from playground.sketch.replace_technique import choices
 from playground.workbench.bench import Bench
@@ -262,8 +261,4 @@ def _steps(spec: PassSpec, session: Session) -> None:
 
 def _use_name(use: str) -> str:
     """Return a technique's name without its folder where a closed list has no room for that."""
-    if fitting_choice(use) == use:
-        return use
-    parts = parts_of(use)
-    names = [name.rpartition("/")[2] for name in parts or (use,)]
-    return fitting_choice(f"{names[0]}({names[1]})" if parts else names[0])
+    return use if fitting_choice(use) == use else fitting_choice(use.rpartition("/")[2])

@@ -628,7 +628,6 @@ class Graph:
     variants: tuple[Variant, ...] = ()  # its fast variants, the fastest first
     line: int = 0  # of its outputs
     warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)  # of its file
-    parts: tuple[Technique, ...] = ()  # of "A(B)": A and B; see sketch/composed.py
     whole: Graph | None = field(default=None, compare=False)  # of one form of it: all of it; see presence.py
     absent: tuple[tuple[str, str], ...] = field(default=(), compare=False)  # pass → the input that it lacks
 
@@ -642,13 +641,13 @@ class Graph:
         """Absolute paths of every file the technique is made of, those of absent passes too."""
         if self.whole is not None:
             return self.whole.files
-        parts = (*(spec.technique for spec in self.passes), *self.variants, *self.parts)
+        parts = (*(spec.technique for spec in self.passes), *self.variants)
         return tuple(dict.fromkeys([self.path, *(file for part in parts for file in part.files)]))
 
     @property
     def dialect(self) -> str:
         """Of another tool's shader the name of a row of sketch/dialects, of a TOML none."""
-        if self.parts or self.path.endswith(".toml"):
+        if self.path.endswith(".toml"):
             return ""
         last = self.kernels[-1][1]
         return last.dialect if isinstance(last, ForeignShader) else ""

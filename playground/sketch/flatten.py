@@ -29,12 +29,13 @@ from typing import Any
 from playground.errors import SketchError, nearest
 from playground.paths import shown
 from playground.shader.expressions import counts_frames, follows_time
+from playground.shader.kernel_cache import replaced
 from playground.shader.reserved_names import CLOCKED
 from playground.sketch.assign import effective_values, find_targets, resolve
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Ref, Shape, Source, leaves_of
 from playground.sketch.follows import follow, rules_of
 from playground.sketch.identity import Identity
-from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, Variant
+from playground.sketch.model import Graph, Kernel, PassSpec, PlainFragment, Sketch, Technique, Value, Variant
 from playground.sketch.presence import deciding_inputs, why_unfed
 from playground.sketch.variants import INSIDE, active_variant
 from playground.sketch.wiring import (
@@ -196,7 +197,7 @@ def _shape(
         for _, path in pairs:
             readers.setdefault(path, set()).add(leaf)
     return Shape(
-        nodes=nodes,
+        nodes=_with_exact_pictures(nodes, maker.graphs),
         specs=maker.specs,
         graphs=maker.graphs,
         outputs=outputs,
@@ -209,6 +210,36 @@ def _shape(
         withheld=tuple(maker.withheld.values()),
         lacking=tuple(maker.lacking),
     )
+
+
+_EXACT = {"r8": "r32f", "rg8": "rg32f", "rgba8": "rgba32f"}
+"""In which format a picture keeps all its numbers."""
+
+
+def _with_exact_pictures(nodes: tuple[Node, ...], graphs: Mapping[str, Graph]) -> tuple[Node, ...]:
+    """Return nodes in which another tool's picture keeps 32-bit floats where a kernel outside reads it."""
+    leaves = leaves_of(nodes)
+    home = {
+        leaf.path: leaf.path.rpartition(".")[0] for leaf in leaves if isinstance(leaf.kernel, PlainFragment)
+    }
+    home = {path: prefix if graphs[prefix].dialect else path for path, prefix in home.items()}
+    exact = {
+        source.path
+        for leaf in leaves
+        for _, source in (() if isinstance(leaf.kernel, PlainFragment) else leaf.inputs)
+        if isinstance(source, Ref) and source.path in home
+        if not leaf.path.startswith(f"{home[source.path]}.")
+    }
+
+    def changed(node: Node) -> Node:
+        if isinstance(node, Loop):
+            return replace(node, body=tuple(map(changed, node.body)))
+        if node.path not in exact:
+            return node
+        outputs = tuple(replace(o, format=_EXACT.get(o.format, o.format)) for o in node.kernel.outputs)
+        return replace(node, kernel=replaced(node.kernel, outputs=outputs))
+
+    return tuple(map(changed, nodes)) if exact else nodes
 
 
 def _filled(

@@ -9,7 +9,7 @@ found out by drawing.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from difflib import get_close_matches
@@ -24,7 +24,6 @@ from playground.shader.header import parse_kernel
 from playground.shader.parameter import coerce
 from playground.shader.source import read_source
 from playground.sketch.assign import find_targets, resolve
-from playground.sketch.composed import composed, first_input, is_foreign, parts_of
 from playground.sketch.find import is_part, shipped_names
 from playground.sketch.flatten import flatten
 from playground.sketch.model import (
@@ -64,9 +63,7 @@ def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
             variants = tuple(
                 replace(v, technique=t) for v, t in again if isinstance(t, ComputeVariant | Graph)
             )
-            if isinstance(technique, Graph) and technique.parts:
-                known[id(technique)] = composed(technique.name, *map(reread, technique.parts))
-            elif isinstance(technique, Graph) and technique.dialect:
+            if isinstance(technique, Graph) and technique.dialect:
                 known[id(technique)] = _read_again(technique, texts, Path(sketch.folder))
                 if technique is sketch.graph:  # of a sketch all are at view
                     known[id(technique)] = replace(known[id(technique)], inputs=(), parameters=())
@@ -102,10 +99,6 @@ def _parsed_again(kernel: Kernel, texts: Mapping[str, str], folder: Path) -> Ker
     return found
 
 
-_ADAPTERS = "foreign/"
-"""The folder of ``glsl/`` whose techniques with an input make something of another tool's picture."""
-
-
 @looking_once()
 def choices(sketch: Sketch, pass_name: str) -> list[str]:
     """List what may fill a pass, as ``use`` names it: the shipped, then the sketch's own (``./x``).
@@ -118,7 +111,7 @@ def choices(sketch: Sketch, pass_name: str) -> list[str]:
     whole = [name for name in shipped_names() if not is_part(name)]
     own = _own_names(sketch)
     read = _reader(sketch)
-    uses = dict.fromkeys([*whole, *own, *_adapted(read, spec, own, whole), spec.use])
+    uses = dict.fromkeys([*whole, *own, spec.use])
     return [use for use in uses if use == spec.use or _fits(sketch, spec, use, outputs, read)]
 
 
@@ -131,8 +124,6 @@ def fits(sketch: Sketch, pass_name: str, use: str) -> bool:
     spec = _pass(sketch, pass_name)
     if use == spec.use:
         return True
-    if parts_of(use):
-        return use in choices(sketch, pass_name)
     named = use in _own_names(sketch) or (use in shipped_names() and not is_part(use))
     return named and _fits(sketch, spec, use, set(output_names(spec.technique)), _reader(sketch))
 
@@ -178,32 +169,6 @@ def _own_names(sketch: Sketch) -> list[str]:
     """Name the files in the sketch's folder that could be techniques; library files and sketches as well."""
     files = [p for p in Path(sketch.folder).glob("*.*") if p.suffix in TECHNIQUES and str(p) != sketch.file]
     return sorted({f"./{p.stem}" for p in files if p.is_file()})
-
-
-def _adapted(
-    read: Callable[[str], Technique], spec: PassSpec, own: Sequence[str], whole: Sequence[str]
-) -> Iterator[str]:
-    """Yield other tools' shaders in the sketch's folder as they could fill a pass.
-
-    In the view each is laid over what is there now, as a filter; elsewhere a technique of the library
-    makes of its picture what the pass gives.
-    """
-    foreign = [use for use in own if (found := _found(read, use)) is not None and is_foreign(found)]
-    if spec.name == "view":
-        parts = parts_of(spec.use)
-        under = parts[1] if parts and is_foreign(read(parts[0])) else spec.use
-        yield under
-        yield from (f"{use}({under})" for use in foreign if use != under and first_input(read(use)))
-        return
-    adapters = [use for use in whole if use.startswith(_ADAPTERS) and first_input(read(use))]
-    yield from (f"{adapter}({use})" for adapter in adapters for use in foreign)
-
-
-def _found(read: Callable[[str], Technique], use: str) -> Technique | None:
-    """Return what ``use`` names; None where its files are wrong."""
-    with suppress(PlaygroundError):
-        return read(use)
-    return None
 
 
 def _fits(

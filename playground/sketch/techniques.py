@@ -25,7 +25,6 @@ from playground.regular_file import irregularity
 from playground.shader.dialects import EXPORT, OWN, is_export, read_foreign
 from playground.shader.kernel_cache import parsed_kernel, replaced
 from playground.shader.source import EncodingError
-from playground.sketch.composed import composed, parts_of
 from playground.sketch.find import shipped_names
 from playground.sketch.model import (
     ComputeVariant,
@@ -123,9 +122,7 @@ class Techniques:
         return len(self.open) + depth <= _MAX_NESTING
 
     def read(self, use: str, folder: Path, root: Path) -> Technique:
-        """Return what ``use`` names, as ``read_technique`` does; of "A(B)", A that reads B."""
-        if parts := parts_of(use):
-            return composed(use, *(self.read(part, folder, root) for part in parts))
+        """Return what ``use`` names, as ``read_technique`` does."""
         named = (use, folder, root) if use.startswith("./") else (use, GLSL, GLSL)
         if named not in self.known:
             self.known[named] = self._read(*_locate(use, folder, root), use)

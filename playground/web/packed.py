@@ -120,7 +120,7 @@ def _graphs(technique: Technique) -> Iterator[Graph]:
         one = waiting.pop()
         if not isinstance(one, Graph):
             continue
-        if one.path.endswith(".toml") and one.path not in known and not one.parts:
+        if one.path.endswith(".toml") and one.path not in known:
             known.add(one.path)
             yield one.written
-        waiting += [*(spec.technique for spec in one.written.passes), *one.parts]
+        waiting += [spec.technique for spec in one.written.passes]

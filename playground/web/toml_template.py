@@ -6,7 +6,6 @@ cannot run Python, fills in what was changed. With nothing filled in, the pieces
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -15,8 +14,7 @@ from typing import Any
 from playground.paths import GLSL
 from playground.shader.source import normalised
 from playground.sketch.assign import TERRAIN_KEYS, resolve, shown_parameters
-from playground.sketch.composed import parts_of
-from playground.sketch.model import Camera, Graph, Sketch, Technique
+from playground.sketch.model import Camera, Graph, Sketch
 from playground.sketch.save import table_of, with_view
 from playground.sketch.toml_text import Place, TomlPlaces, key_text
 
@@ -27,8 +25,6 @@ end of a table, where keys that the file has not yet go: of a pass, "#camera" or
 parameter that the file sets in parts."""
 
 TERRAIN, CAMERA = "#terrain", "#camera"
-
-_NAME = re.compile(r"[^()\s\"']+")
 
 
 @dataclass(frozen=True)
@@ -86,23 +82,11 @@ def _uses(text: str, places: TomlPlaces, graph: Graph, named: Callable[[str], st
     for index, spec in enumerate(graph.passes):
         own = ("view",) if spec.name == "view" else ("pass", index)
         pair = places.pairs.get((*own, "use"))
-        if pair is None:
+        if pair is None or spec.use.startswith("./"):
             continue
-        known = dict(_parts(spec.use, spec.technique))
-        for match in _NAME.finditer(text, pair.value, pair.end):
-            technique = known.get(match[0])
-            if technique is not None and not match[0].startswith("./"):
-                yield _Cut(match.start(), match.end(), {"use": match[0], "of": named(technique.path)})
-
-
-def _parts(use: str, technique: Technique) -> Iterator[tuple[str, Technique]]:
-    """Yield each name in what ``use`` says, with its technique."""
-    parts = parts_of(use)
-    if parts is None or not isinstance(technique, Graph):
-        yield use, technique
-        return
-    for part, inner in zip(parts, technique.parts, strict=True):
-        yield from _parts(part, inner)
+        start = text.index(spec.use, pair.value, pair.end)
+        hole = {"use": spec.use, "of": named(spec.technique.path)}
+        yield _Cut(start, start + len(spec.use), hole)
 
 
 def _known(

@@ -12,6 +12,7 @@ from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 
 from ..loading import load
+from ..sketch_texts import passes
 from .test_shader_export import FRAME, HEAD, ROUNDING, apart, refusal
 
 TOY = """// toy.frag -- a Shadertoy text.
@@ -55,9 +56,10 @@ def folder(tmp_path: Path) -> Path:
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)
     (tmp_path / "out").mkdir()
-    text = HEAD + '[view]\nuse = "./filter(./toy)"\n'
+    text = HEAD + '[[pass]]\nname = "toy"\nuse = "./toy"\nsize = "view.size"\n[view]\nuse = "./filter"\n'
+    text += 'inputs = { iChannel0 = "toy" }\n'
     (tmp_path / "filtered.toml").write_text(text)
-    text = HEAD + '[[pass]]\nname = "height"\nuse = "foreign/height(./toy)"\n[view]\nuse = "./plain"\n'
+    text = HEAD + passes(picture="./toy", height="foreign/height") + '[view]\nuse = "./plain"\n'
     (tmp_path / "terrain.toml").write_text(text)
     return tmp_path
 

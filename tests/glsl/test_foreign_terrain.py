@@ -11,8 +11,8 @@ from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 from playground.shader.parameter import srgb_to_linear
 from playground.sketch.assign import value_of, values_of
+from playground.sketch.flatten import flatten
 from playground.sketch.replace_technique import choices, with_technique, with_texts
-from playground.sketch.save import save, save_copy
 
 from ..loading import load
 from ..sketch_texts import map_of, passes
@@ -43,7 +43,10 @@ FILES = {"fine.frag": FINE, "invert.frag": INVERT, "own.glsl": OWN, "plain.glsl"
 SIZE = (33, 21)
 HEAD = f"format = 1\nsize = [{SIZE[0]}, {SIZE[1]}]\nextent = [320.0, 200.0]\nrelief = 100.0\n"
 SKETCH = HEAD + passes(height="./own", colour="texturing/height_colour") + map_of("colour")
-PLACED = SKETCH.replace("./own", "foreign/height(./fine)")
+PLACED = HEAD + passes(picture="./fine", height="foreign/height") + map_of("height")
+FRAME = ("view/map", 'size = "view.size"', 'inputs = { shown = "height" }', 'set = { channel = "red" }')
+LAID_OVER = '[view]\nuse = "./invert"\ninputs = { iChannel0 = "frame" }\n'
+FILTERED = HEAD + passes(height="./own", frame=FRAME) + LAID_OVER
 
 
 @pytest.fixture
@@ -72,15 +75,16 @@ def test_a_channel_may_be_chosen(folder: Path, any_engine: Engine, channel: str,
     assert any_engine.read(sketch, "height")[3, 5] == pytest.approx(wanted, abs=1e-6)
 
 
-def test_the_text_s_own_uniform_is_a_parameter_of_the_pass(folder: Path, any_engine: Engine) -> None:
+def test_the_text_s_own_uniform_is_a_parameter(folder: Path, any_engine: Engine) -> None:
     sketch = load(folder / "placed.toml")
-    assert value_of(sketch, "height.rise", values_of(sketch)) == 0.0
-    sketch = sketch.with_values({"height.rise": 0.25, "height.gain": 2.0, "height.offset": -0.5})
+    assert value_of(sketch, "picture.rise", values_of(sketch)) == 0.0
+    sketch = sketch.with_values({"picture.rise": 0.25, "height.gain": 2.0, "height.offset": -0.5})
     assert any_engine.read(sketch, "height")[0, 0] == pytest.approx(2.0 * 0.75 - 0.5)
 
 
 def test_colours_become_linear_light(folder: Path, any_engine: Engine) -> None:
-    (folder / "c.toml").write_text(SKETCH.replace("texturing/height_colour", "foreign/colour(./plain)"))
+    text = HEAD + passes(picture="./plain", colour="foreign/colour") + map_of("colour")
+    (folder / "c.toml").write_text(text)
     found = any_engine.read(load(folder / "c.toml"), "colour")
     x, y = np.meshgrid((np.arange(SIZE[0]) + 0.5) / SIZE[0], (np.arange(SIZE[1]) + 0.5) / SIZE[1])
     wanted = srgb_to_linear(np.stack([x, y, np.full_like(x, 0.25)], axis=-1))
@@ -88,25 +92,15 @@ def test_colours_become_linear_light(folder: Path, any_engine: Engine) -> None:
 
 
 def test_a_filter_is_laid_over_the_frame(folder: Path, any_engine: Engine) -> None:
-    sketch = load(folder)
-    filtered = with_technique(sketch, "view", "./invert(view/map)").with_values({"view.channel": "red"})
-    plain = any_engine.render(sketch.with_values({"view.channel": "red"}), size=(64, 40)).array
-    found = any_engine.render(filtered, size=(64, 40)).array
-    assert len(np.unique(plain[..., :3])) > 9
-    np.testing.assert_array_equal(found[..., :3], 255 - plain[..., :3])
-
-
-@pytest.mark.slow
-def test_other_tools_files_are_in_the_chooser(folder: Path) -> None:
-    (folder / "broken.frag").write_text('void mainImage(\n#include "nothing.glsl"\n')
-    sketch = load(folder)
-    height, colour, view = (choices(sketch, name) for name in ("height", "colour", "view"))
-    assert {"foreign/height(./fine)", "foreign/height(./plain)", "foreign/height(./invert)"} <= {*height}
-    assert {"foreign/colour(./fine)", "foreign/colour(./plain)"} <= {*colour}
-    assert not [use for use in height if "foreign/colour" in use or "./broken" in use or "(./own)" in use]
-    assert "./invert(view/map)" in view and "view/map" in view
-    assert "./plain(view/map)" not in view and "./fine(view/map)" not in view, "they read no picture"
-    assert "./plain" in view, "a whole picture by itself, as before"
+    plain = HEAD + passes(height="./own") + map_of("height", "red")
+    (folder / "plain.toml").write_text(plain)
+    (folder / "filtered.toml").write_text(FILTERED)
+    plain, found = (
+        any_engine.render(load(folder / name), size=(64, 40)).array[..., :3]
+        for name in ("plain.toml", "filtered.toml")
+    )
+    assert len(np.unique(plain)) > 9
+    np.testing.assert_array_equal(found, 255 - plain)
 
 
 ISF = """/*{"ISFVSN": "2", "INPUTS": [{"NAME": "inputImage", "TYPE": "image"},
@@ -118,13 +112,13 @@ void main() {
 """
 
 
-@pytest.mark.slow
 def test_an_isf_filter_takes_the_frame(folder: Path, any_engine: Engine) -> None:
     (folder / "negative.fs").write_text(ISF)
-    sketch = load(folder)
-    assert "./negative(view/map)" in choices(sketch, "view")
-    filtered = with_technique(sketch, "view", "./negative(view/map)")
-    plain = any_engine.render(sketch, size=(64, 40)).array[..., :3]
+    text = FILTERED.replace("./invert", "./negative").replace("iChannel0", "inputImage")
+    (folder / "filtered.toml").write_text(text)
+    (folder / "plain.toml").write_text(HEAD + passes(height="./own") + map_of("height", "red"))
+    filtered = load(folder / "filtered.toml")
+    plain = any_engine.render(load(folder / "plain.toml"), size=(64, 40)).array[..., :3]
     np.testing.assert_array_equal(any_engine.render(filtered, size=(64, 40)).array[..., :3], 255 - plain)
     off = any_engine.render(filtered.with_values({"view.share": 0.0}), size=(64, 40)).array[..., :3]
     np.testing.assert_array_equal(off, plain)
@@ -134,9 +128,8 @@ def test_an_isf_generator_is_a_terrain(folder: Path, any_engine: Engine) -> None
     text = "void main() { gl_FragColor = vec4(isf_FragNormCoord.x / 300.0); }\n"
     text = '/*{"ISFVSN": "2", "INPUTS": []}*/\n' + text
     (folder / "slope.fs").write_text(text)
-    sketch = load(folder)
-    assert "foreign/height(./slope)" in choices(sketch, "height")
-    found = any_engine.read(with_technique(sketch, "height", "foreign/height(./slope)"), "height")
+    (folder / "placed.toml").write_text(PLACED.replace("./fine", "./slope"))
+    found = any_engine.read(load(folder / "placed.toml"), "height")
     wanted = np.broadcast_to((np.arange(SIZE[0]) + 0.5) / SIZE[0] / 300.0, SIZE[::-1])
     np.testing.assert_allclose(found, wanted, rtol=1e-5)
 
@@ -152,9 +145,8 @@ void main() {
 
 def test_several_passes_of_one_file_keep_their_numbers(folder: Path, any_engine: Engine) -> None:
     (folder / "buffered.fs").write_text(BUFFERED)
-    sketch = load(folder)
-    assert "foreign/height(./buffered)" in choices(sketch, "height")
-    found = any_engine.read(with_technique(sketch, "height", "foreign/height(./buffered)"), "height")
+    (folder / "placed.toml").write_text(PLACED.replace("./fine", "./buffered"))
+    found = any_engine.read(load(folder / "placed.toml"), "height")
     wanted = np.broadcast_to((np.arange(SIZE[0]) + 0.5) / 70000.0, SIZE[::-1])
     np.testing.assert_allclose(found, wanted, rtol=1e-5)
 
@@ -167,58 +159,22 @@ def test_a_text_that_is_typed_takes_the_file_s_place(folder: Path, any_engine: E
     np.testing.assert_allclose(found, 0.25 + (x + SIZE[0] * y) / 65536.0, rtol=0, atol=2**-23)
 
 
-def test_all_files_of_both_parts_are_watched(folder: Path) -> None:
-    (folder / "twice.toml").write_text(passes(flat="./plain"))
-    (folder / "placed.toml").write_text(SKETCH.replace("./own", "foreign/height(./twice)"))
-    names = {Path(file).name for file in load(folder / "placed.toml").files}
-    assert {"twice.toml", "plain.glsl", "height.glsl"} <= names
+def test_the_chooser_keeps_what_is_wired(folder: Path, any_engine: Engine) -> None:
+    sketch = load(folder / "placed.toml")
+    assert {"./fine", "./plain", "./invert"} <= {*choices(sketch, "picture")}
+    assert "foreign/height" in choices(sketch, "height")
+    found = any_engine.read(with_technique(sketch, "picture", "./plain"), "height")
+    np.testing.assert_allclose(found[0], (np.arange(SIZE[0]) + 0.5) / SIZE[0], rtol=1e-6)
 
 
-def test_a_filter_is_replaced_and_taken_off_again(folder: Path) -> None:
-    (folder / "soft.frag").write_text(INVERT.replace("1.0 -", "0.5 *"))
-    sketch = with_technique(load(folder), "view", "./invert(view/map)")
-    view = choices(sketch, "view")
-    assert {"./soft(view/map)", "view/map", "./invert(view/map)"} <= {*view}
-    assert not [use for use in view if use.count("(") > 1]
-    assert with_technique(sketch, "view", "view/map").graph == load(folder).graph
-
-
-def test_a_choice_is_saved_as_a_person_would_write_it(folder: Path, any_engine: Engine) -> None:
-    file = load(folder)
-    wanted = with_technique(file, "height", "foreign/height(./fine)")
-    wanted = with_technique(wanted, "view", "./invert(view/map)").with_values({"height.gain": 1.5})
-    save(file, wanted)
-    text = (folder / "sketch.toml").read_text()
-    assert 'use = "foreign/height(./fine)"' in text
-    assert 'use = "./invert(view/map)"' in text
-    again = load(folder)
-    assert value_of(again, "height.gain", values_of(again)) == 1.5
-    one, other = (any_engine.render(s, size=(48, 32)).array for s in (wanted, again))
-    np.testing.assert_array_equal(one, other)
-
-
-def test_a_copy_takes_the_files_along(folder: Path, tmp_path: Path) -> None:
-    away = tmp_path / "away"
-    away.mkdir()
-    file = load(folder)
-    copied = save_copy(file, with_technique(file, "height", "foreign/height(./fine)"), away)
-    assert (copied.parent / "fine.frag").read_text() == FINE
-    assert load(copied).graph.passes[0].use == "foreign/height(./fine)"
-
-
-@pytest.mark.parametrize(
-    ("use", "message"),
-    [
-        ("foreign/height(./fin)", r"there is no technique './fin'.*did you mean './fine'"),
-        ("foreign/heigth(./fine)", r"there is no technique 'foreign/heigth'.*did you mean 'foreign/height'"),
-        ("./own(./fine)", r"./own reads no picture; it has no input"),
-        ("foreign/height(../fine)", r"there is no technique '../fine'|lies outside"),
-    ],
-)
-def test_what_cannot_be_composed_is_told(folder: Path, use: str, message: str) -> None:
-    (folder / "sketch.toml").write_text(SKETCH.replace("./own", use))
-    with pytest.raises(PlaygroundError, match=message):
-        load(folder)
+def test_a_picture_that_no_kernel_reads_stays_of_bytes(folder: Path) -> None:
+    (folder / "filtered.toml").write_text(HEAD + passes(frame="./plain") + LAID_OVER)
+    formats = {
+        leaf.path: leaf.kernel.outputs[0].format
+        for name in ("placed.toml", "filtered.toml")
+        for leaf in flatten(load(folder / name)).leaves
+    }
+    assert formats["picture.view"] == "rgba32f" and formats["frame"] == "rgba8"
 
 
 def test_a_mistake_is_told_at_the_text_s_own_line(folder: Path, any_engine: Engine) -> None:
