@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 
 from playground.errors import PlainFormWarning
 from playground.sketch.model import VARIANTS, Sketch
-from playground.sketch.variants import left_out
+from playground.sketch.variants import unverified
 
 
 def warn(sentence: str) -> None:
@@ -36,7 +36,7 @@ class PlainForms:
     def report(self, sketch: Sketch, lacking: Iterable[str] = ()) -> None:
         """Report what is new of a sketch that is drawn; ``lacking`` are sentences of its plan."""
         kinds = self.kinds if sketch.samples == 1 else self.kinds_without_draws
-        for sentence in (*left_out(sketch, kinds), *lacking):
+        for sentence in (*map(str, unverified(sketch, kinds)), *lacking):
             if sentence not in self._reported:
                 self._reported.add(sentence)
                 self.notice(sentence)

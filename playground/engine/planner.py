@@ -35,6 +35,7 @@ from playground.sketch.flat import Flat, Leaf, Loop, Node, repeated_path, repeat
 from playground.sketch.flatten import flatten
 from playground.sketch.identity import Identity
 from playground.sketch.model import LARGEST_SIDE, Graph, Sketch, Technique, Value
+from playground.sketch.substitution import substitute_variants
 from playground.sketch.wiring import inner, output_names, target_of
 
 _MOST_PLANS = 8  # of so many graphs, picture sizes and stops the last plan is remembered
@@ -94,10 +95,10 @@ class Planner:
         place = (Identity(sketch.graph), sketch.folder, sketch.plain, tuple(variants), wanted, request)
 
         def flat(refused: Iterable[str], before: Flat | None = None) -> Flat:
-            return flatten(
-                sketch,
-                variants=variants,
-                opened=(wanted,) if wanted else (),
+            return substitute_variants(
+                flatten(sketch),
+                () if sketch.plain else variants,
+                wanted=wanted,
                 stopped=tuple(stopped),
                 refused=tuple(refused),
                 before=before,
@@ -263,7 +264,7 @@ class _Planning:
             time=self.time,
             steps=dict(self.request.stopped),
             interpolated=self.request.fills,
-            lacking=(*lacking, *refused.values(), *self.flat.shape.withheld),
+            lacking=(*lacking, *refused.values(), *(str(o) for o in self.flat.shape.omitted if o.is_news)),
         )
         sizes = self.sizes
         named = frozenset(sizes.named & self.flat.values.keys())

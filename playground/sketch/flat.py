@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Collection
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from playground.errors import SketchError, nearest
 from playground.shader.expressions import is_accepted, nearest_accepted
 from playground.sketch.follows import Rule
 from playground.sketch.model import CpuSource, Graph, Kernel, PassSpec, Value
+from playground.sketch.variants import Omission
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,14 +65,58 @@ Node = Leaf | Loop
 class Flat:
     """A sketch without nesting."""
 
-    nodes: tuple[Node, ...]  # in an order that wiring allows
-    specs: dict[str, PassSpec]  # every pass at every level, by path
-    graphs: dict[str, Graph]  # every technique of several passes, by path; "" is the sketch
-    values: dict[str, Value]  # every leaf parameter, by path
-    outputs: dict[str, dict[str, Ref]]  # every pass at every level: its outputs
-    wires: dict[str, dict[str, Source | None]]  # every technique of several passes: what feeds its inputs
     shape: Shape  # the same before any value is set
+    values: dict[str, Value]  # every leaf parameter, by path
     folder: str
+    set_inside: tuple[str, ...]  # paths that are set over the sketch's file, of parameters inside techniques
+
+    @cached_property
+    def nodes(self) -> tuple[Node, ...]:
+        """Its passes and loops, with their values, in an order that wiring allows."""
+        return self._filled(self.shape.nodes, None)
+
+    @property
+    def specs(self) -> dict[str, PassSpec]:
+        """Every pass at every level, by path."""
+        return self.shape.specs
+
+    @property
+    def graphs(self) -> dict[str, Graph]:
+        """Every technique of several passes, by path; "" is the sketch."""
+        return self.shape.graphs
+
+    @property
+    def outputs(self) -> dict[str, dict[str, Ref]]:
+        """Every pass at every level: its outputs."""
+        return self.shape.outputs
+
+    @property
+    def wires(self) -> dict[str, dict[str, Source | None]]:
+        """Every technique of several passes: what feeds its inputs."""
+        return self.shape.wires
+
+    def like(self, before: Flat | None) -> Flat:
+        """Return the same, with the leaves of an earlier one of its shape where their values are the same."""
+        if before is not None and before.shape is self.shape and before.folder == self.folder:
+            changed = [path for path, value in self.values.items() if value is not before.values[path]]
+            stale = set[str]().union(*[self.shape.readers.get(path, ()) for path in changed])
+            self.__dict__["nodes"] = self._filled(before.nodes, stale)
+        return self
+
+    def _filled(self, nodes: tuple[Node, ...], stale: Collection[str] | None) -> tuple[Node, ...]:
+        """Return nodes with values in their leaves; where ``stale`` is not None, new ones in those alone."""
+        if stale is not None and not stale:
+            return nodes
+        found: list[Node] = []
+        for node in nodes:
+            if isinstance(node, Loop):
+                found.append(replace(node, body=self._filled(node.body, stale)))
+            elif stale is None or node.path in stale:
+                own = tuple([(name, self.values[path]) for name, path in self.shape.paths[node.path]])
+                found.append(Leaf(node.path, node.kernel, own, node.inputs, self.folder, node.spec))
+            else:
+                found.append(node)
+        return tuple(found)
 
     @cached_property
     def leaves(self) -> list[Leaf]:
@@ -127,15 +173,26 @@ class Shape:
     outputs: dict[str, dict[str, Ref]]
     wires: dict[str, dict[str, Source | None]]
     paths: dict[str, tuple[tuple[str, str], ...]]  # leaf → its parameters, and where their values are
-    constants: dict[str, Value]  # of fast variants' own passes: values that no export reaches, by path
-    copied: dict[str, str]  # of the same: path → that of the technique's value, which it has as well
     rules: tuple[Rule, ...]  # of parameters that follow others until they are set
-    readers: dict[str, set[str]]  # path of a value → the leaves that have it
-    withheld: tuple[str, ...]  # a sentence for each fast variant that lacks an input that is wired
+    written: tuple[Node, ...]  # its nodes before what changes from frame to frame was moved into loops
+    # Of fast variants' own passes: values that no export reaches, by path, and paths of the techniques'
+    # values that others have as well.
+    constants: dict[str, Value] = field(default_factory=dict)
+    copied: dict[str, str] = field(default_factory=dict)
+    omitted: tuple[Omission, ...] = ()
     # Of techniques with a fast variant that draws, each parameter that it lacks: the technique's path, that
     # of the value inside it, its default.
-    lacking: tuple[tuple[str, str, Value], ...]
+    lacking: tuple[tuple[str, str, Value], ...] = ()
     targets: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of each override so far
+
+    @cached_property
+    def readers(self) -> dict[str, set[str]]:
+        """Path of a value → the leaves that have it."""
+        found: dict[str, set[str]] = {}
+        for leaf, pairs in self.paths.items():
+            for _, path in pairs:
+                found.setdefault(path, set()).add(leaf)
+        return found
 
 
 def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> list[Leaf]:

@@ -11,8 +11,7 @@ latest earlier pass with an output of its name, but for an input that decides wh
 are there (see ``presence``). What is wired to a path inside a technique
 wins over what is wired to its export.
 
-Where a fast variant replaces a technique (see ``variants``), its own kernel or passes are
-in the result; those of a ``.fast.toml`` are at ``pass.fast.inner``, which no path may name.
+Every technique is in its canonical form; ``substitution`` puts fast variants in place of some.
 
 The shape of the result depends on the graph alone and is computed once for each; a slider
 only puts new values into it.
@@ -20,11 +19,9 @@ only puts new values into it.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from pathlib import Path
-from typing import Any
 
 from playground.errors import SketchError, nearest
 from playground.paths import shown
@@ -35,9 +32,8 @@ from playground.sketch.assign import effective_values, find_targets, resolve
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Ref, Shape, Source, leaves_of
 from playground.sketch.follows import follow, rules_of
 from playground.sketch.identity import Identity
-from playground.sketch.model import Graph, Kernel, PassSpec, PlainFragment, Sketch, Technique, Value, Variant
+from playground.sketch.model import Graph, Kernel, PassSpec, PlainFragment, Sketch, Technique
 from playground.sketch.presence import deciding_inputs, why_unfed
-from playground.sketch.variants import INSIDE, active_variant
 from playground.sketch.wiring import (
     initial_names,
     inner,
@@ -114,30 +110,13 @@ def _loop_paths(loop: Loop) -> set[str]:
     return {leaf.path for leaf in leaves_of(loop.body)}
 
 
-def flatten(
-    sketch: Sketch,
-    *,
-    variants: Collection[str] = (),
-    opened: tuple[str, ...] = (),
-    stopped: tuple[str, ...] = (),
-    refused: tuple[str, ...] = (),
-    before: Flat | None = None,
-) -> Flat:
-    """Flatten a sketch; fast variants of the kinds named replace techniques, where they are verified.
+def flatten(sketch: Sketch) -> Flat:
+    """Flatten a sketch, every technique in its canonical form.
 
-    A variant gives its technique's outputs only, and after the last step: it does not replace
-    a technique that holds one of the paths ``opened``, or a pass inside that something is wired to,
-    or a parameter inside that is set and that it does not have, or an input that it does not have,
-    or a draw of which a parameter that it does not have is not at its default,
-    nor one that is itself among the ``stopped`` or the ``refused``, or whose initial state is wired.
-    Leaves of ``before``, an earlier result, are reused where their values are the same objects.
     Raises ``SketchError`` at the pass that is wrong, with the nearest valid name.
     """
     graph = sketch.graph
-    kinds = frozenset[str]() if sketch.plain else frozenset(variants)
-    inside = sorted({path for path, _ in sketch.overrides if path.count(".") > 1})
-    limits = (opened, stopped, refused, tuple(inside)) if kinds else ((), (), (), ())
-    shape = _shape(Identity(graph), kinds, *limits)
+    shape = _shape(Identity(graph))
     values = effective_values(graph)
     for path, value in sketch.overrides:
         if path not in shape.targets:
@@ -145,71 +124,29 @@ def flatten(
         for target in shape.targets[path]:
             values[target] = value
     follow(shape.rules, values)
-    if plain := {path for path, name, default in shape.lacking if values[_join(path, name)] != default}:
-        more = (*refused, *sorted(plain))
-        return flatten(sketch, variants=variants, opened=opened, stopped=stopped, refused=more, before=before)
-    values |= shape.constants | {path: values[source] for path, source in shape.copied.items()}
-    nodes, stale = shape.nodes, None
-    if before is not None and before.shape is shape and before.folder == sketch.folder:
-        changed = [path for path, value in values.items() if value is not before.values[path]]
-        nodes, stale = before.nodes, set[str]().union(*[shape.readers.get(path, ()) for path in changed])
-    return Flat(
-        nodes=_filled(nodes, shape, values, sketch.folder, stale),
-        specs=shape.specs,
-        graphs=shape.graphs,
-        values=values,
-        outputs=shape.outputs,
-        wires=shape.wires,
-        shape=shape,
-        folder=sketch.folder,
-    )
-
-
-def withheld(sketch: Sketch, variants: Collection[str]) -> tuple[str, ...]:
-    """Return a sentence for each fast variant that lacks an input that its sketch wires."""
-    return flatten(sketch, variants=variants).shape.withheld
+    inside = sorted({path for path, _ in sketch.overrides if path.count(".") > 1})
+    return Flat(shape, values, sketch.folder, tuple(inside))
 
 
 @lru_cache(maxsize=32)
-def _shape(
-    key: Identity[Graph],
-    kinds: frozenset[str],
-    opened: tuple[str, ...],
-    stopped: tuple[str, ...],
-    refused: tuple[str, ...],
-    overrides: tuple[str, ...],
-) -> Shape:
-    maker = _Flattener(key.object, kinds, opened, stopped, refused, overrides)
-    nodes = tuple(with_clocked_inside(maker.expand(key.object, "", {})))
-    outputs = {
-        path: {name: maker.real(ref) for name, ref in found.items()}
-        for path, found in maker.outputs.items()
-        if f".{INSIDE}." not in path or not any(path.startswith(f"{p}.{INSIDE}.") for p in maker.inside)
-    }
-    wires = {
-        path: {name: maker.real(source) for name, source in found.items()}
-        for path, found in maker.wires.items()
-    }
-    inside = tuple(f"{path}.{INSIDE}." for path in maker.inside)  # there values are copied
-    rules = rules_of({path: g for path, g in maker.graphs.items() if not f"{path}.".startswith(inside)})
-    readers: dict[str, set[str]] = {}
-    for leaf, pairs in maker.paths.items():
-        for _, path in pairs:
-            readers.setdefault(path, set()).add(leaf)
+def _shape(key: Identity[Graph]) -> Shape:
+    maker = Flattener()
+    written = tuple(maker.expand(key.object, "", {}))
     return Shape(
-        nodes=_with_exact_pictures(nodes, maker.graphs),
+        nodes=in_running_order(written, maker.graphs),
         specs=maker.specs,
         graphs=maker.graphs,
-        outputs=outputs,
-        wires=wires,
+        outputs=maker.outputs,
+        wires=maker.wires,
         paths=maker.paths,
-        constants=maker.constants,
-        copied=maker.copied,
-        rules=rules,
-        readers=readers,
-        withheld=tuple(maker.withheld.values()),
-        lacking=tuple(maker.lacking),
+        rules=rules_of(maker.graphs),
+        written=written,
     )
+
+
+def in_running_order(nodes: tuple[Node, ...], graphs: Mapping[str, Graph]) -> tuple[Node, ...]:
+    """Return nodes as they run: what changes from frame to frame inside loops, exact pictures where read."""
+    return _with_exact_pictures(tuple(with_clocked_inside(nodes)), graphs)
 
 
 _EXACT = {"r8": "r32f", "rg8": "rg32f", "rgba8": "rgba32f"}
@@ -242,115 +179,30 @@ def _with_exact_pictures(nodes: tuple[Node, ...], graphs: Mapping[str, Graph]) -
     return tuple(map(changed, nodes)) if exact else nodes
 
 
-def _filled(
-    nodes: tuple[Node, ...],
-    shape: Shape,
-    values: Mapping[str, Value],
-    folder: str,
-    stale: Collection[str] | None,
-) -> tuple[Node, ...]:
-    """Return nodes with values in their leaves; where ``stale`` is not None, new ones in those alone."""
-    if stale is not None and not stale:
-        return nodes
-    found: list[Node] = []
-    for node in nodes:
-        if isinstance(node, Loop):
-            found.append(replace(node, body=_filled(node.body, shape, values, folder, stale)))
-        elif stale is None or node.path in stale:
-            own = tuple([(name, values[path]) for name, path in shape.paths[node.path]])
-            found.append(Leaf(node.path, node.kernel, own, node.inputs, folder, node.spec))
-        else:
-            found.append(node)
-    return tuple(found)
-
-
 def is_exported(graph: Graph, path: str) -> bool:
     """Return whether a technique exports a parameter inside, and nothing else, by some name."""
     wanted = {target.path for target in find_targets(graph, path)}
     return any({t.path for t in find_targets(graph, e.name)} == wanted for e in graph.parameters)
 
 
-class _Flattener:
-    def __init__(
-        self,
-        graph: Graph,
-        kinds: frozenset[str],
-        opened: tuple[str, ...],
-        stopped: tuple[str, ...],
-        refused: tuple[str, ...],
-        overrides: tuple[str, ...],
-    ) -> None:
-        self.kinds = kinds
-        self.specs: dict[str, PassSpec] = {}
-        self.graphs: dict[str, Graph] = {}
-        self.outputs: dict[str, dict[str, Ref]] = {}
-        self.wires: dict[str, dict[str, Source | None]] = {}
-        self.paths: dict[str, tuple[tuple[str, str], ...]] = {}
-        self.constants: dict[str, Value] = {}
-        self.copied: dict[str, str] = {}
-        # Pass → what gives its outputs: the passes of its fast variant, or its own where that steps back.
-        self.inside: dict[str, dict[str, Ref]] = {}
-        self.withheld: dict[str, str] = {}
-        self.lacking: list[tuple[str, str, Value]] = []
-        self.opened: set[str] = set()
-        if kinds:
-            for path in (*opened, *stopped):
-                self._open("", path)
-            self.opened |= {*stopped, *refused}
-            self._open_wired(graph, "")
-            for path in overrides:
-                self._open_set(graph, "", path)
+class Flattener:
+    """Flattens graphs, and holds what was found of their passes, by path."""
 
-    def _open(self, prefix: str, path: str) -> None:
-        """Bar fast variants from replacing the techniques around a pass."""
-        parts = path.partition(":")[0].split(".")
-        self.opened |= {_join(prefix, ".".join(parts[:i])) for i in range(1, len(parts))}
-
-    def _open_wired(self, graph: Graph, prefix: str) -> None:
-        for _, text in graph.outputs:
-            self._open(prefix, text)
-        for export in graph.inputs:
-            for target in export.targets:
-                self._open(prefix, target.rpartition(".")[0])
-        for spec in graph.passes:
-            for _, text in spec.inputs:
-                self._open(prefix, text)
-            for name, _ in (*spec.inputs, *spec.feedback):
-                self._open(prefix, f"{spec.name}.{name}".rpartition(".")[0])
-            for path, _ in spec.values:
-                self._open_set(graph, prefix, f"{spec.name}.{path}")
-            if isinstance(spec.technique, Graph):
-                self._open_wired(spec.technique, _join(prefix, spec.name))
-
-    def _open_set(self, graph: Graph, prefix: str, path: str) -> None:
-        """Bar fast variants from replacing the techniques that do not export a parameter inside."""
-        first, _, rest = path.partition(".")
-        spec = graph.find(first)
-        if spec is None or not isinstance(spec.technique, Graph) or "." not in rest:
-            return
-        here = _join(prefix, first)
-        if not is_exported(spec.technique, rest):
-            self.opened.add(here)
-        self._open_set(spec.technique, here, rest)
-
-    def _active(self, technique: Technique, path: str) -> Variant | None:
-        """Return the fast variant that may replace a technique, if any may."""
-        return active_variant(technique, self.kinds) if self.kinds and path not in self.opened else None
-
-    def real(self, source: Source | None) -> Any:
-        """Return what gives a texture: the pass inside, of a variant of passes or where one steps back."""
-        while isinstance(source, Ref) and source.path in self.inside:
-            source = self.inside[source.path][source.output]
-        return source
+    def __init__(self, before: Shape | None = None) -> None:
+        self.specs: dict[str, PassSpec] = dict(before.specs) if before else {}
+        self.graphs: dict[str, Graph] = dict(before.graphs) if before else {}
+        self.outputs: dict[str, dict[str, Ref]] = dict(before.outputs) if before else {}
+        self.wires: dict[str, dict[str, Source | None]] = dict(before.wires) if before else {}
+        self.paths: dict[str, tuple[tuple[str, str], ...]] = dict(before.paths) if before else {}
 
     def expand(self, graph: Graph, prefix: str, wires: Mapping[str, Source | None]) -> list[Node]:
         """Return the nodes of a graph; ``wires`` maps inputs, as paths inside it, to what feeds them."""
         self.graphs[prefix] = graph
         self.wires[prefix] = dict(wires)
         for spec in graph.passes:
-            path = _join(prefix, spec.name)
+            path = join(prefix, spec.name)
             self.specs[path] = spec
-            self.outputs[path] = self._outputs_of(spec.technique, path)
+            self.outputs[path] = self.outputs_of(spec.technique, path)
         inside: dict[str, Source | None] = {}
         for export in graph.inputs:
             # What its caller leaves unwired, a technique's own pass of that name gives.
@@ -363,27 +215,26 @@ class _Flattener:
             own = {k.partition(".")[2]: v for k, v in inside.items() if k.partition(".")[0] == spec.name}
             nodes += self._one(spec, prefix, own, earlier)
             earlier.append(spec)
-        return _ordered([self._rewired(node) for node in nodes], graph)
+        return ordered(nodes, graph)
 
-    def _outputs_of(self, technique: Technique, path: str) -> dict[str, Ref]:
+    def outputs_of(self, technique: Technique, path: str) -> dict[str, Ref]:
+        """Return the outputs of a technique at a path: the textures of leaves."""
         if isinstance(technique, Kernel):
             return {o.name: Ref(path, o.name) for o in technique.outputs}
-        if self._active(technique, path):
-            return {name: Ref(path, name) for name in output_names(technique)}
         found = {}
         for name in output_names(technique):
             where, _, output = target_of(technique, name).partition(":")
             source = inner(technique, where)
             if source is None:
                 raise SketchError(f"output '{name}': no pass '{where}' inside", file=shown(technique.path))
-            below = self._outputs_of(source, _join(path, where))
+            below = self.outputs_of(source, join(path, where))
             found[name] = below[output] if output in below else below.get(name, next(iter(below.values())))
         return found
 
     def _one(
         self, spec: PassSpec, prefix: str, given: Mapping[str, Source | None], earlier: list[PassSpec]
     ) -> list[Node]:
-        path = _join(prefix, spec.name)
+        path = join(prefix, spec.name)
         technique = spec.technique
         wires: dict[str, Source | None] = dict(given)
         for name, text in spec.inputs:
@@ -408,73 +259,10 @@ class _Flattener:
 
     def _body(self, spec: PassSpec, path: str, wires: Mapping[str, Source | None]) -> list[Node]:
         technique = spec.technique
-        variant = self._active(technique, path)
-        starts = initial_names(technique) if isinstance(technique, Kernel) else {}
-        if any(wires.get(name) for name in starts) and not (variant and variant.kind == "draws"):
-            variant = None  # only the canonical form takes an initial state
-        lacking = sorted(name for name in _lacking(technique, variant) if wires.get(name)) if variant else []
-        if variant and lacking:
-            what = f"it does not read what is wired to {' and '.join(lacking)}"
-            name = Path(variant.path).name
-            self.withheld[path] = f"{path}: {name} is left out, the plain form runs: {what}"
-            variant = None
-            if isinstance(technique, Graph):
-                self.opened.add(path)
-                self.inside[path] = self._outputs_of(technique, path)
-        if variant and variant.kind == "draws":
-            self.lacking += [(path, *own) for own in _defaults_of_lacking(technique, variant.technique)]
-        if variant and isinstance(variant.technique, Graph):
-            return self._passes(variant.technique, spec, path, wires)
-        if isinstance(technique, Kernel):
-            kernel = technique
-            if variant and isinstance(variant.technique, Kernel):
-                kernel = variant.technique
-            self.paths[path] = tuple((p.name, _join(path, p.name)) for p in kernel.parameters)
-        elif variant and isinstance(variant.technique, Kernel):
-            kernel = variant.technique
-            self.wires[path] = dict(wires)
-            self._add_replaced(technique, path)
-            self.paths[path] = tuple((p.name, _own(technique, path, p.name)) for p in kernel.parameters)
-        else:
+        if isinstance(technique, Graph):
             return self.expand(technique, path, wires)
-        wanted = (*input_names(kernel), *(n for n in initial_names(kernel) if n not in input_names(kernel)))
-        inputs = tuple((name, wires.get(name)) for name in wanted)
-        return [Leaf(path=path, kernel=kernel, values=(), inputs=inputs, folder="", spec=spec)]
-
-    def _passes(
-        self, variant: Graph, spec: PassSpec, path: str, wires: Mapping[str, Source | None]
-    ) -> list[Node]:
-        """Return the passes of a fast variant, in place of its technique."""
-        place = _join(path, INSIDE)
-        self.specs[place] = PassSpec(INSIDE, spec.use, variant, file=spec.file, line=spec.line)
-        if isinstance(spec.technique, Graph):
-            self.wires[path] = dict(wires)
-            self._add_replaced(spec.technique, path)
-        self.constants |= {_join(place, name): value for name, value in effective_values(variant).items()}
-        for export in variant.parameters:
-            for target in resolve(variant, export.name):
-                self.copied[_join(place, target.path)] = _own(spec.technique, path, export.name)
-        nodes = self.expand(variant, place, wires)
-        found = self._outputs_of(variant, place)
-        self.inside[path] = {name: found[name] for name in output_names(spec.technique)}
-        return nodes
-
-    def _rewired(self, node: Node) -> Node:
-        """Return a node that reads from variants of several passes, where they are active."""
-        if not self.inside:
-            return node
-        if isinstance(node, Loop):
-            feedback = tuple((name, self.real(first), self.real(ref)) for name, first, ref in node.feedback)
-            return replace(node, body=tuple(map(self._rewired, node.body)), feedback=feedback)
-        return replace(node, inputs=tuple((name, self.real(source)) for name, source in node.inputs))
-
-    def _add_replaced(self, graph: Graph, prefix: str) -> None:
-        """Add the passes that a fast variant replaces: expressions may still name their sizes."""
-        self.graphs[prefix] = graph
-        for spec in graph.passes:
-            self.specs[_join(prefix, spec.name)] = spec
-            if isinstance(spec.technique, Graph):
-                self._add_replaced(spec.technique, _join(prefix, spec.name))
+        self.paths[path] = tuple((p.name, join(path, p.name)) for p in technique.parameters)
+        return [leaf_of(technique, spec, path, wires)]
 
     def _ref(self, text: str, wanted: str, prefix: str, spec: PassSpec) -> Ref:
         where, _, output = text.partition(":")
@@ -485,7 +273,7 @@ class _Flattener:
         technique = inner(self.graphs[prefix], where)
         if technique is None:
             raise spec.error(f"input '{wanted}': nothing named '{where}' inside '{head}'")
-        outputs = self._outputs_of(technique, _join(prefix, where))
+        outputs = self.outputs_of(technique, join(prefix, where))
         if output and output not in outputs:
             raise spec.error(
                 f"input '{wanted}': pass '{where}' has no output '{output}'{nearest(output, outputs)}"
@@ -497,10 +285,10 @@ class _Flattener:
     def _unwired(self, name: str, prefix: str, spec: PassSpec, earlier: list[PassSpec]) -> Source | None:
         for other in reversed(earlier):
             if other.name == name:
-                outputs = self.outputs[_join(prefix, other.name)]
+                outputs = self.outputs[join(prefix, other.name)]
                 return outputs.get(name, next(iter(outputs.values())))
         for other in reversed(earlier if name not in deciding_inputs(spec.technique) else []):
-            outputs = self.outputs[_join(prefix, other.name)]
+            outputs = self.outputs[join(prefix, other.name)]
             if name in outputs:
                 return outputs[name]
         if is_optional(spec.technique, name):
@@ -508,17 +296,12 @@ class _Flattener:
         candidates = [
             f"{other.name}:{output}" if len(outputs) > 1 else other.name
             for other in earlier
-            for outputs in [self.outputs[_join(prefix, other.name)]]
+            for outputs in [self.outputs[join(prefix, other.name)]]
             for output in outputs
         ]
         hint = f"candidates: {', '.join(candidates)}" if candidates else "there is no earlier pass"
         message = f"pass '{spec.name}' needs its input '{name}' wired, as inputs = {{ {name} = \"…\" }}"
         raise spec.error(f"{message}; {hint}")
-
-
-def _lacking(technique: Technique, variant: Variant) -> set[str]:
-    """Return the inputs of a technique that its fast variant does not have."""
-    return {*input_names(technique)} - {*input_names(variant.technique)}
 
 
 def _covered(technique: Technique, name: str, wires: Mapping[str, Source | None]) -> bool:
@@ -530,19 +313,14 @@ def _covered(technique: Technique, name: str, wires: Mapping[str, Source | None]
     )
 
 
-def _defaults_of_lacking(technique: Technique, variant: Technique) -> list[tuple[str, Value]]:
-    """Return the values that a technique has and its fast variant lacks: paths inside, and defaults."""
-    values, known = effective_values(technique), {one.name for one in variant.parameters}
-    names = [one.name for one in technique.parameters if one.name not in known]
-    return [(target.path, values[target.path]) for name in names for target in resolve(technique, name)]
+def leaf_of(kernel: Kernel, spec: PassSpec, path: str, wires: Mapping[str, Source | None]) -> Leaf:
+    """Return the leaf of a kernel, fed by ``wires``, without values."""
+    names = dict.fromkeys([*input_names(kernel), *initial_names(kernel)])
+    return Leaf(path, kernel, (), tuple((name, wires.get(name)) for name in names), "", spec)
 
 
-def _own(technique: Technique, path: str, name: str) -> str:
-    """Return where the value of a technique's parameter is, by the parameter's name."""
-    return _join(path, name if isinstance(technique, Kernel) else resolve(technique, name)[0].path)
-
-
-def _join(prefix: str, name: str) -> str:
+def join(prefix: str, name: str) -> str:
+    """Return the path of a pass or a parameter inside another's."""
     return f"{prefix}.{name}" if prefix else name
 
 
@@ -561,7 +339,7 @@ def _starts(loop: Loop) -> set[str]:
     return found | (set().union(*inside) - {leaf.path for leaf in leaves_of(loop.body)})
 
 
-def _ordered(nodes: list[Node], graph: Graph) -> list[Node]:
+def ordered(nodes: list[Node], graph: Graph) -> list[Node]:
     """Sort nodes so that each follows what it reads, otherwise as written."""
     owner = {leaf.path: i for i, node in enumerate(nodes) for leaf in leaves_of([node])}
     needs = {i: {owner[p] for p in _reads(node) if p in owner} for i, node in enumerate(nodes)}

@@ -22,7 +22,7 @@ import hashlib
 import json
 import re
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from shlex import quote
@@ -116,6 +116,21 @@ def compiled_text(code: str) -> str:
     return " ".join(found)
 
 
+@dataclass(frozen=True)
+class Omission:
+    """A fast variant that does not run here, and why not."""
+
+    variant: str  # name of the variant's file
+    reason: str
+    path: str = ""  # of the technique in the sketch; "": wherever it is used
+    runs: str = "the plain form"  # in its place
+    is_news: bool = True  # it follows from no request, as to read a pass inside
+
+    def __str__(self) -> str:
+        where = f"{self.path}: " if self.path else ""
+        return f"{where}{self.variant} is left out, {self.runs} runs: {self.reason}"
+
+
 def active_variant(technique: Technique, kinds: Collection[str]) -> Variant | None:
     """Return the fast variant of some ``kinds`` that runs in place of a technique, if one may."""
     found = (v for v in technique.variants if v.kind in kinds and is_verified(technique, v))
@@ -127,27 +142,25 @@ def is_verified(technique: Technique, variant: Variant) -> bool:
     return variant.verified == (content_of(technique), content_of(variant.technique))
 
 
-def left_out(sketch: Sketch, kinds: Collection[str] = VARIANTS) -> tuple[str, ...]:
-    """Return a sentence for each fast variant of some ``kinds`` that its sketch cannot have run, and why."""
-    if sketch.plain:
-        return ()
-    return _left_out(Identity(sketch.graph), frozenset(kinds))
+def unverified(sketch: Sketch, kinds: Collection[str] = VARIANTS) -> tuple[Omission, ...]:
+    """Return the fast variants of some ``kinds`` that its sketch cannot have run: they are not verified."""
+    return () if sketch.plain else _unverified(Identity(sketch.graph), frozenset(kinds))
 
 
 @lru_cache(maxsize=64)
-def _left_out(key: Identity[Graph], kinds: frozenset[str]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(_sentences(key.object, kinds)))
+def _unverified(key: Identity[Graph], kinds: frozenset[str]) -> tuple[Omission, ...]:
+    return tuple(dict.fromkeys(_unverified_inside(key.object, kinds)))
 
 
-def _sentences(technique: Technique, kinds: frozenset[str]) -> Iterator[str]:
+def _unverified_inside(technique: Technique, kinds: frozenset[str]) -> Iterator[Omission]:
     other = active_variant(technique, kinds)
     runs = Path(other.path).name if other else "the plain form"
     for variant in technique.variants:
         if variant.kind in kinds and not is_verified(technique, variant):
-            yield f"{Path(variant.path).name} is left out, {runs} runs: {why_not(technique, variant)}"
+            yield Omission(Path(variant.path).name, why_not(technique, variant), runs=runs)
     if isinstance(technique, Graph) and other is None:
         for spec in technique.passes:
-            yield from _sentences(spec.technique, kinds)
+            yield from _unverified_inside(spec.technique, kinds)
 
 
 def why_not(technique: Technique, variant: Variant) -> str:

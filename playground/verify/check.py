@@ -41,7 +41,6 @@ from playground.shader.source import read_text
 from playground.shader.wrap import COMPUTE, FRAGMENT
 from playground.sketch.assign import values_of
 from playground.sketch.find import ENDING, is_pack, unpacked
-from playground.sketch.flatten import withheld
 from playground.sketch.load import is_technique, load, plain_sketch
 from playground.sketch.model import (
     VARIANTS,
@@ -54,6 +53,7 @@ from playground.sketch.model import (
     kernels_of,
 )
 from playground.sketch.presence import deciding_inputs, form_of, missing_input
+from playground.sketch.substitution import omitted
 from playground.sketch.techniques import (
     Techniques,
     lonely_variant,
@@ -65,8 +65,8 @@ from playground.sketch.variants import (
     any_variants,
     check_shape,
     is_verified,
-    left_out,
     trusted,
+    unverified,
     why_not,
     without_variants,
 )
@@ -235,7 +235,7 @@ class _Check:
 
     def sketch(self) -> None:
         sketch = load(self.path).plainly(self.plain)
-        self.notes = (*left_out(sketch), *withheld(sketch, VARIANTS))
+        self.notes = omitted(sketch, VARIANTS)
         self.warnings |= dict.fromkeys(warnings_of_sketch(sketch))
         request = TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="any")
         if reads := _names_files(sketch):  # a plan asks its files for their size: the child reads them first
@@ -260,7 +260,8 @@ class _Check:
 
     def check_standalone(self, technique: Technique) -> None:
         """Try a technique: its own text by both drivers, then its fast variants, verified or not."""
-        self.notes = () if self.plain else left_out(self.standalone_sketch(technique))
+        found = () if self.plain else unverified(self.standalone_sketch(technique))
+        self.notes = tuple(map(str, found))
         plain = without_variants(technique)
         self.attempt(self.request(plain, BOTH))
         deciding = deciding_inputs(plain)

@@ -27,12 +27,11 @@ from playground.paths import shown as shown_path
 from playground.shader.parameter import shortest
 from playground.sketch.assign import TERRAIN_KEYS
 from playground.sketch.find import find
-from playground.sketch.flatten import withheld
 from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.replace_technique import with_texts
+from playground.sketch.substitution import omitted
 from playground.sketch.technique_cache import TechniqueCache
-from playground.sketch.variants import left_out
 from playground.sketch.warnings import newly_shadowed
 from playground.workbench.checks import Checks, DrawnState
 from playground.workbench.dependencies import watched
@@ -177,8 +176,8 @@ class Drafts:
         elif shown is not None:
             notes += map(str, newly_shadowed(shown.file, draft.sketch))
         variants = self._checks.variants
-        known = () if old is None else _not_run(old.base, variants)
-        notes += [note for note in _not_run(draft.base, variants) if note not in known]
+        known = () if old is None else omitted(old.base, variants)
+        notes += [note for note in omitted(draft.base, variants) if note not in known]
         self._propose(notes)
 
     def open(
@@ -476,11 +475,6 @@ class Drafts:
         if edited.edits.techniques != shown.edits.techniques or edited.edits.channels != shown.edits.channels:
             return True
         return self.sandboxed and self._drawn.reads_new_data(edited.sketch)
-
-
-def _not_run(sketch: Sketch, variants: tuple[str, ...]) -> tuple[str, ...]:
-    """Return a sentence for each fast variant of a sketch that does not run, whatever its size."""
-    return *left_out(sketch, variants), *withheld(sketch, variants)
 
 
 def _listed(files: Iterable[Path]) -> str:

@@ -21,7 +21,7 @@ from playground.paths import GLSL
 from playground.sketch import find as unpack
 from playground.sketch.find import unpacked, unpacked_beside
 from playground.sketch.model import VARIANTS
-from playground.sketch.variants import NAME, active_variant, left_out
+from playground.sketch.variants import NAME, active_variant, unverified
 from playground.verify.check import find_files
 
 from ..loading import load
@@ -318,5 +318,5 @@ def test_a_fast_variant_and_the_record_of_it_go_along_and_run(folder: Path, tmp_
     with zipfile.ZipFile(packed) as archive:
         assert {"hills/parts/terrain.fast.toml", f"hills/parts/{NAME}"} <= set(archive.namelist())
     found = load(unpacked(packed))
-    assert left_out(found) == ()
+    assert unverified(found) == ()
     assert active_variant(found.graph.passes[0].technique, VARIANTS) is not None

@@ -10,9 +10,9 @@ import pytest
 from playground.api import headless
 from playground.engine.engine import Engine
 from playground.errors import PlainFormWarning, PlaygroundError, SketchError
-from playground.sketch.flatten import withheld
 from playground.sketch.model import VARIANTS, Sketch
-from playground.sketch.variants import NAME, left_out
+from playground.sketch.substitution import omitted
+from playground.sketch.variants import NAME, unverified
 from playground.verify.variants import recorded, subjects, verify
 
 from ..loading import load
@@ -124,7 +124,7 @@ def test_an_input_that_a_variant_does_not_have_has_the_plain_form_run(drawing, h
     assert sentences == [
         f"{path}: {name} is left out, the plain form runs: it does not read what is wired to more"
     ]
-    assert list(withheld(wired, (kind,))) == sentences
+    assert list(omitted(wired, (kind,))) == sentences
 
 
 def test_a_renamed_parameter_of_the_plain_text_leaves_the_variant_out(drawing, hill):
@@ -402,14 +402,14 @@ def test_one_that_differs_is_not_recorded(ctx, folder, tmp_path, where):
     assert not found.ok and words in found.wrong and "hill.glsl" in found.wrong
     recorded([found])
     assert json.loads((folder.path / NAME).read_text())["variants"] == {}
-    assert len(left_out(load(sketch.file))) == 1
+    assert len(unverified(load(sketch.file))) == 1
 
 
 def test_one_without_a_bound_is_refused_in_a_sentence(ctx, folder, tmp_path):
     folder.write("hill.glsl", HILL)
     folder.write("rise.glsl", RISE)
     folder.write("hill.comp", COMPUTE.replace(', agrees = "1e-5"', ""))
-    (sentence,) = left_out(folder.sketch(BODY))
+    (sentence,) = map(str, unverified(folder.sketch(BODY)))
     assert sentence.endswith('it does not say how closely it agrees, as agrees = "1e-5"')
     (found,) = verdicts(ctx, folder.path, tmp_path)
     assert not found.ok and "how closely" in found.wrong

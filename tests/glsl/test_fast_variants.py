@@ -9,10 +9,10 @@ from playground.allowed_files import is_variant
 from playground.engine.engine import Engine
 from playground.paths import GLSL
 from playground.sketch.find import shipped_sketches
-from playground.sketch.flat import leaves_of
 from playground.sketch.flatten import flatten
 from playground.sketch.model import VARIANTS, Graph, PassSpec, Sketch, kernels_of
 from playground.sketch.replace_technique import with_texts
+from playground.sketch.substitution import substitute_variants
 from playground.sketch.variants import NAME, content_of, is_verified, read, why_not, written
 from playground.verify.variants import compared, places_in, subjects, verify
 
@@ -150,7 +150,7 @@ def test_a_parameter_inside_that_a_variant_has_not_has_the_plain_form_run(path):
     sketch = load("fourier")
 
     def kernels(asked):
-        return [leaf.kernel.path for leaf in leaves_of(flatten(asked, variants=VARIANTS).nodes)]
+        return [leaf.kernel.path for leaf in substitute_variants(flatten(asked), VARIANTS).leaves]
 
     assert any(name.endswith("fourier.comp") for name in kernels(sketch))
     assert any(

@@ -9,11 +9,13 @@ import pytest
 
 from playground.errors import PlaygroundError
 from playground.sketch import flatten as module
+from playground.sketch import substitution
 from playground.sketch.assign import values_of
 from playground.sketch.find import shipped_sketches
 from playground.sketch.flat import Fed, Leaf, Loop, Ref, leaves_of
 from playground.sketch.flatten import flatten
 from playground.sketch.model import VARIANTS
+from playground.sketch.substitution import substitute_variants
 from playground.sketch.wiring import (
     initial_names,
     input_names,
@@ -67,7 +69,7 @@ def make(folder):
 def wires(sketch, *, variants=(), **options) -> dict[str, dict[str, str]]:
     """Return pass → input → what feeds it, as text, for every leaf."""
     found = {}
-    for leaf in leaves_of(flatten(sketch, variants=variants, **options).nodes):
+    for leaf in leaves_of(substitute_variants(flatten(sketch), variants, **options).nodes):
         found[leaf.path] = {
             name: str(s)
             if isinstance(s, Ref)
@@ -335,7 +337,7 @@ def test_a_fast_variant_replaces_its_technique_where_it_can_run(doubled):
     sketch = doubled(passes("h h", "t fast; set = { rise = 3 }", "l light"))
     assert set(wires(sketch)) == {"h", "t.a", "t.b", "l", "view"}
     assert wires(sketch, variants=VARIANTS)["t"] == {"height": "h:height"}
-    flat = flatten(sketch, variants=VARIANTS)
+    flat = substitute_variants(flatten(sketch), VARIANTS)
     leaf = next(leaf for leaf in leaves_of(flat.nodes) if leaf.path == "t")
     assert leaf.kernel.kind == "compute" and leaf.values == (("rise", 3.0),)
     assert str(flat.ref("t:water", "s")) == "t:water"
@@ -358,15 +360,35 @@ def test_a_fast_variant_steps_back_where_something_is_wired_to_what_is_inside(do
     assert all(s == "nothing" or s.partition(":")[0] in known for w in found.values() for s in w.values())
 
 
-def test_a_fast_variant_steps_back_for_a_path_that_is_opened(doubled):
+def test_a_fast_variant_steps_back_for_a_path_that_is_wanted(doubled):
     sketch = doubled(passes("h h", "t around", "l light"))
     assert "t.f" in wires(sketch, variants=VARIANTS) and "t.f.a" not in wires(sketch, variants=VARIANTS)
-    assert wires(sketch, variants=VARIANTS, opened=("t.f.a",)) == wires(sketch)
+    assert wires(sketch, variants=VARIANTS, wanted="t.f.a") == wires(sketch)
     assert (
-        str(flatten(sketch, variants=VARIANTS, opened=("t.f.b:water",)).ref("t.f.b:water", "s"))
+        str(substitute_variants(flatten(sketch), VARIANTS, wanted="t.f.b:water").ref("t.f.b:water", "s"))
         == "t.f.b:water"
     )
-    assert "t.f" in wires(sketch, variants=VARIANTS, opened=("t.f", "h", "nothing.there"))
+    for wanted in ("t.f", "h", "nothing.there"):
+        assert "t.f" in wires(sketch, variants=VARIANTS, wanted=wanted)
+
+
+@pytest.mark.parametrize(
+    ("body", "options", "reason"),
+    [
+        ("t fast; inputs = { 'b.height' = 'h' }", {}, "something is wired to a pass inside"),
+        ("t fast", {"wanted": "t.a"}, "a pass inside is read"),
+        ("t fast", {"stopped": ("t.b",)}, "it is stopped early"),
+        ("t fast", {"refused": ("t",)}, "the plan refuses it"),
+        ("t fast", {"kinds": ("draws",)}, "there are no compute shaders here"),
+    ],
+)
+def test_a_fast_variant_that_does_not_run_has_a_reason(doubled, body, options, reason):
+    kinds = options.pop("kinds", VARIANTS)
+    flat = flatten(doubled(passes("h h", body, "l light")))
+    (omission,) = substitute_variants(flat, kinds, **options).shape.omitted
+    sentence = f"t: fast.comp is left out, the plain form runs: {reason}"
+    assert (str(omission), omission.is_news) == (sentence, False)
+    assert substitute_variants(flat, VARIANTS).shape.omitted == () or "wanted" not in options
 
 
 def test_a_fast_variant_with_a_parameter_of_its_own_is_refused(make, doubled):
@@ -423,7 +445,7 @@ def test_an_edited_file_is_wired_anew(make):
 @each(("name", "variants"), list(itertools.product(shipped_sketches(), [(), ("passes",), VARIANTS])))
 def test_every_shipped_sketch_runs_in_the_order_of_its_wires(name, variants):
     done: set[str] = set()
-    for node in flatten(load(name), variants=variants).nodes:
+    for node in substitute_variants(flatten(load(name)), variants).nodes:
         inside = {leaf.path for leaf in leaves_of([node])}
         reads = {s.path for leaf in leaves_of([node]) for _, s in leaf.inputs if isinstance(s, Ref)}
         assert reads - inside <= done
@@ -433,7 +455,8 @@ def test_every_shipped_sketch_runs_in_the_order_of_its_wires(name, variants):
 def test_a_nested_sketch_is_flattened_in_passing():
     # The live window does this for each frame.
     sketch = load()
-    flatten(sketch, variants=VARIANTS)
+    substitute_variants(flatten(sketch), VARIANTS)
     for i in range(20):
-        flatten(sketch.with_values({"relief": i}), variants=VARIANTS)
+        substitute_variants(flatten(sketch.with_values({"relief": i})), VARIANTS)
     assert module._shape.cache_info().hits >= 20
+    assert substitution._substituted.cache_info().hits >= 20
