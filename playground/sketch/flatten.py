@@ -28,12 +28,12 @@ from playground.paths import shown
 from playground.shader.expressions import counts_frames, follows_time
 from playground.shader.kernel_cache import replaced
 from playground.shader.reserved_names import CLOCKED
-from playground.sketch.assign import effective_values, find_targets, resolve
+from playground.sketch.assign import effective_values, find_targets, resolve, why_absent
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Ref, Shape, Source, leaves_of
 from playground.sketch.follows import follow, rules_of
 from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, PassSpec, PlainFragment, Sketch, Technique
-from playground.sketch.presence import deciding_inputs, why_unfed
+from playground.sketch.presence import deciding_inputs
 from playground.sketch.wiring import (
     initial_names,
     inner,
@@ -239,7 +239,10 @@ class Flattener:
         wires: dict[str, Source | None] = dict(given)
         for name, text in spec.inputs:
             if not takes_input(technique, name):
-                raise spec.error(f"nothing takes input '{name}': {why_unfed(technique, name)}")
+                owner = name.rpartition(".")[0]
+                why = why_absent(technique, owner)
+                reason = f"pass '{owner}' {why}" if why else "there is no such input"
+                raise spec.error(f"nothing takes input '{name}': {reason}")
             wires[name] = self._ref(text, name, prefix, spec)
         for name in input_names(technique):
             if name not in wires and not _covered(technique, name, wires):

@@ -16,8 +16,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 
-from playground.shader.kernel import Export, Graph, PassSpec, Technique, Variant
-from playground.sketch.assign import find_targets, why_absent
+from playground.shader.kernel import Export, Graph, PassSpec, Technique
+from playground.sketch.assign import find_targets
 from playground.sketch.identity import Identity
 from playground.sketch.wiring import check_graph, input_names, output_names, takes_input
 
@@ -65,16 +65,11 @@ def _form(key: Identity[Graph], wired: frozenset[str]) -> Graph:
             for export in whole.parameters
             if (targets := [target for target in export.targets if find_targets(form, target)])
         ),
-        variants=tuple(_variant(variant, wired) for variant in whole.variants),
+        variants=() if absent else whole.variants,
     )
     if absent and not missing_input(form):
         check_graph(form)
     return form
-
-
-def _variant(variant: Variant, wired: frozenset[str]) -> Variant:
-    technique = variant.technique
-    return replace(variant, technique=form_of(technique, wired)) if isinstance(technique, Graph) else variant
 
 
 def _narrowed(export: Export, targets: Sequence[str]) -> Export:
@@ -138,16 +133,6 @@ def _deciding(key: Identity[Graph]) -> tuple[str, ...]:
             if spec is not None and rest in deciding_inputs(spec.technique):
                 named.add(export.name)
     return tuple(export.name for export in graph.inputs if export.name in named)
-
-
-def why_unfed(technique: Technique, name: str) -> str:
-    """Return why an input inside a technique, by its path, is not there to be wired."""
-    head, _, rest = name.partition(".")
-    spec = technique.find(head) if isinstance(technique, Graph) else None
-    if spec is not None:
-        return why_unfed(spec.technique, rest)
-    whole = technique.written.find(head) if isinstance(technique, Graph) else None
-    return f"pass '{head}' is absent; it {why_absent(technique, head)}" if whole else "there is no such input"
 
 
 def _present(graph: Graph, wired: frozenset[str]) -> tuple[list[PassSpec], dict[str, str]]:

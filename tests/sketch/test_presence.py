@@ -239,7 +239,7 @@ def test_an_output_needs_its_passes(make):
     ("more", "words"),
     [
         ("inputs = { density = ['a', 'b'] }", "all passes of a sketch are present"),
-        ("inputs = { 'added.density' = 'late' }", "'added' is absent; it has an effect only where 'density'"),
+        ("inputs = { 'added.density' = 'late' }", "pass 'added' has an effect only where 'density'"),
         ("when = 'density'", "no key 'when' here"),
     ],
 )
