@@ -7,6 +7,7 @@ last step: why one does not run is an ``Omission``.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
@@ -28,6 +29,8 @@ from playground.sketch.identity import Identity
 from playground.sketch.model import VARIANTS, Graph, Kernel, PassSpec, Sketch, Technique, Value, Variant
 from playground.sketch.variants import INSIDE, Omission, active_variant, unverified
 from playground.sketch.wiring import initial_names, input_names
+
+_log = logging.getLogger(__name__)
 
 
 def substitute_variants(
@@ -84,6 +87,8 @@ def _substituted(key: Identity[Shape], limits: _Limits) -> Shape:
     made = _Substitution(key.object, limits)
     for path in key.object.specs:  # a technique before what is inside it
         made.consider(path)
+    for omission in made.omitted:
+        _log.debug("%s", omission)
     return made.shape()
 
 
@@ -287,6 +292,6 @@ _LACKS = "it does not read what is wired to"
 _LIMITS = {
     "compute": "there are no compute shaders here",
     "passes": "fast variants of several passes are not asked for",
-    "draws": "a GPU draws, or several samples a pixel are drawn, or a picture in parts",
+    "draws": "it is for whole pictures of one sample a pixel on a software renderer",
 }
 """Why a kind of fast variant does not run at all."""
