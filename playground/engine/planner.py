@@ -94,21 +94,20 @@ class Planner:
         request = PlanRequest(size, tuple(stopped.items()), fills, "compute" in variants, varies, terrain)
         place = (Identity(sketch.graph), sketch.folder, sketch.plain, tuple(variants), wanted, request)
 
-        def flat(refused: Iterable[str], before: Flat | None = None) -> Flat:
+        def flat(refused: Iterable[str]) -> Flat:
             return substitute_variants(
                 flatten(sketch),
                 () if sketch.plain else variants,
                 wanted=wanted,
                 stopped=tuple(stopped),
                 refused=tuple(refused),
-                before=before,
             )
 
         found = None
         if known := self._plans.pop(place, None):
             now = known.plan.flat  # most frames set no value
             if sketch.overrides is not known.plan.sketch.overrides:
-                now = flat(known.refusals, now)
+                now = flat(known.refusals)
             found = _Planning(sketch, now, request, seconds, known=known).renewed()
         if found is None:
             self.made_whole += 1
@@ -180,8 +179,7 @@ class _Planning:
         # Of the same values a file may have come that is found first.
         doubtful, changed = [(leaf, True) for leaf in flat.with_files], dict[str, Mapping[str, Value]]()
         if flat is not known.plan.flat:
-            pairs = zip(flat.leaves, known.plan.flat.leaves, strict=True)
-            found = [(leaf, leaf is earlier) for leaf, earlier in pairs]
+            found = [(leaf, flat.has_values_of(known.plan.flat, leaf)) for leaf in flat.leaves]
             doubtful = [pair for pair in found if not pair[1] or pair[0].kernel.file_parameters]
         for leaf, is_same in doubtful:
             now = given_values(leaf, sketch, flat)

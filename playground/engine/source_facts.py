@@ -65,13 +65,13 @@ def own_sizes(sketch: Sketch, flat: Flat, values: Values) -> Iterator[tuple[str,
 
 def given_values(leaf: Leaf, sketch: Sketch, flat: Flat) -> dict[str, Value]:
     """Return a leaf's values as its kernel gets them: files by absolute path, of menus their values."""
-    values = dict(leaf.values)
+    values = flat.values_of(leaf)
     for parameter in leaf.kernel.valued_menus:
         values[parameter.name] = parameter.widget.given(values[parameter.name])
     for parameter in leaf.kernel.file_parameters:
         text = str(values[parameter.name])
         try:
-            path = find_file(text, leaf.folder, parameter.file, f"{leaf.path}.{parameter.name}")
+            path = find_file(text, flat.folder, parameter.file, f"{leaf.path}.{parameter.name}")
         except DataError as error:
             raise placed(error, sketch, flat.user(leaf.path)) from error
         values[parameter.name] = str(path)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from playground.errors import SketchError, nearest
@@ -41,9 +40,7 @@ class Leaf:
 
     path: str
     kernel: Kernel
-    values: tuple[tuple[str, Value], ...]
     inputs: tuple[tuple[str, Source | None], ...]  # None: its fallback, or no initial state
-    folder: str  # where its files are looked for
     spec: PassSpec
 
 
@@ -67,13 +64,13 @@ class Flat:
 
     shape: Shape  # the same before any value is set
     values: dict[str, Value]  # every leaf parameter, by path
-    folder: str
+    folder: str  # where files are looked for
     set_inside: tuple[str, ...]  # paths that are set over the sketch's file, of parameters inside techniques
 
-    @cached_property
+    @property
     def nodes(self) -> tuple[Node, ...]:
-        """Its passes and loops, with their values, in an order that wiring allows."""
-        return self._filled(self.shape.nodes, None)
+        """Its passes and loops, in an order that wiring allows."""
+        return self.shape.nodes
 
     @property
     def specs(self) -> dict[str, PassSpec]:
@@ -95,33 +92,18 @@ class Flat:
         """Every technique of several passes: what feeds its inputs."""
         return self.shape.wires
 
-    def like(self, before: Flat | None) -> Flat:
-        """Return the same, with the leaves of an earlier one of its shape where their values are the same."""
-        if before is not None and before.shape is self.shape and before.folder == self.folder:
-            changed = [path for path, value in self.values.items() if value is not before.values[path]]
-            stale = set[str]().union(*[self.shape.readers.get(path, ()) for path in changed])
-            self.__dict__["nodes"] = self._filled(before.nodes, stale)
-        return self
+    def values_of(self, leaf: Leaf) -> dict[str, Value]:
+        """Return the values of a leaf's parameters, by name."""
+        return {name: self.values[path] for name, path in self.shape.paths[leaf.path]}
 
-    def _filled(self, nodes: tuple[Node, ...], stale: Collection[str] | None) -> tuple[Node, ...]:
-        """Return nodes with values in their leaves; where ``stale`` is not None, new ones in those alone."""
-        if stale is not None and not stale:
-            return nodes
-        found: list[Node] = []
-        for node in nodes:
-            if isinstance(node, Loop):
-                found.append(replace(node, body=self._filled(node.body, stale)))
-            elif stale is None or node.path in stale:
-                own = tuple([(name, self.values[path]) for name, path in self.shape.paths[node.path]])
-                found.append(Leaf(node.path, node.kernel, own, node.inputs, self.folder, node.spec))
-            else:
-                found.append(node)
-        return tuple(found)
+    def has_values_of(self, before: Flat, leaf: Leaf) -> bool:
+        """Return whether a leaf has the very values that it has in another one of the same shape."""
+        return all([self.values[path] is before.values[path] for _, path in self.shape.paths[leaf.path]])
 
-    @cached_property
+    @property
     def leaves(self) -> list[Leaf]:
         """Every leaf, those inside loops included."""
-        return leaves_of(self.nodes)
+        return self.shape.leaves
 
     @cached_property
     def sources(self) -> list[Leaf]:
@@ -167,7 +149,7 @@ class Flat:
 class Shape:
     """A flat graph before any value is set."""
 
-    nodes: tuple[Node, ...]  # leaves without values and folder
+    nodes: tuple[Node, ...]
     specs: dict[str, PassSpec]
     graphs: dict[str, Graph]
     outputs: dict[str, dict[str, Ref]]
@@ -186,13 +168,9 @@ class Shape:
     targets: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of each override so far
 
     @cached_property
-    def readers(self) -> dict[str, set[str]]:
-        """Path of a value → the leaves that have it."""
-        found: dict[str, set[str]] = {}
-        for leaf, pairs in self.paths.items():
-            for _, path in pairs:
-                found.setdefault(path, set()).add(leaf)
-        return found
+    def leaves(self) -> list[Leaf]:
+        """Every leaf, those inside loops included."""
+        return leaves_of(self.nodes)
 
 
 def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> list[Leaf]:

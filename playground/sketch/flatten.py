@@ -317,9 +317,9 @@ def _covered(technique: Technique, name: str, wires: Mapping[str, Source | None]
 
 
 def leaf_of(kernel: Kernel, spec: PassSpec, path: str, wires: Mapping[str, Source | None]) -> Leaf:
-    """Return the leaf of a kernel, fed by ``wires``, without values."""
+    """Return the leaf of a kernel, fed by ``wires``."""
     names = dict.fromkeys([*input_names(kernel), *initial_names(kernel)])
-    return Leaf(path, kernel, (), tuple((name, wires.get(name)) for name in names), "", spec)
+    return Leaf(path, kernel, tuple((name, wires.get(name)) for name in names), spec)
 
 
 def join(prefix: str, name: str) -> str:

@@ -40,25 +40,23 @@ def substitute_variants(
     wanted: str = "",
     stopped: tuple[str, ...] = (),
     refused: tuple[str, ...] = (),
-    before: Flat | None = None,
 ) -> Flat:
     """Return a canonical flat sketch with verified fast variants of some ``kinds`` in place of techniques.
 
     None replaces a technique around the pass that is ``wanted`` or around one that is ``stopped``, nor
-    one that is ``stopped`` or ``refused`` itself. Leaves of ``before``, an earlier result, are reused where
-    their values are the same objects.
+    one that is ``stopped`` or ``refused`` itself.
     """
     if not kinds:
-        return flat.like(before)
+        return flat
     limits = _Limits(frozenset(kinds), wanted.partition(":")[0], stopped, refused, flat.set_inside)
     shape = _substituted(Identity(flat.shape), limits)
     values = flat.values
     if plain := {path for path, name, default in shape.lacking if values[join(path, name)] != default}:
         more = (*refused, *sorted(plain))
-        return substitute_variants(flat, kinds, wanted=wanted, stopped=stopped, refused=more, before=before)
+        return substitute_variants(flat, kinds, wanted=wanted, stopped=stopped, refused=more)
     if shape.constants:
         values = values | shape.constants | {path: values[source] for path, source in shape.copied.items()}
-    return replace(flat, shape=shape, values=values).like(before)
+    return replace(flat, shape=shape, values=values)
 
 
 def omissions(sketch: Sketch, kinds: Collection[str]) -> tuple[Omission, ...]:

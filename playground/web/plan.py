@@ -139,7 +139,7 @@ class _Writing:
             return Path(str(value)).name
         file = Path(str(self.steps[leaf.path].values[parameter.name]))
         if value != self.flat.values[path]:
-            file = find_file(str(value), leaf.folder, parameter.file, path)
+            file = find_file(str(value), self.flat.folder, parameter.file, path)
         plain = isinstance(leaf.kernel, PlainShader)
         return self.shared.images.add(file, encoded=plain and not parameter.sampling.decode)
 
