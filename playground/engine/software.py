@@ -51,6 +51,7 @@ from playground.shader.wrap import (
     read_by_functions,
     reads_unwired,
 )
+from playground.sketch.identity import Identity
 from playground.sketch.model import ComputeVariant, Input, Kernel, PlainShader, TexelKernel
 
 if TYPE_CHECKING:
@@ -301,8 +302,13 @@ def quicker_choices(kernel: Kernel) -> frozenset[str]:
     ``OWN_SIZE`` holds where each input is as large as what the kernel makes, ``PLACE`` where the fragment
     driver draws the whole of that at once.
     """
-    found = set()
-    if fetched_alone(kernel).fetches or _reads_previous(kernel):
+    return _quicker_choices(Identity(kernel))
+
+
+@lru_cache(maxsize=1024)
+def _quicker_choices(key: Identity[Kernel]) -> frozenset[str]:
+    kernel, found = key.object, set[str]()
+    if fetched_alone(kernel).fetches or any(kernel.reads(previous_name(kernel, o)) for o in kernel.outputs):
         found.add(NEAREST)
     if isinstance(kernel, TexelKernel) and not kernel.fills_lattice:
         found.add(PLACE)
@@ -395,10 +401,6 @@ def _with_uniform_texels(stage: ShaderStage, inputs: Collection[str]) -> ShaderS
         return stage
     lines[stage.first - 1 : stage.first - 1] = uniforms.values()
     return replace(stage, text="\n".join(lines), first=stage.first + len(uniforms))
-
-
-def _reads_previous(kernel: Kernel) -> bool:
-    return any(kernel.reads(previous_name(kernel, output)) for output in kernel.outputs)
 
 
 def _with_own_size(stage: ShaderStage) -> ShaderStage:
