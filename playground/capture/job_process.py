@@ -6,12 +6,13 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from playground.capture.job import CaptureJob
-from playground.engine.process.messages import Answer, Cancelled, summary_of
-from playground.engine.process.worker import Launch, Worker, WorkerDied
+from playground.api import headless
+from playground.capture.job import CaptureJob, do
+from playground.engine.plain_forms import silent
+from playground.engine.process.child import Outcome
+from playground.engine.process.pool import Pool
+from playground.engine.process.worker import Cancelled, Parent, Service, summary_of
 from playground.errors import PlaygroundError
-
-_GRACE = 10.0  # [s] that a job may take to stop by itself
 
 
 @dataclass(frozen=True)
@@ -30,68 +31,57 @@ class JobProcess:
     def __init__(self, job: CaptureJob, *, software: bool = False, driver: str = "auto") -> None:
         self.job = job
         self.started = time.monotonic()
-        self._stopped_at: float | None = None
+        self.stopping = False  # whether ``stop`` was called
         # It outlives its parent until its next part is done, to remove the files that it has begun.
-        launch = Launch(
-            handler="playground.capture.job_handler", options=(software, driver), ends_with_parent=False
-        )
-        self._worker = Worker(launch)
-        self._worker.submit(job)
-        self._finished: Finished | None = None
+        self._pool = Pool(__name__, options=(software, driver), ends_with_parent=False)
+        self._task = self._pool.submit(job)
+        self._pool.shutdown(wait=False)  # there is no other job
 
     @property
     def progress(self) -> tuple[int, int]:
         """How many parts are done, and of how many; (0, 0) while it begins."""
-        progress = self._worker.progress
-        return progress if isinstance(progress, tuple) else (0, 0)
-
-    @property
-    def stopping(self) -> bool:
-        """Whether ``stop`` was called."""
-        return self._stopped_at is not None
+        return self._task.progress or (0, 0)
 
     def stop(self) -> None:
-        """Cancel it; it removes what it has begun."""
-        if self._stopped_at is None and self._finished is None:
-            self._stopped_at = time.monotonic()
-            self._worker.cancel()
+        """Cancel it; it removes what it has begun, for which it has a while until it is killed."""
+        if not self.stopping:
+            self.stopping = True
+            self._task.cancel()
 
     def poll(self, timeout: float = 0.0) -> Finished | None:
         """Return how it ended, None while it continues; waits ``timeout`` seconds at the most."""
-        if self._finished is not None:
-            return self._finished
-        try:
-            answer = self._worker.poll(timeout)
-        except WorkerDied as died:
-            self._finished = Finished(None, f"the capture {died.report.cause()}")
-            return self._finished
-        if answer is not None:
-            self._finish(_finished(answer))
-        elif self._stopped_at is not None and time.monotonic() - self._stopped_at > _GRACE:
-            self._finish(Finished(None, stopped=True))
-        return self._finished
+        return _finished(self._task.result()) if self._task.wait(timeout) else None
 
     def close(self) -> None:
         """Stop it and wait until it has removed what it has begun; kill it if that takes too long."""
         self.stop()
-        while self.poll(timeout=0.1) is None:
-            pass
-
-    def _finish(self, finished: Finished) -> None:
-        self._finished = finished
-        self._worker.end(kill=True)
+        self._task.result()
 
 
-def _finished(answer: Answer) -> Finished:
-    try:
-        found = answer.get()
-    except Cancelled:
+def _finished(outcome: Outcome) -> Finished:
+    error = outcome.error
+    if isinstance(error, Cancelled):
         return Finished(None, stopped=True)
-    except PlaygroundError as error:
+    if isinstance(error, PlaygroundError):
         return Finished(None, str(error))
-    except MemoryError:
+    if isinstance(error, MemoryError):
         return Finished(None, "there is not enough memory for a picture of that size")
-    except Exception as error:
+    if error is not None:
         return Finished(None, f"a bug of the playground itself, {summary_of(error)}")
-    assert isinstance(found, Finished)
-    return found
+    if outcome.kind == "crash":
+        return Finished(None, f"the capture {outcome.cause()}")
+    assert isinstance(outcome.value, Finished)
+    return outcome.value
+
+
+def open_service(parent: Parent, options: tuple[bool, str]) -> Service:
+    """Return the service that does a job: on a software renderer, by which driver."""
+    software, driver = options
+
+    def answer(job: CaptureJob) -> Finished:
+        notes: list[str] = []
+        with headless(software=software, driver=driver, notice=silent) as engine:
+            path = do(job, engine, lambda done, of: parent.report((done, of)), notes.append)
+        return Finished(path, notes=tuple(notes))
+
+    return Service(answer)

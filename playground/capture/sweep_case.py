@@ -14,7 +14,7 @@ from playground.capture.extensions import HEIGHT
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Plan
-from playground.engine.process.child import Parent, Service
+from playground.engine.process.worker import Parent, Service
 from playground.engine.view_inputs import view_height
 from playground.sketch.model import Sketch
 

@@ -10,9 +10,8 @@ import importlib
 import math
 import os
 import sys
-import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,8 +24,8 @@ from playground.capture.sweep import Sweep, sweep_of, with_one_of_each
 from playground.capture.sweep_case import Case, Found
 from playground.engine.internals import opened
 from playground.engine.plan_request import checked_pixels
-from playground.engine.process.worker import Launch, Worker, WorkerDied
-from playground.errors import ParameterError, PlaygroundError, SandboxCrash
+from playground.engine.process.pool import Pool
+from playground.errors import ParameterError, PlaygroundError
 from playground.extras import needs
 from playground.sketch.model import LARGEST_SIDE, Sketch
 
@@ -40,7 +39,6 @@ MOST_BYTES = 2**32
 """Bytes that the pictures of a sweep may take."""
 
 _MOST_WORKERS = 64
-_WAIT = 0.2  # [s] between two looks whether a process still lives
 
 
 def sweep(
@@ -99,12 +97,11 @@ def sweep(
         for pick in picks
     ]
     count = min(len(cases), workers or min(os.cpu_count() or 1, 4))
-    found: list[Found | None] = [None] * len(cases)
+    results: list[Found] = []
     with _bar(f"sweep of {base.name}", len(cases), shown=progress) as advance:
-        for number, one in _drawn(cases, count, software):
-            found[number] = one
+        for found in _drawn(cases, count, software):
+            results.append(found)
             advance()
-    results = [one for one in found if one is not None]
     return _dataset(made, base, sweeps, results, (pixels, time))
 
 
@@ -137,38 +134,13 @@ def _check(sweeps: Sequence[Sweep], size: tuple[int, int], workers: int | None) 
 # ── drawing ──────────────────────────────────────────────────────────────────
 
 
-def _drawn(cases: Sequence[Case], count: int, software: bool) -> Iterator[tuple[int, Found]]:
-    """Yield (number, what was found) of each case, as they come."""
-    answered = threading.Event()
-    launch = Launch(handler="playground.capture.sweep_case", options=software, on_answer=answered.set)
-    with ExitStack() as opened_workers:
-        workers = [Worker(launch) for _ in range(count)]
-        for worker in workers:
-            opened_workers.callback(worker.end)
-        waiting, at_work = iter(enumerate(cases)), dict[int, int]()
-
-        def give(index: int) -> None:
-            following = next(waiting, None)
-            if following is not None:
-                at_work[index] = following[0]
-                workers[index].submit(following[1])
-
-        for index in range(count):
-            give(index)
-        while at_work:
-            answered.wait(_WAIT)
-            answered.clear()
-            for index, number in list(at_work.items()):
-                try:
-                    answer = workers[index].poll()
-                except WorkerDied as died:
-                    raise SandboxCrash(f"case {number} of the sweep {died.report.cause()}") from None
-                if answer is not None:
-                    del at_work[index]
-                    found = answer.get()
-                    assert isinstance(found, Found)
-                    give(index)
-                    yield number, found
+def _drawn(cases: Sequence[Case], count: int, software: bool) -> Iterator[Found]:
+    """Yield what is found of each case, in their order."""
+    with Pool("playground.capture.sweep_case", options=software, workers=count) as pool:
+        for number, outcome in enumerate(pool.map(cases)):
+            found = outcome.get(f"case {number} of the sweep")
+            assert isinstance(found, Found)
+            yield found
 
 
 @contextmanager

@@ -20,9 +20,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from playground.engine.files import find_file
-from playground.engine.process.crash_report import CrashReport
-from playground.engine.process.messages import Answer, summary_of
-from playground.engine.process.worker import Closing, Launch, Replaceable, Worker, WorkerDied
+from playground.engine.process.child import Outcome
+from playground.engine.process.pool import OPEN, Limits, Pool, PoolOwner, Task
+from playground.engine.process.worker import summary_of
 from playground.errors import DataError, PlaygroundError, SandboxCrash, SandboxTimeout
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
@@ -30,14 +30,12 @@ from playground.sketch.traits import traits_of
 
 LIMIT_SECONDS = 10.0
 LIMIT_BYTES = 4 * 2**30
-_START = 60.0  # [s] that a worker may take to start Python and open a context
-_SUSPICIOUS = 0.3  # [s] after which a spare is started for a worker that has not answered
-_IMPATIENT = 0.5  # [s] after which a worker is killed for something newer
-_MAX_TRIES = 3  # of a request whose worker is killed before it has begun
 _HANDLER = "playground.engine.sandbox_handler"
+_START = 60.0  # [s] that a worker may take to start Python and open a context
+_IMPATIENT = 0.5  # [s] after which a worker is killed for something newer
 _SLOW_READ = 2**24  # [bytes/s] of a large data file: a quarter of what deflate takes
 _LARGE = 2**26  # [bytes] above which a data file is given that time besides
-_LONGEST_READ = 120.0  # [s]
+_MAX_READ = 120.0  # [s]
 
 
 @dataclass(frozen=True)
@@ -102,10 +100,10 @@ def reading_seconds(request: Request) -> float:
             file = find_file(str(values[path]), request.sketch.folder, parameter.file, path)
             own = file.stat().st_size
             size += own if own > _LARGE else 0
-    return min(size / _SLOW_READ, _LONGEST_READ)
+    return min(size / _SLOW_READ, _MAX_READ)
 
 
-class Sandbox(Closing):
+class Sandbox(PoolOwner):
     """A warm worker process that tries sketches.
 
     Use it with ``with``, or call ``close()``. ``run`` waits for an answer; ``submit`` and
@@ -123,141 +121,58 @@ class Sandbox(Closing):
         self.on_answer: Callable[[], None] = lambda: None  # called, in another thread, when ``poll`` has news
         self.while_waiting: Callable[[], None] = lambda: None  # called while ``run`` waits; may raise
         self.limit_seconds = limit_seconds
-        self._workers = Replaceable(
-            Launch(
-                handler=_HANDLER,
-                options=(software, device),
-                memory_bytes=memory_bytes,
-                limit_seconds=limit_seconds + _LONGEST_READ,
-                on_answer=lambda: self.on_answer(),
-            )
-        )
-        self._current: Request | None = None  # what the worker is at, while that is the newest
-        self._waiting: Request | None = None  # the newest, while the worker is still at an older one
-        self._reading = 0.0  # [s] that its large data files may take besides
-        self._tries = 0  # how many workers were sent what it is at; those before died of something else
-
-    @property
-    def busy(self) -> bool:
-        """Whether a request waits for its answer."""
-        return self._current is not None or self._waiting is not None
+        limits = Limits(memory_bytes=memory_bytes, start_seconds=_START)
+        self._pool = Pool(_HANDLER, limits, options=(software, device), spare=True)
 
     def start(self) -> None:
         """Start the worker, so that it is warm when it is needed; does nothing if it runs."""
-        self._workers.start()
+        self._pool.submit(OPEN)
 
     def run(self, request: Request) -> SandboxReport:
         """Try something and wait for the answer, no longer than the limit.
 
         What ``while_waiting`` raises leaves the request unanswered: the next one replaces it.
         """
-        self.submit(request)
-        while (report := self._report(timeout=0.05)) is None:
+        task = self.submit(request)
+        while not task.wait(0.05):
             self.while_waiting()
+        report = self.poll()
+        assert report is not None
         return report
 
-    def submit(self, request: Request) -> None:
-        """Send a request to the worker; an earlier one that is still open will not be answered.
-
-        Never waits: a worker that hangs reads nothing, so it is sent one request at a time.
-        """
-        worker = self._workers.worker
-        if worker is not None and worker.busy and worker.runs:
-            self._waiting, self._current = request, None
-        else:
-            self._send(request)
+    def submit(self, request: Request) -> Task:
+        """Send a request to the worker; an earlier one that is still open will not be answered."""
+        limit = self.limit_seconds + reading_seconds(request)
+        task = self._replace(request, _IMPATIENT, limit)
+        task.add_done_callback(lambda done: self.on_answer() if done is self._newest else None)
+        return task
 
     def poll(self) -> SandboxReport | None:
         """Return the answer to the newest request, once; None while there is none."""
-        return self._report(timeout=0.0)
-
-    def close(self) -> None:
-        """End the worker."""
-        self._waiting = self._current = None
-        self._workers.close(patience=1.0)
-
-    def _send(self, request: Request, *, tries: int = 1) -> None:
-        self._waiting, self._current, self._tries = None, request, tries
-        self._reading = reading_seconds(request)
-        self._workers.start().submit(request)
-
-    def _report(self, timeout: float) -> SandboxReport | None:
-        worker = self._workers.worker
-        if worker is None or not worker.busy:
+        task = self._take()
+        if task is None:
             return None
-        try:
-            answer = worker.poll(timeout)
-        except WorkerDied as died:
-            return self._crashed(worker, died.report)
-        if answer is None:
-            return self._check_time(worker)
-        report = _report_of(answer)
-        if isinstance(report.error, SandboxCrash):  # it lost its context, and is of no more use
-            self._workers.replace()
-        return self._newest(report)
-
-    def _check_time(self, worker: Worker) -> SandboxReport | None:
-        """Start a spare for a worker that takes long, and kill the worker where it takes too long."""
-        starting, spent, limit = worker.starting_seconds, worker.seconds, self.limit_seconds + self._reading
-        if starting > _START:
-            self._workers.end(kill=True)
-            message = f"the sandbox's process was not ready after {_START:g} s, so nothing could be tried"
-            return self._newest(SandboxReport(False, SandboxTimeout(message), seconds=starting))
-        if spent > _SUSPICIOUS:
-            self._workers.start_spare()
-        if self._waiting is not None and spent > _IMPATIENT:
-            self._workers.replace()
-            self._send(self._waiting)
-            return None
-        if worker.activity_seconds < limit:
-            return None
-        what, file, driver = _doing(worker.progress, "the request")
-        by = f" by the {driver} driver" if driver else ""
-        self._workers.replace()
-        message = (
-            f"{what} took longer than {limit:g} s{by} in the sandbox, in processor time, and was stopped:"
-            " it is slow, or a loop does not end"
-        )
-        return self._newest(SandboxReport(False, SandboxTimeout(message, file=file), seconds=limit))
-
-    def _crashed(self, worker: Worker, report: CrashReport) -> SandboxReport | None:
-        """Replace a worker that died over a request, and report it."""
-        spent, cause = worker.seconds, report.cause(" in the sandbox")
-        self._workers.end(kill=True)
-        if report.progress is None and self._current is not None and self._tries < _MAX_TRIES:
-            # It had not begun: something else killed it, perhaps while it was idle or starting.
-            self._send(self._current, tries=self._tries + 1)
-            return None
-        if not report.was_ready:
-            message = f"the sandbox's process could not be started: it {cause}"
-            return self._newest(SandboxReport(False, SandboxCrash(message), seconds=spent))
-        self._workers.start()
-        what, file, _ = _doing(report.progress, "this")
-        return self._newest(SandboxReport(False, SandboxCrash(f"{what} {cause}", file=file), seconds=spent))
-
-    def _newest(self, report: SandboxReport) -> SandboxReport | None:
-        """Return a report if it is the newest request's; else send the request that waits."""
-        if self._current is not None:
-            self._current = None
-            return report
-        if self._waiting is not None:
-            self._send(self._waiting)
-        return None
+        outcome = task.result()
+        if outcome.kind == "answer":
+            assert isinstance(outcome.value, SandboxReport)
+            return replace(outcome.value, seconds=outcome.seconds)
+        return SandboxReport(False, _error_of(outcome), seconds=outcome.seconds)
 
 
-def _doing(progress: object, otherwise: str) -> tuple[str, str | Path, str]:
-    """Return what a worker was at as a sentence's subject, its file and its driver."""
-    if isinstance(progress, Activity):
-        return progress.subject, Path(progress.file), progress.driver
-    return otherwise, "", ""
-
-
-def _report_of(answer: Answer) -> SandboxReport:
-    if isinstance(answer.value, SandboxReport):
-        return replace(answer.value, seconds=answer.seconds)
-    error = answer.error
-    if isinstance(error, MemoryError):
-        error = PlaygroundError("the sandbox ran out of memory")
-    elif not isinstance(error, PlaygroundError):
-        error = PlaygroundError(f"the sandbox failed: {summary_of(error)}")
-    return SandboxReport(False, error, seconds=answer.seconds)
+def _error_of(outcome: Outcome) -> PlaygroundError:
+    if not outcome.started or outcome.error is not None:
+        error = outcome.failure("the sandbox")
+        if isinstance(error, PlaygroundError):
+            return error
+        return PlaygroundError(f"the sandbox failed: {summary_of(error)}")
+    at = outcome.progress
+    assert at is None or isinstance(at, Activity)
+    file = Path(at.file) if at else ""
+    if outcome.kind == "crash":
+        return SandboxCrash(f"{at.subject if at else 'this'} {outcome.cause(' in the sandbox')}", file=file)
+    by = f" by the {at.driver} driver" if at and at.driver else ""
+    message = (
+        f"{at.subject if at else 'the request'} took longer than {outcome.limit:g} s{by} in the sandbox, in"
+        " processor time, and was stopped: it is slow, or a loop does not end"
+    )
+    return SandboxTimeout(message, file=file)

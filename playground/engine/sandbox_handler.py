@@ -13,20 +13,24 @@ from playground.engine.context import open_context
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Step
-from playground.engine.process.child import Parent, Service
+from playground.engine.process.worker import Parent, Service
 from playground.engine.programs import compile_library
 from playground.engine.sandbox import Activity, Request, SandboxReport, TryLibrary, TrySketch
 from playground.engine.sizes import smallest_terrain
 from playground.engine.textures import drain, is_lost
 from playground.engine.unfinished import Unfinished
-from playground.errors import ContextError, PlaygroundError, SandboxCrash, ShaderError
+from playground.errors import (
+    ContextError,
+    PlaygroundError,
+    SandboxCrash,
+    ShaderError,
+)
 from playground.shader.source import read_source
 from playground.shader.wrap import COMPUTE
 from playground.sketch.model import Sketch
 
 if TYPE_CHECKING:
     import moderngl
-
 
 _FINEST = 33  # vertices a side of the sandbox's meshes
 _PATIENCE = 0.2  # [s] for loops over the frames: many frames prove little more than some
@@ -67,7 +71,7 @@ class _Handler:
         except PlaygroundError as error:
             if is_lost(self._ctx):
                 message = f"{self._subject} made the driver reset itself in the sandbox"
-                return SandboxReport(False, SandboxCrash(message))
+                raise SandboxCrash(message) from None  # so another process takes this one's place
             return SandboxReport(False, error, tuple(skipped))
         return SandboxReport(True, None, tuple(skipped))
 

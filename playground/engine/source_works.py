@@ -13,7 +13,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from playground.engine.process.messages import Cancelled
+from playground.engine.process.worker import Cancelled
 from playground.engine.unfinished import Unfinished
 
 Arrays = Mapping[str, NDArray[Any]]

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.allowed_files import noting_places
-from playground.engine.process.messages import summary_of
+from playground.engine.process.worker import summary_of
 from playground.engine.sandbox import Request, Sandbox, SandboxReport
 from playground.errors import ContextError, Diagnostic, OpenGLFault, PlaygroundError
 from playground.lsp.documents import Document, Documents

@@ -7,7 +7,7 @@
     case.py      a sketch without nesting: its passes, their texts, what is set
     inline.py    a loaded sketch → a case
     failures.py  what counts as failing, and as failing in the same way
-    draw_handler.py, candidate_process.py    draw candidates in a worker: crashes and hangs are results
+    candidate_process.py    draw candidates in a worker: crashes and hangs are results
     probe.py     a case → what came of it
     search.py    what is tried, in which order, until nothing more goes
     initial_case.py    what fails, and in which pass

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.reduce.draw_handler import DrawResult
+from playground.reduce.candidate_process import DrawResult
 from playground.reduce.edits import LITERALS, LITERALS_WITHOUT_ZERO
 
 _ROUNDING = 1e-5  # relative: what rounding explains; what lies beyond is another kind of difference

@@ -15,9 +15,8 @@ from tempfile import TemporaryDirectory
 from playground.engine.context import ContextInfo
 from playground.engine.frame import Frame
 from playground.errors import DataError, ParameterError, nearest
-from playground.reduce.candidate_process import LIMIT, CandidateProcess
+from playground.reduce.candidate_process import LIMIT, CandidateProcess, DrawTask
 from playground.reduce.case import Case
-from playground.reduce.draw_handler import DrawTask
 from playground.reduce.failures import (
     Commanded,
     Died,

@@ -14,9 +14,8 @@ from playground.data.image_files import replacing, writing
 from playground.errors import DataError, counted
 from playground.json_text import read_json
 from playground.paths import shown
-from playground.reduce.candidate_process import CandidateProcess
+from playground.reduce.candidate_process import CandidateProcess, DrawTask
 from playground.reduce.case import SHOT, Case, copied
-from playground.reduce.draw_handler import DrawTask
 from playground.reduce.failures import Commanded, Died, FailureKind, Finding, Refused
 from playground.reduce.initial_case import InitialCase, Question
 from playground.reduce.probe import Probe

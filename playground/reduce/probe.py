@@ -10,9 +10,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from playground.errors import ParameterError
-from playground.reduce.candidate_process import CandidateProcess
+from playground.reduce.candidate_process import CandidateProcess, DrawResult, DrawTask
 from playground.reduce.case import SHOT, Case, copied
-from playground.reduce.draw_handler import DrawResult, DrawTask
 from playground.reduce.failures import Commanded, FailureKind, Finding
 
 CANNOT_SAY = 125

@@ -15,7 +15,7 @@
     accept.py       a picture of them becomes a reference; undoing that
     review_session.py    what is reviewed: accepted, undone, changed meanwhile
     review.py       the same page, served on this machine alone
-    renderer_process.py, render_handler.py    render shots in a worker process
+    renderer_process.py    render shots in a worker process
     recording.py, checking.py    draw, compare, write, and say it, for one process of pytest
     adapters.py, levels.py      a picture from whatever holds one; its numbers as bytes
     names.py, claims.py         names of pictures after their tests; each for one test of a run

@@ -6,28 +6,23 @@ it ended, with what it printed. The next shot is rendered all the same.
 
 from __future__ import annotations
 
-from playground.engine.context import ContextInfo
-from playground.engine.process.worker import (
-    START_SECONDS,
-    Closing,
-    Launch,
-    Replaceable,
-    Worker,
-    WorkerDied,
-    WorkerTimeout,
-)
-from playground.errors import ContextError, PlaygroundError, SandboxCrash, SandboxTimeout
-from playground.shots.suite import RenderedShot, ShotCase
+from functools import partial
+
+from playground.engine.context import ContextInfo, context_info, open_context
+from playground.engine.engine import Engine
+from playground.engine.plain_forms import silent
+from playground.engine.process.pool import OPEN, Limits, Pool, PoolOwner
+from playground.engine.process.worker import Parent, Service
+from playground.errors import ContextError
+from playground.shots.suite import RenderedShot, ShotCase, render_shot
 
 LIMIT = 120.0
 """[s] A render may take that long: far beyond any shot on a slow machine with a cold shader cache."""
 
-HANDLER = "playground.shots.render_handler"
-
-_STARTS = 2  # so many in a row may fail before none is tried any more
+HANDLER = __name__
 
 
-class RendererProcess(Closing):
+class RendererProcess(PoolOwner):
     """Renders shots in a worker, which starts with the first and is replaced when it dies.
 
     ``limit`` is seconds a render. ``renderer`` is "software" for Mesa's software renderer,
@@ -37,10 +32,9 @@ class RendererProcess(Closing):
 
     def __init__(self, limit: float = LIMIT, renderer: str = "software") -> None:
         self.limit = limit  # [s] a render
-        self._workers = Replaceable(Launch(handler=HANDLER, options=renderer, limit_seconds=limit))
-        self._renderer: ContextInfo | None = None
-        self._refusal: PlaygroundError | None = None
-        self._failed_starts = 0
+        self._pool = Pool(HANDLER, Limits(start_seconds=max(limit, 120.0)), options=renderer)
+        self._refusal: Exception | None = None  # no process is started any more
+        self._printed = ""
 
     @property
     def renderer(self) -> ContextInfo:
@@ -49,18 +43,19 @@ class RendererProcess(Closing):
         Raises ``ContextError`` where there is no such renderer, ``SandboxCrash`` or
         ``SandboxTimeout`` where the worker does not start.
         """
-        self._start()
-        assert self._renderer is not None
-        return self._renderer
+        info = self._ask(OPEN)
+        assert isinstance(info, ContextInfo)
+        return info
 
     @property
     def process(self) -> int | None:
         """The worker's process number; None while there is none."""
-        return self._workers.worker.pid if self._workers.worker else None
+        return next(iter(self._pool.pids), None)
 
     def printed(self) -> str:
         """Return, once, what the worker printed."""
-        return self._workers.printed()
+        printed, self._printed = self._printed, ""
+        return printed
 
     def render(self, case: ShotCase) -> RenderedShot:
         """Render one shot in the worker.
@@ -68,47 +63,31 @@ class RendererProcess(Closing):
         Raises what `playground.shots.suite.take` raises, ``SandboxCrash`` where the worker died,
         ``SandboxTimeout`` where it took too long.
         """
-        worker = self._start()
-        try:
-            frame = worker.ask(case, self.limit)
-        except WorkerDied as died:
-            raise self._stopped(died, f"drawing {case}", self.limit) from None
-        except MemoryError:
-            raise ContextError(f"drawing {case} ran out of memory") from None
+        frame = self._ask(case, f"drawing {case}")
         assert isinstance(frame, RenderedShot)
         return frame
 
-    def close(self) -> None:
-        """End the worker; the next shot starts another."""
-        self._workers.close()
-
-    def _start(self) -> Worker:
+    def _ask(self, request: object, what: str = "") -> object:
         if self._refusal is not None:
             raise self._refusal
-        worker = self._workers.start()
-        limit = max(self.limit, START_SECONDS)
-        try:
-            info = worker.wait_until_ready(limit)
-        except ContextError as error:
-            self._refusal = error
+        outcome = self._pool.run(request, seconds=self.limit)
+        self._printed += outcome.printed
+        if not outcome.started:
+            self._refusal = outcome.failure(what)
             self.close()
-            raise
-        except WorkerDied as died:
-            stopped = self._stopped(died, "starting the process that draws", limit)
-            self._failed_starts += 1
-            if self._failed_starts == _STARTS:
-                self._refusal = stopped
-            raise stopped from None
-        assert isinstance(info, ContextInfo)
-        self._renderer, self._failed_starts = info, 0
-        return worker
+        return outcome.get(what)
 
-    def _stopped(self, died: WorkerDied, doing: str, limit: float) -> PlaygroundError:
-        """Return the error for a worker that died, or was killed for its time."""
-        self._workers.end()
-        report = died.report
-        if isinstance(died, WorkerTimeout):
-            return SandboxTimeout(f"{doing} took more than {limit:g} s and was stopped{report.last_lines}")
-        if report.not_a_frame:
-            return SandboxCrash(f"{doing} {report.ending}{report.last_lines}")
-        return SandboxCrash(f"{doing} crashed: the process {report.ending}{report.last_lines}")
+
+# ── in the worker ────────────────────────────────────────────────────────────
+
+
+def open_service(parent: Parent, renderer: str) -> Service:
+    """Open a context and an engine on it: "software", "any", or "either", the first where it is to be had."""
+    try:
+        context = open_context(software=renderer != "any")
+    except ContextError:
+        if renderer != "either":
+            raise
+        context = open_context()
+    engine = Engine(context, owns_context=True, notice=silent)
+    return Service(partial(render_shot, engine), context_info(context))

@@ -19,7 +19,7 @@ log = logging.getLogger("playground.live")
 class Sandbox(Protocol):
     """What draws a sketch in a process of its own first: ``engine.sandbox.Sandbox``, or a fake in a test."""
 
-    def submit(self, request: TrySketch) -> None:
+    def submit(self, request: TrySketch) -> object:
         """Submit a sketch; it replaces the one before."""
 
     def poll(self) -> SandboxReport | None:

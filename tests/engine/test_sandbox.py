@@ -85,10 +85,10 @@ def test_a_good_sketch_is_good_by_both_drivers(sandbox, folder):
 def test_the_worker_is_warm(sandbox, folder):
     """The same process answers, mistakes between or not: only its first answer waits for a context."""
     sandbox.run(TrySketch(folder.one(GOOD)))
-    pid = sandbox._workers.worker.pid
+    pid = sandbox._pool.pids[0]
     assert not sandbox.run(TrySketch(folder.one(GOOD.replace("texel.x", "wrong")))).ok
     assert sandbox.run(TrySketch(folder.one(GOOD.replace("texel.x", "texel.y")))).ok
-    assert sandbox._workers.worker.pid == pid
+    assert sandbox._pool.pids[0] == pid
 
 
 def test_a_mistake_comes_back_with_its_place(sandbox, folder):
@@ -166,8 +166,8 @@ def at_work(sandbox: Sandbox) -> int:
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
         assert sandbox.poll() is None
-        if sandbox._workers.worker.busy and sandbox._workers.worker.progress is not None:
-            return sandbox._workers.worker.pid
+        if sandbox._newest.progress is not None:
+            return sandbox._pool.pids[0]
         time.sleep(0.005)
     raise AssertionError("it did not begin")
 
@@ -195,17 +195,17 @@ def test_a_crash_says_how_and_where(sandbox, folder, number, message):
 def test_a_worker_that_died_is_replaced_before_it_is_needed(sandbox, folder):
     report = sandbox.run(TrySketch(folder.one(CRASH)))
     assert isinstance(report.error, SandboxCrash)
-    assert sandbox._workers.worker.runs and not sandbox._workers.worker.busy
-    pid = sandbox._workers.worker.pid
+    pid = sandbox._pool.pids[0]
+    assert is_alive(pid)
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
-    assert sandbox._workers.worker.pid == pid
+    assert sandbox._pool.pids[0] == pid
 
 
 @pytest.mark.slow
 def test_a_worker_that_dies_idle_costs_nobody_an_answer(sandbox, folder):
     """It is dead when it is handed something, or dies just then: another is asked."""
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
-    os.kill(sandbox._workers.worker.pid, signal.SIGKILL)
+    os.kill(sandbox._pool.pids[0], signal.SIGKILL)
     report = sandbox.run(TrySketch(folder.one(GOOD)))
     assert report.ok, report.error
 
@@ -216,10 +216,10 @@ def test_a_worker_killed_while_it_starts_is_tried_again(folder, kills, is_tried)
     request, killed = TrySketch(folder.one(GOOD), (32, 32)), []
 
     def kill() -> None:
-        worker = sandbox._workers.worker
-        if len(killed) < kills and worker is not None and not worker.is_ready and worker.pid not in killed:
-            killed.append(worker.pid)
-            os.kill(worker.pid, signal.SIGKILL)
+        for pid in sandbox._pool.pids:
+            if len(killed) < kills and pid not in killed:
+                killed.append(pid)
+                os.kill(pid, signal.SIGKILL)
 
     with Sandbox() as sandbox:
         sandbox.while_waiting = kill
@@ -227,7 +227,7 @@ def test_a_worker_killed_while_it_starts_is_tried_again(folder, kills, is_tried)
         assert report.ok is is_tried
         if not is_tried:
             assert len(killed) == 3, "an end is put to it"
-            assert "the sandbox's process could not be started" in str(report.error)
+            assert "starting the process that draws crashed: the process was ended" in str(report.error)
 
 
 MONSTERS = {
@@ -268,7 +268,7 @@ def test_a_long_text_is_no_mistake(sandbox, folder):
 
 def test_what_takes_too_long_is_stopped(sandbox, folder, monkeypatch):
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
-    pid = sandbox._workers.worker.pid
+    pid = sandbox._pool.pids[0]
     with monkeypatch.context() as patch:
         patch.setattr(sandbox, "limit_seconds", 0.7)
         report = sandbox.run(TrySketch(folder.one(SLOW)))
@@ -321,16 +321,15 @@ def test_submit_never_waits_and_the_newest_wins(folder):
     ]
     with Sandbox(limit_seconds=PATIENCE) as sandbox:
         assert sandbox.run(TrySketch(folder.one(GOOD))).ok
-        pid = sandbox._workers.worker.pid
+        pid = sandbox._pool.pids[0]
         sandbox.submit(TrySketch(folder.one(SLOW)))
+        at_work(sandbox)
         for request in wrong:
             sandbox.submit(request)
-        assert sandbox.busy and sandbox._workers.worker.pid == pid and is_alive(pid), (
-            "nothing waited for the child"
-        )
+        assert sandbox.busy and sandbox._pool.pids[0] == pid and is_alive(pid), "nothing waited for the child"
         report = wait(sandbox)
         assert "wrong19" in str(report.error), "within the limit: the child that hung was killed for it"
-        assert sandbox._workers.worker.pid != pid and is_gone(pid)
+        assert sandbox._pool.pids[0] != pid and is_gone(pid)
         assert not sandbox.busy
         assert sandbox.poll() is None
 
@@ -342,15 +341,13 @@ def test_a_worker_that_takes_long_has_a_spare_that_takes_its_place(folder):
         sandbox.submit(TrySketch(folder.one(SLOW)))
         first = at_work(sandbox)
         end = time.monotonic() + PATIENCE
-        while (
-            sandbox._workers.spare is None or not sandbox._workers.spare.is_ready
-        ) and time.monotonic() < end:
+        while len(sandbox._pool.pids) < 2 and time.monotonic() < end:
             assert sandbox.poll() is None
             time.sleep(0.005)
-        spare = sandbox._workers.spare.pid
+        spare = sandbox._pool.pids[1]
         sandbox.submit(TrySketch(folder.one(GOOD)))
         assert wait(sandbox).ok
-        assert sandbox._workers.worker.pid == spare and is_gone(first)
+        assert sandbox._pool.pids[0] == spare and is_gone(first)
     assert is_gone(spare)
 
 
@@ -380,12 +377,14 @@ def test_memory_has_a_limit(folder):
 def test_close_leaves_no_process(folder):
     sandbox = Sandbox()
     sandbox.start()
-    pid = sandbox._workers.worker.pid
+    while not sandbox._pool.pids:
+        time.sleep(0.005)
+    (pid,) = sandbox._pool.pids
     sandbox.close()
     assert is_gone(pid)
     with Sandbox(limit_seconds=PATIENCE) as busy:
         busy.run(TrySketch(folder.one(GOOD)))
-        pid = busy._workers.worker.pid
+        pid = busy._pool.pids[0]
         busy.submit(TrySketch(folder.one(SLOW)))
     assert is_gone(pid), "what it was at would have taken it an hour"
     assert not busy.busy
@@ -407,16 +406,17 @@ def run_script(folder: Path, text: str) -> subprocess.Popen[str]:
 
 
 SCRIPT = """
-from dataclasses import replace
+from functools import partial
 from playground import cli
+from playground.engine import sandbox
 from playground.engine.sandbox import Sandbox, TrySketch
-from playground.engine.process import worker
+from playground.engine.process import pool
 from playground.sketch.load import load
+pool._GRACE, pool.max_wall_seconds = 8.0, lambda _: 0.01  # [s] after which a process ends by itself
+sandbox.Pool = partial(pool.Pool, ends_with_parent=PIPE)
 with Sandbox(limit_seconds=90.0) as sandbox:
-    workers = sandbox._workers
-    worker._GRACE = 8.0  # [s] after its limit, when a process ends by itself
-    workers.launch = replace(workers.launch, limit_seconds=0.01, ends_with_parent=PIPE)
-    print(sandbox.run(TrySketch(load("good_sketch.toml"))).ok, sandbox._workers.worker.pid, flush=True)
+    sandbox.start()
+    print(sandbox.run(TrySketch(load("good_sketch.toml"))).ok, sandbox._pool.pids[0], flush=True)
     sandbox.run(TrySketch(load("slow_sketch.toml")))
 """
 

@@ -15,7 +15,7 @@ from playground.engine import sources
 from playground.engine.disk_cache import DiskCache
 from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
-from playground.engine.process.messages import Cancelled
+from playground.engine.process.worker import Cancelled
 from playground.engine.sandbox import Sandbox, TrySketch
 from playground.engine.source_kinds import Material, SourceKind, Terrain
 from playground.engine.source_works import SourceUnfinished, SourceWorks

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import signal
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -124,7 +126,11 @@ def test_a_process_that_dies_is_reported(bench: Bench) -> None:
     bench.captures.wish = Wish(PICTURE, multiple=0, size=(6000, 6000))
     bench.captures.start()
     assert bench.captures.working is not None
-    bench.captures.working._worker._process.kill()
+    task = bench.captures.working._task
+    while not task.begun:
+        time.sleep(0.005)
+    assert task.slot is not None and task.slot.process is not None
+    os.kill(task.slot.process.pid, signal.SIGTERM)
     wait(bench)
     assert bench.captures.failed.startswith("the capture "), bench.captures.failed
 

@@ -18,8 +18,7 @@ from playground.cli import main
 from playground.data.image_files import write_png
 from playground.errors import PlaygroundError, SketchError
 from playground.reduce import initial_case
-from playground.reduce.candidate_process import CandidateProcess
-from playground.reduce.draw_handler import DrawResult, DrawTask
+from playground.reduce.candidate_process import CandidateProcess, DrawResult, DrawTask
 from playground.reduce.failures import Differs, FailureKind, NotFinite, OffReference, Refused, Side
 from playground.reduce.inline import inline_sketch
 from playground.reduce.probe import Probe

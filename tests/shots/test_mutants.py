@@ -347,7 +347,7 @@ def test_a_process_that_fails_counts_as_refused(mine: Path, any_engine: Engine):
     shot = shot_of(bench.sketch)
     arguments = (bench.sketch, shot, bench.unbroken(shot), any_engine.info, 1)
     (late,) = redraw(*arguments, limit=0.01)
-    assert late.refused == "the process took more than 0.01 s and was stopped"
+    assert late.refused == "the drawing took more than 0.01 s and was stopped"
     (mine / "slope.glsl").write_text(SLOPE.replace("rise *", "ryse *"))
     (wrong,) = redraw(*arguments)
     assert "slope.glsl:" in wrong.refused and "ryse" in wrong.refused and not wrong.identical

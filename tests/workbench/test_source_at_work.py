@@ -11,7 +11,7 @@ import pytest
 
 from playground.engine import sources
 from playground.engine.engine import Engine
-from playground.engine.process.messages import Cancelled
+from playground.engine.process.worker import Cancelled
 from playground.engine.sandbox import SandboxReport
 from playground.engine.source_kinds import SourceKind, Terrain
 from playground.live.overlay import behind_text

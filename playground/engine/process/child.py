@@ -1,147 +1,231 @@
-"""The child's end of a worker: answer requests by a handler until the parent closes the pipe.
-
-Run by ``process.worker`` only, as ``python -m playground.engine.process.child MODULE``. The module is
-the handler: its function ``open_service`` takes a ``Parent`` and the options, and returns a
-``Service``. An error of our family crosses to the parent whole, any other as text.
-"""
+"""A child process as its parent has it: its pipes, what it prints, its end, and what came of a request."""
 
 from __future__ import annotations
 
-import importlib
+import contextlib
 import os
 import pickle
-import queue
 import signal
+import subprocess
 import sys
-import threading
-import time
-import traceback
-from collections.abc import Callable, Iterator
+import tempfile
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import IO, Any
+from functools import partial
+from pathlib import Path
+from typing import Any, Literal
 
-from playground.engine.process import frames
-from playground.engine.process.kernel_pickle import Decoder
-from playground.engine.process.limits import end_after, end_with_parent, limit_memory
-from playground.engine.process.messages import (
-    CANCEL,
-    Answer,
-    Cancelled,
-    Progress,
-    Ready,
-    Setup,
-    UnexpectedError,
-)
-from playground.errors import PlaygroundError
+from playground.engine.process.clock import ActivityClock, times_of
+from playground.engine.process.worker import CANCEL, Encoder, Message, read_frame, write_frame
+from playground.errors import SandboxCrash, SandboxTimeout
+
+_MAX_LINES = 12  # of what a process printed last
+_WINDOWS = {0xC0000005: "an access violation", 0xC00000FD: "a stack overflow", 0xC0000409: "an abort"}
+_CRASHES = ("SIGSEGV", "SIGBUS", "SIGILL", "SIGFPE", "SIGABRT", "SIGTRAP", *_WINDOWS.values())
+_MAIN = "from playground.engine.process.worker import main; main()"
+_NO_MEMORY = ("out of memory", "bad_alloc", "memoryerror", "cannot allocate")
 
 
 @dataclass(frozen=True)
-class Service:
-    """A handler that is ready."""
+class Outcome:
+    """What came of a request.
 
-    answer: Callable[[Any], object]  # a request's answer; may raise
-    info: object = None  # what the parent learns when the handler is ready
+    "refused": the handler, or its opening, raised an error. "crash": the process ended, or is of no more use,
+    and ``error`` says why. "hang": it passed a limit and was killed.
+    """
 
+    kind: Literal["answer", "refused", "crash", "hang"]
+    value: Any = None  # of an answer
+    error: Exception | None = None
+    started: bool = True  # whether the handler had opened
+    info: Any = None  # what it told of itself then
+    progress: Any = None  # what was reported last
+    seconds: float = 0.0  # of processor time that it took
+    limit: float = 0.0  # [s] that a hang passed
+    printed: str = ""  # since the outcome before
+    status: int | None = None  # of the process, as in ``subprocess``: negative for a signal; None: not known
+    not_a_frame: str = ""  # what it sent instead of a message
 
-class Parent:
-    """The parent as its child sees it: sends requests, may cancel them, receives progress and answers."""
+    def get(self, what: str) -> Any:
+        """Return the answer; raise ``failure`` where there is none."""
+        if self.kind == "answer":
+            return self.value
+        raise self.failure(what)
 
-    def __init__(self, requests: IO[bytes], answers: IO[bytes], alarm_seconds: float) -> None:
-        self._requests, self._answers = requests, answers
-        self._alarm = alarm_seconds
-        self._cancelled = threading.Event()
-        self._received: queue.Queue[bytes | None] = queue.Queue()  # None: the parent closed the pipe
+    def failure(self, what: str) -> Exception:
+        """Return the error, ``SandboxCrash`` or ``SandboxTimeout`` where the process had no time to say any.
 
-    def report(self, progress: object) -> None:
-        """Send what is about to be done, or how far it is; raise ``Cancelled`` if it is to stop."""
-        if self._cancelled.is_set():
-            raise Cancelled
-        end_after(self._alarm)
+        ``what`` is the request as a subject: "drawing hills/noon".
+        """
+        if not self.started:
+            what = "starting the process that draws"
+        if isinstance(self.error, MemoryError):
+            return SandboxCrash(f"{what} ran out of memory")
+        if self.error is not None:
+            return self.error
+        if self.kind == "hang":
+            return SandboxTimeout(f"{what} took more than {self.limit:g} s and was stopped{self._last_lines}")
+        how = self.ending if self.not_a_frame else f"crashed: the process {self.ending}"
+        return SandboxCrash(f"{what} {how}{self._last_lines}")
+
+    @property
+    def signal_name(self) -> str:
+        """The signal that ended the process, as "SIGSEGV", or its like on Windows; "" for none."""
+        if self.status is None or self.status >= 0:
+            return _WINDOWS.get(self.status or 0, "")
         try:
-            self._send(Progress(progress))
-        except OSError:  # the parent is gone
-            raise Cancelled from None
+            return signal.Signals(-self.status).name
+        except ValueError:
+            return f"signal {-self.status}"
 
-    def serve(self, open_service: Callable[[Parent, Any], Service], setup: Setup) -> None:
-        """Answer requests until the parent closes the pipe, or is gone."""
-        # A thread, so that a cancellation is seen amid a request.
-        threading.Thread(target=self._receive, daemon=True).start()
-        answer: Callable[[Any], object]
+    @property
+    def ending(self) -> str:
+        """How the process ended, as what a sentence says of it."""
+        if self.not_a_frame:
+            return f"sent what is no answer: {self.not_a_frame}"
+        if self.signal_name:
+            return f"was ended by {self.signal_name}"
+        return "died" if self.status is None else f"ended with status {self.status}"
+
+    def cause(self, where: str = "") -> str:
+        """Say what killed it and, if it printed anything, the last line; ``where`` as " in the sandbox"."""
+        last = self.printed.strip().split("\n")[-1].strip()
+        how = self.signal_name or ("died" if not self.status else f"ended with status {self.status}")
+        detail = f"{how}; its last output: {last}" if last else how
+        if any(sign in last.lower() for sign in _NO_MEMORY):
+            return f"ran out of memory{where} ({detail})"
+        if how in _CRASHES:
+            return f"crashed the driver or its compiler{where} ({detail})"
+        if how == "SIGKILL":
+            return f"was killed by the system{where} (SIGKILL); did memory run out?"
+        return f"ended its process{where}: the driver or its compiler gave up, or memory ran out ({detail})"
+
+    @property
+    def _last_lines(self) -> str:
+        lines = [line.rstrip() for line in self.printed.splitlines() if line.strip()][-_MAX_LINES:]
+        return "".join(f"\n    | {line}" for line in lines)
+
+
+class ProcessDied(Exception):
+    """The process has ended, or is as good as dead."""
+
+
+class ChildProcess:
+    """One child process, and its pipes."""
+
+    def __init__(
+        self,
+        handler: str,
+        setup: tuple[object, int | None],
+        environment: Mapping[str, str],
+        folder: Path | None,
+        ends_with_parent: bool,
+    ) -> None:
+        self.encoder = Encoder()
+        self.ready: Message | None = None
+        self.requests = 0.0  # that it was sent
+        self.exceeded = 0.0  # [s] the limit for which it was killed
+        self._not_a_frame = ""  # what it sent instead of a message
+        self._output = tempfile.TemporaryFile()
+        self._read = 0  # bytes of that
+        pipe = os.pipe() if ends_with_parent and sys.platform == "linux" else ()
         try:
-            service = open_service(self, setup.options)
-            ready, answer = Ready(service.info), service.answer
-        except PlaygroundError as error:
-            ready, answer = Ready(error=error), _refusal(error)
-        limit_memory(setup.memory_bytes)
+            # -P: what lies in the user's folder is no module of ours, even under the same name.
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", "-c", _MAIN, handler],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=self._output,
+                env={**os.environ, "PYTHONPATH": _module_path(), **environment},
+                cwd=folder,
+                pass_fds=pipe[:1],
+                start_new_session=True,
+            )
+        except BaseException:
+            self._output.close()
+            for end in pipe[1:]:
+                os.close(end)
+            raise
+        finally:
+            for end in pipe[:1]:
+                os.close(end)
+        self._life = pipe[1:]
+        assert self._process.stdin is not None and self._process.stdout is not None
+        self._requests, self._answers = self._process.stdin, self._process.stdout
+        self.pid = self._process.pid
+        self.clock = ActivityClock(partial(times_of, self.pid))  # of what it is at; else cleared
+        with contextlib.suppress(ProcessDied):  # which is found when it is asked
+            self.send(pickle.dumps((*setup, *pipe[:1])))
+
+    @property
+    def runs(self) -> bool:
+        """Whether the process lives."""
+        return self._process.poll() is None
+
+    def send(self, data: bytes) -> None:
+        """Send a request; raise ``ProcessDied`` where the process has ended."""
         try:
-            self._send(ready)
-            for request in self._each_request():
-                end_after(self._alarm)
-                found = _answered(answer, request)
-                end_after(0.0)
-                self._send(found)
-        except OSError:  # the parent is gone
-            return
+            write_frame(self._requests, data)
+        except OSError:
+            raise ProcessDied from None
 
-    def _each_request(self) -> Iterator[object]:
-        decoder = Decoder()
-        while (data := self._received.get()) is not None:
-            yield decoder.decode(data)
+    def cancel(self) -> None:
+        """Send that the request at work is to stop."""
+        with contextlib.suppress(ProcessDied):
+            self.send(CANCEL)
 
-    def _receive(self) -> None:
+    def receive(self) -> Message:
+        """Return the next message; raise ``ProcessDied`` at the end."""
         try:
-            while True:
-                data = frames.read(self._requests)
-                if data == CANCEL:
-                    self._cancelled.set()
-                else:
-                    self._cancelled.clear()  # that was meant for the request before
-                    self._received.put(data)
-        except (EOFError, OSError, frames.NotAFrame):
-            self._cancelled.set()
-            self._received.put(None)
+            message: object = pickle.loads(read_frame(self._answers))
+            if isinstance(message, Message):
+                return message
+            self._not_a_frame = f"a message of type {type(message).__name__}"
+        except (OSError, EOFError):
+            pass
+        except Exception as error:  # no frame; and a pickle that is damaged raises anything at all
+            self._not_a_frame = str(error)
+        raise ProcessDied
 
-    def _send(self, message: object) -> None:
-        frames.write(self._answers, pickle.dumps(message))
+    def printed(self) -> str:
+        """Return what was printed since this was last called; nothing where a file has one position only."""
+        if not hasattr(os, "pread"):
+            return ""
+        # By a position of its own: the process writes on at the file's, which it shares.
+        data = os.pread(self._output.fileno(), 2**20, self._read)
+        self._read += len(data)
+        return data.decode("utf-8", "replace")
 
+    def kill(self, limit: float) -> None:
+        """Kill the process, from another thread, for it has passed a limit [s]; 0: for another reason."""
+        self.exceeded = limit
+        self._process.kill()
 
-def _answered(answer: Callable[[Any], object], request: object) -> Answer:
-    start = time.perf_counter()
-    error: Exception
-    try:
-        return Answer(answer(request), seconds=time.perf_counter() - start)
-    except (PlaygroundError, Cancelled, MemoryError) as raised:
-        error = raised
-    except Exception as raised:  # a bug of ours, or of a library
-        error = UnexpectedError(f"{type(raised).__name__}: {raised}", traceback.format_exc())
-    return Answer(error=error, seconds=time.perf_counter() - start)
-
-
-def _refusal(error: PlaygroundError) -> Callable[[object], object]:
-    def answer(request: object) -> object:
-        raise error
-
-    return answer
-
-
-def main() -> None:
-    """Serve the parent by the module that it names."""
-    requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
-    # What a driver or a program that is started here prints or reads must not get between the frames.
-    os.dup2(2, 1)
-    nowhere = os.open(os.devnull, os.O_RDONLY)
-    os.dup2(nowhere, 0)
-    os.close(nowhere)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's
-    try:
-        setup: Setup = pickle.loads(frames.read(requests))
-    except EOFError:
-        return
-    if setup.life >= 0:
-        end_with_parent(setup.life)
-    open_service = importlib.import_module(sys.argv[1]).open_service
-    Parent(requests, answers, setup.alarm_seconds).serve(open_service, setup)
+    def end(self, patience: float) -> Outcome:
+        """End the process, by itself within ``patience`` seconds, else by force; return how it ended."""
+        with contextlib.suppress(OSError):
+            self._requests.close()  # so it ends
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(0.0 if self._not_a_frame else patience)
+        self._process.kill()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(5.0)
+        self._answers.close()
+        for end in self._life:
+            os.close(end)
+        with self._output:
+            self._output.seek(self._read)
+            printed = self._output.read().decode("utf-8", "replace")
+        return Outcome(
+            "crash",
+            started=self.ready is not None,
+            printed=printed,
+            status=self._process.returncode,
+            not_a_frame=self._not_a_frame,
+        )
 
 
-if __name__ == "__main__":
-    main()
+def _module_path() -> str:
+    """Return PYTHONPATH for a child that finds this package, and what it needs, as this process does."""
+    package = str(Path(__file__).resolve().parents[3])
+    return os.pathsep.join([package, *(path for path in sys.path if path)])

@@ -1,397 +1,317 @@
-"""The parent's end of a worker: start a child process, send it requests, receive answers, kill it.
+"""The worker process's end of a pool: its messages, its limits, and the loop that answers by a handler.
 
-A thread talks to the process, so that no caller waits for one that hangs. Besides its answers
-the process reports when it is ready, and what it is about to do: so it is known
-what killed it.
+Each message is a pickle in a frame of its own; a pickle is only ever read from our own parent or child.
+
+    parent                          child
+    options, memory, life    ──▶
+                             ◀──    "ready"
+    alarm, request           ──▶
+                             ◀──    "begun"
+                             ◀──    "progress", as often as the handler reports
+    CANCEL, if it must stop  ──▶
+                             ◀──    "answer"
+
+Options are for the handler; memory is what the child may take in bytes, None for as much as the machine
+has; life is the number of a pipe that the parent holds open while it lives, where there is one. The alarm is
+in how many seconds the system ends the child, should its parent fail to; 0 for never.
+
+The parent closes the pipe to end the child. The handler is a module: its function ``open_service`` takes a
+``Parent`` and the pool's options, and returns a ``Service``. An error of our family crosses to the parent
+whole, any other as text.
 """
 
 from __future__ import annotations
 
-import contextlib
+import importlib
+import io
+import itertools
 import os
 import pickle
 import queue
-import subprocess
+import select
+import signal
+import struct
 import sys
-import tempfile
 import threading
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from pathlib import Path
-from typing import IO, Self
+import traceback
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import IO, Any, Literal, NamedTuple
 
-from playground.engine.process import frames
-from playground.engine.process.activity_clock import ActivityClock
-from playground.engine.process.cpu_wait import longest, times_of
-from playground.engine.process.crash_report import CrashReport
-from playground.engine.process.kernel_pickle import Encoder
-from playground.engine.process.messages import CANCEL, Answer, Progress, Ready, Setup
+from playground.errors import PlaygroundError
+from playground.shader.kernel import Kernel
 
-START_SECONDS = 120.0
-"""[s] that starting Python and opening a context may take, on a busy machine with a cold shader cache."""
+CANCEL = b""
+"""The frame that cancels the request at work."""
 
-_GRACE = 60.0  # [s] that the parent has to end a request before the system does
-_POLL = 0.05  # [s] between two looks at the clock
-_PRINTED = 2**20  # characters that are stored of what was printed
+_MARK = b"\0frame\r\n"  # tells a frame from what a driver, or a library, may write into the pipe
+_HEAD = struct.Struct("<8sQ")  # the mark, the length
+_MAX_FRAME = 2**33  # [bytes]: an image of 16384 x 16384 has 2**30
 
 
-@dataclass(frozen=True, kw_only=True)
-class Launch:
-    """How a child process is started."""
-
-    handler: str  # the module that answers, with a function ``open_service``
-    options: object = None  # for ``open_service``
-    memory_bytes: int | None = None  # that it may take; None: as many as the machine has
-    limit_seconds: float = 0.0  # after which the system ends a request, if its parent fails to; 0: never
-    ends_with_parent: bool = True  # at once, where the system can; else with what it reports next
-    environment: Mapping[str, str] = field(default_factory=dict)  # added to this process's
-    folder: Path | None = None  # it works in; None: this process's
-    on_answer: Callable[[], None] = lambda: (
-        None
-    )  # called, in another thread, when ``Worker.poll`` has an answer
+# ── messages ─────────────────────────────────────────────────────────────────
 
 
-class Closing:
-    """What a ``with`` block closes at its end."""
+class Message(NamedTuple):
+    """What the child sends."""
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def close(self) -> object:
-        """End the processes that it has started."""
-        raise NotImplementedError
+    kind: Literal["ready", "begun", "progress", "answer"]
+    value: Any = (
+        None  # what the handler tells of itself; what it is about to do, or how far it is; the answer
+    )
+    error: Exception | None = None  # that it raised instead; where that is in opening, it takes no requests
 
 
-class WorkerDied(Exception):
-    """The process ended before it answered."""
-
-    def __init__(self, report: CrashReport) -> None:
-        super().__init__(report.ending)
-        self.report = report
+class Cancelled(Exception):
+    """The request was cancelled."""
 
 
-class WorkerTimeout(WorkerDied):
-    """The process took too long, and was killed."""
+class UnexpectedError(RuntimeError):
+    """A bug in a handler, as text, for its exception may not cross to the parent.
+
+    ``args`` are "Type: message", and the traceback.
+    """
+
+    def __str__(self) -> str:
+        return f"in the child process:\n{self.args[1]}"
 
 
-class Worker(Closing):
-    """One child process, and the thread that talks to it; takes one request at a time."""
-
-    def __init__(self, launch: Launch) -> None:
-        self.busy = False  # whether it was sent a request and has not answered
-        self.progress: object = None  # what it reported last of the request
-        self._ready: Ready | None = None
-        self._not_a_frame = ""
-        self._started = threading.Event()  # it is ready, or dead
-        self._sent = self._cancelled = False
-        self._cancelling = threading.Lock()
-        # Simple queues: Ctrl-C in the midst of a call leaves no lock of theirs taken.
-        self._requests: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()  # None: no more
-        self._encoder = Encoder()
-        self._on_answer = launch.on_answer
-        self._answers: queue.SimpleQueue[Answer | None] = queue.SimpleQueue()  # None: it is dead
-        self._output = _Output()
-        life, self._life = os.pipe() if launch.ends_with_parent and sys.platform == "linux" else (-1, -1)
-        try:
-            # -P: what lies in the user's folder is no module of ours, even under the same name.
-            self._process = subprocess.Popen(
-                [sys.executable, "-P", "-m", "playground.engine.process.child", launch.handler],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=self._output.file,
-                env={**os.environ, "PYTHONPATH": _module_path(), **launch.environment},
-                cwd=launch.folder,
-                pass_fds=() if life < 0 else (life,),
-                start_new_session=True,
-            )
-        except BaseException:
-            self._release()
-            raise
-        finally:
-            if life >= 0:
-                os.close(life)
-        self._clock = ActivityClock(lambda: times_of(self.pid))
-        self._clock.begin("start")
-        alarm = longest(launch.limit_seconds) + _GRACE if launch.limit_seconds else 0.0
-        setup = Setup(launch.options, launch.memory_bytes, alarm, life)
-        self._thread = threading.Thread(target=self._talk, args=[setup], daemon=True)
-        self._thread.start()
-
-    @property
-    def pid(self) -> int:
-        """The process's number."""
-        return self._process.pid
-
-    @property
-    def runs(self) -> bool:
-        """Whether the process lives."""
-        return self._process.poll() is None
-
-    @property
-    def is_ready(self) -> bool:
-        """Whether it has ever been ready."""
-        return self._ready is not None
-
-    @property
-    def starting_seconds(self) -> float:
-        """How long it has been starting [s]; 0 once it is ready."""
-        return 0.0 if self.is_ready else self._clock.total
-
-    @property
-    def seconds(self) -> float:
-        """How long it has worked on its request, from when it was ready for it [s].
-
-        Processor time: what it waited for a processor does not count, but for a share.
-        """
-        return self._clock.total if self.is_ready else 0.0
-
-    @property
-    def activity_seconds(self) -> float:
-        """How long what it reported last has taken, of its request, as ``seconds`` [s]."""
-        return self._clock.seconds if self.is_ready else 0.0
-
-    def submit(self, request: object) -> None:
-        """Send a request; never waits."""
-        self.busy, self.progress = True, None
-        self._sent = self._cancelled = False
-        try:
-            # Here, not in the thread that sends: the caller may change what it holds meanwhile.
-            self._requests.put(self._encoder.encode(request))
-        except Exception as error:  # it cannot be pickled
-            self._answers.put(Answer(error=error))
-
-    def cancel(self) -> None:
-        """Have the handler stop at its next report; never waits."""
-        self._cancelled = True
-        if self._sent:
-            self._send_cancel()
-
-    def poll(self, timeout: float = 0.0) -> Answer | None:
-        """Return the answer to the request, once; None while there is none.
-
-        Raises ``WorkerDied`` where the process ends before it answers.
-        """
-        try:
-            answer = self._answers.get(timeout=timeout) if timeout else self._answers.get_nowait()
-        except queue.Empty:
-            return None
-        if answer is None:
-            raise WorkerDied(self._report_death())
-        self.busy = False
-        return answer
-
-    def wait_until_ready(self, limit: float = START_SECONDS) -> object:
-        """Return what the handler tells of itself, or raise the error that it met when it opened.
-
-        Raises ``WorkerDied`` where the process ends, ``WorkerTimeout`` after ``limit`` seconds.
-        """
-        while not self._started.wait(_POLL):
-            if self.starting_seconds > limit:
-                raise WorkerTimeout(self.end(kill=True))
-        if self._ready is None:
-            raise WorkerDied(self._report_death())
-        if self._ready.error is not None:
-            raise self._ready.error
-        return self._ready.info
-
-    def ask(self, request: object, limit: float) -> object:
-        """Send a request, wait for the answer, and return its value or raise its error.
-
-        Raises ``WorkerDied`` where the process ends, ``WorkerTimeout`` after ``limit`` seconds.
-        """
-        self.wait_until_ready()
-        try:
-            self.submit(request)
-            while (answer := self.poll(min(_POLL, limit))) is None:
-                if self.seconds > limit:
-                    raise WorkerTimeout(self.end(kill=True))
-        except WorkerDied:
-            raise
-        except BaseException:  # Ctrl-C, or another's time limit: the answer must not be taken for the next
-            self.end(kill=True)
-            raise
-        return answer.get()
-
-    def printed(self) -> str:
-        """Return what it has printed since this was last called."""
-        return self._output.read()
-
-    def close(self) -> CrashReport:
-        """End the process, by itself if it has nothing to do."""
-        return self.end()
-
-    def end(self, *, kill: bool = False, patience: float = 5.0) -> CrashReport:
-        """End the process and report how it ended.
-
-        If it has nothing to do it may end by itself within ``patience`` seconds; else it is killed.
-        """
-        at_work = self._thread.is_alive() and (self.busy or not self.is_ready)
-        self._requests.put(None)  # its input is closed, so it ends
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(0.0 if kill or at_work else patience)
-        self._process.kill()
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(5.0)
-        self._thread.join(5.0)
-        status, output = self._process.returncode, self._release()
-        return CrashReport(status, output, self.progress, self._not_a_frame, was_ready=self.is_ready)
-
-    def _release(self) -> str:
-        """Close this end of the life pipe and the file of what was printed; return its rest."""
-        if self._life >= 0:
-            os.close(self._life)
-            self._life = -1
-        return self._output.close()
-
-    def _report_death(self) -> CrashReport:
-        """Report how the process ended, whose pipe is closed."""
-        self._thread.join(5.0)
-        return self.end(kill=bool(self._not_a_frame), patience=2.0)
-
-    def _talk(self, setup: Setup) -> None:
-        requests, answers = self._process.stdin, self._process.stdout
-        assert requests is not None and answers is not None
-        # Its pipes are closed here, where they are used: closing waits for a reader.
-        try:
-            with contextlib.suppress(OSError), answers:
-                try:
-                    frames.write(requests, pickle.dumps(setup))
-                    ready = _receive(answers)
-                    assert isinstance(ready, Ready)
-                    self._clock.clear()
-                    self._ready = ready
-                    self._started.set()
-                    self._serve(requests, answers)
-                except frames.NotAFrame as error:
-                    self._not_a_frame = str(error)
-                except (OSError, EOFError):
-                    pass
-                with contextlib.suppress(OSError):
-                    requests.close()
-        finally:  # a caller that waits gets an answer, even if something went wrong here
-            self._answers.put(None)
-            self._started.set()
-            self._on_answer()
-
-    def _serve(self, requests: IO[bytes], answers: IO[bytes]) -> None:
-        while (request := self._requests.get()) is not None:
-            self._clock.begin(None)
-            frames.write(requests, request)
-            self._sent = True
-            if self._cancelled:
-                self._send_cancel()
-            while isinstance(message := _receive(answers), Progress):
-                self._clock.begin(message.value)
-                self.progress = message.value
-            assert isinstance(message, Answer)
-            self._clock.clear()
-            self._answers.put(message)
-            self._on_answer()
-
-    def _send_cancel(self) -> None:
-        assert self._process.stdin is not None
-        # A pipe that is closed has no one to stop.
-        with self._cancelling, contextlib.suppress(OSError, ValueError):
-            frames.write(self._process.stdin, CANCEL)
+def summary_of(error: Exception | None) -> str:
+    """Return an error's type and message, of an ``UnexpectedError`` those that the child met."""
+    return str(error.args[0]) if isinstance(error, UnexpectedError) else f"{type(error).__name__}: {error}"
 
 
-class Replaceable:
-    """One worker at a time: where it is gone another takes its place, warm if it is a spare."""
-
-    def __init__(self, launch: Launch) -> None:
-        self.launch = launch
-        self.worker: Worker | None = None
-        self.spare: Worker | None = None
-        self.started = 0  # how many processes there were
-        self._printed = ""  # by those that are gone
-
-    def start(self) -> Worker:
-        """Return the worker; start one, or take the spare, where there is none that runs."""
-        if self.worker is None or not self.worker.runs:
-            self.end()
-            spare, self.spare = self.spare, None
-            if spare is not None and not spare.runs:
-                spare.end()
-                spare = None
-            self.worker = self._new() if spare is None else spare
-        return self.worker
-
-    def start_spare(self) -> None:
-        """Start the process that is to take over."""
-        if self.spare is None:
-            self.spare = self._new()
-
-    def replace(self) -> Worker:
-        """Kill the worker and return the one that takes its place."""
-        self.end(kill=True)
-        return self.start()
-
-    def end(self, *, kill: bool = False, patience: float = 5.0) -> CrashReport | None:
-        """End the worker, as ``Worker.end`` does; the spare stays."""
-        worker, self.worker = self.worker, None
-        if worker is None:
-            return None
-        report = worker.end(kill=kill, patience=patience)
-        self._printed = (self._printed + report.output)[-_PRINTED:]
-        return report
-
-    def printed(self) -> str:
-        """Return what the workers have printed since this was last called."""
-        printed, self._printed = self._printed + (self.worker.printed() if self.worker else ""), ""
-        return printed
-
-    def close(self, *, patience: float = 5.0) -> CrashReport | None:
-        """End the worker and the spare."""
-        spare, self.spare = self.spare, None
-        if spare is not None:
-            spare.end(kill=True)
-        return self.end(patience=patience)
-
-    def _new(self) -> Worker:
-        self.started += 1
-        return Worker(self.launch)
+class NotAFrame(Exception):
+    """What was read is no frame."""
 
 
-class _Output:
-    """What a process prints, in a file that is gone with it."""
+def write_frame(stream: IO[bytes], data: bytes) -> None:
+    """Write one frame."""
+    stream.write(_HEAD.pack(_MARK, len(data)))
+    stream.write(data)
+    stream.flush()
+
+
+def read_frame(stream: IO[bytes]) -> bytes:
+    """Read one frame; raise ``EOFError`` at the end, even amid a frame, ``NotAFrame`` for anything else."""
+    head = stream.read(_HEAD.size)
+    if not head:
+        raise EOFError
+    if not head.startswith(_MARK[: len(head)]):
+        raise NotAFrame(repr(head))
+    if len(head) < _HEAD.size:
+        raise EOFError
+    _, length = _HEAD.unpack(head)
+    if length > _MAX_FRAME:
+        raise NotAFrame(f"a frame of {length} bytes")
+    data = stream.read(length)
+    if len(data) < length:
+        raise EOFError
+    return data
+
+
+class Encoder:
+    """Pickles requests so that each kernel is sent once; one ``Decoder`` reads all its messages, in order.
+
+    A sketch is mostly its kernels' texts, and a save changes one of them. Both ends keep the
+    kernels of the last message and no others, so that a name replaces the rest; the process,
+    which receives the same objects again, need not parse their texts again.
+    """
 
     def __init__(self) -> None:
-        self.file = tempfile.TemporaryFile()
-        self._begin = 0
+        self._known: dict[int, tuple[str, Kernel]] = {}  # by identity: held, so that it stays its own
+        self._names = itertools.count()
 
-    def read(self) -> str:
-        """Return what was printed since this was last called; nothing where a file has one position only."""
-        if self.file.closed or not hasattr(os, "pread"):
-            return ""
-        # By a position of its own: the process writes on at the file's, which it shares.
-        data = os.pread(self.file.fileno(), 2**20, self._begin)
-        self._begin += len(data)
-        return data.decode("utf-8", "replace")
-
-    def close(self) -> str:
-        """Return what was printed since ``read`` was last called, and remove the file; once."""
-        if self.file.closed:
-            return ""
-        with self.file:
-            self.file.seek(self._begin)
-            return self.file.read().decode("utf-8", "replace")
+    def encode(self, message: object) -> bytes:
+        """Return a message as bytes."""
+        stream = io.BytesIO()
+        pickler = _Pickler(stream, self._known, self._names)
+        pickler.dump(message)
+        self._known = pickler.used
+        return pickle.dumps(pickler.news, pickle.HIGHEST_PROTOCOL) + stream.getvalue()
 
 
-def _receive(stream: IO[bytes]) -> Ready | Progress | Answer:
-    data = frames.read(stream)
+class Decoder:
+    """The child's end of an ``Encoder``."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, Kernel] = {}
+
+    def decode(self, data: bytes) -> Any:
+        """Return the message that an ``Encoder`` wrote."""
+        stream = io.BytesIO(data)
+        unpickler = _Unpickler(stream, self._known | pickle.load(stream))
+        message = unpickler.load()
+        self._known = unpickler.used
+        return message
+
+
+class _Pickler(pickle.Pickler):
+    def __init__(
+        self, stream: io.BytesIO, known: dict[int, tuple[str, Kernel]], names: Iterator[int]
+    ) -> None:
+        super().__init__(stream, pickle.HIGHEST_PROTOCOL)
+        self._known, self._names = known, names
+        self.used: dict[int, tuple[str, Kernel]] = {}
+        self.news: dict[str, Kernel] = {}
+
+    def persistent_id(self, thing: object) -> str | None:
+        if not isinstance(thing, Kernel):
+            return None
+        named = self._known.get(id(thing)) or self.used.get(id(thing))
+        if named is None:
+            named = str(next(self._names)), thing
+            self.news[named[0]] = thing
+        self.used[id(thing)] = named
+        return named[0]
+
+
+class _Unpickler(pickle.Unpickler):
+    def __init__(self, stream: io.BytesIO, known: dict[str, Kernel]) -> None:
+        super().__init__(stream)
+        self._known = known
+        self.used: dict[str, Kernel] = {}
+
+    def persistent_load(self, name: Any) -> Kernel:
+        kernel = self.used[name] = self._known[name]
+        return kernel
+
+
+# ── the child ────────────────────────────────────────────────────────────────
+
+
+@dataclass(frozen=True)
+class Service:
+    """A handler that is ready."""
+
+    answer: Callable[[Any], object]  # a request's answer; may raise
+    info: object = None  # what the parent learns when the handler is ready
+
+
+class Parent:
+    """The parent as its child sees it: sends requests, may cancel them, receives progress and answers."""
+
+    def __init__(self, requests: IO[bytes], answers: IO[bytes]) -> None:
+        self._requests, self._answers = requests, answers
+        self._alarm = 0.0  # [s] after which the system ends what is at work, if the parent does not
+        self._cancelled = threading.Event()
+        self._received: queue.Queue[bytes | None] = queue.Queue()  # None: the parent closed the pipe
+
+    def report(self, progress: object) -> None:
+        """Send what is about to be done, or how far it is; raise ``Cancelled`` if it is to stop."""
+        if self._cancelled.is_set():
+            raise Cancelled
+        _end_after(self._alarm)
+        try:
+            self._send(Message("progress", progress))
+        except OSError:  # the parent is gone
+            raise Cancelled from None
+
+    def serve(
+        self, open_service: Callable[[Parent, Any], Service], options: object, memory_bytes: int | None
+    ) -> None:
+        """Answer requests until the parent closes the pipe, or is gone."""
+        # A thread, so that a cancellation is seen amid a request.
+        threading.Thread(target=self._receive, daemon=True).start()
+        try:
+            service = open_service(self, options)
+            ready = Message("ready", service.info)
+        except PlaygroundError as error:
+            ready = Message("ready", error=error)
+        _limit_memory(memory_bytes)
+        decoder = Decoder()
+        try:
+            self._send(ready)
+            while (data := self._received.get()) is not None:
+                self._send(Message("begun"))
+                self._alarm, request = decoder.decode(data)
+                _end_after(self._alarm)
+                answer = _answered(service.answer, request)
+                _end_after(0.0)
+                self._send(answer)
+        except OSError:  # the parent is gone
+            return
+
+    def _receive(self) -> None:
+        try:
+            while True:
+                data = read_frame(self._requests)
+                if data == CANCEL:
+                    self._cancelled.set()
+                else:
+                    self._cancelled.clear()  # that was meant for the request before
+                    self._received.put(data)
+        except (EOFError, OSError, NotAFrame):
+            self._cancelled.set()
+            self._received.put(None)
+
+    def _send(self, message: Message) -> None:
+        write_frame(self._answers, pickle.dumps(message, pickle.HIGHEST_PROTOCOL))
+
+
+def _answered(answer: Callable[[Any], object], request: object) -> Message:
     try:
-        message: object = pickle.loads(data)
-    except Exception as error:  # a pickle that is damaged raises anything at all
-        raise frames.NotAFrame(str(error)) from error
-    if not isinstance(message, Ready | Progress | Answer):
-        raise frames.NotAFrame(f"a message of type {type(message).__name__}")
-    return message
+        return Message("answer", answer(request))
+    except (PlaygroundError, Cancelled, MemoryError) as error:
+        return Message("answer", error=error)
+    except Exception as error:  # a bug of ours, or of a library
+        text = traceback.format_exc()
+        return Message("answer", error=UnexpectedError(f"{type(error).__name__}: {error}", text))
 
 
-def _module_path() -> str:
-    """Return PYTHONPATH for a child that finds this package, and what it needs, as this process does."""
-    package = str(Path(__file__).resolve().parents[3])
-    return os.pathsep.join([package, *(path for path in sys.path if path)])
+def _limit_memory(memory_bytes: int | None) -> None:
+    """Take no more memory than that; None: than the machine has, so that this process fails before it does.
+
+    The limit is the system's own (``RLIMIT_DATA``), which holds on Linux; macOS and Windows have none.
+    """
+    try:
+        import resource
+
+        if memory_bytes is None:
+            memory_bytes = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+        # Data, not address space: a graphics card's driver reserves far more addresses than it uses.
+        _, hard = resource.getrlimit(resource.RLIMIT_DATA)
+        if hard == resource.RLIM_INFINITY or memory_bytes < hard:
+            resource.setrlimit(resource.RLIMIT_DATA, (memory_bytes, memory_bytes))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))  # it may crash often, and no core file is read
+    except (ImportError, ValueError, OSError):  # Windows; a system that does not say, or does not let
+        pass
+
+
+def _end_after(seconds: float) -> None:
+    """Have the system end this process, should its parent fail to; 0: no more."""
+    if hasattr(signal, "setitimer"):
+        signal.setitimer(signal.ITIMER_REAL, seconds)  # SIGALRM ends even a draw that hangs
+
+
+def _end_with_parent(life: int) -> None:
+    """Have Linux end this process when its parent is gone, even in the middle of a draw.
+
+    ``life`` is the end of a pipe that is never written to. When its other end closes, Linux
+    sends SIGIO, which ends a process that has no handler for it; elsewhere it is ignored.
+    """
+    import fcntl
+
+    fcntl.fcntl(life, fcntl.F_SETOWN, os.getpid())
+    fcntl.fcntl(life, fcntl.F_SETFL, fcntl.fcntl(life, fcntl.F_GETFL) | os.O_ASYNC)
+    if select.select([life], [], [], 0)[0]:  # it was gone before that
+        sys.exit(1)
+
+
+def main() -> None:
+    """Serve the parent by the module that it names."""
+    requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    # What a driver or a program that is started here prints or reads must not get between the frames.
+    os.dup2(2, 1)
+    nowhere = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nowhere, 0)
+    os.close(nowhere)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's
+    try:
+        options, memory_bytes, *life = pickle.loads(read_frame(requests))
+    except EOFError:
+        return
+    if life:
+        _end_with_parent(*life)
+    open_service = importlib.import_module(sys.argv[1]).open_service
+    Parent(requests, answers).serve(open_service, options, memory_bytes)

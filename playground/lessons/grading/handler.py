@@ -13,7 +13,7 @@ from playground.allowed_files import leads_outside
 from playground.engine.context import context_info, open_context
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
-from playground.engine.process.child import Parent, Service
+from playground.engine.process.worker import Parent, Service
 from playground.engine.textures import is_lost
 from playground.errors import ContextError, DataError, PlaygroundError, SandboxCrash
 from playground.lessons.figure_renders import draw

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
-from playground.engine.process.messages import summary_of
-from playground.engine.process.worker import START_SECONDS, Closing, Launch, Replaceable, Worker, WorkerDied
-from playground.errors import Diagnostic, PlaygroundError, SandboxCrash, SandboxTimeout
+from playground.engine.context import open_context
+from playground.engine.engine import Engine
+from playground.engine.plain_forms import silent
+from playground.engine.plan import Step
+from playground.engine.process.child import Outcome
+from playground.engine.process.pool import Limits, Pool, PoolOwner
+from playground.engine.process.worker import Parent, Service, summary_of
+from playground.engine.textures import is_lost
+from playground.errors import Diagnostic, PlaygroundError, SandboxCrash
 from playground.lessons.model import Challenge, Exercise
-from playground.lessons.tasks.judge import SIDE
-from playground.lessons.tasks.match import Ends, Match
+from playground.lessons.tasks.judge import SIDE, Wanted, answers, judge
+from playground.lessons.tasks.match import Ends, Match, ends_of, match
+from playground.lessons.tasks.texts import answer_text
 from playground.lessons.tasks.verdict import Verdict
 from playground.lessons.tasks.work import Work
 
@@ -18,8 +26,8 @@ LIMIT_SECONDS = 10.0
 
 LIMIT_BYTES = 4 * 2**30
 
-_HANDLER = "playground.lessons.tasks.judge_handler"
 _WHOLE = 6  # times that limit for all of a work
+_KNOWN = 16  # tasks whose answers are kept
 
 
 @dataclass(frozen=True)
@@ -31,7 +39,7 @@ class Request:
     side: int = SIDE  # pixels of a challenge's pictures, the longer way
 
 
-class JudgeProcess(Closing):
+class JudgeProcess(PoolOwner):
     """Judges works in a worker process, which starts with the first and is replaced when it dies.
 
     ``check`` waits for the verdict; ``submit`` and ``poll`` do not. Use it with ``with``,
@@ -41,29 +49,12 @@ class JudgeProcess(Closing):
     def __init__(
         self, *, limit_seconds: float = LIMIT_SECONDS, software: bool = False, device: int | None = None
     ) -> None:
-        self.limit_seconds = limit_seconds
-        self._workers = Replaceable(
-            Launch(
-                handler=_HANDLER,
-                options=(software, device),
-                memory_bytes=LIMIT_BYTES,
-                limit_seconds=limit_seconds * _WHOLE,
-            )
-        )
-        self._current: Request | None = None
-
-    @property
-    def busy(self) -> bool:
-        """Whether a work waits for its verdict."""
-        return self._current is not None
+        limits = Limits(seconds=limit_seconds, total_seconds=limit_seconds * _WHOLE, memory_bytes=LIMIT_BYTES)
+        self._pool = Pool(__name__, limits, options=(software, device))
 
     def submit(self, task: Exercise | Challenge, work: Work | None, side: int = SIDE) -> None:
         """Send a work to be judged, or a challenge to be drawn; an earlier one is not answered."""
-        worker = self._workers.worker
-        if worker is not None and worker.busy:
-            self._workers.end(kill=True)
-        self._current = Request(task, work, side)
-        self._workers.start().submit(self._current)
+        self._replace(Request(task, work, side), 0.0)
 
     def poll(self) -> Verdict | Match | Ends | None:
         """Return what came of what was sent last, once; None while it is judged or drawn.
@@ -71,68 +62,102 @@ class JudgeProcess(Closing):
         A work that takes too long, or that ends the process, is judged too: it has no points. Raises
         ``PlaygroundError`` only where it is not the student's doing.
         """
-        return self._answer(0.0)
+        task = self._take()
+        return None if task is None else _judgement(task.request, task.result())
 
     def check(self, task: Exercise | Challenge, work: Work) -> Verdict | Match:
         """Return what comes of a work; raise as ``poll`` does."""
-        self.submit(task, work)
-        while (found := self._answer(0.05)) is None:
-            pass
-        assert not isinstance(found, Ends)
+        request = Request(task, work)
+        judgement = _judgement(request, self._pool.run(request))
+        assert not isinstance(judgement, Ends)
+        return judgement
+
+
+def _judgement(request: Any, outcome: Outcome) -> Verdict | Match | Ends:
+    """Return what comes of a ``Request``, even if it ended its process or was stopped."""
+    error = outcome.error
+    if outcome.kind == "answer":
+        assert isinstance(outcome.value, Verdict | Match | Ends)
+        return outcome.value
+    if not outcome.started or outcome.kind == "refused":
+        raise outcome.failure("judging")
+    if isinstance(error, MemoryError):
+        message = "it needs more memory than it may have"
+    elif isinstance(error, SandboxCrash):
+        message = f"it {error.diagnostics[0].message}"
+    elif error is not None:
+        raise PlaygroundError(f"judging failed: {summary_of(error)}")
+    elif outcome.kind == "hang":
+        at = f"pass '{outcome.progress}'" if outcome.progress else "it"
+        message = f"{at} took longer than {outcome.limit:g} s and was stopped; is there an endless loop?"
+    else:
+        message = f"it {outcome.cause()}"
+    if request.work is None:
+        raise PlaygroundError(f"challenge '{request.task.name}' cannot be drawn: {message}")
+    diagnostics = (Diagnostic(message),)
+    if isinstance(request.task, Challenge):
+        return Match(0.0, request.task.goal, None, None, diagnostics)
+    return Verdict((), diagnostics, 0.0, request.task.points)
+
+
+# ── in the worker ────────────────────────────────────────────────────────────
+
+
+def open_service(parent: Parent, options: tuple[bool, int | None]) -> Service:
+    """Open a context: on a software renderer, on which device."""
+    software, device = options
+    engine = Engine(open_context(software=software, device=device), owns_context=True, notice=silent)
+
+    def begin(step: Step) -> None:
+        engine.ctx.finish()  # the time of a step is its own
+        parent.report(step.path)
+
+    engine.internal.runner.before_step = begin
+    return Service(_Judge(engine).answer_or_give_up)
+
+
+@dataclass
+class _Judge:
+    engine: Engine
+    known: dict[tuple[str, ...], tuple[Wanted, ...] | Ends] = field(default_factory=dict)
+
+    def answer_or_give_up(self, request: Request) -> Verdict | Match | Ends:
+        """Answer; raise ``SandboxCrash`` where a work has cost the process its context."""
+        try:
+            return self.answer(request)
+        finally:
+            if is_lost(self.engine.ctx):
+                raise SandboxCrash("made the driver reset itself")
+
+    def answer(self, request: Request) -> Verdict | Match | Ends:
+        """Judge a work, or draw a challenge."""
+        task = request.task
+        if isinstance(task, Challenge):
+            ends = self._ends(task, request.side)
+            if request.work is None:
+                return ends
+            return match(self.engine, task, request.work, ends, request.side)
+        assert request.work is not None
+        return judge(self.engine, task, request.work, self._wanted(task))
+
+    def _wanted(self, task: Exercise) -> tuple[Wanted, ...]:
+        found = self.known.get(_key(task))
+        if not isinstance(found, tuple):
+            self._keep(_key(task), found := answers(self.engine, task))
         return found
 
-    def close(self) -> None:
-        """End the process; the next work starts another."""
-        self._current = None
-        self._workers.close(patience=1.0)
+    def _ends(self, task: Challenge, side: int) -> Ends:
+        key = (*_key(task), str(side))
+        found = self.known.get(key)
+        if not isinstance(found, Ends):
+            self._keep(key, found := ends_of(self.engine, task, side))
+        return found
 
-    def _answer(self, timeout: float) -> Verdict | Match | Ends | None:
-        request, worker = self._current, self._workers.worker
-        if request is None or worker is None:
-            return None
-        try:
-            answer = worker.poll(timeout)
-        except WorkerDied as died:
-            if died.report.was_ready:
-                return self._failed(f"it {died.report.cause()}")
-            self._end()
-            raise SandboxCrash(f"the process that judges {died.report.ending}") from None
-        if answer is None:
-            return self._check_time(worker)
-        if isinstance(answer.error, MemoryError):
-            return self._failed("it needs more memory than it may have")
-        self._current = None
-        if isinstance(answer.value, Verdict | Match | Ends):
-            return answer.value
-        if isinstance(answer.error, PlaygroundError):
-            raise answer.error
-        raise PlaygroundError(f"judging failed: {summary_of(answer.error)}")
+    def _keep(self, key: tuple[str, ...], found: tuple[Wanted, ...] | Ends) -> None:
+        if len(self.known) >= _KNOWN:
+            self.known.clear()
+        self.known[key] = found
 
-    def _check_time(self, worker: Worker) -> Verdict | Match | None:
-        """End a process that takes too long."""
-        if worker.starting_seconds > START_SECONDS:
-            self._end()
-            raise SandboxTimeout(f"the process that judges was not ready after {START_SECONDS:g} s")
-        limit, whole = self.limit_seconds, self.limit_seconds * _WHOLE
-        if worker.activity_seconds < limit and worker.seconds < whole:
-            return None
-        path = worker.progress
-        at = f"pass '{path}'" if path else "it"
-        took = limit if worker.activity_seconds >= limit else whole
-        return self._failed(f"{at} took longer than {took:g} s and was stopped; is there an endless loop?")
 
-    def _failed(self, message: str) -> Verdict | Match:
-        """Return what comes of a work that ended its process, or that was stopped."""
-        request = self._current
-        assert request is not None
-        self._end()
-        if request.work is None:
-            raise PlaygroundError(f"challenge '{request.task.name}' cannot be drawn: {message}")
-        diagnostics = (Diagnostic(message),)
-        if isinstance(request.task, Challenge):
-            return Match(0.0, request.task.goal, None, None, diagnostics)
-        return Verdict((), diagnostics, 0.0, request.task.points)
-
-    def _end(self) -> None:
-        self._current = None
-        self._workers.end(kill=True)
+def _key(task: Exercise | Challenge) -> tuple[str, ...]:
+    return type(task).__name__, task.name, task.text, answer_text(task)

@@ -12,7 +12,7 @@ from playground.engine.context import open_context
 from playground.engine.engine import Engine
 from playground.engine.internals import CACHE_BYTES
 from playground.engine.plain_forms import silent
-from playground.engine.process.child import Parent, Service
+from playground.engine.process.worker import Parent, Service
 from playground.shader.source import read_text
 from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.harmless import Drawing

@@ -12,9 +12,7 @@ import numpy as np
 
 from playground.allowed_files import is_absolute, is_file
 from playground.engine.context import ContextInfo
-from playground.engine.process.messages import UnexpectedError
-from playground.engine.process.worker import Launch, Worker, WorkerDied, WorkerTimeout
-from playground.errors import PlaygroundError
+from playground.engine.process.pool import Pool
 from playground.paths import GLSL, SKETCHES
 from playground.shots.mutants.harmless import Drawing, Process, processes
 from playground.shots.mutants.redraw_handler import Subject
@@ -95,25 +93,20 @@ def _images_of(process: Process, sketch: Sketch, subject: Subject, limit: float)
         environment = dict(process.environment)
         if process.cold:
             environment["MESA_SHADER_CACHE_DIR"] = str(folder / "cache")
-        launch = Launch(
-            handler="playground.shots.mutants.redraw_handler",
+        pool = Pool(
+            "playground.shots.mutants.redraw_handler",
             options=subject,
-            limit_seconds=limit,
             environment=environment,
             folder=folder if process.elsewhere else None,
         )
-        try:
-            with Worker(launch) as worker:
-                for drawing in process.drawings:
-                    rendered = worker.ask(drawing, limit)
-                    assert isinstance(rendered, RenderedShot)
-                    found.append(rendered)
-        except WorkerTimeout:
-            found.append(f"the process took more than {limit:g} s and was stopped")
-        except WorkerDied as died:
-            found.append(f"the process {died.report.ending}{died.report.last_lines}")
-        except (PlaygroundError, UnexpectedError, MemoryError) as error:
-            found.append(str(error) or type(error).__name__)
+        with pool:
+            for drawing in process.drawings:
+                outcome = pool.run(drawing, seconds=limit)
+                if outcome.kind != "answer":
+                    found.append(str(outcome.failure("the drawing")))
+                    break
+                assert isinstance(outcome.value, RenderedShot)
+                found.append(outcome.value)
     return found
 
 

@@ -13,7 +13,7 @@ HANDLER = """
 import ctypes, os, sys, time
 from pathlib import Path
 from playground.errors import ContextError, ShaderError
-from playground.engine.process.child import Service
+from playground.engine.process.worker import Service
 
 def open_service(parent, options):
     if options == "dies":
@@ -70,6 +70,23 @@ def open_service(parent, options):
                 done += 1
                 time.sleep(0.001)
             return done
+        if what == "passes":
+            for number in range(more[1]):
+                parent.report(f"pass {number}")
+                end = time.monotonic() + more[0]
+                while time.monotonic() < end:
+                    time.sleep(0.01)
+            return "done"
+        if what == "together":  # so many processes
+            Path(f"here-{os.getpid()}").touch()
+            while len([*Path().glob("here-*")]) < more[0]:
+                time.sleep(0.005)
+            return os.getpid()
+        if what == "dies once":
+            if not Path("died").exists():
+                Path("died").touch()
+                os.abort()
+            return "alive"
         if what == "clean up":
             try:
                 while True:
