@@ -8,6 +8,7 @@ but for numbered pictures: those that are whole stay.
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -15,6 +16,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from playground.api import headless
 from playground.capture.film import Film, film_of, write_film
 from playground.capture.large import count_tiles, is_large, write_large
 from playground.capture.sequence import write_sequence
@@ -23,7 +25,11 @@ from playground.capture.sweep import USUAL_STEPS, read_sweep, swept
 from playground.capture.video import QUALITY
 from playground.data.image_files import new_name, reason
 from playground.engine.engine import Engine
-from playground.errors import DataError
+from playground.engine.plain_forms import silent
+from playground.engine.process.child import Outcome
+from playground.engine.process.pool import Pool
+from playground.engine.process.worker import Cancelled, Parent, Service, summary_of
+from playground.errors import DataError, PlaygroundError
 from playground.sketch.model import Sketch
 
 PICTURE, PICTURES, FILM, SHEET = KINDS = ("picture", "pictures", "film", "sheet")
@@ -144,3 +150,78 @@ def _new_folder(wanted: Path) -> Iterator[Path]:
             raise
         return
     raise DataError("has ten thousand folders of pictures of this sketch", file=wanted.parent)
+
+
+# ── in a worker process ──────────────────────────────────────────────────────
+
+
+@dataclass(frozen=True)
+class Finished:
+    """How a job ended."""
+
+    path: Path | None  # what was made
+    error: str = ""  # in a sentence
+    stopped: bool = False
+    notes: tuple[str, ...] = ()
+
+
+class JobProcess:
+    """One job at work; call ``poll`` now and then."""
+
+    def __init__(self, job: CaptureJob, *, software: bool = False, driver: str = "auto") -> None:
+        self.job = job
+        self.started = time.monotonic()
+        self.stopping = False  # whether ``stop`` was called
+        # It outlives its parent until its next part is done, to remove the files that it has begun.
+        self._pool = Pool(__name__, options=(software, driver), ends_with_parent=False)
+        self._task = self._pool.submit(job)
+        self._pool.shutdown(wait=False)  # there is no other job
+
+    @property
+    def progress(self) -> tuple[int, int]:
+        """How many parts are done, and of how many; (0, 0) while it begins."""
+        return self._task.progress or (0, 0)
+
+    def stop(self) -> None:
+        """Cancel it; it removes what it has begun, for which it has a while until it is killed."""
+        if not self.stopping:
+            self.stopping = True
+            self._task.cancel()
+
+    def poll(self, timeout: float = 0.0) -> Finished | None:
+        """Return how it ended, None while it continues; waits ``timeout`` seconds at the most."""
+        return _finished(self._task.result()) if self._task.wait(timeout) else None
+
+    def close(self) -> None:
+        """Stop it and wait until it has removed what it has begun; kill it if that takes too long."""
+        self.stop()
+        self._task.result()
+
+
+def _finished(outcome: Outcome) -> Finished:
+    error = outcome.error
+    if isinstance(error, Cancelled):
+        return Finished(None, stopped=True)
+    if isinstance(error, PlaygroundError):
+        return Finished(None, str(error))
+    if isinstance(error, MemoryError):
+        return Finished(None, "there is not enough memory for a picture of that size")
+    if error is not None:
+        return Finished(None, f"a bug of the playground itself, {summary_of(error)}")
+    if outcome.kind == "crash":
+        return Finished(None, f"the capture {outcome.cause()}")
+    assert isinstance(outcome.value, Finished)
+    return outcome.value
+
+
+def open_service(parent: Parent, options: tuple[bool, str]) -> Service:
+    """Return the service that does a job: on a software renderer, by which driver."""
+    software, driver = options
+
+    def answer(job: CaptureJob) -> Finished:
+        notes: list[str] = []
+        with headless(software=software, driver=driver, notice=silent) as engine:
+            path = do(job, engine, lambda done, of: parent.report((done, of)), notes.append)
+        return Finished(path, notes=tuple(notes))
+
+    return Service(answer)

@@ -47,8 +47,7 @@ def grade(
 ) -> None:
     """Grade a folder of submissions."""
     from playground.lessons.grading.grade import count_works, grade, read_all
-    from playground.lessons.grading.handler import Options
-    from playground.lessons.grading.judges import Judges
+    from playground.lessons.grading.judges import Judges, Options
     from playground.lessons.grading.report import check_folder, write_report
     from playground.lessons.grading.submissions import find_submissions
     from playground.lessons.handout.exercise_files import assignments_of

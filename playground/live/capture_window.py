@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, imgui
 
-from playground.capture.job import FILM, KINDS, PICTURE, PICTURES, SHEET
-from playground.capture.job_process import JobProcess
+from playground.capture.job import FILM, KINDS, PICTURE, PICTURES, SHEET, JobProcess
 from playground.capture.video import QUALITIES
 from playground.data.image_files import VIDEO_ENDINGS
 from playground.live import theme

@@ -15,8 +15,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 
-from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, CaptureJob
-from playground.capture.job_process import JobProcess
+from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, CaptureJob, JobProcess
 from playground.capture.sheet import USUAL_SIZE
 from playground.capture.sweep import read_sweep, swept
 from playground.capture.video import QUALITY, check_video

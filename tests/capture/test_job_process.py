@@ -5,8 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from pathlib import Path
 
-from playground.capture.job import PICTURE, CaptureJob
-from playground.capture.job_process import JobProcess
+from playground.capture.job import PICTURE, CaptureJob, JobProcess
 
 
 def test_a_job_that_cannot_be_sent_ends_with_a_sentence(tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ from playground.cli import main
 from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.errors import DataError
-from playground.lessons.grading import handler
+from playground.lessons.grading import judges as handler
 from playground.lessons.grading.duplicates import alike
 from playground.lessons.grading.entries import _TOO_MANY
 from playground.lessons.grading.grade import read_all

@@ -24,9 +24,8 @@ from playground.shots.mutants.breaking import broken
 from playground.shots.mutants.harmless import Drawing, Process, processes
 from playground.shots.mutants.image_mutants import FINISHED
 from playground.shots.mutants.model import DoesNotApply, Edit, Finished, Picture, Rendering
-from playground.shots.mutants.redraw_handler import commented
 from playground.shots.mutants.render_mutants import rendering_mutants
-from playground.shots.mutants.repeatability import Redrawn, redraw
+from playground.shots.mutants.repeatability import Redrawn, commented, redraw
 from playground.shots.mutants.suite import (
     Bench,
     Result,

@@ -4,5 +4,5 @@ A draw that hangs cannot be interrupted inside its own process, some texts crash
 compiler, and asking Mesa for its software renderer changes the environment of a whole process.
 So a room that draws what it does not trust names a module of its own, the handler, and has a ``pool``
 of processes answer its requests, each with an ``Outcome``. ``child`` is one process as its parent has it,
-``worker`` what runs in it, and ``clock`` measures the processor time that a request takes.
+``worker`` what runs in it.
 """

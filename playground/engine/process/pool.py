@@ -6,7 +6,8 @@ crashes the driver costs its process, which is replaced; what came of it is an o
 future's result is raised only where no process can be started at all (``OSError``).
 
 Each process has a thread here that talks to it, so that no caller waits for one that hangs; another thread
-looks at the clock. Limits are processor time: see ``clock``.
+looks at the clock. Limits are processor time (see ``times_of``). A cluster's pool needs ``submit`` and
+``shutdown`` alone: its workers may each have a pool of one process, and give back its outcome.
 """
 
 from __future__ import annotations
@@ -23,8 +24,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Literal, Self
 
-from playground.engine.process.child import ChildProcess, Outcome, ProcessDied
-from playground.engine.process.clock import max_wall_seconds
+from playground.engine.process.child import ChildProcess, Outcome, ProcessDied, max_wall_seconds
 from playground.engine.process.worker import Cancelled, UnexpectedError
 from playground.errors import SandboxCrash
 
@@ -36,7 +36,7 @@ CANCEL_SECONDS = 10.0
 
 _GRACE = 60.0  # [s] that the parent has to end a request before the system does
 _POLL = 0.05  # [s] between two looks at the clock
-_PATIENCE = 2.0  # [s] that a process with nothing to do may take to end by itself
+_PATIENCE = 1.0  # [s] that a process with nothing to do may take to end by itself
 _MAX_LOST = 3  # processes that may die before a request has begun
 _SUSPICIOUS = 0.3  # [s] after which a spare is started for a process that has not answered
 _FATAL = (SandboxCrash, MemoryError, UnexpectedError)  # after which a process is of no more use

@@ -8,15 +8,14 @@ from dataclasses import replace
 from playground.errors import SketchError, counted
 from playground.lessons.grading.duplicates import alike
 from playground.lessons.grading.handed_in import HandedIn, read_submission
-from playground.lessons.grading.handler import Request, no_mark
-from playground.lessons.grading.judges import Judges, Outcome, Stopped
+from playground.lessons.grading.judges import Judges, Request, Result, Stopped, no_mark
 from playground.lessons.grading.labels import report_labels
 from playground.lessons.grading.marks import MISSING, REFUSED, STOPPED, Graded, Mark, spelled_points
 from playground.lessons.grading.submissions import Submission
 from playground.lessons.handout.exercise_files import Assignment
 from playground.lessons.translatable import in_language
 
-Judged = dict[tuple[str, str | None], Outcome]
+Judged = dict[tuple[str, str | None], Result]
 """What came of each text, by the exercise's name; None is the model answer."""
 
 

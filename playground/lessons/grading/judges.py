@@ -7,16 +7,37 @@ in a new process: what went wrong there may be what an earlier work has left beh
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+import io
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
-from playground.engine.context import ContextInfo
-from playground.engine.process.child import Outcome as JudgingOutcome
+import numpy as np
+from PIL import Image
+
+from playground.allowed_files import leads_outside
+from playground.engine.context import ContextInfo, context_info, open_context
+from playground.engine.engine import Engine
+from playground.engine.plain_forms import silent
+from playground.engine.process.child import Outcome
 from playground.engine.process.pool import Limits, Pool, PoolOwner
-from playground.errors import SandboxCrash
-from playground.lessons.grading.handler import PREPARING, Options, Request
-from playground.lessons.grading.marks import Mark
-from playground.lessons.translatable import Said
+from playground.engine.process.worker import Parent, Service
+from playground.engine.textures import is_lost
+from playground.errors import ContextError, DataError, PlaygroundError, SandboxCrash
+from playground.lessons.figure_renders import draw
+from playground.lessons.grading.marks import GRADED, REFUSED, Mark, Pair
+from playground.lessons.grading.values_in_toml import values_in_toml
+from playground.lessons.handout.exercise_files import Assignment, assignments_of
+from playground.lessons.model import Challenge, Exercise
+from playground.lessons.read import read_lesson
+from playground.lessons.tasks.judge import Wanted, answers, judge, small
+from playground.lessons.tasks.match import Ends, ends_of, match
+from playground.lessons.tasks.sentences import score_of, sentences
+from playground.lessons.tasks.texts import path_of
+from playground.lessons.tasks.verdict import Picture, Verdict
+from playground.lessons.tasks.work import Work, answer, scene_of, wanted_scene
+from playground.lessons.translatable import Said, in_language
+from playground.paths import GLSL, shown
+from playground.sketch.model import Sketch, kernels_of
 
 WORKERS = 2
 """Processes side by side."""
@@ -42,7 +63,7 @@ class Stopped:
     cause: str = ""  # of a crash
 
 
-Outcome = Mark | Stopped
+Result = Mark | Stopped
 
 
 class Judges(PoolOwner):
@@ -55,7 +76,7 @@ class Judges(PoolOwner):
         self._limits: dict[str, float] = {}  # [s] by exercise
         self.renderer = ""  # what draws, once something was judged
         self._pool = Pool(
-            "playground.lessons.grading.handler",
+            __name__,
             Limits(longer={PREPARING: _ANSWER}, memory_bytes=memory_bytes, requests=_MAX_WORKS, crashes=2),
             options=options,
             workers=workers,
@@ -63,7 +84,7 @@ class Judges(PoolOwner):
             environment={"LP_NUM_THREADS": "1"} if workers > 1 else {},
         )
 
-    def judge_all(self, requests: Iterable[tuple[object, Request]]) -> Iterator[tuple[object, Outcome]]:
+    def judge_all(self, requests: Iterable[tuple[object, Request]]) -> Iterator[tuple[object, Result]]:
         """Yield what comes of each request, with its key, in their order.
 
         Raises ``PlaygroundError`` where it is nobody's work: no renderer, a model answer that fails.
@@ -73,7 +94,7 @@ class Judges(PoolOwner):
             for key, request in requests
         ]
         for key, request, task in tasks:
-            yield key, self._outcome(request, task.result())
+            yield key, self._result(request, task.result())
 
     def limit_of(self, exercise: str) -> float:
         """Return how long judging a work of an exercise may take [s]."""
@@ -82,7 +103,7 @@ class Judges(PoolOwner):
     def _seconds(self, request: Request) -> float:
         return _ANSWER if request.text is None else self.limit_of(request.exercise)
 
-    def _outcome(self, request: Request, outcome: JudgingOutcome) -> Outcome:
+    def _result(self, request: Request, outcome: Outcome) -> Result:
         if not outcome.started or (outcome.kind == "hang" and outcome.progress == PREPARING):
             raise outcome.failure(f"drawing the answer of {request.exercise}")
         if outcome.kind == "hang":
@@ -105,3 +126,166 @@ def _cause(error: Exception) -> str:
     if isinstance(error, SandboxCrash):
         return error.diagnostics[0].message
     return Said("could not be judged: {why}", why=error.args[0])
+
+
+# ── in the worker ────────────────────────────────────────────────────────────
+
+
+PREPARING, JUDGING = "preparing", "judging"
+"""What the worker reports: it draws the model answer, or a student's work, whose time is limited."""
+
+_CACHE = 192 * 2**20  # [bytes] of textures
+_QUALITY = 82  # of WebP
+_LONGEST = 160  # characters of a line of a sentence
+_MOST_SENTENCES = 8  # a text may have thousands of mistakes
+_MOST_PAIRS = 4  # of pictures, for each exercise
+
+
+@dataclass(frozen=True)
+class Options:
+    """What a worker is started with."""
+
+    lessons: tuple[str, ...]
+    language: str
+    software: bool = False
+    device: int | None = None
+
+
+@dataclass(frozen=True)
+class Request:
+    """One work to judge; without a text, the model answer, which must have all points."""
+
+    exercise: str  # its name in a hand-out
+    text: str | None = None  # of its file
+
+
+def open_service(parent: Parent, options: Options) -> Service:
+    """Open a context and an engine on it, and read the lessons."""
+    context = open_context(software=options.software, device=options.device)
+    engine = Engine(context, owns_context=True, cache_bytes=_CACHE, notice=silent)
+    engine.internal.pool.clears = True  # a text that gets around writing a texel shows nobody else's there
+    lessons = [read_lesson(name, options.language) for name in options.lessons]
+    return Service(_Handler(parent, engine, options, assignments_of(lessons)).answer, context_info(context))
+
+
+class _Handler:
+    """Judges with one engine; what the model answers give is drawn once."""
+
+    def __init__(
+        self, parent: Parent, engine: Engine, options: Options, assignments: Sequence[Assignment]
+    ) -> None:
+        self._parent, self._engine, self._language = parent, engine, options.language
+        self._tasks = {one.name: one.task for one in assignments}
+        self._wanted: dict[str, tuple[Wanted, ...] | Ends] = {}
+
+    def answer(self, request: Request) -> Mark:
+        """Return the mark of a work.
+
+        Raises ``PlaygroundError`` where the model answer cannot be drawn or has not all points, and
+        ``SandboxCrash`` where the context was lost.
+        """
+        task = self._tasks[request.exercise]
+        if request.exercise not in self._wanted:
+            self._parent.report(PREPARING)
+            draw_wanted = ends_of if isinstance(task, Challenge) else answers
+            self._wanted[request.exercise] = draw_wanted(self._engine, task)  # type: ignore[arg-type]
+        if request.text is None:
+            return self._judged(task, request.exercise, answer(task))
+        self._parent.report(JUDGING)
+        try:
+            work = _work_of(task, request.text)
+            found = self._judged(task, request.exercise, work)
+        except (ContextError, DataError) as error:  # or a texture larger than there is room for
+            said = (_short(in_language(error.diagnostics[0].message, self._language)),)
+            found = replace(no_mark(task), outcome=REFUSED, sentences=said)
+        if is_lost(self._engine.ctx):
+            raise SandboxCrash("made the driver reset itself")
+        return found
+
+    def _judged(self, task: Exercise | Challenge, name: str, work: Work) -> Mark:
+        wanted = self._wanted[name]
+        if isinstance(task, Challenge):
+            assert isinstance(wanted, Ends)
+            found = match(self._engine, task, work, wanted)
+            shown_pairs = () if found.mine is None else (Pair(_webp(found.mine), _webp(wanted.target)),)
+            said = [*map(str, found.diagnostics)] or [score_of(found, self._language)]
+            return replace(
+                no_mark(task), sentences=self._said(task, name, said), pairs=shown_pairs, score=found.score
+            )
+        assert not isinstance(wanted, Ends)
+        verdict = judge(self._engine, task, work, wanted)
+        return Mark(
+            verdict.points,
+            verdict.of,
+            GRADED,
+            self._said(task, name, sentences(verdict, self._language)),
+            self._pairs(task, work, verdict),
+        )
+
+    def _said(self, task: Exercise | Challenge, name: str, said: Sequence[str]) -> tuple[str, ...]:
+        """Return sentences as they are shown.
+
+        Where a text was read from is the student's own file, not the one that it takes the place of.
+        """
+        place, own = shown(path_of(task)) if task.file else "", f"{name}.glsl"
+        return tuple(_short(s.replace(place, own) if place else s) for s in said[:_MOST_SENTENCES])
+
+    def _pairs(self, exercise: Exercise, work: Work, verdict: Verdict) -> tuple[Pair, ...]:
+        """Return the pictures to compare: those that failed first, of measures one of all that is drawn."""
+        if verdict.diagnostics:
+            return ()
+        shown = [
+            result for result in verdict.results if result.mine is not None and result.wanted is not None
+        ]
+        found = []
+        for result in sorted(shown, key=lambda result: result.passed)[:_MOST_PAIRS]:
+            assert result.mine is not None and result.wanted is not None
+            found.append(Pair(_webp(result.mine), _webp(result.wanted)))
+        if not found:
+            scenes = scene_of(exercise, work), wanted_scene(exercise)
+            mine, wanted = (_webp(draw(self._engine, small(scene)).array) for scene in scenes)
+            found.append(Pair(mine, wanted))
+        return tuple(found)
+
+
+def no_mark(task: Exercise | Challenge) -> Mark:
+    """Return the mark of one who has nothing."""
+    if isinstance(task, Challenge):
+        return Mark(0.0, 0, GRADED, score=0.0, goal=task.goal)
+    return Mark(0.0, task.points, GRADED)
+
+
+def _work_of(task: Exercise | Challenge, text: str) -> Work:
+    """Return a work by its file's text; raise ``DataError`` for what names files elsewhere."""
+    if not task.file:
+        return Work(None, values_in_toml(text, task.sliders))
+    work = Work(text)
+    try:
+        sketch = scene_of(task, work).sketch
+    except PlaygroundError:
+        return work  # the judge says what is wrong with it
+    if outside := _outside_file(sketch):
+        raise DataError(Said("names '{name}', a file outside of its folder; it was not opened", name=outside))
+    return work
+
+
+def _outside_file(sketch: Sketch) -> str:
+    """Return a file that a kernel names by itself and that lies neither with the sketch nor in ``glsl/``."""
+    for _, kernel in kernels_of(sketch.graph):
+        for parameter in kernel.parameters:
+            text = str(parameter.default)
+            if parameter.widget.kind == "file" and text and leads_outside(text, GLSL, parameter.file):
+                return text
+    return ""
+
+
+def _short(sentence: str) -> str:
+    """Return a sentence, with the code that it may quote, without the rest of endless lines."""
+    lines = [line if len(line) <= _LONGEST else f"{line[:_LONGEST]}…" for line in sentence.split("\n")]
+    return "\n".join(line for line in lines[:3] if line.strip())
+
+
+def _webp(picture: Picture) -> bytes:
+    stream = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(picture[..., :3])).save(stream, "WEBP", quality=_QUALITY, method=2)
+    return stream.getvalue()

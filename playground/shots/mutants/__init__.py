@@ -7,7 +7,7 @@
     image_mutants.py    mutants that are made of the finished picture
     tiers.py, suite.py    every mutant of a shot, judged in every tier
     harmless.py      conditions under which a shot must look the same
-    redraw_handler.py, repeatability.py    the shot drawn under them, in processes of their own, and judged
+    repeatability.py    the shot drawn under them, in processes of their own, and judged
 
 Each knows only those above it. Importing this opens nothing.
 """

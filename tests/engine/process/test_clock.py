@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine.process import clock as clock_module
-from playground.engine.process.clock import ActivityClock, times_of, worked
+from playground.engine.process import child as clock_module
+from playground.engine.process.child import ActivityClock, times_of, worked
 
 BUSY = "import os, time\nos.sched_setaffinity(0, {cpu})\nprint(flush=True)\nwhile True: pass"
 needs_counts = pytest.mark.skipif(
