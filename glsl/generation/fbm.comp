@@ -1,7 +1,8 @@
 // generation/fbm.comp -- fractional Brownian motion along columns of texels, and normalised.
 //
 //   gives    height
-//   needs    generation/gradient_noise/fours.glsl, generation/normalise/fours.glsl
+//   needs    generation/fbm/salt.glsl, generation/gradient_noise/fours.glsl,
+//            generation/normalise/fours.glsl
 //   units    as the technique
 //   source   as the technique
 //   tested   tests/glsl/test_fast_variants.py, against the technique's own passes
@@ -25,9 +26,8 @@ uniform int normalise = 2;       //! menu("none", "max", "minmax") As in the tec
 // What the technique leaves as it is.
 const int basis = 0;
 const int shape = 0;
-const int strength = 1;  // by the Hurst exponent
-const float gain = 0.5;
 const float warp = 0.4;
+#include "generation/fbm/salt.glsl"
 #include "generation/gradient_noise/fours.glsl"
 #include "generation/normalise/fours.glsl"
 
@@ -35,6 +35,9 @@ const int MAKE = 0, STRETCH = 1;
 
 void main() {
     int four = int(gl_GlobalInvocationID.x);
-    if (stage == MAKE) make_fours(four, int(gl_WorkGroupID.y) * ROWS, normalise != 0);
+    if (stage == MAKE) {
+        make_fours(four, int(gl_WorkGroupID.y) * ROWS, pow(lacunarity, -hurst), seed + FBM_SALT,
+                   normalise != 0);
+    }
     if (stage == STRETCH) stretch_fours(normalise);
 }

@@ -1,7 +1,7 @@
 // generation/gradient_noise.comp -- gradient noise along columns of texels, and normalised.
 //
 //   gives    height
-//   needs    generation/gradient_noise/fours.glsl, generation/normalise/fours.glsl
+//   needs    generation/gradient_noise/{fours,salt}.glsl, generation/normalise/fours.glsl
 //   units    as the technique
 //   source   as the technique
 //   tested   tests/glsl/test_fast_variants.py, against the technique's own passes
@@ -26,15 +26,17 @@ uniform float warp = 0.4;        //! slider(0, 2) step(0.01) As in the technique
 uniform uint seed = 7u;          //! slider(0, 9999) As in the technique
 uniform int normalise = 2;       //! menu("none", "max", "minmax") As in the technique
 
-const int strength = 0;          // by gain: the technique's passes have the Hurst exponent, too
-const float hurst = 0.8;
 #include "generation/gradient_noise/fours.glsl"
+#include "generation/gradient_noise/salt.glsl"
 #include "generation/normalise/fours.glsl"
 
 const int MAKE = 0, STRETCH = 1;
 
 void main() {
     int four = int(gl_GlobalInvocationID.x);
-    if (stage == MAKE) make_fours(four, int(gl_WorkGroupID.y) * ROWS, normalise != 0);
+    if (stage == MAKE) {
+        make_fours(four, int(gl_WorkGroupID.y) * ROWS, gain, seed + GRADIENT_NOISE_SALT,
+                   normalise != 0);
+    }
     if (stage == STRETCH) stretch_fours(normalise);
 }

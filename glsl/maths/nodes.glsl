@@ -7,13 +7,12 @@
 //   tested   tests/glsl/test_maths.py, against float64
 //
 // What is to be interpolated need not be a texel: a slope, or a mixture by numbers that have no
-// mean. The loop over the nodes asks at its end, because software renderers go once through a
-// loop that asks first before they know that it is over; on a node it is one step:
+// mean. On a node it is one step:
 //
 //     Nodes around = nodes_around(place);
-//     int k = 0;
-//     do { total += weight_of(around, k) * value(node_at(around, k)); k++; } while (k <
-//     around.count);
+//     for (int k = 0; k < around.count; k++) {
+//         total += weight_of(around, k) * value(node_at(around, k));
+//     }
 #ifndef MATHS_NODES
 #define MATHS_NODES
 

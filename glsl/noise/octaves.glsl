@@ -1,15 +1,14 @@
 // noise/octaves.glsl -- octaves of gradient noise added up: plain, ridged, billowing or warped.
 //
-//   gives    Octaves, octave, octave_weight, cells_a_metre, gain_of, octaves_sum, and the names
-//            of the choices
+//   gives    Octaves, octave, octave_weight, cells_a_metre, octaves_sum, and the names of the
+//            choices
 //   needs    noise/gradient.glsl, noise/simplex.glsl, noise/lattice.glsl
 //   units    places in cells of the first octave; noise in x, its slopes in noise per such
 //            cell in y and z. The first octave lies in [-1, 1] (ridged: 0..1), each next one
 //            adds at most `gain` times as much
 //   source   ridges: Musgrave, in Ebert and others 2003, "Texturing and Modeling", chapter 16
 //            (RidgedMultifractal, offset 1 and gain 2); billows: Perlin 1985 (turbulence);
-//            gain from the Hurst exponent: Musgrave, the same; slopes by the chain rule,
-//            derived here
+//            slopes by the chain rule, derived here
 //   tested   tests/glsl/test_gradient_noise.py, against float64 twins and finite differences
 //
 // Every octave is moved east by the same uneven part of its own cell. Otherwise all lattice
@@ -30,13 +29,11 @@ const int SIMPLEX = 1;
 // noise/columns.glsl gains by.
 const vec2 OCTAVE_SHIFT = vec2(0.618034, 0.0);
 
-// The choices of how octaves are added, and of what tells their gain.
+// The choices of how octaves are added.
 const int PLAIN = 0;
 const int RIDGED = 1;
 const int BILLOW = 2;
 const int WARPED = 3;
-const int BY_GAIN = 0;
-const int BY_HURST = 1;
 
 struct Octaves {
     int basis;         // PERLIN or SIMPLEX
@@ -52,14 +49,6 @@ struct Octaves {
 float cells_a_metre(float frequency, vec2 extent, vec2 spacing) {
     return min(frequency / extent.x, 0.5 / max(spacing.x, spacing.y));
 }
-
-// Strength of an octave over the one before: given, or from a Hurst exponent H, as fractional
-// Brownian motion has it, lacunarity^-H.
-// anchor: gain
-float gain_of(int strength, float gain, float hurst, float lacunarity) {
-    return strength == BY_HURST ? exp2(-hurst * log2(lacunarity)) : gain;
-}
-// end: gain
 
 // How strong an octave is whose cells are so many texels wide.
 float octave_weight(float texels) {
@@ -90,26 +79,23 @@ vec3 ridge(vec3 noise, vec3 before) {
     return vec3(weight.x * crest * crest, weight.yz * crest * crest + weight.x * fall);
 }
 
-// The sum of octaves, plain, ridged or billowing. The loop asks at its end: software renderers
-// run a body once too often for a question at its head.
+// The sum of octaves, plain, ridged or billowing.
 vec3 octaves_added(int shape, vec2 place, Octaves o) {
     vec3 total = vec3(0.0);
     vec3 before = vec3(1.0, 0.0, 0.0);
     float frequency = 1.0;
     float strength = 1.0;
-    int k = 0;
     // anchor: sum
-    do {
+    for (int k = 0; k < o.count && frequency < o.texels; k++) {
         vec3 noise = octave(place, o, k, frequency);
         if (shape == BILLOW) noise = billow(noise);
         if (shape == RIDGED) noise = before = ridge(noise, before);
         total += strength * octave_weight(o.texels / frequency) * noise;
         frequency *= o.lacunarity;
         strength *= o.gain;
-        k++;
-    } while (k < o.count && frequency < o.texels);
+    }
     // end: sum
-    return o.count > 0 ? total : vec3(0.0);
+    return total;
 }
 
 // The plain sum at a place that two more sums have moved, by up to about `warp` cells each way.

@@ -66,11 +66,9 @@ vec2 slope_of_node(sampler2D field, ivec2 node, vec2 spacing, int way) {
 vec2 slope_at(sampler2D field, vec2 place, vec2 spacing, int way) {
     Nodes around = nodes_around(place);
     vec2 total = vec2(0.0);
-    int k = 0;
-    do {
+    for (int k = 0; k < around.count; k++) {
         total += weight_of(around, k) * slope_of_node(field, node_at(around, k), spacing, way);
-        k++;
-    } while (k < around.count);
+    }
     return total;
 }
 #endif

@@ -14,11 +14,9 @@
 vec4 map_at(sampler2D map, ivec2 texel, ivec2 from) {
     Nodes around = nodes_around(place_on(textureSize(map, 0), texel, from));
     vec4 total = vec4(0.0);
-    int k = 0;
-    do {
+    for (int k = 0; k < around.count; k++) {
         total += weight_of(around, k) * texelFetch(map, node_at(around, k), 0);
-        k++;
-    } while (k < around.count);
+    }
     return total;
 }
 #endif

@@ -1,4 +1,4 @@
-"""Fractional Brownian motion: its power spectrum, its self-affinity, and its curves against a twin."""
+"""Fractional Brownian motion: its octaves and its curves against twins, its spectrum, its self-affinity."""
 
 from itertools import pairwise
 
@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from .drawing import salt
+from .test_gradient_noise import SHIFT, perlin, places
 
 WHOLE = 2**32
 
@@ -31,6 +32,26 @@ def slope_of_bins(frequency, power, low, high):
 
 
 # ── the terrain ─────────────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize(
+    ("hurst", "frequency", "lacunarity", "octaves"), [(0.8, 2.0, 2.0, 16), (0.3, 3.0, 2.5, 4)]
+)
+def test_octaves_are_added(any_engine, sketch_of, hurst, frequency, lacunarity, octaves):
+    """Places are off by a rounding, 2^-24 of them an octave; noise rises by less than 4 a cell."""
+    size, seed = (129, 65), 7 + salt("generation/fbm")
+    values = {"hurst": hurst, "frequency": frequency, "lacunarity": lacunarity, "octaves": octaves}
+    x, y, texels = places(size, (1000.0, 500.0), frequency)
+    wanted, bound = np.zeros(x.shape), 0.0
+    for k in range(octaves):
+        cells, gain = lacunarity**k, lacunarity ** (-hurst * k)
+        weight = gain * np.clip(texels / cells - 1, 0, 1)
+        if weight == 0:
+            break
+        wanted += weight * perlin(x * cells + SHIFT, y * cells, seed * 0x2545F491 + k * 0xC2B2AE3D)
+        bound += gain * (4 * (k + 4) * frequency * cells + 16) * 2.0**-24
+    sketch = sketch_of(size, use="generation/fbm/sum", **values)
+    assert np.abs(any_engine.read(sketch, "terrain") - wanted).max() <= bound
 
 
 @pytest.mark.parametrize("hurst", [0.2, 0.4, 0.6, 0.8])

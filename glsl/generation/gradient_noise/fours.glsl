@@ -1,9 +1,9 @@
 // generation/gradient_noise/fours.glsl -- hills of gradient noise, along four columns at once.
 //
 //   gives    make_fours
-//   needs    noise/columns.glsl; generation/gradient_noise/seed.glsl,
-//            generation/normalise/tell.glsl; the parameters of a sum of octaves, declared before
-//            it, and a buffer `height:vec4`, (size.x + 3) / 4 fours a row
+//   needs    noise/columns.glsl; generation/normalise/tell.glsl; the parameters of a sum of
+//            octaves but its gain, declared before it, and a buffer `height:vec4`,
+//            (size.x + 3) / 4 fours a row
 //   units    heights without unit, as those of generation/gradient_noise/sum.glsl
 //   source   see noise/columns.glsl
 //   tested   tests/glsl/test_gradient_noise.py and tests/glsl/test_fast_variants.py, as part of
@@ -17,14 +17,13 @@
 #define GENERATION_GRADIENT_NOISE_FOURS
 #ifdef COMPUTE_STAGE
 #include "noise/columns.glsl"
-#include "generation/gradient_noise/seed.glsl"
 #include "generation/normalise/tell.glsl"
 
 const int ROWS = 32;
 const int FINE = 2;
 
 // The fours of one number in their rows, from row `y` on; what `tells` has their range told.
-void make_fours(int four, int y, bool tells) {
+void make_fours(int four, int y, float gain, uint salted_seed, bool tells) {
     int fours = (size.x + 3) >> 2;
     int last = min(y + ROWS, size.y);
     if (four >= fours) return;
@@ -32,8 +31,7 @@ void make_fours(int four, int y, bool tells) {
     vec4 x = vec4(min(4 * four + ivec4(0, 1, 2, 3), ivec4(size.x - 1)));
     float scale = cells_a_metre(frequency, extent, spacing);
     float texels = 1.0 / (scale * max(spacing.x, spacing.y));
-    Octaves o = Octaves(basis, octaves, lacunarity, gain_of(strength, gain, hurst, lacunarity),
-                        texels, octaves_seed(strength, seed));
+    Octaves o = Octaves(basis, octaves, lacunarity, gain, texels, salted_seed);
     int at = y * fours + four;
     if (basis != PERLIN || shape != PLAIN) {
         for (; y < last; y++) {

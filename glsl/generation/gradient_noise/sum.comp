@@ -1,7 +1,7 @@
 // generation/gradient_noise/sum.comp -- hills of gradient noise, along columns of texels.
 //
 //   gives    height, for any terrain; not normalised
-//   needs    generation/gradient_noise/{fours,parameters/octaves}.glsl
+//   needs    generation/gradient_noise/{fours,parameters/octaves,salt}.glsl
 //   units    heights without unit, as in the kernel next to it
 //   source   see noise/columns.glsl
 //   tested   tests/glsl/test_gradient_noise.py and tests/glsl/test_fast_variants.py,
@@ -14,7 +14,9 @@
 
 #include "generation/gradient_noise/parameters/octaves.glsl"
 #include "generation/gradient_noise/fours.glsl"
+#include "generation/gradient_noise/salt.glsl"
 
 void main() {
-    make_fours(int(gl_GlobalInvocationID.x), int(gl_WorkGroupID.y) * ROWS, false);
+    make_fours(int(gl_GlobalInvocationID.x), int(gl_WorkGroupID.y) * ROWS, gain,
+               seed + GRADIENT_NOISE_SALT, false);
 }

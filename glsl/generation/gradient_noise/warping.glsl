@@ -2,7 +2,7 @@
 //
 //   gives    height, and stretch: how many times larger a small square becomes when it is moved,
 //            below 0 where it is turned over; for any terrain, not normalised
-//   needs    generation/gradient_noise/seed.glsl, noise/octaves.glsl
+//   needs    generation/gradient_noise/salt.glsl, noise/octaves.glsl
 //   units    heights without unit; stretch: area over area
 //   source   Perlin 1985, "An Image Synthesizer" (SIGGRAPH), moved places; Quilez 2002, "Domain
 //            warping" (iquilezles.org/articles/warp); the determinant: made here
@@ -14,7 +14,7 @@
 // With as many bends as octaves it is what generation/gradient_noise makes with the shape
 // "warped", while the last octave's cells are two texels wide or more. The moved place may be
 // anywhere, so nothing here can be worked out a column at a time, as plain octaves can.
-#include "generation/gradient_noise/seed.glsl"
+#include "generation/gradient_noise/salt.glsl"
 #include "noise/octaves.glsl"
 #pragma kernel(output = "height:r32f, stretch:r32f")
 
@@ -50,7 +50,7 @@ float board(vec2 place) {
 
 // anchor: warp
 void kernel(ivec2 texel, out float height, out float stretch) {
-    uint which = octaves_seed(BY_GAIN, seed);
+    uint which = seed + GRADIENT_NOISE_SALT;
     vec2 place = vec2(texel) * spacing * frequency / extent.x;
     vec3 east = octaves_of(place, bends, which + 0x51ed270bu);
     vec3 north = octaves_of(place, bends, which + 0xa3da4e16u);

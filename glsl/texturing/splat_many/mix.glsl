@@ -57,10 +57,8 @@ vec4 kernel(ivec2 texel) {
     ivec2 grid = textureSize(chosen, 0);
     Nodes around = nodes_around(place_on(grid, texel, size));
     vec3 total = vec3(0.0);
-    int k = 0;
-    do {
+    for (int k = 0; k < around.count; k++) {
         total += weight_of(around, k) * mixed_at(node_at(around, k), tile, level, cell);
-        k++;
-    } while (k < around.count);
+    }
     return vec4(total, 1.0);
 }

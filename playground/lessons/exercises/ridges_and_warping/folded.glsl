@@ -1,7 +1,7 @@
 // generation/gradient_noise/ridges.glsl -- mountain ridges, step by step: noise folded at zero.
 //
 //   gives    height, for any terrain; not normalised
-//   needs    generation/gradient_noise/seed.glsl, noise/octaves.glsl
+//   needs    generation/gradient_noise/salt.glsl, noise/octaves.glsl
 //   units    heights without unit; each octave in -1..1, folded in 0..1, times its strength
 //   source   Musgrave, in Ebert and others 2003, "Texturing and Modeling", chapter 16
 //            (RidgedMultifractal, offset 1 and gain 2)
@@ -12,7 +12,7 @@
 // the crests. With sharp ridges and weighed octaves it is what generation/gradient_noise makes
 // with the shape "ridged", as long as the last octave's cells are two texels wide or more: that
 // technique leaves out what is finer, this text for reading does not.
-#include "generation/gradient_noise/seed.glsl"
+#include "generation/gradient_noise/salt.glsl"
 #include "noise/octaves.glsl"
 #pragma kernel(output = "height:r32f")
 
@@ -37,7 +37,7 @@ float kernel(ivec2 texel) {
     float strength = 1.0;
     float before = 1.0;
     for (int k = 0; k < octaves; k++) {
-        uint which = lattice_seed(octaves_seed(BY_GAIN, seed), k);
+        uint which = lattice_seed(seed + GRADIENT_NOISE_SALT, k);
         float height = folded(perlin(place + OCTAVE_SHIFT, which).x);
         if (weighed) height *= clamp(2.0 * before, 0.0, 1.0);
         before = height;
