@@ -104,7 +104,8 @@ void make_coarse(int lane, int levels) {
         ivec2 across = ivec2(-along.y, along.x);
         for (int y = 0; y < cells; y++) {
             for (int x = lane; x < cells; x += LANES) {
-                ivec2 point = texel_of_cell(ivec2(x, y), which, side);
+                // Edges are in odd columns of even rows of half spacings, and the other way round.
+                ivec2 point = r * (centres ? 2 * ivec2(x, y) + 1 : ivec2(2 * x + 1 - (y & 1), y));
                 // Every other row of edges has one cell less.
                 if (point.x > side) continue;
                 vec4 neighbours;

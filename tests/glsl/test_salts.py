@@ -9,7 +9,6 @@ import pytest
 
 from playground.engine import delaunay
 from playground.paths import GLSL
-from playground.shader.source import read_source
 
 SALT = re.compile(r'^const uint \w*SALT = 0x([0-9a-f]{8})u;  // CRC-32 of "([^"]+)"$', re.M)
 DRAWS = re.compile(
@@ -65,8 +64,6 @@ def test_whoever_draws_has_a_salt():
         name = path.relative_to(GLSL).with_suffix("").as_posix()
         if name.startswith("noise/") or name == UNSALTED or "#pragma" not in text:
             continue
-        code = read_source(path, (GLSL,)).code
-        own = code[code.rfind("#pragma") :]
         if not DRAWS.search(re.sub(r"//.*", "", text)):
             continue
         seen += 1

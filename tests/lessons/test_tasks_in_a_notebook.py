@@ -88,7 +88,7 @@ def test_an_endless_loop_ends_and_the_next_work_is_judged(task, process):
     block = task(KERNEL, "exercise", ("points = 3", "points = 3\nset = { size = 257 }")).block
     loop = "for (int i = 0; i < 65000; i++) x = fract(sin(x) * 43758.5);"  # no more steps run in software
     endless = RAW.replace(
-        "    float heights[4];", f"    float x = smoothing; {loop * 60}\n    float heights[4];"
+        "    float total = 0.0;", f"    float x = smoothing; {loop * 60}\n    float total = 0.0;"
     ).replace("float total = 0.0;", "float total = x * 1.0e-30;")
     verdict = process.check(block, Work(endless))
     assert verdict.points == 0.0 and "took longer than 3 s" in verdict.diagnostics[0].message

@@ -168,7 +168,7 @@ def test_an_exported_page_is_broken_repaired_saved_and_loaded_again(tmp_path: Pa
         page.run(f"{menu} menu.value = arguments[0]; menu.onchange()", "generation/diamond_square/raw.glsl")
         replaced(page, "return total", "return totl")
         said = page.wait("document.querySelector('.editor-problems li')?.textContent")
-        assert said.startswith("generation/diamond_square/raw.glsl:80: ") and "did you mean `total`?" in said
+        assert said.startswith("generation/diamond_square/raw.glsl:66: ") and "did you mean `total`?" in said
         replaced(page, "totl", "0.5 * total")
         page.wait("/^Compiled/.test(document.querySelector('.editor-status').textContent)")
         page.click(".editor-download")

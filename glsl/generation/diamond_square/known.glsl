@@ -11,16 +11,16 @@
 // are one picture of the algorithm on its way.
 #include "generation/diamond_square/lattice.glsl"
 #pragma kernel(output = "phase:r32f", \
-               where = "level = (iteration - 1) // 2; \
-                        rows = 2 if iteration == 0 else 2**(iteration // 2) + 1 - iteration % 2; \
-                        columns = 2 if iteration == 0 else 2**level + 1 - iteration % 2", \
-               repeat = "2 * log2(size.x - 1) + 1", accepts = "2**n + 1", \
-               visits = "columns, rows", stride = "(size.x - 1) // 2**((iteration + 1) // 2)")
-
-ivec2 visit(ivec2 cell) {
-    return texel_of_cell(cell, iteration, size.x - 1);
-}
+               accepts = "2**n + 1", repeat = "2 * log2(size.x - 1) + 1", \
+               where = "spacings = 2**((iteration + 1) // 2)", \
+               visits = "spacings + 1, spacings + 1", \
+               stride = "(size.x - 1) // spacings")
 
 float kernel(ivec2 texel) {
     return is_set_by(texel, iteration, size.x - 1) ? float(iteration + 1) : previous(texel);
+}
+
+ivec2 visit(ivec2 cell) {
+    ivec2 texel = cell * half_spacing(iteration, size.x - 1);
+    return is_set_by(texel, iteration, size.x - 1) ? texel : ivec2(-1);
 }

@@ -1,6 +1,6 @@
 // generation/diamond_square/lattice.glsl -- which texels a step of diamond-square sets.
 //
-//   gives    DIAMOND_SQUARE_SALT, half_spacing, texel_of_cell, is_set_by
+//   gives    DIAMOND_SQUARE_SALT, half_spacing, is_set_by
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    texels; steps from 0; a side is a power of two, one less than a terrain's texels
 //   source   Belaiche 2010, sections 1.3.2 and 4.3.1
@@ -20,17 +20,7 @@ int half_spacing(int which, int side) {
     return side >> ((which + 1) >> 1);
 }
 
-// The texel that a cell of a step sets.
-ivec2 texel_of_cell(ivec2 cell, int which, int side) {
-    if (which == 0) return cell * side;
-    int r = half_spacing(which, side);
-    if ((which & 1) == 1) return (2 * cell + 1) * r;
-    // Along even rows of half spacings the edges are the odd places, along odd rows the even ones.
-    int place = (cell.y & 1) == 0 ? 2 * cell.x + 1 : 2 * cell.x;
-    return ivec2(place, cell.y) * r;
-}
-
-// The same the other way round. Masks, not division: a side is a power of two.
+// Whether a step sets a texel. Masks, not division: a side is a power of two.
 bool is_set_by(ivec2 texel, int which, int side) {
     if (which == 0) return (texel.x == 0 || texel.x == side) && (texel.y == 0 || texel.y == side);
     int r = half_spacing(which, side);

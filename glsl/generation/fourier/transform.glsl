@@ -13,9 +13,8 @@
 //     new[j] = old[i] + w old[i + n/2],   w = exp(-2 pi i (j mod 2h) / 2h)
 //
 // with i = (j div 2h) h + j mod h; backward with +2 pi, and halved. The first log2(size.x) steps
-// go along x, the others along y. The order comes out right
-// by itself. Texel 0 of an axis is then the mean, texel 1 one wave, and those above size / 2
-// are waves with a minus sign: texel size - 1 is the frequency -1.
+// go along x, the others along y. The result is in order: texel 0 of an axis is the mean, texel 1
+// one wave, and those above size / 2 are negative frequencies, texel size - 1 being -1.
 #include "maths/complex.glsl"
 #pragma kernel(output = "transformed:rg32f", \
                repeat = "log2(size.x) + log2(size.y)", accepts = "2**n, 2**m")
@@ -23,18 +22,17 @@
 uniform int direction = 0; //! menu("forward", "backward") From heights to frequencies, or back
 
 vec2 kernel(ivec2 texel) {
-    // A power of two's logarithm, from a float's exponent.
-    int steps_along_x = (floatBitsToInt(float(size.x)) >> 23) - 127;
+    int steps_along_x = int(log2(float(size.x)) + 0.5);
     bool along_x = iteration < steps_along_x;
     int t = along_x ? iteration : iteration - steps_along_x;
-    int count = along_x ? size.x : size.y;
-    int place = along_x ? texel.x : texel.y;
+    int n = along_x ? size.x : size.y;
     int h = 1 << t;
-    int from = ((place >> (t + 1)) << t) | (place & (h - 1));
-    ivec2 here = along_x ? ivec2(from, texel.y) : ivec2(texel.x, from);
-    ivec2 further = along_x ? ivec2(count >> 1, 0) : ivec2(0, count >> 1);
+    int j = along_x ? texel.x : texel.y;
+    int i = j / (2 * h) * h + j % h;
+    ivec2 here = along_x ? ivec2(i, texel.y) : ivec2(texel.x, i);
+    ivec2 further = along_x ? ivec2(n / 2, 0) : ivec2(0, n / 2);
     // anchor: butterfly
-    vec2 w = root_of_one(place & (2 * h - 1), 2 * h);
+    vec2 w = root_of_one(j % (2 * h), 2 * h);
     if (direction == 0) w = conjugate(w);
     vec2 sum = previous(here) + complex_product(w, previous(here + further));
     return direction == 0 ? sum : 0.5 * sum;

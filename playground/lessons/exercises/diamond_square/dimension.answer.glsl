@@ -23,13 +23,11 @@
 #include "generation/diamond_square/lattice.glsl"
 #include "noise/finest.glsl"
 #include "noise/hash.glsl"
-#pragma kernel(output = "height:r32f", \
-               where = "level = (iteration - 1) // 2; \
-                        rows = 2 if iteration == 0 else 2**(iteration // 2) + 1 - iteration % 2; \
-                        columns = 2 if iteration == 0 else 2**level + 1 - iteration % 2", \
-               repeat = "2 * log2(size.x - 1) + 1", accepts = "2**n + 1", \
-               visits = "columns, rows", stride = "(size.x - 1) // 2**((iteration + 1) // 2)", \
-               between = "squares")
+#pragma kernel(output = "height:r32f", accepts = "2**n + 1", \
+               repeat = "2 * log2(size.x - 1) + 1", \
+               where = "spacings = 2**((iteration + 1) // 2)", \
+               visits = "spacings + 1, spacings + 1", \
+               stride = "(size.x - 1) // spacings", between = "squares")
 
 uniform float smoothing = 0.2;  //! slider(0, 1) step(0.01) Roughness: height added per side of the
                                 //! terrain. Above 0.5 it looks like rubble
@@ -40,8 +38,33 @@ uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01)
     //! parts("SW", "SE", "NW", "NE")
     //! Heights of the corners: south-west, south-east, north-west, north-east
 
-ivec2 visit(ivec2 cell) {
-    return texel_of_cell(cell, iteration, size.x - 1);
+float corner(ivec2 texel);
+
+float kernel(ivec2 texel) {
+    int side = size.x - 1;
+    if (!is_set_by(texel, iteration, side)) return previous(texel);
+    if (iteration == 0) return corner(texel);
+    // anchor: neighbours
+    // The four neighbours lie along the diagonals of a centre, along the axes of an edge.
+    int r = half_spacing(iteration, side);
+    ivec2 along = (iteration & 1) == 1 ? ivec2(r, r) : ivec2(r, 0);
+    ivec2 across = ivec2(-along.y, along.x);
+    ivec2 neighbours[4] = ivec2[4](texel + along, texel + across, texel - along, texel - across);
+    // end: neighbours
+    float total = 0.0;
+    float count = 0.0;
+    for (int i = 0; i < 4; i++) {
+        bool inside = neighbours[i] == clamp(neighbours[i], ivec2(0), ivec2(side));
+        total += inside ? previous(neighbours[i]) : 0.0;
+        count += inside ? 1.0 : 0.0;
+    }
+    // anchor: height
+    float share = float(2 * r) / float(side);
+    ivec2 point = finest_point(texel, side);
+    uint which = seed + DIAMOND_SQUARE_SALT;
+    float number = sign_of_random == 0 ? random_signed(point, which) : random(point, which);
+    return total / count + number * pow(share, 0.8) * smoothing;
+    // end: height
 }
 
 float corner(ivec2 texel) {
@@ -50,33 +73,8 @@ float corner(ivec2 texel) {
     return north ? (east ? corners.w : corners.z) : (east ? corners.y : corners.x);
 }
 
-float kernel(ivec2 texel) {
-    int side = size.x - 1;
-    bool is_new = is_set_by(texel, iteration, side);
-    if (iteration == 0) return is_new ? corner(texel) : previous(texel);
-    // anchor: neighbours
-    // A texel that stays as it is has r = 0: it is its own neighbour, and no further read is due.
-    int r = is_new ? half_spacing(iteration, side) : 0;
-    // The four neighbours lie along the diagonals of a centre, along the axes of an edge.
-    ivec2 along = (iteration & 1) == 1 ? ivec2(r, r) : ivec2(r, 0);
-    ivec2 across = ivec2(-along.y, along.x);
-    ivec2 neighbours[4] = ivec2[4](texel + along, texel + across, texel - along, texel - across);
-    // end: neighbours
-    float heights[4];
-    float total = 0.0;
-    float count = 0.0;
-    for (int i = 0; i < 4; i++) {
-        heights[i] = previous(neighbours[i]);
-        bool inside = neighbours[i] == clamp(neighbours[i], ivec2(0), ivec2(side));
-        total += inside ? heights[i] : 0.0;
-        count += inside ? 1.0 : 0.0;
-    }
-    if (!is_new) return heights[0];
-    // anchor: height
-    float share = float(2 * r) / float(side);
-    ivec2 point = finest_point(texel, side);
-    uint which = seed + DIAMOND_SQUARE_SALT;
-    float number = sign_of_random == 0 ? random_signed(point, which) : random(point, which);
-    return total / count + number * pow(share, 0.8) * smoothing;
-    // end: height
+// Of the lattice's points, those that this step sets.
+ivec2 visit(ivec2 cell) {
+    ivec2 texel = cell * half_spacing(iteration, size.x - 1);
+    return is_set_by(texel, iteration, size.x - 1) ? texel : ivec2(-1);
 }
