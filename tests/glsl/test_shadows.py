@@ -152,7 +152,7 @@ def test_leaps_pass_over_nothing(any_engine, make_sketch, method, sun):
     for use in ("lighting/block_maxima", "./sky"):
         passes = (
             f'{head}[[pass]]\nname = "block_maxima"\nuse = "{use}"\nsize = "(height.size + 15) // 16"\n'
-            f'[[pass]]\nname = "seen"\nuse = "lighting/{method}/visibility"\nset = {{ sun = {list(sun)} }}\n'
+            f'[[pass]]\nname = "seen"\nuse = "lighting/{method}/leaping"\nset = {{ sun = {list(sun)} }}\n'
         )
         sketch = make_sketch(passes, size=[200, 150], extent=[3000.0, 2000.0], relief=700.0, sky=sky)
         found.append(any_engine.read(sketch, "seen"))
@@ -408,7 +408,10 @@ def test_without_compute_shaders_the_sweep_is_a_march_and_one_sentence_says_so(c
         )
         assert swept.internal.plan.step("light.horizon").size == (65, 65)
         np.testing.assert_array_equal(sweep_on_grid[::2, ::2], visible(plain, march))
-        assert len(said) == 1 and plain.internal.plan.step("light.block_maxima").size == (5, 5)
+        assert len(said) == 1 and plain.internal.plan.step("light.visibility.fast.block_maxima").size == (
+            5,
+            5,
+        )
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 90.0, 180.0, 270.0, 45.0, 225.0])

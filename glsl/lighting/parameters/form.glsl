@@ -7,7 +7,7 @@
 //   tested   tests/glsl/test_shadows.py
 #ifndef LIGHTING_PARAMETERS_FORM
 #define LIGHTING_PARAMETERS_FORM
-uniform sampler2D horizon;  //! input
+uniform sampler2D horizon;  //! input("black")
 uniform int form = 0;       //! menu("march", "sweep") preview("sweep") group("March")
                             //! March from every texel, or sweep the terrain once along lines,
                             //! which is faster and nearly the same; without compute shaders the

@@ -1,6 +1,6 @@
 // lighting/parameters/march.glsl -- what a ray march towards the sun reads, and its steps.
 //
-//   gives    height, block_maxima, range, step_length, sampling
+//   gives    height, step_length, sampling
 //   needs    nothing
 //   units    texels; heights without unit
 //   source   Belaiche 2010, section 3.5.4
@@ -8,8 +8,6 @@
 #ifndef LIGHTING_PARAMETERS_MARCH
 #define LIGHTING_PARAMETERS_MARCH
 uniform sampler2D height;        //! input
-uniform sampler2D block_maxima;  //! input
-uniform sampler2D range;         //! input
 uniform float step_length = 1.0; //! slider(0.25, 4) step(0.25) group("March") unit("texels")
                                  //! Length of a step, along the axis that the ray follows more.
                                  //! Long steps jump over ridges

@@ -1,8 +1,7 @@
 // lighting/soft_cylinder/visibility.glsl -- how much of a cylinder towards the sun is free.
 //
 //   gives    visibility: the visible part of the sun, 0..1/2
-//   needs    lighting/daylight_reading.glsl, lighting/march.glsl, lighting/parameters/; block
-//            maxima and range of the heights as inputs
+//   needs    lighting/daylight_reading.glsl, lighting/march.glsl, lighting/parameters/
 //   units    without unit; the cylinder's radius is measured upright
 //   source   Belaiche 2010, section 4.4.1, eq. 4.3
 //   tested   tests/glsl/test_shadows.py, against a march in NumPy
@@ -23,24 +22,18 @@ uniform float radius = 0.5;  //! slider(0, 64) step(0.1) group("Cylinder") unit(
                              //! 0 to 1
 #include "lighting/parameters/march.glsl"
 
-// The free part after a step: the least so far.
-float after_step(float part, March march, float t, float terrain) {
-    float clearance = march.foot + t * march.climb - terrain;
-    float radius_in_metres = radius / 255.0 * march.relief;
-    return min(part, clamp(0.5 + clearance / max(2.0 * radius_in_metres, 1e-20), 0.0, 1.0));
-}
-
-bool is_decided(float part) {
-    return part == 0.0;
-}
-
 float kernel(ivec2 texel) {
     vec3 light = sun_direction(wired_daylight, daylight, towards_sun);
     if (light.z < 0.0) return 0.0;
-    ivec2 grid = textureSize(height, 0);
-    vec2 place = place_on(grid, texel, size);
-    March march = march_from(height, place, size == grid, light, extent, relief, step_length);
-    // The beginning leaves a half: only terrain over the cylinder's middle takes more.
-    march.count = steps_below(march, march.climb, texelFetch(range, ivec2(0), 0).g * relief);
-    return marched(march, height, block_maxima, sampling, march.climb, 0.5);
+    vec2 place = place_on(textureSize(height, 0), texel, size);
+    March march = march_from(height, place, light, extent, relief, step_length);
+    float radius_in_metres = radius / 255.0 * relief;
+    float visible = 0.5;  // the beginning leaves a half
+    for (int i = 1; i <= march.count && visible > 0.0; i++) {
+        float ray = march.foot + float(i) * march.climb;
+        float clearance = ray - terrain_at(height, march, i, sampling);
+        float part = 0.5 + clearance / max(2.0 * radius_in_metres, 1e-20);
+        visible = min(visible, clamp(part, 0.0, 1.0));
+    }
+    return visible;
 }

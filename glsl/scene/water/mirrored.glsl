@@ -2,15 +2,15 @@
 //
 //   gives    meets_terrain, MISSES
 //   asks     of the kernel that includes it: wood_height
-//   needs    lighting/march.glsl, maths/square.glsl; heights and their block maxima come as
+//   needs    lighting/leaps.glsl, maths/square.glsl; heights and their block maxima come as
 //            arguments
 //   units    metres
-//   source   the march of lighting/march.glsl; the last step as a secant: made here
+//   source   the march of lighting/leaps.glsl; the last step as a secant: made here
 //   tested   tests/glsl/test_scene_water.py: calm water mirrors a peak within a pixel, and the sea
 //            beyond the terrain does
 #ifndef SCENE_WATER_MIRRORED
 #define SCENE_WATER_MIRRORED
-#include "lighting/march.glsl"
+#include "lighting/leaps.glsl"
 #include "maths/square.glsl"
 
 // How high woods stand at a share of the terrain [m], and the most that they can be.
@@ -44,10 +44,9 @@ float meets_terrain(sampler2D field, sampler2D block_maxima, vec3 from, vec3 to,
     float entry = max(way.x, 0.0);
     if (entry >= way.y) return MISSES;
     place = clamp(place + entry * along, vec2(0.0), last_texel);
-    March march = march_from(field, place, false, to, metres, metres_of_relief, 1.0);
+    March march = march_from(field, place, to, metres, metres_of_relief, 1.0);
     march.foot = from.z + entry * to.z - tallest;
-    float found = marched_on(false, march.count, march, field, block_maxima, INTERPOLATED,
-                             march.climb, 0.0);
+    float found = leaping_march(march, field, block_maxima, INTERPOLATED, march.climb, 0.0);
     if (found <= 0.0) return MISSES;
     // Between the last step over the ground and the first under it, as along a straight line.
     vec2 at = march.start + found * march.ahead;
