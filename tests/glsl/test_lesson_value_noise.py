@@ -23,7 +23,7 @@ def at_nodes(texels, cells):
 def read(any_engine, make_sketch):
     def one(name, size, passage, cells, seed):
         values = f'{{ passage = "{passage}", cells = {cells}, seed = {seed} }}'
-        use = f'[[pass]]\nname = "terrain"\nuse = "lessons/{name}"\nset = {values}\n'
+        use = f'[[pass]]\nname = "terrain"\nuse = "generation/{name}"\nset = {values}\n'
         return any_engine.read(make_sketch(use, size=list(size)), "terrain").astype(float)
 
     return one
@@ -54,7 +54,7 @@ def test_the_curve_and_its_derivative(read, python_random, passage):
     """The derivative is that of a polynomial by its factors, which share nothing with the kernel's text."""
     cells, seed, texels = 7, 3, 1281
     factors, steepest = PASSAGES[passage]
-    found = read("value_noise_curve", (texels, 2), passage, cells, seed)
+    found = read("value_noise/curve", (texels, 2), passage, cells, seed)
     key = seed + salt("lessons/value_noise_curve")
     numbers = 2 * python_random(np.arange(cells + 1), np.zeros(cells + 1, int), key).astype(float) - 1
     node, share = at_nodes(texels, cells)

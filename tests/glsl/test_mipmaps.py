@@ -18,11 +18,11 @@ vec4 kernel(ivec2 texel) { return vec4(random(texel, 3u), random(texel, 4u), 0.0
 
 @pytest.fixture
 def plain(make_sketch):
-    def make(pattern="lessons/pattern", **values):
+    def make(pattern="texturing/mipmaps/pattern", **values):
         given = ", ".join(f"{key} = {value}" for key, value in values.items())
         passes = (
             f'[[pass]]\nname = "pattern"\nuse = "{pattern}"\nsize = {SIDE}\n'
-            f'[[pass]]\nname = "plain"\nuse = "lessons/mipmaps"\nsize = [{WIDE}, {HIGH}]\n'
+            f'[[pass]]\nname = "plain"\nuse = "texturing/mipmaps"\nsize = [{WIDE}, {HIGH}]\n'
             f'inputs = {{ image = "pattern" }}\nset = {{ {given} }}\n'
         )
         return make_sketch(passes, size=SIDE, noise=NOISE)

@@ -1,8 +1,7 @@
 // lighting/night/lamp.glsl -- a lamp on the terrain adds its light, with shadows.
 //
 //   gives    light: that of the moon, and the lamp's; alpha as it came
-//   needs    lighting/march.glsl, lighting/parameters/normal.glsl, lighting/sun.glsl; block maxima
-//            of the heights as an input
+//   needs    lighting/march.glsl, lighting/parameters/normal.glsl, lighting/sun.glsl
 //   units    light without unit, 1 for white; metres
 //   source   beyond Belaiche 2010, section 5.4.2, which says that lamps are near and takes them
 //            for far; the inverse square law; the soft falloff made here
@@ -16,7 +15,6 @@
 #pragma kernel(output = "light:rgba16f")
 
 uniform sampler2D height;        //! input
-uniform sampler2D block_maxima;  //! input
 uniform sampler2D moonlit;       //! input
 uniform vec2 lamp = vec2(0.5);   //! point group("Lamp") Where it is
 uniform float lamp_height = 40.0;  //! slider(0, 2000) step(1) group("Lamp") unit("m")
@@ -40,18 +38,6 @@ float falling_off(float distance_to) {
     return 1.0;
 }
 
-float radius_a_step;  // what the cone's radius grows from step to step  [m]
-
-// The free part of the ball after a step: the least so far.
-float after_step(float part, March march, float t, float terrain) {
-    float clearance = march.foot + t * march.climb - terrain;
-    return min(part, clamp(0.5 + clearance / max(2.0 * t * radius_a_step, 1e-20), 0.0, 1.0));
-}
-
-bool is_decided(float part) {
-    return part == 0.0;
-}
-
 vec4 kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
     vec2 metres = spacing_of(grid, extent);
@@ -59,19 +45,24 @@ vec4 kernel(ivec2 texel) {
     vec2 stand = lamp * vec2(grid - 1);
     float foot = height_at(height, place) * relief;
     float rise = height_at(height, stand) * relief + lamp_height - foot;
-    vec3 way = vec3((stand - place) * metres, rise);
-    // In the lamp itself, and on a terrain of one texel, all ways to it are as good: upwards.
-    float far = max(length(way), 1e-3);
-    way = length(way) < 1e-3 ? vec3(0.0, 0.0, 1.0) : way / far;
+    vec3 to_lamp = vec3((stand - place) * metres, rise);
+    // In the lamp itself, and on a terrain of one texel, any direction will do: upwards.
+    float far = max(length(to_lamp), 1e-3);
+    to_lamp = length(to_lamp) < 1e-3 ? vec3(0.0, 0.0, 1.0) : to_lamp / far;
     vec2 slope = relief * slope_at(height, place, metres, normal);
-    float facing = max(0.0, dot(normal_of_slope(slope), way));
+    float facing = max(0.0, dot(normal_of_slope(slope), to_lamp));
     float received = lamp_gain * facing * falling_off(far);
-    March march = march_from(height, place, size == grid, way, extent, relief, 1.0);
+    March march = march_from(height, place, to_lamp, extent, relief, 1.0);
     // Steps before the lamp; none where it sends no light.
-    march.count = received > 0.0 ? min(march.count, int(ceil(far / march.path)) - 1) : 0;
-    radius_a_step = march.path * lamp_radius / far;
-    float lower_side = march.climb - radius_a_step;
-    float part = marched(march, height, block_maxima, INTERPOLATED, lower_side, 1.0);
+    int count = received > 0.0 ? min(march.count, int(ceil(far / march.path)) - 1) : 0;
+    float radius_a_step = march.path * lamp_radius / far;
+    float part = 1.0;  // of the ball, free
+    for (int i = 1; i <= count && part > 0.0; i++) {
+        float ray = march.foot + float(i) * march.climb;
+        float clearance = ray - terrain_at(height, march, i, INTERPOLATED);
+        float radius = float(i) * radius_a_step;
+        part = min(part, clamp(0.5 + clearance / max(2.0 * radius, 1e-20), 0.0, 1.0));
+    }
     vec4 moon = texelFetch(moonlit, texel, 0);
     return vec4(moon.rgb + lamp_colour * (received * part), moon.a);
 }

@@ -1,4 +1,4 @@
-// lessons/trees_from_above.glsl -- trees on a map, at most one in each cell: the idea and no more.
+// trees/from_above.glsl -- trees on a map, at most one in each cell.
 //
 //   gives    picture: crowns on the ground, with their shadows; crown: 1 where there is one
 //   needs    noise/hash.glsl, terrain/heightfield.glsl; a height; a density
@@ -7,6 +7,9 @@
 //            Transactions on Graphics 5(1); thinning: Cook, Halstead, Planck and Ryu 2007,
 //            "Stochastic Simplification of Aggregate Detail" (SIGGRAPH)
 //   tested   tests/glsl/test_lesson_outdoors.py: how many there are, and what they cover
+//
+// Each pixel looks for the crowns over it. trees/place lists the same kind of trees for a draw,
+// and thins them by their distance from the eye (trees/level.glsl), not evenly.
 #include "noise/hash.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "picture:rgba16f, crown:r32f")

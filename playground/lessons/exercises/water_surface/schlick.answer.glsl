@@ -1,4 +1,4 @@
-// lessons/water_view.glsl -- a lake from its shore: mirror, bed and waves, the idea and no more.
+// water/from_shore.glsl -- a lake from its shore: mirror, bed and waves.
 //
 //   gives    picture; mirrored: the share of the light that the surface mirrors; slope: its own
 //   needs    noise/gradient.glsl, noise/hash.glsl, water/body.glsl, water/fresnel.glsl
@@ -8,6 +8,8 @@
 //            the Sun's Glitter", J. Opt. Soc. Am. 44(11)
 //   tested   tests/glsl/test_lesson_outdoors.py: calm water against Fresnel, Snell and Beer in
 //            float64; the variance of the slopes against Cox and Munk
+//
+// One ray a pixel into a scene of formulas; scene/water draws the same over a terrain.
 #include "noise/gradient.glsl"
 #include "noise/hash.glsl"
 #include "water/body.glsl"

@@ -1,12 +1,12 @@
-// lessons/mip_corner.glsl -- where a mip level lies in a chain of them, and what it holds.
+// texturing/mipmaps/levels.glsl -- where a mip level lies in a chain of them, and what it holds.
 //
 //   gives    mip_corner, mip_value, mip_blend
 //   needs    nothing: the chain comes as an argument
 //   units    places in tiles, which repeat; levels from 0, the finest
 //   source   Williams 1983, "Pyramidal Parametrics" (SIGGRAPH)
 //   tested   tests/glsl/test_mipmaps.py, against the same in float64
-#ifndef LESSONS_MIP_CORNER
-#define LESSONS_MIP_CORNER
+#ifndef TEXTURING_MIPMAPS_LEVELS
+#define TEXTURING_MIPMAPS_LEVELS
 
 // The south-west texel of a level of an image that is so many texels wide.
 ivec2 mip_corner(int level, int side) {
@@ -33,12 +33,12 @@ vec4 mip_value(sampler2D chain, int level, vec2 tile) {
 // Between two levels: trilinear.
 // anchor: blend
 vec4 mip_blend(sampler2D chain, float level, vec2 tile) {
-    float most = log2(float(textureSize(chain, 0).y));
-    float held = clamp(level, 0.0, most);
-    int finer = int(held);
+    float maximum = log2(float(textureSize(chain, 0).y));
+    float clamped = clamp(level, 0.0, maximum);
+    int finer = int(clamped);
     vec4 fine = mip_value(chain, finer, tile);
-    vec4 coarse = mip_value(chain, min(finer + 1, int(most)), tile);
-    return mix(fine, coarse, held - float(finer));
+    vec4 coarse = mip_value(chain, min(finer + 1, int(maximum)), tile);
+    return mix(fine, coarse, clamped - float(finer));
 }
 // end: blend
 #endif

@@ -1,9 +1,9 @@
-// lessons/pattern.glsl -- what lies on the plain of the lesson on aliasing: a tile in two colours.
+// texturing/mipmaps/pattern.glsl -- a tile in two colours that continues into itself.
 //
 //   gives    colour, linear light: a tile that continues into itself
 //   needs    noise/periodic.glsl
 //   units    none
-//   source   none: made for the lesson
+//   source   none: made here
 //   tested   tests/glsl/test_mipmaps.py: a chessboard's mean, and hills that repeat
 #include "noise/periodic.glsl"
 #pragma kernel(output = "colour:rgba16f")

@@ -1,4 +1,4 @@
-// lessons/cloud_slice.glsl -- a slice through heaps of cloud over hills, by noise.
+// clouds/slice/density.glsl -- a slice through heaps of cloud over hills, by noise.
 //
 //   gives    density: of the cloud, 0..1, and in green 1 in the ground
 //   needs    noise/gradient.glsl
@@ -6,6 +6,9 @@
 //   source   noise over a threshold that rises with height: Schneider 2015, "The Real-Time
 //            Volumetric Cloudscapes of Horizon Zero Dawn" (SIGGRAPH course), in two dimensions
 //   tested   tests/glsl/test_lesson_outdoors.py: no cloud below the base nor over the top
+//
+// Two dimensions, so that a picture can show all of it. The clouds of a scene are those of
+// clouds/field.
 #include "noise/gradient.glsl"
 #pragma kernel(output = "density:rg16f")
 

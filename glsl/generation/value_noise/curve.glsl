@@ -1,4 +1,4 @@
-// lessons/value_noise_curve.glsl -- value noise along a line, and its derivative.
+// generation/value_noise/curve.glsl -- value noise along a line, and its derivative.
 //
 //   gives    height: row 0 the noise, row 1 half of its derivative
 //   needs    noise/hash.glsl

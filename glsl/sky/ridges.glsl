@@ -1,4 +1,4 @@
-// lessons/ridges_in_air.glsl -- eight ridges one behind the other, with the air between.
+// sky/ridges.glsl -- eight ridges one behind the other, with the air between.
 //
 //   gives    picture
 //   needs    noise/gradient.glsl, sky/air.glsl

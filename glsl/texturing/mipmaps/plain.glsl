@@ -1,7 +1,7 @@
-// lessons/plain.glsl -- a tiled plain to the horizon, each pixel filtered in a way that is chosen.
+// texturing/mipmaps/plain.glsl -- a tiled plain to the horizon, filtered by a choice of methods.
 //
 //   gives    picture, linear light; level: the mip level that the pixel asks for
-//   needs    lessons/mip_corner.glsl; a chain of lessons/mip_chain.glsl
+//   needs    texturing/mipmaps/levels.glsl; a chain of texturing/mipmaps/chain.glsl
 //   units    metres; levels from 0, the finest
 //   source   the level of OpenGL 3.3, section 3.8.11; several reads along the longer side:
 //            EXT_texture_filter_anisotropic
@@ -10,7 +10,7 @@
 // The eye looks level to the north over a plain; the picture ends at the horizon, its upper edge.
 // It is 90 degrees wide, less by `zoom`. The ground that a pixel sees is taken from the rays of
 // the pixels to its right and below it: what a draw's dFdx and dFdy give.
-#include "lessons/mip_corner.glsl"
+#include "texturing/mipmaps/levels.glsl"
 #pragma kernel(output = "picture:rgba32f, level:r32f")
 
 uniform sampler2D chain;     //! input

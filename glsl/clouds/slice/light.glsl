@@ -1,10 +1,13 @@
-// lessons/cloud_light.glsl -- what a cloud leaves of the sun's beam: the idea and no more.
+// clouds/slice/light.glsl -- what a cloud leaves of the sun's beam, in a slice.
 //
 //   gives    beam: what is left of it at each place of the slice, 0..1; picture
-//   needs    a density and a ground by lessons/cloud_slice
+//   needs    a density and a ground by clouds/slice/density
 //   units    metres; extinction per metre; light without unit, 1 for white
 //   source   the law of Beer and Lambert
 //   tested   tests/glsl/test_lesson_outdoors.py, against sums along the ray in float64
+//
+// The integral itself, by steps. clouds/seen and clouds/shadow replace the steps towards the sun
+// by depths that are known from the form of their layer.
 #pragma kernel(output = "beam:r32f, picture:rgba16f")
 
 uniform sampler2D slice;          //! input("linear")

@@ -1,4 +1,4 @@
-// lessons/value_noise.glsl -- value noise: random heights on a lattice, a passage between them.
+// generation/value_noise.glsl -- value noise: random heights on a lattice, a passage between them.
 //
 //   gives    height, for any terrain
 //   needs    noise/hash.glsl

@@ -1,4 +1,4 @@
-// lessons/trees_in_time.glsl -- which trees of a row are drawn while the eye comes nearer.
+// trees/in_time.glsl -- which trees of a row are drawn while the eye comes nearer.
 //
 //   gives    drawn: 1 for a tree that is drawn, a column for each; a row for each picture
 //   needs    noise/hash.glsl
@@ -6,6 +6,8 @@
 //   source   Cook, Halstead, Planck and Ryu 2007, "Stochastic Simplification of Aggregate Detail"
 //            (SIGGRAPH)
 //   tested   tests/glsl/test_lesson_outdoors.py: once drawn, a tree stays; how many are
+//
+// The thinning of trees/level.glsl along one line, without the fade at its end.
 #include "noise/hash.glsl"
 #pragma kernel(output = "drawn:r32f")
 
@@ -19,9 +21,9 @@ const uint SALT = 0xf0b117c6u;  // CRC-32 of "lessons/trees_in_time"
 float kernel(ivec2 texel) {
     int tree = texel.x / WIDE;
     int picture = (size.y - 1 - texel.y) / WIDE;  // the first on top
-    float away = start * (1.0 - float(picture) / float(size.y / WIDE));
+    float eye_distance = start * (1.0 - float(picture) / float(size.y / WIDE));
     // anchor: thinning
-    float near = min(whole / max(away, 1.0), 1.0);
+    float near = min(whole / max(eye_distance, 1.0), 1.0);
     float kept = near * near;
     float rank = random(ivec2(tree, 0), seed + SALT);
     bool stays = rank < kept;

@@ -1,4 +1,4 @@
-// lessons/difference.glsl -- how far two pictures differ, pixel by pixel.
+// texturing/mipmaps/difference.glsl -- how far two pictures differ, pixel by pixel.
 //
 //   gives    difference: of their red, 0 and up
 //   needs    two pictures of this size

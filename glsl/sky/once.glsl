@@ -1,4 +1,4 @@
-// lessons/sky_once.glsl -- the sky of light that air has scattered once: the idea and no more.
+// sky/once.glsl -- the sky of light that air has scattered once.
 //
 //   gives    sky: half of the horizon from left to right, the sun's side in the middle, from the
 //            horizon up to the zenith; ratio: of its blue to its red; molecules: the
@@ -9,6 +9,9 @@
 //   source   Nishita, Sirai, Tadamura and Nakamae 1993, "Display of the Earth Taking into Account
 //            Atmospheric Scattering"
 //   tested   tests/glsl/test_lesson_outdoors.py, against integrals in float64
+//
+// The two integrals themselves. lighting/daylight adds what is scattered again, and reads the
+// inner one from a table (sky/columns.glsl).
 #include "sky/air.glsl"
 #include "sky/shell.glsl"
 #pragma kernel(output = "sky:rgba16f, ratio:r32f, molecules:r32f")
@@ -35,8 +38,8 @@ vec3 optical_depth(Air air, float height, float rise) {
     float far = distance_to_top(height, rise);
     vec3 depth = vec3(0.0);
     for (int i = 0; i < SUN_STEPS; i++) {
-        vec2 way = far * step_of(i, SUN_STEPS);     // to its middle, and its length
-        depth += extinction(air, densities(height_along(height, rise, way.x))) * way.y;
+        vec2 along = far * step_of(i, SUN_STEPS);   // to its middle, and its length
+        depth += extinction(air, densities(height_along(height, rise, along.x))) * along.y;
     }
     return depth;
 }
@@ -48,16 +51,16 @@ vec3 light_from(Air air, float rise, float sun_rise, float together) {
     // anchor: once
     vec3 left = vec3(1.0);                          // of the light from here to the eye
     for (int i = 0; i < STEPS; i++) {
-        vec2 way = far * step_of(i, STEPS);
-        float height = height_along(EYE, rise, way.x);
+        vec2 along = far * step_of(i, STEPS);
+        float height = height_along(EYE, rise, along.x);
         vec3 amounts = densities(height);
-        float sun_there = ((EARTH_RADIUS + EYE) * sun_rise + way.x * together)
+        float sun_there = ((EARTH_RADIUS + EYE) * sun_rise + along.x * together)
                         / (EARTH_RADIUS + height);
         vec3 sunlight = exp(-optical_depth(air, height, sun_there));
         vec3 scattered = air.molecules * amounts.x * phase_molecules(together)
                        + AEROSOL_ALBEDO * air.aerosol * amounts.y * phase_aerosol(together);
-        vec3 taken = exp(-extinction(air, amounts) * way.y);
-        light += left * sqrt(taken) * sunlight * scattered * way.y;
+        vec3 taken = exp(-extinction(air, amounts) * along.y);
+        light += left * sqrt(taken) * sunlight * scattered * along.y;
         left *= taken;
     }
     // end: once

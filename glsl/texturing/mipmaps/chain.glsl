@@ -1,11 +1,12 @@
-// lessons/mip_chain.glsl -- a square image at all its mip levels, each the mean of the one before.
+// texturing/mipmaps/chain.glsl -- a square image at all its mip levels.
 //
 //   gives    chain: level 0 on the left, the others one above the other on its right
-//   needs    lessons/mip_corner.glsl; an image whose side is a power of two; 3/2 of its size by 1
+//   needs    texturing/mipmaps/levels.glsl; an image whose side is a power of two; 3/2 of its size
+//            by 1
 //   units    those of the image
 //   source   Williams 1983, "Pyramidal Parametrics" (SIGGRAPH), whose layout this resembles
 //   tested   tests/glsl/test_mipmaps.py, against means over blocks in float64
-#include "lessons/mip_corner.glsl"
+#include "texturing/mipmaps/levels.glsl"
 #pragma kernel(output = "chain:rgba32f", repeat = "bits(size.y)")
 
 uniform sampler2D image;  //! input
