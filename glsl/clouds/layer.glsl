@@ -33,8 +33,8 @@ const float LONGEST = 12.0;    // [km] of the layer
 const float FARTHEST = 300.0;  // [km] past any horizon
 
 vec3 direction_of(vec2 pixel) {
-    vec4 away = world_from_clip * vec4(pixel / vec2(size) * 2.0 - 1.0, 1.0, 1.0);
-    return normalize(away.xyz / away.w - eye);
+    vec4 far_point = world_from_clip * vec4(pixel / vec2(size) * 2.0 - 1.0, 1.0, 1.0);
+    return normalize(far_point.xyz / far_point.w - eye);
 }
 
 vec4 kernel(ivec2 texel) {

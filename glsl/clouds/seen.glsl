@@ -39,8 +39,8 @@ const int MOST_STEPS = 160;
 const int MOST_CLOUDS = 6;     // one behind the other
 
 vec3 direction_of(vec2 pixel) {
-    vec4 away = world_from_clip * vec4(pixel / vec2(size) * 2.0 - 1.0, 1.0, 1.0);
-    return normalize(away.xyz / away.w - eye);
+    vec4 far_point = world_from_clip * vec4(pixel / vec2(size) * 2.0 - 1.0, 1.0, 1.0);
+    return normalize(far_point.xyz / far_point.w - eye);
 }
 
 struct Layer {
@@ -67,9 +67,11 @@ Place cloud_in(Layer layer, float path) {
             / CLOUD_TALL;
     vec2 at = tile_of(eye.xy + layer.ahead.xy * path, layer.wind);
     float thick = textureLod(cloud, at, layer.level).r;
-    float most = 0.35 * (layer.wear.large + layer.wear.small) * (0.4 + 0.6 * up);
+    float maximum = 0.35 * (layer.wear.large + layer.wear.small) * (0.4 + 0.6 * up);
     // Lines of sight begin on the base, or just under it by rounding.
-    if (thick + most < up || thick == 0.0 || up < -2e-3) return Place(-1.0, false, 0.0, up, thick);
+    if (thick + maximum < up || thick == 0.0 || up < -2e-3) {
+        return Place(-1.0, false, 0.0, up, thick);
+    }
     thick = worn(billows, layer.wear, at, thick, up, layer.wind.w);
     return Place(thick - up, true, density_at(thick, up), up, thick);
 }

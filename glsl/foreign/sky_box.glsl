@@ -17,16 +17,17 @@ uniform int number = 0;  //! slider(0, 99) Which sky: each has a sun and a tint 
 vec4 kernel(ivec2 texel) {
     int face = texel.y * 6 / size.y;
     ivec2 on_face = ivec2(texel.x, texel.y - face * size.x);
-    vec3 way = normalize(cube_direction(face, (vec2(on_face) + 0.5) / float(size.x) * 2.0 - 1.0));
+    vec2 place = (vec2(on_face) + 0.5) / float(size.x) * 2.0 - 1.0;
+    vec3 direction = normalize(cube_direction(face, place));
     float turn = 0.618034 * float(number);
     float azimuth = 6.2831853 * (turn + 0.1);
     vec3 towards_sun = vec3(0.8 * cos(azimuth), 0.6, 0.8 * sin(azimuth));
     vec3 tint = 0.5 + 0.5 * cos(6.2831853 * (turn + vec3(0.5, 0.75, 0.0)));
-    if (way.y < 0.0) {
-        vec3 ground = vec3(0.3 + 0.2 * way.x, 0.3 + 0.2 * way.z, 0.2);
+    if (direction.y < 0.0) {
+        vec3 ground = vec3(0.3 + 0.2 * direction.x, 0.3 + 0.2 * direction.z, 0.2);
         return vec4(mix(ground, tint, 0.1), 1.0);
     }
-    vec3 sky = mix(vec3(0.85), mix(vec3(0.2, 0.4, 0.8), tint, 0.4), sqrt(way.y));
-    float sun = smoothstep(0.98, 0.99, dot(way, towards_sun));
+    vec3 sky = mix(vec3(0.85), mix(vec3(0.2, 0.4, 0.8), tint, 0.4), sqrt(direction.y));
+    float sun = smoothstep(0.98, 0.99, dot(direction, towards_sun));
     return vec4(mix(sky, vec3(1.0), sun), 1.0);
 }

@@ -40,8 +40,8 @@ float spectrum_at(float hertz, int beat, float since) {
     level += strike(since) * exp(-hertz / 160.0);
     for (int voice = 0; voice < VOICES; ++voice) {
         for (int harmonic = 1; harmonic <= HARMONICS; ++harmonic) {
-            float away = (hertz - tone(voice, beat) * float(harmonic)) / 45.0;
-            level += (0.75 - 0.3 * since) / sqrt(float(harmonic)) * exp(-away * away);
+            float detuning = (hertz - tone(voice, beat) * float(harmonic)) / 45.0;
+            level += (0.75 - 0.3 * since) / sqrt(float(harmonic)) * exp(-detuning * detuning);
         }
     }
     return level;

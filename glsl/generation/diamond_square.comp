@@ -161,9 +161,9 @@ void widen_by_eight(inout vec2 range, vec4 eight[2], bool is_last) {
     // Only the first is one of the lattice's columns.
     if (is_last) eight[0] = eight[1] = vec4(eight[0].x);
     vec4 least = min(eight[0], eight[1]);
-    vec4 most = max(eight[0], eight[1]);
+    vec4 maximum = max(eight[0], eight[1]);
     range.x = min(range.x, min(min(least.x, least.y), min(least.z, least.w)));
-    range.y = max(range.y, max(max(most.x, most.y), max(most.z, most.w)));
+    range.y = max(range.y, max(max(maximum.x, maximum.y), max(maximum.z, maximum.w)));
 }
 
 // Write a thread's eight columns of a row: rows past the last lie in room that nobody reads.

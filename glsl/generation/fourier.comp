@@ -266,14 +266,14 @@ void draw(Digit digit) {
 
 // `bounds` are the greatest key, and the greatest complement of one: zeros are less than any.
 void measure() {
-    vec4 least = v[0];
-    vec4 most = v[0];
+    vec4 minimum = v[0];
+    vec4 maximum = v[0];
     for (int e = 1; e < 32; e++) {
-        least = min(least, v[e]);
-        most = max(most, v[e]);
+        minimum = min(minimum, v[e]);
+        maximum = max(maximum, v[e]);
     }
-    uint lowest = ~key_of_height(min(min(least.x, least.z), -max(most.y, most.w)));
-    uint highest = key_of_height(max(max(most.x, most.z), -min(least.y, least.w)));
+    uint lowest = ~key_of_height(min(min(minimum.x, minimum.z), -max(maximum.y, maximum.w)));
+    uint highest = key_of_height(max(max(maximum.x, maximum.z), -min(minimum.y, minimum.w)));
     // Most threads have nothing to change, and see that sooner than an atomic tells them.
     if (lowest > bounds[0]) atomicMax(bounds[0], lowest);
     if (highest > bounds[1]) atomicMax(bounds[1], highest);

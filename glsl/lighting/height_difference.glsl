@@ -30,8 +30,8 @@ uniform float softness = 0.05;           //! log_slider(0.001, 1)
                                          //! before all light is gone. The less, the darker
 
 float share_at(ivec2 grid, vec2 place) {
-    vec2 way = to_sun(vec2(sun.x, 0.0)).xy / spacing_of(grid, extent);
-    vec2 towards = place + step_length * way / max(abs(way.x), abs(way.y));
+    vec2 direction = to_sun(vec2(sun.x, 0.0)).xy / spacing_of(grid, extent);
+    vec2 towards = place + step_length * direction / max(abs(direction.x), abs(direction.y));
     vec2 last = vec2(grid - 1);
     // A step that ends on the edge counts as inside, despite rounding.
     bool off = any(lessThan(towards, vec2(-1e-3))) || any(greaterThan(towards, last + 1e-3));

@@ -10,9 +10,9 @@
 
 // From the cube's middle to a place, each coordinate -1..1, on a face: +X -X +Y -Y +Z -Z from 0.
 vec3 cube_direction(int face, vec2 place) {
-    float way = (face & 1) == 0 ? 1.0 : -1.0;
-    if (face < 2) return vec3(way, -place.y, -way * place.x);
-    if (face < 4) return vec3(place.x, way, way * place.y);
-    return vec3(way * place.x, -place.y, way);
+    float facing = (face & 1) == 0 ? 1.0 : -1.0;
+    if (face < 2) return vec3(facing, -place.y, -facing * place.x);
+    if (face < 4) return vec3(place.x, facing, facing * place.y);
+    return vec3(facing * place.x, -place.y, facing);
 }
 #endif

@@ -22,10 +22,10 @@ const float SOLID_SCALE = 0.66666667;
 const float SOLID_SLOPE = 0.57515;
 
 // A gradient times the way from its corner; its signs are the bits' three upper ones.
-float solid_plane(uint bits, vec3 way, out vec3 gradient) {
+float solid_plane(uint bits, vec3 offset, out vec3 gradient) {
     uvec3 signs = uvec3(bits, bits << 1u, bits << 2u) & 0x80000000u;
     gradient = uintBitsToFloat(signs | 0x3f800000u);
-    return dot(gradient, way);
+    return dot(gradient, offset);
 }
 
 // The numbers of a layer and of the next one, as noise/lattice.glsl has those of rows.

@@ -52,8 +52,8 @@ vec2 cos_sin_turns(float turns) {
 }
 
 // What a point of the lattice adds to a place so far from it, and how near that is, 0..1.
-vec3 stripe_of_point(ivec2 point, vec2 away, vec2 waves, Cells cells, uint seed) {
-    vec2 r = away / cells.side * vec2(1.0 / STRIPES_ROW, 1.0);
+vec3 stripe_of_point(ivec2 point, vec2 offset, vec2 waves, Cells cells, uint seed) {
+    vec2 r = offset / cells.side * vec2(1.0 / STRIPES_ROW, 1.0);
     float near = max(1.0 - dot(r, r), 0.0);
     near *= near * near;
     if (cells.period.x > 0) {
@@ -63,7 +63,7 @@ vec3 stripe_of_point(ivec2 point, vec2 away, vec2 waves, Cells cells, uint seed)
     }
     uint bits = lattice_columns(point.x, seed).x * lattice_rows(point.y, seed).x;
     float phase = float(int(bits)) * (1.0 / 4294967296.0);
-    return near * vec3(cos_sin_turns(dot(away, waves) + phase), 1.0);
+    return near * vec3(cos_sin_turns(dot(offset, waves) + phase), 1.0);
 }
 
 // Cosine and sine of the wave at a place; `waves` are its turns per metre, east and north.

@@ -45,7 +45,7 @@ vec3 random_of(uvec3 bits) {
 
 // How far from the middle the rock ends, and the plane that it ends at.
 struct Side {
-    float away;
+    float distance_to;
     vec3 plane;
 };
 
@@ -57,7 +57,7 @@ Side side_of(vec3 ahead, uint key) {
         float turn = 6.2831853 * random.y;
         vec3 plane = vec3(sqrt(1.0 - level * level) * vec2(cos(turn), sin(turn)), level);
         float from = (0.55 + 0.35 * random.z) / max(dot(plane, ahead), 1e-3);
-        if (from < found.away) found = Side(from, plane);
+        if (from < found.distance_to) found = Side(from, plane);
     }
     return found;
 }
@@ -69,7 +69,7 @@ vec4 vertex(vec3 corner, out vec3 position, out vec3 towards, out vec4 own) {
     uvec3 bits = hash3(uvec3(uint(at.x), uint(at.y), SALT));
     uint key = bits.x & 4095u;
     towards = corner_of(int(corner.x), int(corner.y + 0.5));
-    vec3 place = side_of(towards, key).away * towards;
+    vec3 place = side_of(towards, key).distance_to * towards;
     vec3 random = random_of(bits);
     own = vec4(float(key), random.y, 0.8 + 0.4 * random.z, found.w);
     // Flatter than it is wide, and turned.

@@ -42,10 +42,10 @@ vec4 vertex(vec3 corner, out vec3 position, out vec3 normal, out float material)
     int which = 3 * int(corner.x) + int(corner.y + 0.5);
     ivec2 texels = textureSize(place, 0);
     if (found.w <= 0.0 || which >= texels.x * texels.y) return NOWHERE;
-    float away = distance(eye, found.xyz);
+    float eye_distance = distance(eye, found.xyz);
     ivec2 texel = ivec2(which % texels.x, which / texels.x);
     vec4 own = texelFetch(place, texel, 0);
-    if (own.w <= 0.0 || away < nearest || away >= farthest) return NOWHERE;
+    if (own.w <= 0.0 || eye_distance < nearest || eye_distance >= farthest) return NOWHERE;
     ivec2 key = ivec2(floor(4.0 * found.xy));
     float turn = 6.2831853 * random(key, SALT);
     mat2 turned = mat2(cos(turn), sin(turn), -sin(turn), cos(turn));

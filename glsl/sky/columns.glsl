@@ -23,8 +23,8 @@ const float HORIZON_MOST = 1132.254;  // from the top of the air [km]: sqrt(100 
 vec2 column_start(vec2 share) {
     float far = share.y * HORIZON_MOST;
     float height = far * far / (sqrt(far * far + EARTH_RADIUS * EARTH_RADIUS) + EARTH_RADIUS);
-    float least = AIR_HEIGHT - height;
-    float path = mix(least, far + HORIZON_MOST, share.x);
+    float shortest = AIR_HEIGHT - height;
+    float path = mix(shortest, far + HORIZON_MOST, share.x);
     if (path < 1e-3) return vec2(height, 1.0);
     float rise = (HORIZON_MOST * HORIZON_MOST - far * far - path * path)
             / (2.0 * (EARTH_RADIUS + height) * path);
@@ -35,9 +35,9 @@ vec2 column_start(vec2 share) {
 // the ground.
 vec3 column_at(sampler2D columns, float height, float rise) {
     float far = sqrt(max(height * (2.0 * EARTH_RADIUS + height), 0.0));
-    float least = AIR_HEIGHT - height;
-    float most = far + HORIZON_MOST;
-    vec2 share = vec2((distance_to_top(height, rise) - least) / (most - least),
+    float shortest = AIR_HEIGHT - height;
+    float longest = far + HORIZON_MOST;
+    vec2 share = vec2((distance_to_top(height, rise) - shortest) / (longest - shortest),
                       far / HORIZON_MOST);
     ivec2 last = textureSize(columns, 0) - 1;
     vec2 place = clamp(share, 0.0, 1.0) * vec2(last);

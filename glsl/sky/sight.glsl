@@ -29,10 +29,13 @@ vec3 without_tiny(vec3 found) {
     return found * vec3(greaterThan(found, vec3(1e-25)));
 }
 
-// `way` from a height: the sine of its elevation, and the cosine of its azimuth from the sun's.
-Sight sight(sampler2D columns, sampler2D bounced, Air scatters, float height, vec2 way, vec3 sun) {
-    float together = way.x * sun.z + sqrt((1.0 - way.x * way.x) * dot(sun.xy, sun.xy)) * way.y;
-    float whole = distance_to_top(height, way.x);
+// `direction` from a height: the sine of its elevation, and the cosine of its azimuth from the
+// sun's.
+Sight sight(sampler2D columns, sampler2D bounced, Air scatters, float height, vec2 direction,
+            vec3 sun) {
+    float level = sqrt((1.0 - direction.x * direction.x) * dot(sun.xy, sun.xy));
+    float together = direction.x * sun.z + level * direction.y;
+    float whole = distance_to_top(height, direction.x);
     vec3 left = vec3(1.0);
     vec3 molecules = vec3(0.0);
     vec3 aerosol = vec3(0.0);
@@ -40,7 +43,7 @@ Sight sight(sampler2D columns, sampler2D bounced, Air scatters, float height, ve
     for (int k = 0; k < SIGHT_STEPS; k++) {
         float before = float(k) / float(SIGHT_STEPS);
         float after = float(k + 1) / float(SIGHT_STEPS);
-        Slab here = slab(columns, scatters, height, way.x, sun.z, together,
+        Slab here = slab(columns, scatters, height, direction.x, sun.z, together,
                          whole * before * before, whole * after * after);
         molecules += left * here.molecules;
         aerosol += left * here.aerosol;

@@ -22,9 +22,9 @@ float shelter_at(sampler2D field, vec2 place, vec2 metres, float rise, float win
     float here = rise * height_at(field, place);
     float steepest = -1e30;
     for (int k = 1; k <= SHELTER_LOOKS; k++) {
-        float away = far * float(k) / float(SHELTER_LOOKS);
-        float level = rise * height_at(field, place + away * upwind / metres);
-        steepest = max(steepest, (level - here) / away);
+        float run = far * float(k) / float(SHELTER_LOOKS);
+        float level = rise * height_at(field, place + run * upwind / metres);
+        steepest = max(steepest, (level - here) / run);
     }
     return steepest / (abs(steepest) + SHELTERED);
 }

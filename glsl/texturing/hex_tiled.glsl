@@ -41,9 +41,9 @@ vec3 piece(ivec2 corner, vec2 tile, float level) {
         // About the corner, so that a piece does not depend on how far it is from the origin.
         vec2 middle = vec2(float(corner.x) + 0.5 * float(corner.y), 0.8660254 * float(corner.y))
                 / cells;
-        vec2 way = cos_sin_degrees(turn * random_signed(corner, seed + SALT + 0x51ed270bu));
-        vec2 away = tile - middle;
-        tile = vec2(dot(way, away), way.x * away.y - way.y * away.x);
+        vec2 rotation = cos_sin_degrees(turn * random_signed(corner, seed + SALT + 0x51ed270bu));
+        vec2 offset = tile - middle;
+        tile = vec2(dot(rotation, offset), rotation.x * offset.y - rotation.y * offset.x);
     }
     return textureLod(colour, tile + shift, level).rgb;
 }

@@ -58,13 +58,13 @@ vec3 with_stones(vec3 ground, vec2 place, int across, float share, float dent, f
     vec2 nearest = nearest_stone(place * float(across), ivec2(across), share, number);
     float inside = nearest.x + dent;
     // Earth beside a stone is darker, up to a third of a radius away.
-    vec3 beside = mix(ground, shade, 0.7 * smoothstep(-0.35, 0.0, inside));
+    vec3 surround = mix(ground, shade, 0.7 * smoothstep(-0.35, 0.0, inside));
     float tone = 0.62 + 0.75 * nearest.y;
     vec3 hue = mix(stone, tint * 1.25, 0.6 * fract(nearest.y * 7.0));
     // A stone's top sees the whole sky, its rim half of it; half sunk, it is dusty there.
     vec3 top = hue * tone * (0.62 + 0.38 * smoothstep(0.0, 0.55, inside))
             * (1.0 + roughness * 0.9 * grit);
-    return mix(beside, top, smoothstep(-blur, blur, inside));
+    return mix(surround, top, smoothstep(-blur, blur, inside));
 }
 
 vec4 kernel(ivec2 texel) {

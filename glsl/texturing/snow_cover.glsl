@@ -39,7 +39,7 @@ float kernel(ivec2 texel) {
     float above = clamp((level + lower - line) / fade + 0.5, 0.0, 1.0);
     float incline = degrees(atan(relief * length(slope_at(height, place, metres,
                                                           CENTRAL_DIFFERENCES))));
-    float held = clamp((holds - incline) / holds_fade + 0.5, 0.0, 1.0);
-    float cover = above * held;
+    float holding = clamp((holds - incline) / holds_fade + 0.5, 0.0, 1.0);
+    float cover = above * holding;
     return cover >= 0.0 ? cover : 0.0;
 }

@@ -43,8 +43,8 @@ float kernel(ivec2 texel) {
     float fallen = clamp(more * (level - line + lowered), 0.0, most);
     vec2 slope = relief * slope_at(height, place, metres, CENTRAL_DIFFERENCES);
     float incline = degrees(atan(length(slope)));
-    float held = 1.0 - smoothstep(holds.x, max(holds.y, holds.x + 0.1), incline);
+    float holding = 1.0 - smoothstep(holds.x, max(holds.y, holds.x + 0.1), incline);
     float blown = shelter_at(height, place, metres, relief, wind, wind_distance);
-    float depth = fallen * held * max(1.0 + drift * blown, 0.0);
+    float depth = fallen * holding * max(1.0 + drift * blown, 0.0);
     return depth >= 0.0 ? depth : 0.0;
 }

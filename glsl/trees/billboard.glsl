@@ -52,8 +52,8 @@ Billboard billboard_of(vec4 tree, vec2 corner, vec4 others, vec3 eye, mat4 to_cl
     vec3 over = cross(to_eye, right);
     // Half the height of the outline, between that from the side and that from above.
     float tall = length(vec2(crown.up * length(to_eye.xy), crown.across * to_eye.z));
-    float away = distance(eye, crown.middle);
-    float pixels = focal * crown.across / max(away, 1e-3);
+    float eye_distance = distance(eye, crown.middle);
+    float pixels = focal * crown.across / max(eye_distance, 1e-3);
     // As much room as the waves need that are shown, and the trunk.
     float lumps = CROWN_LUMPS.x * shown(pixels, 0) + CROWN_LUMPS.y * shown(pixels, 1)
             + CROWN_LUMPS.z * shown(pixels, 2);
@@ -63,7 +63,7 @@ Billboard billboard_of(vec4 tree, vec2 corner, vec4 others, vec3 eye, mat4 to_cl
     mat4 rows = transpose(to_clip);
     mat3 rays = mat3(cross(rows[1].xyz, rows[3].xyz), cross(rows[3].xyz, rows[0].xyz),
                      cross(rows[0].xyz, rows[1].xyz));
-    mat3 sides = mat3(-away / crown.across * right, -away / tall * over, to_eye);
+    mat3 sides = mat3(-eye_distance / crown.across * right, -eye_distance / tall * over, to_eye);
     vec4 form = vec4(crown.across, crown.up, float(crown.key & 1023u), pixels);
     return Billboard(place, transpose(sides) * rays, vec4(crown.middle, float(crown.kind)), form);
 }
@@ -123,13 +123,13 @@ CrownPoint crown_point(vec2 disc, vec4 middle, vec4 form, float ragged, uint see
     CrownPoint found = trunk_point(disc, middle, form, to_eye);
     vec3 lumps = ragged * lumps_at(disc, form, seed);
     if (radius + lumps.x > 1.0) return found;
-    vec2 held = disc / max(1.02 * length(disc), 1.0);
+    vec2 clamped = disc / max(1.02 * length(disc), 1.0);
     // Lumps of leaves lean the normals.
     vec2 leaning = around / max(1.02 * length(around), 1.0) - lumps.yz;
     leaning /= max(1.02 * length(leaning), 1.0);
     found.hit = true;
     found.kind = kind;
-    found.place = middle.xyz + visible_place(held, to_eye, form.xy) * form.xxy;
+    found.place = middle.xyz + visible_place(clamped, to_eye, form.xy) * form.xxy;
     found.normal = visible_place(leaning, to_eye, form.xy);
     return found;
 }

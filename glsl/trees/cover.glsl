@@ -99,7 +99,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     if (skips_rest()) return;
     vec2 share = at.xy / extent;
     float stands = clamp(map_of(density, share), 0.0, 1.0);
-    float away = distance(eye, at.xyz);
+    float eye_distance = distance(eye, at.xyz);
     vec3 to_eye = normalize(eye - at.xyz);
     Ground around = ground_at(ground, at.xy, extent, 2.0 * cell);
     vec3 to_sun = sun_direction(wired_daylight, daylight, towards_sun);
@@ -109,7 +109,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     vec4 others = species_at(species, share);
     Stand stand = stand_of(stands, cell, tallest, shortest, others);
     float end = wired_key ? end_of_table(reach, cell, textureSize(key, 0)) : reach;
-    Stand drawn = thinned(stand, away, whole, end, texelFetch(limit, ivec2(0), 0).r);
+    Stand drawn = thinned(stand, eye_distance, whole, end, texelFetch(limit, ivec2(0), 0).r);
     float phase = leaf_phase(to_eye, to_sun);
     if (tree) {
         float over = at.z - map_of(height, share) * relief;
@@ -131,7 +131,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     if (hidden < 0.002) return;
     // Half the angle of a pixel is one over the lens's scale, times one over the picture's half.
     float lens = length(transpose(clip_from_world)[1].xyz);
-    float pixel = 2.0 * away / (lens * float(size.y)) / sqrt(max(rises.x, 0.05));
+    float pixel = 2.0 * eye_distance / (lens * float(size.y)) / sqrt(max(rises.x, 0.05));
     vec4 in_sight = others_in_sight(others);
     vec2 dapples = lumps(at.xy, pixel);
     float late = late_at(at.xy) + LATER * dapples.y;

@@ -30,17 +30,17 @@ float end_of_table(float reach, float cell, ivec2 cells) {
 
 // All up to `whole`; farther away, as many a square metre as there are pixels for one; none from
 // `reach` on.
-float kept_share(float away, float whole, float reach) {
-    float near = min(whole / max(away, 1e-3), 1.0);
-    return away < reach ? near * near : 0.0;
+float kept_share(float eye_distance, float whole, float reach) {
+    float near = min(whole / max(eye_distance, 1e-3), 1.0);
+    return eye_distance < reach ? near * near : 0.0;
 }
 
 // A tree's growth. Over the last tenth of `reach` all of them shrink to nothing: were fewer kept
 // there instead, the last would go within a metre of the eye's way, and pop.
 // anchor: growth
-float growth_of_kept(float away, float whole, float reach) {
-    float left = clamp((reach - away) / max(0.1 * reach, 1e-3), 0.0, 1.0);
-    return left * pow(max(away / max(whole, 1e-3), 1.0), -2.0 * GROWTH);
+float growth_of_kept(float eye_distance, float whole, float reach) {
+    float left = clamp((reach - eye_distance) / max(0.1 * reach, 1e-3), 0.0, 1.0);
+    return left * pow(max(eye_distance / max(whole, 1e-3), 1.0), -2.0 * GROWTH);
 }
 // end: growth
 

@@ -11,5 +11,7 @@
 const float CORE = 0.70;  // of a crown, what its body is amid sprays
 
 // 1 where sprays are whole, 0 where the crown is one body.
-float near_share(float away, float near) { return 1.0 - smoothstep(0.5 * near, near, away); }
+float near_share(float eye_distance, float near) {
+    return 1.0 - smoothstep(0.5 * near, near, eye_distance);
+}
 #endif

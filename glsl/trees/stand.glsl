@@ -52,9 +52,9 @@ Stand stand_of(float density, float cell, float tallest, float shortest, vec4 ot
 }
 
 // Those of the stand that are drawn as single trees so far away; `limit`: of trees/list.
-Stand thinned(Stand s, float away, float whole, float reach, float limit) {
-    float dense = s.dense * covering_share(kept_share(away, whole, reach), limit);
-    float growth = growth_of_kept(away, whole, reach) * pow(limit, GROWTH);
+Stand thinned(Stand s, float eye_distance, float whole, float reach, float limit) {
+    float dense = s.dense * covering_share(kept_share(eye_distance, whole, reach), limit);
+    float growth = growth_of_kept(eye_distance, whole, reach) * pow(limit, GROWTH);
     return Stand(dense, s.across * growth, s.up * growth, s.middle * growth, s.least, s.cell);
 }
 
@@ -174,8 +174,8 @@ WoodPlace wood_place(Stand s, vec3 to_eye, int k) {
     vec2 of = size_of(s, k / (RINGS * SPOKES));
     int ring = (k / SPOKES) % RINGS;
     float turn = 2.0 * TREE_PI * (float(k % SPOKES) + 0.4 * float(ring)) / float(SPOKES);
-    float away = sqrt((float(ring) + 0.5) / float(RINGS));
-    vec2 disc = away * vec2(cos(turn), sin(turn));
+    float radius = sqrt((float(ring) + 0.5) / float(RINGS));
+    vec2 disc = radius * vec2(cos(turn), sin(turn));
     vec3 place = visible_place(disc, to_eye, vec2(s.across, s.up));
     return WoodPlace(place, share_above(s, of.x * (s.middle + s.up * place.z)), of.y);
 }

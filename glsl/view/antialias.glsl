@@ -22,12 +22,13 @@ float luma(ivec2 texel) {
     return dot(previous(texel).rgb, vec3(0.299, 0.587, 0.114));
 }
 
-// How far along `way` the edge goes on, and in `ends` the middle of its two sides there.
-int followed(ivec2 texel, ivec2 way, ivec2 across, float middle, float rise, out float ends) {
+// How far along `direction` the edge goes on, and in `ends` the middle of its two sides there.
+int followed(ivec2 texel, ivec2 direction, ivec2 across, float middle, float rise,
+             out float ends) {
     ends = 0.0;
     int far = 0;
     for (int k = 1; k <= LONGEST; k++) {
-        ivec2 there = texel + way * k;
+        ivec2 there = texel + direction * k;
         ends = 0.5 * (luma(there) + luma(there + across)) - middle;
         far = k;
         if (abs(ends) >= 0.25 * rise) break;
@@ -40,9 +41,9 @@ vec4 kernel(ivec2 texel) {
     float here = luma(texel);
     float north = luma(texel + ivec2(0, 1)), south = luma(texel - ivec2(0, 1));
     float east = luma(texel + ivec2(1, 0)), west = luma(texel - ivec2(1, 0));
-    float most = max(here, max(max(north, south), max(east, west)));
+    float maximum = max(here, max(max(north, south), max(east, west)));
     float least = min(here, min(min(north, south), min(east, west)));
-    if (most - least < threshold) return own;
+    if (maximum - least < threshold) return own;
     // Second differences say whether the edge runs along rows or along columns.
     float north_east = luma(texel + ivec2(1, 1)), north_west = luma(texel + ivec2(-1, 1));
     float south_east = luma(texel + ivec2(1, -1)), south_west = luma(texel - ivec2(1, 1));

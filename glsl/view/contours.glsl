@@ -32,11 +32,11 @@ vec4 kernel(ivec2 texel) {
             * spacing_of(size, extent);
     float change = length(steps);
     float number = floor(elevation / interval + 0.5);
-    float away = abs(elevation - number * interval) / max(change, 1e-20);
+    float gap = abs(elevation - number * interval) / max(change, 1e-20);
     bool is_thick = every > 0 && abs(number - float(max(every, 1))
                                      * floor(number / float(max(every, 1)) + 0.5)) < 0.5;
     float wide = is_thick ? thick : width;
-    float cover = clamp(0.5 * wide + 0.5 - away, 0.0, 1.0) * min(wide, 1.0);
+    float cover = clamp(0.5 * wide + 0.5 - gap, 0.0, 1.0) * min(wide, 1.0);
     float crowd = change / interval;  // lines in a texel
     float mean = min(crowd * (every > 0 ? mix(width, thick, 1.0 / float(max(every, 1))) : width),
                      1.0);

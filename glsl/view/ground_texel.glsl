@@ -64,8 +64,8 @@ vec4 ground_texel(vec2 place, float mark) {
 // What a pixel shows whose ray is that of ray_through.
 Ground ground_of_texel(vec2 texel, vec3 ray) {
     float mark = texel.y < BROKEN ? IS_BROKEN : max(-texel.y, 0.0);
-    vec3 away = ray / texel.x;
-    return Ground(eye.xy + away.xy, length(away),
+    vec3 offset = ray / texel.x;
+    return Ground(eye.xy + offset.xy, length(offset),
                   mark == 0.0 ? unpacked_pair(texel.y) : vec2(0.0), mark);
 }
 

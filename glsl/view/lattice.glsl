@@ -48,11 +48,11 @@ vec4 kernel(ivec2 texel) {
     float cell = min(sides.x, sides.y);
     vec2 place = (vec2(texel) + 0.5 - 0.5 * vec2(size)) / cell + 0.5 * vec2(count - 1);
     ivec2 point = ivec2(clamp(floor(place + 0.5), vec2(0.0), vec2(count - 1)));
-    vec2 away = place - vec2(point);
-    float far = length(away) * cell;
+    vec2 offset = place - vec2(point);
+    float far = length(offset) * cell;
 
     vec2 outside = max(max(-place, place - vec2(count - 1)), 0.0) * cell;
-    vec2 cover = clamp(1.0 - abs(away) * cell, 0.0, 1.0) * clamp(1.0 - outside.yx, 0.0, 1.0);
+    vec2 cover = clamp(1.0 - abs(offset) * cell, 0.0, 1.0) * clamp(1.0 - outside.yx, 0.0, 1.0);
     vec3 colour = mix(srgb_from_linear(paper), srgb_from_linear(line), max(cover.x, cover.y));
 
     int number = int(texelFetch(phase, point, 0).r + 0.5);

@@ -45,8 +45,8 @@ vec4 fragment(vec3 position) {
     vec3 below = water;
     vec3 above = horizon;
     if (sky == 1 && wired_daylight) {
-        vec3 away = normalize(position - eye);
-        above = sky_towards(daylight, vec3(away.xy, abs(away.z)), 0.001 * sea_level);
+        vec3 direction = normalize(position - eye);
+        above = sky_towards(daylight, vec3(direction.xy, abs(direction.z)), 0.001 * sea_level);
         below *= level_light(daylight);
     }
     return vec4(mix(below, above, mirrored), mix(hidden, 1.0, mirrored));

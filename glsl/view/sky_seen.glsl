@@ -20,8 +20,8 @@ struct SkyView {
 };
 
 vec3 direction_of(SkyView view, vec2 pixel) {
-    vec4 away = view.world_from_clip * vec4(pixel / view.size * 2.0 - 1.0, 1.0, 1.0);
-    return normalize(away.xyz / away.w - view.eye);
+    vec4 far_point = view.world_from_clip * vec4(pixel / view.size * 2.0 - 1.0, 1.0, 1.0);
+    return normalize(far_point.xyz / far_point.w - view.eye);
 }
 
 // How much of a pixel the sun's disc covers.

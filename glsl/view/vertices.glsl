@@ -41,11 +41,12 @@ vec2 morphed_share(sampler2D height, vec2 corner, vec4 tile) {
     vec2 share = min(tile.xy + corner * quad, cells) / cells;
     float up = textureLod(height, drape_uv(share, texels), 0.0).r * relief;
     // anchor: slide
-    float away = distance(eye, vec3(share * extent, isnan(up) || isinf(up) ? 0.0 : up));
-    float slid = clamp((away / tile.w - MORPH_START) / (MORPH_END - MORPH_START), 0.0, 1.0);
+    float eye_distance = distance(eye, vec3(share * extent, isnan(up) || isinf(up) ? 0.0 : up));
+    float morph = (eye_distance / tile.w - MORPH_START) / (MORPH_END - MORPH_START);
+    float slid = clamp(morph, 0.0, 1.0);
     // 1 and 3 go to 2, 5 and 7 to 6.
-    vec2 way = mod(corner, 2.0) * (2.0 - mod(corner, 4.0));
-    return min(tile.xy + (corner + slid * way) * quad, cells) / cells;
+    vec2 direction = mod(corner, 2.0) * (2.0 - mod(corner, 4.0));
+    return min(tile.xy + (corner + slid * direction) * quad, cells) / cells;
     // end: slide
 }
 

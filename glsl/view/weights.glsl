@@ -32,9 +32,10 @@ vec4 kernel(ivec2 texel) {
                          : weight.w), 1.0);
     }
     if (shown == 1) {
-        float most = max(max(weight.x, weight.y), max(weight.z, weight.w));
-        return vec4(weight.x == most ? grass : weight.y == most ? rock : weight.z == most ? snow
-                    : path, 1.0);
+        float maximum = max(max(weight.x, weight.y), max(weight.z, weight.w));
+        vec3 largest = weight.x == maximum ? grass : weight.y == maximum ? rock
+                     : weight.z == maximum ? snow : path;
+        return vec4(largest, 1.0);
     }
     return vec4(weight.x * grass + weight.y * rock + weight.z * snow + weight.w * path, 1.0);
 }

@@ -20,8 +20,8 @@ vec2 kernel(ivec2 texel) {
     float edge = edge_of(texel.x, size.x);
     ivec2 whole = textureSize(shape, 0);
     ivec2 rows = ivec2(texel.y, texel.y + 1) * whole.y / size.y;
-    ivec2 most = ivec2(whole.x, (whole.y + size.y - 1) / size.y);
-    ivec2 stride = max((most + MOST - 1) / MOST, 1);
+    ivec2 largest = ivec2(whole.x, (whole.y + size.y - 1) / size.y);
+    ivec2 stride = max((largest + MOST - 1) / MOST, 1);
     float total = 0.0;
     int count = 0;
     for (int row = rows.x; row < rows.y; row += stride.y) {

@@ -31,10 +31,10 @@ uniform float creep = 0.005;  //! slider(0, 0.05) step(0.001)
 const float SLUMP = 0.05;
 
 // What slides here from the neighbour at an offset: antisymmetric, so that no rock is made.
-float slides(ivec2 texel, ivec2 offset, float bed, float share, float most) {
+float slides(ivec2 texel, ivec2 offset, float bed, float share, float maximum) {
     ivec2 there = clamp(texel + offset, ivec2(0), size - 1);
     float rise = texelFetch(before, there, 0).x - bed;
-    float over = rise - clamp(rise, -most, most);
+    float over = rise - clamp(rise, -maximum, maximum);
     return min(share, texelFetch(brush, there, 0).r) * (SLUMP * over + creep * rise);
 }
 
@@ -42,11 +42,11 @@ vec4 kernel(ivec2 texel) {
     vec4 was = texelFetch(before, texel, 0);
     vec4 now = texelFetch(after, texel, 0);
     float share = clamp(texelFetch(brush, texel, 0).r, 0.0, 1.0);
-    vec2 most = tan(radians(repose)) * spacing;
-    float slid = (slides(texel, ivec2(-1, 0), was.x, share, most.x)
-                + slides(texel, ivec2(1, 0), was.x, share, most.x))
-               + (slides(texel, ivec2(0, -1), was.x, share, most.y)
-                + slides(texel, ivec2(0, 1), was.x, share, most.y));
+    vec2 maximum = tan(radians(repose)) * spacing;
+    float slid = (slides(texel, ivec2(-1, 0), was.x, share, maximum.x)
+                + slides(texel, ivec2(1, 0), was.x, share, maximum.x))
+               + (slides(texel, ivec2(0, -1), was.x, share, maximum.y)
+                + slides(texel, ivec2(0, 1), was.x, share, maximum.y));
     float change = now.x - was.x;
     float bed = was.x + (share * change + slid);
     // What the bed really takes, after rounding, is what the load loses.

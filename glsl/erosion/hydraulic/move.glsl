@@ -55,8 +55,8 @@ vec4 flux_at(ivec2 texel) {
 }
 
 // What is over the most that lies still, of neighbours so much higher or lower.
-vec4 over(vec4 rise, vec4 most) {
-    return rise - clamp(rise, -most, most);
+vec4 over(vec4 rise, vec4 maximum) {
+    return rise - clamp(rise, -maximum, maximum);
 }
 
 // 1 - exp(-x), to 0.2 % up to x = 1.2.
@@ -85,20 +85,20 @@ vec4 kernel(ivec2 texel) {
                + ((brought.x + brought.y) + (brought.z + brought.w));
     // end: load
 
-    // Through a metre of width: the mean of what comes and of what leaves, each the length of a
-    // vector. Of a sheet both are its discharge, whatever its angle. A stream a texel wide that
-    // goes aslant comes through one side and leaves through the next: one vector of all four would
-    // have 0.71 of the length.
+    // Through a metre of width: the mean of inflow and outflow, each the length of a vector. Of a
+    // sheet both are its discharge, whatever its angle. A diagonal stream a texel wide comes
+    // through one side and leaves through the next: one vector of all four would have 0.71 of the
+    // length.
     vec2 wide = 0.5 * spacing / min(spacing.x, spacing.y);
-    vec2 comes = wide * vec2(arrives.x + arrives.y, arrives.z + arrives.w);
-    vec2 goes = wide * vec2(leaves.x + leaves.y, leaves.z + leaves.w);
-    float flow = length(comes) + length(goes);
+    vec2 inflow = wide * vec2(arrives.x + arrives.y, arrives.z + arrives.w);
+    vec2 outflow = wide * vec2(leaves.x + leaves.y, leaves.z + leaves.w);
+    float flow = length(inflow) + length(outflow);
 
     // What it can carry: more, the more water goes through and the steeper its surface. Here the
-    // sums of the vectors count, up to 1.41 times their lengths where a sheet goes aslant: pipes
-    // gather water along axes, and by the lengths streams would keep to them (0.40 for the 0.17
-    // above), and a smooth cone would be worn twice as unevenly around.
-    float through = (comes.x + comes.y) + (goes.x + goes.y);
+    // sums of the vectors count, up to 1.41 times their lengths where a sheet flows diagonally:
+    // pipes gather water along axes, and by the lengths streams would keep to them (0.40 for the
+    // 0.17 above), and a smooth cone would be worn twice as unevenly around.
+    float through = (inflow.x + inflow.y) + (outflow.x + outflow.y);
     vec2 fall = (vec2(east.x - west.x, north.x - south.x)
                  + vec2(east.y - west.y, north.y - south.y)) / (2.0 * spacing);
     float squared = dot(fall, fall);
@@ -121,16 +121,16 @@ vec4 kernel(ivec2 texel) {
     // as far in an hour on any grid if its share a step grows as the texel shrinks: all of what is
     // too steep slides from 1025 texels on, and finer grids slump more slowly.
     float talus = tan(radians(repose));
-    vec4 beside = vec4(west.x, east.x, south.x, north.x) - here.x;
+    vec4 rises = vec4(west.x, east.x, south.x, north.x) - here.x;
     vec4 across = vec4(bed_across(texel - e - n, here.x), bed_across(texel + e + n, here.x),
                        bed_across(texel + e - n, here.x), bed_across(texel - e + n, here.x))
                 - here.x;
     float slides = 0.125 * min(SLUMP / hours, 1.0);
     vec2 creeps = min(creep * hours / (spacing * spacing), MOST_CREEP);
-    vec4 straight = slides * over(beside, talus * spacing.xxyy) + creeps.xxyy * beside;
-    vec4 aslant = slides * over(across, vec4(talus * length(spacing)));
+    vec4 straight = slides * over(rises, talus * spacing.xxyy) + creeps.xxyy * rises;
+    vec4 diagonal = slides * over(across, vec4(talus * length(spacing)));
     bed += ((straight.x + straight.y) + (straight.z + straight.w))
-         + ((aslant.x + aslant.y) + (aslant.z + aslant.w));
+         + ((diagonal.x + diagonal.y) + (diagonal.z + diagonal.w));
 
     water = water / (1.0 + evaporation * hours) + given.r;
     return vec4(bed, water, load, mix(here.w, flow, hours / (hours + MEMORY)));

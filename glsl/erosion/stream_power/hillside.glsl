@@ -29,14 +29,14 @@ float kernel(ivec2 texel) {
     if (on_edge(texel, size)) return here;
     float rise = tan(radians(clamp(steepest, 1.0, 89.0))) / max(relief, 1e-3);
     float years = 1e6 * age / float(max(steps, 1) * max(slides, 1));
-    float most = 1e30;
+    float maximum = 1e30;
     float sum = 0.0;
     float weights = 0.0;
     for (int k = 0; k < NEIGHBOURS; k++) {
-        vec2 way = vec2(neighbour_of(k)) * spacing;
+        vec2 offset = vec2(neighbour_of(k)) * spacing;
         float there = height_before(texel + neighbour_of(k));
-        float squared = dot(way, way);
-        most = min(most, there + rise * sqrt(squared));
+        float squared = dot(offset, offset);
+        maximum = min(maximum, there + rise * sqrt(squared));
         // 2/3 and 1/6 of a square grid's nine points; where the spacings differ, what the corners
         // do not give along each axis its two neighbours give.
         float corner = 1.0 / (3.0 * dot(spacing, spacing));
@@ -46,5 +46,5 @@ float kernel(ivec2 texel) {
         weights += weight;
     }
     float share = years * creep;
-    return min((here + share * sum) / (1.0 + share * weights), most);
+    return min((here + share * sum) / (1.0 + share * weights), maximum);
 }

@@ -52,15 +52,15 @@ vec2 weight(ivec2 there, ivec2 here) {
 }
 
 // What comes from the neighbour that way, in metres; below 0, what goes there.
-float comes(ivec2 texel, ivec2 way, float here) {
+float inflow(ivec2 texel, ivec2 offset, float here) {
     float talus = tangent(texel);
     float share = quickness(texel);
-    if (wired_repose_map) talus = 0.5 * (talus + tangent(texel + way));
-    if (wired_hardness) share = min(share, quickness(texel + way));
+    if (wired_repose_map) talus = 0.5 * (talus + tangent(texel + offset));
+    if (wired_hardness) share = min(share, quickness(texel + offset));
     // anchor: rule
-    float rise = relief * (previous(texel + way) - here);
-    float most = talus * length(vec2(way) * spacing);
-    return share * (rise - clamp(rise, -most, most));
+    float rise = relief * (previous(texel + offset) - here);
+    float maximum = talus * length(vec2(offset) * spacing);
+    return share * (rise - clamp(rise, -maximum, maximum));
     // end: rule
 }
 
@@ -69,12 +69,12 @@ float kernel(ivec2 texel) {
     float here = previous(texel);
     vec2 low = weight(texel - 1, texel), high = weight(texel + 1, texel);
     // anchor: eight
-    float straight = (low.x * comes(texel, -e, here) + high.x * comes(texel, e, here))
-                   + (low.y * comes(texel, -n, here) + high.y * comes(texel, n, here));
-    float aslant = (low.x * low.y * comes(texel, -e - n, here)
-                    + high.x * high.y * comes(texel, e + n, here))
-                 + (high.x * low.y * comes(texel, e - n, here)
-                    + low.x * high.y * comes(texel, n - e, here));
-    return here + rate * 0.125 * (straight + aslant) / max(relief, 1e-3);
+    float straight = (low.x * inflow(texel, -e, here) + high.x * inflow(texel, e, here))
+                   + (low.y * inflow(texel, -n, here) + high.y * inflow(texel, n, here));
+    float diagonal = (low.x * low.y * inflow(texel, -e - n, here)
+                    + high.x * high.y * inflow(texel, e + n, here))
+                 + (high.x * low.y * inflow(texel, e - n, here)
+                    + low.x * high.y * inflow(texel, n - e, here));
+    return here + rate * 0.125 * (straight + diagonal) / max(relief, 1e-3);
     // end: eight
 }

@@ -18,8 +18,8 @@ uniform int dome = 0;        //! menu("half a cosine", "half a sphere") As in th
 float kernel(ivec2 texel) {
     vec2 place = vec2(texel) * spacing / shorter_side(extent);
     ivec3 grid = tile_grid(textureSize(touching, 0), discs);
-    ivec2 most = max(size - 1, ivec2(1));
-    ivec2 tile = ivec2(quotient(texel.x * grid.x, most.x), quotient(texel.y * grid.y, most.y));
+    ivec2 last = max(size - 1, ivec2(1));
+    ivec2 tile = ivec2(quotient(texel.x * grid.x, last.x), quotient(texel.y * grid.y, last.y));
     tile = min(tile, grid.xy - 1);
     float height = 0.0;
     for (int block = 0; block < grid.z; block++) {

@@ -52,8 +52,8 @@ vec3 at_share(sampler2D field, vec2 share) {
 
 // A square's edge, so many pixels wide, drawn around `corner .. corner + side`.
 float frame_cover(vec2 place, vec2 corner, float side, float width) {
-    vec2 away = abs(place - corner - 0.5 * side) - 0.5 * side;
-    return covered(0.5 * width - abs(max(away.x, away.y)));
+    vec2 offset = abs(place - corner - 0.5 * side) - 0.5 * side;
+    return covered(0.5 * width - abs(max(offset.x, offset.y)));
 }
 
 // Lines between so many parts a side.
@@ -104,8 +104,8 @@ vec4 kernel(ivec2 texel) {
         if (cell.x >= 0.0) {
             int place_in_text = int(cell.x);
             uvec4 text = TEXTS[2 * k + (place_in_text >> 4)];
-            float away = letter_away(character_of(text, place_in_text & 15), cell.yz);
-            seen = mix(seen, ink, covered((0.75 - away) * 1.15 * unit));
+            float gap = letter_away(character_of(text, place_in_text & 15), cell.yz);
+            seen = mix(seen, ink, covered((0.75 - gap) * 1.15 * unit));
         }
     }
     return vec4(seen, 1.0);

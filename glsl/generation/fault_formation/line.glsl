@@ -19,8 +19,8 @@ const int PLACES = 32768;  // of a side
 
 // Where a texel of a row (or column) of `side` texels is, 0..32768.
 int place_of_texel(int texel, int side) {
-    int most = max(side - 1, 1);
-    return quotient(texel * PLACES + (most >> 1), most);
+    int last = max(side - 1, 1);
+    return quotient(texel * PLACES + (last >> 1), last);
 }
 
 // The line through two points, 0..4095 along both axes: all of them inside the terrain, none on

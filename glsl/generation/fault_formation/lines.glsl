@@ -32,8 +32,8 @@ vec4 kernel(ivec2 texel) {
     uvec3 two = hash3(uvec3(uint(texel.x), 1u, seed + SALT));
     ivec3 line = fault_line(ivec2(one.xy >> 20u), ivec2(two.xy >> 20u));
     // anchor: fall
-    float way = float(texel.x) / float(max(faults, 1));
-    float share = fall == 0 ? 1.0 - (1.0 - last) * way : pow(last, way);
+    float progress = float(texel.x) / float(max(faults, 1));
+    float share = fall == 0 ? 1.0 - (1.0 - last) * progress : pow(last, progress);
     float height = amount * share * (1.0 - variation * unit_from_bits(one.z));
     // end: fall
     // No fault is nothing at all: even one alone gives two heights.

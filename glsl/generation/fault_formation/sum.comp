@@ -40,8 +40,8 @@ int crossing_of(ivec3 line, int row, out bool after) {
     if (far >= slope * PLACES) return size.x;
     int place = quotient(far, slope);
     // The last texel at or before it: place_of_texel, the other way round.
-    int most = max(size.x - 1, 1);
-    return min(((((place + 1) * most - (most >> 1) - 1)) >> 15) + 1, size.x);
+    int last = max(size.x - 1, 1);
+    return min(((((place + 1) * last - (last >> 1) - 1)) >> 15) + 1, size.x);
 }
 
 void main() {

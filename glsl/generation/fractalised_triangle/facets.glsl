@@ -38,10 +38,10 @@ float far_from_edge(vec2 place, vec2 a, vec2 b) {
 vec4 kernel(ivec2 texel) {
     ivec2 grid = panels ? ivec2(3, 2) : ivec2(1);
     ivec2 panel = ivec2(quotient(texel.x * grid.x, size.x), quotient(texel.y * grid.y, size.y));
-    int most = textureSize(point, 0).x - 1;
+    int maximum = textureSize(point, 0).x - 1;
     int halvings = panels ? min(panel.x + 3 * (1 - panel.y), depth) : depth;
-    int edges = min(1 << halvings, most);
-    int stride = quotient(most, max(edges, 1));
+    int edges = min(1 << halvings, maximum);
+    int stride = quotient(maximum, max(edges, 1));
     vec2 room = vec2(size) / vec2(grid);
     float side = max(0.8 * min(room.x, room.y), 1.0);
     vec2 place = (vec2(texel) + 0.5 - (vec2(panel) + 0.5) * room) / side;

@@ -16,8 +16,8 @@ uniform int seams = 1;         //! menu("removed", "left") As in the technique
 
 vec4 kernel(ivec2 texel) {
     int intervals = 1;
-    int most = (size.x - 1) * tiles + 1;
-    for (int k = 0; k <= texel.y; k++) intervals = finer(intervals, frequency, most);
+    int maximum = (size.x - 1) * tiles + 1;
+    for (int k = 0; k <= texel.y; k++) intervals = finer(intervals, frequency, maximum);
     intervals = intervals_of_part(intervals, tiles, size).x;
     Nodes nodes = nodes_around(texel.x, size.x, intervals, tiles, seams == 0 && tiles > 1);
     float a = nodes.share;

@@ -31,8 +31,8 @@ int finer(int intervals, int frequency, int side) {
 
 // Intervals along y in a layer that has so many along x.
 int intervals_along_y(int intervals, ivec2 texels) {
-    ivec2 most = max(texels - 1, ivec2(1));
-    return clamp(quotient(intervals * most.y + (most.x >> 1), most.x), 1, most.y);
+    ivec2 maximum = max(texels - 1, ivec2(1));
+    return clamp(quotient(intervals * maximum.y + (maximum.x >> 1), maximum.x), 1, maximum.y);
 }
 
 // Of a layer's intervals, those of one part, along x and y, where the side is cut into so many.
@@ -61,8 +61,8 @@ Nodes nodes_around(int place, int side, int intervals, int tiles, bool wraps) {
     int to = min(quotient((before + 1) * side, intervals), side - 1);
     int apart = max(to - from, 1);
     int after = wraps && before + 1 == intervals ? 0 : before + 1;
-    int most = intervals * tiles;
-    return Nodes(quotient(before * RANDOM_SIDE, most), quotient(after * RANDOM_SIDE, most),
+    int maximum = intervals * tiles;
+    return Nodes(quotient(before * RANDOM_SIDE, maximum), quotient(after * RANDOM_SIDE, maximum),
                  float(place - from) / float(apart), apart);
 }
 // end: beyond

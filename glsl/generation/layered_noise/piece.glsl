@@ -44,11 +44,11 @@ Piece piece_at(int x, int row) {
     bool wraps = seams == 0 && tiles > 1;
     int first_layer = layer > 0 ? layer - 1 : left_out;
     int end_layer = layer > 0 ? layer : octaves;
-    int most = (size.x - 1) * tiles + 1;
+    int maximum = (size.x - 1) * tiles + 1;
     Piece piece = Piece(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), 0, size.y);
     int intervals = 1;
     for (int k = 0; k < end_layer; k++) {
-        intervals = finer(intervals, frequency, most);
+        intervals = finer(intervals, frequency, maximum);
         if (k < first_layer) continue;
         int along_y = intervals_of_part(intervals, tiles, size).y;
         int passed = quotient(row * along_y, size.y);
@@ -59,7 +59,7 @@ Piece piece_at(int x, int row) {
     float weight = 1.0;
     float weights = 0.0;
     for (int k = 0; k < end_layer; k++) {
-        intervals = finer(intervals, frequency, most);
+        intervals = finer(intervals, frequency, maximum);
         if (layer == 0) weight *= persistence;
         if (k < first_layer) continue;
         uint which = seed_of_layer(seed, random_layers == 1 ? k : 0);

@@ -40,9 +40,9 @@ float kernel(ivec2 texel) {
     float along = previous(texel - rising) + previous(texel + rising);
     float across = previous(texel - falling) + previous(texel + falling);
     float mean = (along + across) * 0.25;
-    float most = 1.0;
-    for (int k = 0; k < iteration; k++) most *= roughness;
+    float amplitude = 1.0;
+    for (int k = 0; k < iteration; k++) amplitude *= roughness;
     bool is_new = rising.x + rising.y > 0;
     ivec2 point = finest_point(texel, size.x - 1);
-    return is_new ? mean + random_signed(point, seed + SALT) * most : mean;
+    return is_new ? mean + random_signed(point, seed + SALT) * amplitude : mean;
 }

@@ -25,17 +25,17 @@ float kernel(ivec2 texel) {
     int west = 0;
     int east = size.x - 1;
     vec2 ends = vec2(0.0);
-    float most = 1.0;
+    float amplitude = 1.0;
     for (int k = 0; k < texel.y; k++) {
         if (east - west < 2) break;
         int middle = (west + east) >> 1;
         float number = random_signed(finest_point(ivec2(middle, 0), size.x - 1), seed + SALT);
-        float h = (ends.x + ends.y) * 0.5 + number * most;
+        float h = (ends.x + ends.y) * 0.5 + number * amplitude;
         bool is_eastern = texel.x >= middle;
         west = is_eastern ? middle : west;
         east = is_eastern ? east : middle;
         ends = is_eastern ? vec2(h, ends.y) : vec2(ends.x, h);
-        most *= roughness;
+        amplitude *= roughness;
     }
     return ends.x + (ends.y - ends.x) * (float(texel.x - west) / float(east - west));
 }

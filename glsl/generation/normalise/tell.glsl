@@ -18,7 +18,7 @@
 
 // The least and the most of what a thread has made, of every fourth height each.
 struct Told {
-    vec4 least, most;
+    vec4 minimum, maximum;
 };
 
 Told nothing_told() {
@@ -27,13 +27,13 @@ Told nothing_told() {
 
 // As in `widened`: what is no number is neither.
 Told told_also(Told told, vec4 heights) {
-    return Told(mix(told.least, heights, lessThan(heights, told.least)),
-                mix(told.most, heights, greaterThan(heights, told.most)));
+    return Told(mix(told.minimum, heights, lessThan(heights, told.minimum)),
+                mix(told.maximum, heights, greaterThan(heights, told.maximum)));
 }
 
 void tell(Told told) {
-    vec4 l = told.least;
-    vec4 m = told.most;
+    vec4 l = told.minimum;
+    vec4 m = told.maximum;
     uint highest = key_of_height(max(max(m.x, m.y), max(m.z, m.w)));
     uint lowest = ~key_of_height(min(min(l.x, l.y), min(l.z, l.w)));
     // Most threads have nothing to change, and see that sooner than an atomic tells them.

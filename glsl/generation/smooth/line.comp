@@ -21,29 +21,29 @@ uniform sampler2D height; //! input
 uniform int radius = 5;   //! slider(0, 512) unit("texels") As in the technique
 uniform int axis = 0;     //! menu("x", "y") Along which axis
 
-ivec2 texel_at(int place, int beside) {
-    return axis == 0 ? ivec2(place, beside) : ivec2(beside, place);
+ivec2 texel_at(int place, int line) {
+    return axis == 0 ? ivec2(place, line) : ivec2(line, place);
 }
 
 void main() {
-    int beside = int(gl_GlobalInvocationID.x);
-    if (beside >= (axis == 0 ? size.y : size.x)) return;
+    int line = int(gl_GlobalInvocationID.x);
+    if (line >= (axis == 0 ? size.y : size.x)) return;
     int last = (axis == 0 ? size.x : size.y) - 1;
     int run = max(64, 2 * radius + 1);
     int from = int(gl_GlobalInvocationID.y) * run;
     int to = min(from + run - 1, last);
     // The first height is taken away from all: what is summed is small, and so are its roundings.
-    float level = texelFetch(height, texel_at(from, beside), 0).r;
+    float level = texelFetch(height, texel_at(from, line), 0).r;
     int low = max(from - radius, 0);
     int high = min(from + radius, last);
     float total = 0.0;
     for (int k = low; k <= high; k++) {
-        total += texelFetch(height, texel_at(k, beside), 0).r - level;
+        total += texelFetch(height, texel_at(k, line), 0).r - level;
     }
     for (int place = from; place <= to; place++) {
         float mean = level + total / float(high - low + 1);
-        imageStore(out_height, texel_at(place, beside), vec4(mean));
-        if (place - radius >= 0) total -= texelFetch(height, texel_at(low++, beside), 0).r - level;
-        if (high < last) total += texelFetch(height, texel_at(++high, beside), 0).r - level;
+        imageStore(out_height, texel_at(place, line), vec4(mean));
+        if (place - radius >= 0) total -= texelFetch(height, texel_at(low++, line), 0).r - level;
+        if (high < last) total += texelFetch(height, texel_at(++high, line), 0).r - level;
     }
 }

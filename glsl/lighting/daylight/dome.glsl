@@ -32,9 +32,9 @@ vec4 kernel(ivec2 texel) {
     float height = dome_height(table);
     vec2 share = vec2(right ? texel.x - half_width : texel.x, texel.y - table * rows)
             / vec2(max(ivec2(half_width, rows) - 1, 1));
-    vec2 way = dome_start(min(share, 1.0), height);
+    vec2 direction = dome_start(min(share, 1.0), height);
     vec3 sun = to_sun(texelFetch(place, ivec2(0), 0).rg);
     Air scatters = air_of(texelFetch(air, ivec2(0), 0).r);
-    Sight seen = sight(columns, bounced, scatters, height, way, sun);
+    Sight seen = sight(columns, bounced, scatters, height, direction, sun);
     return vec4(right ? seen.aerosol : seen.molecules, 1.0);
 }

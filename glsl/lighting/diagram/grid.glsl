@@ -74,9 +74,9 @@ vec4 kernel(ivec2 texel) {
     float level = texelFetch(height, clamp(cell, ivec2(0), last), 0).r;
     float soft = max(softness, 1e-6);
 
-    vec2 way = to_sun(vec2(sun.x, 0.0)).xy / spacing_of(grid, extent);
-    way /= max(abs(way.x), abs(way.y));
-    vec2 read = vec2(here) + step_length * way;
+    vec2 direction = to_sun(vec2(sun.x, 0.0)).xy / spacing_of(grid, extent);
+    direction /= max(abs(direction.x), abs(direction.y));
+    vec2 read = vec2(here) + step_length * direction;
     bool off = any(lessThan(read, vec2(-1e-3))) || any(greaterThan(read, vec2(last) + 1e-3));
     float there = height_at(height, read);
     float share = off ? 1.0 : clamp(1.0 - (there - foot) / soft, 0.0, 1.0);
@@ -96,7 +96,7 @@ vec4 kernel(ivec2 texel) {
     if (cell == here) colour = mix(colour, INK, covered(2.6 * u - min(from_side.x, from_side.y)));
 
     vec2 middle = 0.5 * paper;
-    vec2 along = way / length(way);
+    vec2 along = direction / length(direction);
     vec2 room = (0.5 * paper - 26.0 * u) / max(abs(along), 1e-4);
     vec2 bright = middle + min(room.x, room.y) * along;
     float line = arrow_cover(place, bright, middle, 2.2 * u, 12.0 * u);
@@ -105,7 +105,7 @@ vec4 kernel(ivec2 texel) {
     colour = mix(colour, EDGE, covered(0.6 * u - abs(length(place - bright) - 17.0 * u)));
     vec2 beyond = read;
     for (int k = 2; k <= steps; k++) {
-        beyond += max(step_length, 0.25) * way;
+        beyond += max(step_length, 0.25) * direction;
         vec2 at = middle + (beyond - vec2(here)) * pitch;
         bool inside = all(greaterThanEqual(beyond, vec2(-1e-3)))
                 && all(lessThanEqual(beyond, vec2(last) + 1e-3));

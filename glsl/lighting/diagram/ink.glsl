@@ -36,42 +36,42 @@ float dash_cover(vec2 place, vec2 from, vec2 to, float width, float dash) {
 }
 
 // The side of a line through a place that lies to the left of its way.
-float half_plane(vec2 place, vec2 through, vec2 way) {
-    vec2 along = way / max(length(way), 1e-6);
-    vec2 away = place - through;
-    return covered(along.x * away.y - along.y * away.x);
+float half_plane(vec2 place, vec2 through, vec2 direction) {
+    vec2 along = direction / max(length(direction), 1e-6);
+    vec2 offset = place - through;
+    return covered(along.x * offset.y - along.y * offset.x);
 }
 
 // The angle of a way, from that of another: above -pi, up to pi.
-float turned_from(vec2 way, vec2 zero) {
-    float ahead = dot(zero, way);
-    float aside = zero.x * way.y - zero.y * way.x;
+float turned_from(vec2 direction, vec2 zero) {
+    float ahead = dot(zero, direction);
+    float aside = zero.x * direction.y - zero.y * direction.x;
     // Of no way at all there is no arc tangent.
     return atan(aside, ahead == 0.0 && aside == 0.0 ? 1.0 : ahead);
 }
 
 // The part of a circle from one angle to a greater one.
 float arc_cover(vec2 place, vec2 middle, float radius, float from, float to, float width) {
-    vec2 away = place - middle;
+    vec2 offset = place - middle;
     float half_way = 0.5 * (from + to);
-    float off = abs(turned_from(away, vec2(cos(half_way), sin(half_way)))) - 0.5 * (to - from);
-    return covered(0.5 * width - abs(length(away) - radius)) * covered(-off * radius);
+    float off = abs(turned_from(offset, vec2(cos(half_way), sin(half_way)))) - 0.5 * (to - from);
+    return covered(0.5 * width - abs(length(offset) - radius)) * covered(-off * radius);
 }
 
 // The disc's part between these angles.
 float sector_cover(vec2 place, vec2 middle, float radius, float from, float to) {
-    vec2 away = place - middle;
+    vec2 offset = place - middle;
     float half_way = 0.5 * (from + to);
-    float off = abs(turned_from(away, vec2(cos(half_way), sin(half_way)))) - 0.5 * (to - from);
-    return covered(radius - length(away)) * covered(-off * length(away));
+    float off = abs(turned_from(offset, vec2(cos(half_way), sin(half_way)))) - 0.5 * (to - from);
+    return covered(radius - length(offset)) * covered(-off * length(offset));
 }
 
 // A line with a head of `head` at its end.
 float arrow_cover(vec2 place, vec2 from, vec2 to, float width, float head) {
     vec2 along = (to - from) / max(length(to - from), 1e-6);
-    vec2 away = to - place;
-    float behind = dot(away, along);
-    float aside = abs(along.x * away.y - along.y * away.x);
+    vec2 offset = to - place;
+    float behind = dot(offset, along);
+    float aside = abs(along.x * offset.y - along.y * offset.x);
     // The head is three times as long as half of it is wide.
     float inside = min((behind / 3.0 - aside) * 0.94868, head - behind);
     return max(line_cover(place, from, to - 0.5 * head * along, width), covered(inside));

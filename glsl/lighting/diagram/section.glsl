@@ -42,9 +42,9 @@ vec2 on_paper(Section section, vec2 metres) {
 }
 
 vec2 node_on_paper(sampler2D height, Section section, int column) {
-    int held = clamp(column, 0, section.last);
-    float up = texelFetch(height, ivec2(held, section.row), 0).r * section.relief;
-    return on_paper(section, vec2(float(held) * section.spacing, up));
+    int clamped = clamp(column, 0, section.last);
+    float up = texelFetch(height, ivec2(clamped, section.row), 0).r * section.relief;
+    return on_paper(section, vec2(float(clamped) * section.spacing, up));
 }
 
 // The column at or before a pixel.

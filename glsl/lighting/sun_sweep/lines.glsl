@@ -30,10 +30,10 @@ struct Lines {
 };
 
 Lines lines_towards(ivec2 grid, vec3 light, vec2 metres) {
-    vec2 way = light.xy / metres;
-    bool along_x = abs(way.x) >= abs(way.y);
-    float ahead = along_x ? way.x : way.y;
-    float aside = along_x ? way.y : way.x;
+    vec2 direction = light.xy / metres;
+    bool along_x = abs(direction.x) >= abs(direction.y);
+    float ahead = along_x ? direction.x : direction.y;
+    float aside = along_x ? direction.y : direction.x;
     float drift = ahead == 0.0 ? 0.0 : -aside / abs(ahead);
     // Along an axis and a diagonal a line meets texels only, which rounding would undo.
     if (abs(drift) < 1e-6) drift = 0.0;

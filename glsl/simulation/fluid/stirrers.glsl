@@ -32,9 +32,9 @@ vec3 stirrer_colour(int k) {
 
 // 1 at a stirrer, 0 from a radius on, on a torus.
 float nearness(vec2 place, vec2 stirrer, float radius) {
-    vec2 away = abs(place - stirrer);
-    away = min(away, 1.0 - away);
-    float share = min(dot(away, away) / (radius * radius), 1.0);
+    vec2 offset = abs(place - stirrer);
+    offset = min(offset, 1.0 - offset);
+    float share = min(dot(offset, offset) / (radius * radius), 1.0);
     return (1.0 - share) * (1.0 - share);
 }
 #endif

@@ -21,9 +21,9 @@ const int HALF = 5;  // cells from a square's middle to its side
 vec2 kernel(ivec2 texel) {
     for (int k = 0; k < spots; k++) {
         ivec2 middle = ivec2(random_pair(ivec2(k, 0), seed + SALT) * vec2(size));
-        ivec2 away = abs(texel - middle);
-        away = min(away, size - away);
-        if (max(away.x, away.y) < HALF) return vec2(0.5, 0.25);
+        ivec2 offset = abs(texel - middle);
+        offset = min(offset, size - offset);
+        if (max(offset.x, offset.y) < HALF) return vec2(0.5, 0.25);
     }
     return vec2(1.0, 0.0);
 }

@@ -22,11 +22,11 @@ float curvature_at(sampler2D field, vec2 place, vec2 metres, float radius) {
     for (int k = 0; k < 4; k++) {
         vec2 along = k == 0 ? vec2(1.0, 0.0) : k == 1 ? vec2(0.0, 1.0) : k == 2
                 ? vec2(0.70710678, 0.70710678) : vec2(-0.70710678, 0.70710678);
-        vec2 away = radius * along / metres;
-        vec2 low = min(place - away, place + away);
-        vec2 high = max(place - away, place + away);
+        vec2 offset = radius * along / metres;
+        vec2 low = min(place - offset, place + offset);
+        vec2 high = max(place - offset, place + offset);
         if (all(greaterThanEqual(low, vec2(0.0))) && all(lessThanEqual(high, last))) {
-            total += height_at(field, place + away) + height_at(field, place - away)
+            total += height_at(field, place + offset) + height_at(field, place - offset)
                     - 2.0 * middle;
             lines += 1.0;
         }

@@ -34,8 +34,8 @@ vec4 kernel(ivec2 texel) {
     vec4 share = textureLod(weights, (place_on(grid, texel, size) + 0.5) / vec2(grid), 0.0);
     vec3 place = vec3(share_of_texel(texel, size) * extent,
                       relief * height_at(height, place_on(textureSize(height, 0), texel, size)));
-    float away = distance(eye, place);
-    float gone = clamp((away - begins) / max(ends - begins, 1e-3), 0.0, 1.0);
+    float eye_distance = distance(eye, place);
+    float gone = clamp((eye_distance - begins) / max(ends - begins, 1e-3), 0.0, 1.0);
     // Terrain that is not a number is nowhere.
     float moved = gone >= 0.0 ? gone * dot(share, unit(near)) : 0.0;
     return weights_in_bytes(share + moved * (unit(far) - unit(near)));

@@ -40,9 +40,9 @@ uniform float shadows = 1.0;           //! slider(0, 1) step(0.01) group("Shadow
                                        //! How much of the shadow map is seen
 
 vec3 unit(sampler2D image, vec2 share_of_land, float repeats, float turn, vec2 shift) {
-    vec2 way = cos_sin_degrees(turn);
+    vec2 rotation = cos_sin_degrees(turn);
     vec2 across = share_of_land * repeats * vec2(1.0, extent.y / extent.x);
-    vec2 turned = vec2(dot(way, across), way.x * across.y - way.y * across.x);
+    vec2 turned = vec2(dot(rotation, across), rotation.x * across.y - rotation.y * across.x);
     float texels = float(max(size.x - 1, 1)) / repeats;
     float level = max(log2(float(textureSize(image, 0).x) / texels), 0.0);
     return textureLod(image, turned - shift, level).rgb;

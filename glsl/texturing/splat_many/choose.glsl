@@ -101,12 +101,12 @@ float claim(int number, vec4 band, vec2 site, vec2 patch_place) {
 }
 
 // Claims in order, the largest first, each with its number. A new one goes in where it belongs.
-void insert(float found, float number, inout vec4 most, inout vec4 numbers, inout float fifth) {
-    vec4 before = most;
+void insert(float found, float number, inout vec4 largest, inout vec4 numbers, inout float fifth) {
+    vec4 before = largest;
     vec4 named = numbers;
     bvec4 under = lessThan(before, vec4(found));
     fifth = max(fifth, under.w ? before.w : found);
-    most = vec4(under.x ? found : before.x,
+    largest = vec4(under.x ? found : before.x,
                 under.x ? before.x : under.y ? found : before.y,
                 under.y ? before.y : under.z ? found : before.z,
                 under.z ? before.z : under.w ? found : before.w);
@@ -127,28 +127,28 @@ void kernel(ivec2 texel, out vec4 chosen, out vec4 weights) {
     if (!(abs(site.x) < 1e30 && abs(site.y) < 1e30)) site = vec2(band_1.x, 0.0);
     vec2 patch_place = share_of_texel(texel, size) * extent / grain;
     // Where nothing claims, the first material lies.
-    vec4 most = vec4(1e-6, 0.0, 0.0, 0.0);
+    vec4 largest = vec4(1e-6, 0.0, 0.0, 0.0);
     vec4 numbers = vec4(0.0);
     float fifth = 0.0;
-    insert(claim(0, band_1, site, patch_place), 0.0, most, numbers, fifth);
-    insert(claim(1, band_2, site, patch_place), 1.0, most, numbers, fifth);
-    insert(claim(2, band_3, site, patch_place), 2.0, most, numbers, fifth);
-    insert(claim(3, band_4, site, patch_place), 3.0, most, numbers, fifth);
-    insert(claim(4, band_5, site, patch_place), 4.0, most, numbers, fifth);
-    insert(claim(5, band_6, site, patch_place), 5.0, most, numbers, fifth);
-    insert(claim(6, band_7, site, patch_place), 6.0, most, numbers, fifth);
-    insert(claim(7, band_8, site, patch_place), 7.0, most, numbers, fifth);
-    insert(claim(8, band_9, site, patch_place), 8.0, most, numbers, fifth);
-    insert(claim(9, band_10, site, patch_place), 9.0, most, numbers, fifth);
-    insert(claim(10, band_11, site, patch_place), 10.0, most, numbers, fifth);
-    insert(claim(11, band_12, site, patch_place), 11.0, most, numbers, fifth);
-    insert(claim(12, band_13, site, patch_place), 12.0, most, numbers, fifth);
-    insert(claim(13, band_14, site, patch_place), 13.0, most, numbers, fifth);
-    insert(claim(14, band_15, site, patch_place), 14.0, most, numbers, fifth);
-    insert(claim(15, band_16, site, patch_place), 15.0, most, numbers, fifth);
-    vec4 left = most - fifth;
+    insert(claim(0, band_1, site, patch_place), 0.0, largest, numbers, fifth);
+    insert(claim(1, band_2, site, patch_place), 1.0, largest, numbers, fifth);
+    insert(claim(2, band_3, site, patch_place), 2.0, largest, numbers, fifth);
+    insert(claim(3, band_4, site, patch_place), 3.0, largest, numbers, fifth);
+    insert(claim(4, band_5, site, patch_place), 4.0, largest, numbers, fifth);
+    insert(claim(5, band_6, site, patch_place), 5.0, largest, numbers, fifth);
+    insert(claim(6, band_7, site, patch_place), 6.0, largest, numbers, fifth);
+    insert(claim(7, band_8, site, patch_place), 7.0, largest, numbers, fifth);
+    insert(claim(8, band_9, site, patch_place), 8.0, largest, numbers, fifth);
+    insert(claim(9, band_10, site, patch_place), 9.0, largest, numbers, fifth);
+    insert(claim(10, band_11, site, patch_place), 10.0, largest, numbers, fifth);
+    insert(claim(11, band_12, site, patch_place), 11.0, largest, numbers, fifth);
+    insert(claim(12, band_13, site, patch_place), 12.0, largest, numbers, fifth);
+    insert(claim(13, band_14, site, patch_place), 13.0, largest, numbers, fifth);
+    insert(claim(14, band_15, site, patch_place), 14.0, largest, numbers, fifth);
+    insert(claim(15, band_16, site, patch_place), 15.0, largest, numbers, fifth);
+    vec4 left = largest - fifth;
     // Five that claim alike would leave nothing.
-    if (left.x < 1e-6) left = most;
+    if (left.x < 1e-6) left = largest;
     chosen = numbers / 255.0;
     weights = weights_in_bytes(left / (left.x + left.y + left.z + left.w));
 }

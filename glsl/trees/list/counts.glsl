@@ -16,11 +16,11 @@ float kernel(ivec2 texel) {
     ivec2 block = (cells + size - 1) / size;
     ivec2 low = texel * block;
     ivec2 high = min(low + block, cells);
-    float most = texelFetch(limit, ivec2(0), 0).r;
+    float maximum = texelFetch(limit, ivec2(0), 0).r;
     float total = 0.0;
     for (int y = low.y; y < high.y; y++) {
         for (int x = low.x; x < high.x; x++) {
-            if (texelFetch(key, ivec2(x, y), 0).r < most) total += 1.0;
+            if (texelFetch(key, ivec2(x, y), 0).r < maximum) total += 1.0;
         }
     }
     return total;

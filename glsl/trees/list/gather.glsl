@@ -41,14 +41,14 @@ vec4 kernel(ivec2 texel) {
     if (rest >= texelFetch(count, at, 0).r) return vec4(0.0);
     ivec2 cells = textureSize(table, 0);
     ivec2 block = (cells + blocks - 1) / blocks;
-    float most = texelFetch(limit, ivec2(0), 0).r;
+    float maximum = texelFetch(limit, ivec2(0), 0).r;
     ivec2 from = at * block;
     vec2 found = vec2(0.0);
     for (int k = 0; k < block.x * block.y && rest >= 0.0; k++) {
         from = at * block + block_of(k, block.x);
-        found = any(greaterThanEqual(from, cells)) ? vec2(most) : texelFetch(key, from, 0).rg;
-        if (found.r < most) rest -= 1.0;
+        found = any(greaterThanEqual(from, cells)) ? vec2(maximum) : texelFetch(key, from, 0).rg;
+        if (found.r < maximum) rest -= 1.0;
     }
     vec4 tree = texelFetch(table, from, 0);
-    return vec4(tree.xyz, tree.w * shrunk(found.r, found.g, most) * pow(most, GROWTH));
+    return vec4(tree.xyz, tree.w * shrunk(found.r, found.g, maximum) * pow(maximum, GROWTH));
 }

@@ -27,13 +27,13 @@ uniform uint seed = 5u;            //! slider(0, 9999) Which trees
 
 // Whether a place, anywhere between two heights, may be in the picture, or so many metres beside
 // it.
-bool may_be_seen(vec2 place, float low, float high, float beside) {
+bool may_be_seen(vec2 place, float low, float high, float outside) {
     mat4 rows = transpose(clip_from_world);
     for (int k = 0; k < 4; k++) {
         vec4 plane = rows[3] + ((k & 1) == 0 ? rows[k >> 1] : -rows[k >> 1]);
         float level = dot(plane.xy, place) + plane.w;
         float inside = level + max(plane.z * low, plane.z * high);
-        if (inside < -beside * length(plane.xyz)) return false;
+        if (inside < -outside * length(plane.xyz)) return false;
     }
     return true;
 }
@@ -58,12 +58,12 @@ void kernel(ivec2 texel, out vec4 tree, out vec2 key) {
     if (own.chance >= wanted) return;
     float up = height_at(height, share * vec2(textureSize(height, 0) - 1)) * relief;
     if (wired_water && up <= sheet_at(water, share).level) return;
-    float away = distance(eye, vec3(place, up));
+    float eye_distance = distance(eye, vec3(place, up));
     float end = end_of_table(reach, cell, size);
-    float kept = kept_share(away, whole, end);
+    float kept = kept_share(eye_distance, whole, end);
     if (own.rank >= drawn_share(kept)) return;
     if (!all_round && !may_be_seen(place, up, up + 2.0 * tallest, margin)) return;
     float tall = tallest * mix(shortest, 1.0, own.size);
-    tree = vec4(place, up, tall * growth_of_kept(away, whole, end));
+    tree = vec4(place, up, tall * growth_of_kept(eye_distance, whole, end));
     key = vec2(own.rank / drawn_share(kept), drawn_part(kept));
 }

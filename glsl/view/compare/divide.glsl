@@ -22,10 +22,10 @@ vec4 kernel(ivec2 texel) {
     vec3 other = texelFetch(right, texel, 0).rgb;
     if (mode == 1) return vec4(0.5 + amplified * 0.5 * (other - one), 1.0);
     float place = divider * float(size.x);
-    float away = abs(float(texel.x) + 0.5 - place);
+    float gap = abs(float(texel.x) + 0.5 - place);
     // A light line with a dark rim is seen on any picture.
-    if (divider > 0.0 && divider < 1.0 && away < 2.0) {
-        return vec4(vec3(away < 1.0 ? 1.0 : 0.0), 1.0);
+    if (divider > 0.0 && divider < 1.0 && gap < 2.0) {
+        return vec4(vec3(gap < 1.0 ? 1.0 : 0.0), 1.0);
     }
     return vec4(float(texel.x) + 0.5 < place ? one : other, 1.0);
 }

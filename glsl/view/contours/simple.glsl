@@ -30,10 +30,10 @@ vec4 kernel(ivec2 texel) {
                                     0.0).rg;
     // anchor: line
     float nearest = interval * floor(elevation / interval + 0.5);
-    float away = abs(elevation - nearest);         // in metres of height
+    float gap = abs(elevation - nearest);          // in metres of height
     float change = length(rise * spacing);         // metres of height from texel to texel
-    if (measured == 1) away /= max(change, 1e-6);  // in texels, along the slope
-    float cover = clamp(0.5 * width + 0.5 - away, 0.0, 1.0);
+    if (measured == 1) gap /= max(change, 1e-6);   // in texels, along the slope
+    float cover = clamp(0.5 * width + 0.5 - gap, 0.0, 1.0);
     // end: line
     return vec4(mix(ground, line, cover), 1.0);
 }

@@ -62,11 +62,12 @@ float error_of_block(ivec2 middle, int half_side, ivec2 cells) {
             float truth = node(at + ivec2(x, y));
             // Four sectors, each with a side: how far out towards it, and how far along it.
             ivec2 half_extent = ivec2(x < 0 ? low.x : high.x, y < 0 ? low.y : high.y);
-            vec2 way = vec2(x, y) / vec2(max(half_extent, 1));
-            bool upright = abs(way.y) >= abs(way.x);
+            vec2 direction = vec2(x, y) / vec2(max(half_extent, 1));
+            bool upright = abs(direction.y) >= abs(direction.x);
             int side = upright ? (y < 0 ? 0 : 2) : (x < 0 ? 3 : 1);
-            float outward = max(abs(way.x), abs(way.y));
-            float along = side == 0 ? way.x : side == 1 ? way.y : side == 2 ? -way.x : -way.y;
+            float outward = max(abs(direction.x), abs(direction.y));
+            float along = side == 0 ? direction.x : side == 1 ? direction.y
+                        : side == 2 ? -direction.x : -direction.y;
             float first = side == 0 ? ring[0] : side == 1 ? ring[2] : side == 2 ? ring[4]
                     : ring[6];
             float mid = side == 0 ? ring[1] : side == 1 ? ring[3] : side == 2 ? ring[5] : ring[7];

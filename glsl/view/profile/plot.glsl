@@ -53,9 +53,9 @@ Layout arranged() {
     return Layout(s, map, vec4(corner, max(sides, vec2(1.0))));
 }
 
-// 1, 2 or 5 times a power of ten, so that no more than `most` steps fit into a span.
-float step_for(float span, float most) {
-    float needed = span / max(most, 1.0);
+// 1, 2 or 5 times a power of ten, so that no more than `maximum` steps fit into a span.
+float step_for(float span, float maximum) {
+    float needed = span / max(maximum, 1.0);
     float found = 1e9;
     for (int power = 8; power >= -3; power--) {
         float decade = 1.0;
@@ -83,8 +83,8 @@ float cover(float far, float wide) {
 }
 
 // A disc, or a ring: the line's two ends.
-float mark(vec2 away, float radius, bool hollow) {
-    float far = length(away);
+float mark(vec2 offset, float radius, bool hollow) {
+    float far = length(offset);
     float disc = clamp(radius + 0.5 - far, 0.0, 1.0);
     return hollow ? disc * clamp(far - 0.5 * radius + 0.5, 0.0, 1.0) : disc;
 }

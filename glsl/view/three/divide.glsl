@@ -19,11 +19,11 @@ uniform float second = 0.6667; //! divider step(0.005) group("Compare")
 vec4 kernel(ivec2 texel) {
     float place = float(texel.x) + 0.5;
     vec2 lines = vec2(first, max(first, second)) * float(size.x);
-    vec2 away = abs(place - lines);
+    vec2 gap = abs(place - lines);
     // A line at an end of the picture is not drawn.
     bvec2 drawn = bvec2(lines.x > 0.0 && lines.x < float(size.x),
                         lines.y > 0.0 && lines.y < float(size.x));
-    float near = min(drawn.x ? away.x : 2.0, drawn.y ? away.y : 2.0);
+    float near = min(drawn.x ? gap.x : 2.0, drawn.y ? gap.y : 2.0);
     if (near < 2.0) return vec4(vec3(near < 1.0 ? 1.0 : 0.0), 1.0);
     if (place < lines.x) return vec4(texelFetch(left, texel, 0).rgb, 1.0);
     if (place < lines.y) return vec4(texelFetch(middle, texel, 0).rgb, 1.0);

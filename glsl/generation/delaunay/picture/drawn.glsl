@@ -109,7 +109,7 @@ ivec3 marked_triangle(sampler2D triangles, sampler2D neighbours, sampler2D last,
         return k < int(entry(last, 0).y) ? ivec3(entry(last, k + 1).xyz) : ivec3(-1);
     }
     ivec4 edge = marked_edge(triangles, neighbours, last, marked, number);
-    ivec3 beside = k == 0 ? edge.xyz : edge.yxw;
-    return k > 1 || min(beside.x, beside.z) < 0 ? ivec3(-1) : beside;
+    ivec3 neighbour = k == 0 ? edge.xyz : edge.yxw;
+    return k > 1 || min(neighbour.x, neighbour.z) < 0 ? ivec3(-1) : neighbour;
 }
 #endif

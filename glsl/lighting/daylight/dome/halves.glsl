@@ -21,10 +21,10 @@ void kernel(ivec2 texel, out vec4 molecules, out vec4 aerosol) {
     int table = min(texel.y / rows, DOMES - 1);
     float height = dome_height(table);
     vec2 share = vec2(texel.x, texel.y - table * rows) / vec2(max(ivec2(size.x, rows) - 1, 1));
-    vec2 way = dome_start(min(share, 1.0), height);
+    vec2 direction = dome_start(min(share, 1.0), height);
     vec3 sun = to_sun(texelFetch(place, ivec2(0), 0).rg);
     Air scatters = air_of(texelFetch(air, ivec2(0), 0).r);
-    Sight seen = sight(columns, bounced, scatters, height, way, sun);
+    Sight seen = sight(columns, bounced, scatters, height, direction, sun);
     molecules = vec4(seen.molecules, 1.0);
     aerosol = vec4(seen.aerosol, 1.0);
 }

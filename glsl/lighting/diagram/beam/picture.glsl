@@ -110,10 +110,10 @@ vec4 kernel(ivec2 texel) {
         vec2 off = place - on_paper(section, about.zw);
         float ahead = covered(off.x) * (v == 0 ? covered(far - dot(off, to_sun)) : 1.0);
         float half_width = wide + off.x * growth;
-        float away = (half_width - abs(off.y - off.x * climb)) * to_sun.x;
+        float margin = (half_width - abs(off.y - off.x * climb)) * to_sun.x;
         bool drawn = beam != RAY;
-        inside = max(inside, drawn ? covered(away) * ahead : 0.0);
-        edge = max(edge, drawn ? covered(0.7 * u - abs(away)) * ahead : 0.0);
+        inside = max(inside, drawn ? covered(margin) * ahead : 0.0);
+        edge = max(edge, drawn ? covered(0.7 * u - abs(margin)) * ahead : 0.0);
     }
     colour = mix(colour, SUN, 0.45 * inside);
     colour = mix(colour, PARTLY, edge * 0.8);

@@ -40,9 +40,9 @@ struct Beam {
 };
 
 // The part that terrain of some height leaves free of the beam at a step.
-float part_free(Beam way, int k, float land) {
-    float wide = way.radius + float(k) * way.growth;
-    float above = way.foot + float(k) * way.climb - land;
+float part_free(Beam ray, int k, float land) {
+    float wide = ray.radius + float(k) * ray.growth;
+    float above = ray.foot + float(k) * ray.climb - land;
     // A beam that is a point at its foot, and a ray anywhere, is hidden or not.
     return wide > 0.0 ? clamp(0.5 + above / (2.0 * wide), 0.0, 1.0) : above >= 0.0 ? 1.0 : 0.0;
 }
@@ -64,27 +64,27 @@ vec4 kernel(ivec2 texel) {
     float spacing = spacing_of(grid, extent).x;
     vec2 above = cos_sin_degrees(elevation);
     float path = spacing / max(above.x, 1e-6);
-    Beam way;
-    way.foot = texelFetch(height, ivec2(column, line), 0).r * relief;
-    way.climb = path * above.y;
-    way.radius = beam == CYLINDER ? radius / 255.0 * relief : 0.0;
-    way.growth = beam == RAY || beam == CYLINDER ? 0.0 : path * delta_r;
+    Beam ray;
+    ray.foot = texelFetch(height, ivec2(column, line), 0).r * relief;
+    ray.climb = path * above.y;
+    ray.radius = beam == CYLINDER ? radius / 255.0 * relief : 0.0;
+    ray.growth = beam == RAY || beam == CYLINDER ? 0.0 : path * delta_r;
     int wanted = texel.x - 2;
     float seen = 1.0;
     float least = -1.0;
     int made = 0;
     bool over = false;
     for (int k = 0; column + k < grid.x && !over; k++) {
-        float wide = way.radius + float(k) * way.growth;
-        float middle = way.foot + float(k) * way.climb;
+        float wide = ray.radius + float(k) * ray.growth;
+        float middle = ray.foot + float(k) * ray.climb;
         if (middle - wide > highest) break;
-        float part = part_free(way, k, texelFetch(height, ivec2(column + k, line), 0).r * relief);
+        float part = part_free(ray, k, texelFetch(height, ivec2(column + k, line), 0).r * relief);
         if (k == wanted) return vec4(middle, wide, part, 1.0);
         if (part < seen) least = float(k);
         seen = min(seen, part);
         over = part == 0.0;
         made++;
     }
-    if (texel.x == 0) return vec4(seen, float(made), float(column) * spacing, way.foot);
+    if (texel.x == 0) return vec4(seen, float(made), float(column) * spacing, ray.foot);
     return texel.x == 1 ? vec4(least, 0.0, 0.0, 0.0) : vec4(0.0);
 }

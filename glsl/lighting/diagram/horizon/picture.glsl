@@ -67,7 +67,7 @@ const uvec4 WORDS[2 * TEXTS] = uvec4[2 * TEXTS](
 );
 
 // The pixel that looks along an angle from the viewpoint, to the right or the left.
-vec2 way_of(float angle, float side) {
+vec2 direction_of(float angle, float side) {
     return vec2(side * cos(angle), sin(angle));
 }
 
@@ -91,13 +91,13 @@ vec4 kernel(ivec2 texel) {
 
     vec3 colour = SKY * (0.9 + 0.1 * place.y / paper.y);
     // The sun, as far away as the picture's edge lets it be.
-    vec2 to_middle = way_of(radians(elevation), 1.0);
+    vec2 to_middle = direction_of(radians(elevation), 1.0);
     float spread = sin(0.5 * radians(diameter));
     vec2 room = (paper - 20.0 * u - eye) / (to_middle + spread + 1e-4);
     float far = max(min(room.x, room.y), 10.0 * u);
     vec2 sun = eye + far * to_middle;
     float disc = far * spread;
-    vec2 over = way_of(east.w, 1.0);
+    vec2 over = direction_of(east.w, 1.0);
     if (shows == SUN_SEEN) {
         colour = mix(colour, SUN, 0.25 * sector_cover(place, eye, far, lower, upper));
         float lit = half_plane(place, eye, over);
@@ -151,15 +151,15 @@ vec4 kernel(ivec2 texel) {
         if (shows == SUN_SEEN && k == 1) continue;
         if (facts.y >= 0.0) {
             vec2 touch = node_on_paper(height, section, int(facts.y));
-            vec2 way = way_of(atan(facts.x), side);
+            vec2 direction = direction_of(atan(facts.x), side);
             colour = mix(colour, FREE, line_cover(place, eye, touch, 1.6 * u));
-            float dashes = dash_cover(place, touch, eye + farthest * way, 1.4 * u, 7.0 * u);
+            float dashes = dash_cover(place, touch, eye + farthest * direction, 1.4 * u, 7.0 * u);
             colour = mix(colour, FREE, dashes);
             colour = mix(colour, FREE, dot_cover(place, touch, 4.0 * u));
         }
         if (shows != HORIZON_ANGLE && facts.z > facts.x) {
-            vec2 way = way_of(facts.w, side);
-            float dashes = dash_cover(place, eye, eye + farthest * way, 1.6 * u, 9.0 * u);
+            vec2 direction = direction_of(facts.w, side);
+            float dashes = dash_cover(place, eye, eye + farthest * direction, 1.6 * u, 9.0 * u);
             colour = mix(colour, HIDDEN, dashes);
         }
     }
@@ -172,8 +172,8 @@ vec4 kernel(ivec2 texel) {
     }
     if (shows == SUN_SEEN) {
         float length_of_edge = far * cos(0.5 * radians(diameter));
-        vec2 to_upper = eye + length_of_edge * way_of(upper, 1.0);
-        vec2 to_lower = eye + length_of_edge * way_of(lower, 1.0);
+        vec2 to_upper = eye + length_of_edge * direction_of(upper, 1.0);
+        vec2 to_lower = eye + length_of_edge * direction_of(lower, 1.0);
         colour = mix(colour, PARTLY * 0.8, line_cover(place, eye, to_upper, 1.2 * u));
         colour = mix(colour, PARTLY * 0.8, line_cover(place, eye, to_lower, 1.2 * u));
     }
@@ -205,11 +205,12 @@ vec4 kernel(ivec2 texel) {
         Label label = label_on_left(vec2(12.0 * u, paper.y - (14.0 + 17.0 * float(k - 1)) * u),
                                     characters, u);
         if (k == 0) {
-            vec2 way = way_of(radians(values[0]), 1.0);
-            label = label_on_right(eye + 175.0 * u * way + vec2(-4.0, 6.0) * u, characters, u);
+            vec2 direction = direction_of(radians(values[0]), 1.0);
+            label = label_on_right(eye + 175.0 * u * direction + vec2(-4.0, 6.0) * u,
+                                   characters, u);
         } else if (k == 1) {
-            vec2 way = way_of(radians(values[1]), -1.0);
-            label = label_on_left(eye + 175.0 * u * way + vec2(4.0, 6.0) * u, characters, u);
+            vec2 direction = direction_of(radians(values[1]), -1.0);
+            label = label_on_left(eye + 175.0 * u * direction + vec2(4.0, 6.0) * u, characters, u);
         }
         behind = max(behind, board_cover(label, place));
         vec3 found = cell_of(label, place);

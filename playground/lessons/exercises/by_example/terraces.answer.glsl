@@ -67,10 +67,11 @@ float kernel(ivec2 texel) {
               + weights.z * piece(copies.corner[2], tile);
     ivec2 sides = textureSize(sorted, 0);
     float place = normal_share(sum / length(weights)) * float(sides.x * sides.y) - 0.5;
-    float held = clamp(place, 0.0, float(sides.x * sides.y - 1));
-    int low = int(held);
-    float there = mix(entry(low), entry(min(low + 1, sides.x * sides.y - 1)), held - float(low));
+    float clamped = clamp(place, 0.0, float(sides.x * sides.y - 1));
+    int low = int(clamped);
+    float next = entry(min(low + 1, sides.x * sides.y - 1));
+    float there = mix(entry(low), next, clamped - float(low));
     // end: blended
     float under = height_at(base, place_on(textureSize(base, 0), texel, size));
-    return under + amount * held / float(sides.x * sides.y - 1);
+    return under + amount * clamped / float(sides.x * sides.y - 1);
 }

@@ -31,8 +31,8 @@ uniform float wear = 0.3;    //! slider(0, 2) step(0.01) unit("1/h")
 // (1 - r^2)^2 over the unit circle is pi / 3.
 float river(vec2 place) {
     float radius = max(0.5 * spring_width, 2.0 * max(spacing.x, spacing.y));
-    vec2 away = (place - spring_at * extent) / radius;
-    float near = max(1.0 - dot(away, away), 0.0);
+    vec2 offset = (place - spring_at * extent) / radius;
+    float near = max(1.0 - dot(offset, offset), 0.0);
     return spring * 1e6 * 3.0 / (3.14159265 * radius * radius) * near * near;
 }
 

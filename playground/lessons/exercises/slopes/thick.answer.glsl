@@ -29,10 +29,10 @@ vec4 kernel(ivec2 texel) {
     vec2 rise = relief * textureLod(slope, (place_on(slopes, texel, size) + 0.5) / vec2(slopes),
                                     0.0).rg;
     float nearest = interval * floor(elevation / interval + 0.5);
-    float away = abs(elevation - nearest);         // in metres of height
+    float gap = abs(elevation - nearest);         // in metres of height
     float change = length(rise * spacing);         // metres of height from texel to texel
-    if (measured == 1) away /= max(change, 1e-6);  // in texels, along the slope
+    if (measured == 1) gap /= max(change, 1e-6);  // in texels, along the slope
     bool fifth = mod(nearest / interval + 0.5, 5.0) < 1.0;
-    float cover = clamp(0.5 * (fifth ? 2.0 * width : width) + 0.5 - away, 0.0, 1.0);
+    float cover = clamp(0.5 * (fifth ? 2.0 * width : width) + 0.5 - gap, 0.0, 1.0);
     return vec4(mix(ground, line, cover), 1.0);
 }

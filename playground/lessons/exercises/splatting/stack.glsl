@@ -15,16 +15,16 @@
 
 // The first layer lies everywhere; each cover hides what lies below it, by (1).
 vec4 weights_of_covers(vec3 covers) {
-    vec3 held = clamp(covers, 0.0, 1.0);
-    return vec4(1.0, held);  // each layer as if it were alone
+    vec3 clamped = clamp(covers, 0.0, 1.0);
+    return vec4(1.0, clamped);  // each layer as if it were alone
 }
 
 // A mask as an image holds it, its four numbers in any proportion. Nothing at all is the first
 // layer.
 vec4 weights_of_mask(vec4 mask) {
-    vec4 held = max(mask, 0.0);
-    float total = held.x + held.y + held.z + held.w;
-    return total > 0.0 ? held / total : vec4(1.0, 0.0, 0.0, 0.0);
+    vec4 clamped = max(mask, 0.0);
+    float total = clamped.x + clamped.y + clamped.z + clamped.w;
+    return total > 0.0 ? clamped / total : vec4(1.0, 0.0, 0.0, 0.0);
 }
 
 // Weights in whole 255ths that sum to 1 again: rounding each by itself would leave up to two
@@ -32,10 +32,10 @@ vec4 weights_of_mask(vec4 mask) {
 vec4 weights_in_bytes(vec4 weights) {
     vec4 whole = floor(weights * 255.0 + 0.5);
     float over = 255.0 - (whole.x + whole.y + whole.z + whole.w);
-    float most = max(max(whole.x, whole.y), max(whole.z, whole.w));
-    if (whole.x == most) whole.x += over;
-    else if (whole.y == most) whole.y += over;
-    else if (whole.z == most) whole.z += over;
+    float maximum = max(max(whole.x, whole.y), max(whole.z, whole.w));
+    if (whole.x == maximum) whole.x += over;
+    else if (whole.y == maximum) whole.y += over;
+    else if (whole.z == maximum) whole.z += over;
     else whole.w += over;
     return whole / 255.0;
 }

@@ -52,9 +52,9 @@ vec4 kernel(ivec2 texel) {
     float hard = wired_hardness ? max(value_here(hardness, texel), 1e-3) : 1.0;
     float drained = clamp(texelFetch(area, texel, 0).r + head, 1e-6, 1e15);
     drained *= 2.0 - float(texel.x) / float(size.x);
-    float way = length(vec2(there - texel) * spacing);
+    float run = length(vec2(there - texel) * spacing);
     // anchor: implicit
-    float wear = 1e-6 * erodibility / hard * years * power(drained, area_power) / way;
+    float wear = 1e-6 * erodibility / hard * years * power(drained, area_power) / run;
     wear = min(wear, MOST);
     float raised = ground + 1e-3 * rise * years * lifts / max(relief, 1e-3);
     return vec4(raised / (1.0 + wear), wear / (1.0 + wear), to, 0.0);
