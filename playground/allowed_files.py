@@ -16,11 +16,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
-from functools import lru_cache
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
+from playground.memo import FILES
 from playground.paths import GLSL, shown
 from playground.regular_file import read_regular
 
@@ -113,7 +113,7 @@ def vrt_document(path: Path) -> ElementTree.Element | None:
         return None
 
 
-@lru_cache(maxsize=32)
+@FILES.cached()
 def _document(path: Path, modified: int, size: int) -> ElementTree.Element | None:
     from xml.etree import ElementTree
 

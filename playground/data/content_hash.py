@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import time
-from functools import lru_cache
 from pathlib import Path
 
 from playground.allowed_files import sidecars
 from playground.errors import DataError
+from playground.memo import FILES
 from playground.paths import shown
 from playground.regular_file import open_regular, require_regular
 
@@ -55,13 +55,15 @@ def _own_hash(path: Path) -> str:
         stat = require_regular(path)
         # Two saves may fall into one tick of a file system's clock: what is so new is not remembered.
         is_new = abs(time.time_ns() - max(stat.st_mtime_ns, stat.st_ctime_ns)) < _TICK
-        work_out = _hash.__wrapped__ if is_new else _hash
+        work_out = _hash if is_new else _remembered_hash
         return work_out(str(path), stat.st_mtime_ns, stat.st_ctime_ns, stat.st_size, stat.st_ino)
     except OSError as error:
         raise DataError(f"cannot be read: {error.strerror}", file=shown(path)) from None
 
 
-@lru_cache(maxsize=4096)  # as many as a mosaic may have sources
 def _hash(path: str, modified: int, changed: int, size: int, inode: int) -> str:
     with open_regular(Path(path)) as file:
         return hashlib.file_digest(file, lambda: hashlib.blake2b(digest_size=16)).hexdigest()
+
+
+_remembered_hash = FILES.cached()(_hash)

@@ -30,7 +30,6 @@ import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache
 from itertools import chain, count
 from pathlib import Path
 from types import MappingProxyType
@@ -42,6 +41,7 @@ from numpy.typing import NDArray
 from playground.data.bounds import refuse_bomb, refuse_too_many, webp_size
 from playground.data.content_hash import content_key
 from playground.errors import DataError, nearest
+from playground.memo import FILES
 from playground.partial import partial_file
 from playground.paths import shown
 from playground.regular_file import NotRegularError, open_regular, require_regular
@@ -686,7 +686,7 @@ def picture_size(path: str | Path) -> tuple[int, int]:
     return _size(path, content_key(path))
 
 
-@lru_cache(maxsize=256)
+@FILES.cached()
 def _size(path: Path, _: str) -> tuple[int, int]:
     with reading(path) as handle:
         if is_array(handle):

@@ -20,11 +20,9 @@ before the time in question, so that the result is a function of that time.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections import OrderedDict
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache
 from math import exp, pi, sin
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -37,6 +35,7 @@ from playground.data.content_hash import content_key
 from playground.data.image_files import checked_file, reason
 from playground.errors import ContextError, DataError
 from playground.extras import needs
+from playground.memo import SOURCES, Memo
 
 if TYPE_CHECKING:
     import av.audio
@@ -157,7 +156,7 @@ class Film:
         self._container: av.container.InputContainer | None = None
         self._last = -1  # the frame decoded last
         self._latest: Any = None
-        self._held: OrderedDict[int, Any] = OrderedDict()
+        self._held: Memo[int, Any] = Memo(f"frames of {path.name}", 0, "bytes")
 
     @property
     def duration(self) -> float:
@@ -193,7 +192,6 @@ class Film:
         if frame is None:
             frame = self._decoded(number)
             self._hold(number, frame)
-        self._held.move_to_end(number)
         with decoding(self.path, f"frame {number}"):
             return as_pixels(frame, size)
 
@@ -251,11 +249,9 @@ class Film:
                 yield bisect_right(stamps, frame.pts) - 1, frame
 
     def _hold(self, number: int, frame: Any) -> None:
-        self._held[number] = frame
-        self._held.move_to_end(number)
-        most = max(_HELD_BYTES // (frame.width * frame.height * 4), 2)
-        while len(self._held) > most:
-            self._held.popitem(last=False)
+        size = frame.width * frame.height * 4
+        self._held.bound = max(_HELD_BYTES, 2 * size)
+        self._held.put(number, frame, size)
 
     def _open(self) -> av.container.InputContainer:
         container = open_media(self.path, _VIDEO, VIDEO_FILES)
@@ -318,7 +314,7 @@ def as_pixels(frame: Any, size: tuple[int, int]) -> NDArray[np.uint8]:
     return np.ascontiguousarray(np.rot90(array, quarters)[::-1])
 
 
-@lru_cache(maxsize=4)
+@SOURCES.cached(weight=_HELD_BYTES)
 def _film(path: str, content: str) -> Film:
     return Film(Path(path))
 
@@ -330,6 +326,7 @@ def film_of(path: Path) -> Film:
 
 RATE = 44_100  # [Hz]
 _SOUND = "a sound file"
+_WEIGHT = 2**26  # [bytes] of an open sound, about: it is decoded as far as it was heard
 _MOST_BYTES = ALWAYS_FINE  # of samples: 25 minutes in stereo
 
 
@@ -409,7 +406,7 @@ class Sound:
             )
 
 
-@lru_cache(maxsize=4)
+@SOURCES.cached(weight=_WEIGHT)
 def _sound(path: str, content: str) -> Sound:
     return Sound(Path(path))
 

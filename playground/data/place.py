@@ -16,11 +16,11 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from playground.data.image_files import reason
 from playground.errors import DataError
+from playground.memo import TEXTS
 
 if TYPE_CHECKING:
     from rasterio.crs import CRS
@@ -161,7 +161,7 @@ def horizontal(text: str) -> CRS:
         return CRS.from_user_input(json.dumps(part))
 
 
-@lru_cache(maxsize=64)
+@TEXTS.cached()
 def _facts(text: str) -> CrsFacts:
     if not text:
         return CrsFacts()

@@ -6,7 +6,6 @@ replace what is not wired.
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +23,7 @@ from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.software import Software
 from playground.engine.textures import FACES, Shaped, check_size, copied, drain, shaped_size
 from playground.errors import ContextError
+from playground.memo import Memo
 from playground.paths import shown
 from playground.shader.parameter import srgb_to_linear
 from playground.shader.reserved_names import MATCHES, PRESSED, TOWARDS, UNWIRED, WINDOW, WIRED
@@ -64,13 +64,15 @@ class Binder:
         self._samplers: dict[Sampling, moderngl.Sampler] = {}
         self._constants: dict[str, moderngl.Texture] = {}
         self._shaped: dict[tuple[str, str], Shaped] = {}  # constants, by name and shape
-        self._files: OrderedDict[tuple[str, bool, bool, bool], moderngl.Texture] = OrderedDict()
+        self._files: Memo[tuple[str, bool, bool, bool], moderngl.Texture] = Memo(
+            "textures of files", _MAX_FILES, dropped=lambda _, texture: texture.release()
+        )
         self._units = 0  # texture units used in this frame
         self._on_units: dict[int, moderngl.Sampler] = {}  # the samplers on them
 
     def release(self) -> None:
         """Release every texture and sampler."""
-        for texture in (*self._constants.values(), *self._files.values()):
+        for texture in self._constants.values():
             texture.release()
         for shaped in self._shaped.values():
             shaped.release()
@@ -238,15 +240,12 @@ class Binder:
         path, sampling = Path(str(value)), parameter.sampling
         encoded = encoded and not sampling.decode
         key = (content_hash(path), sampling.mipmap, encoded, sampling.flip)
-        if key not in self._files:
-            texture = self._read(path, encoded=encoded, flip=sampling.flip)
+        texture: moderngl.Texture | None = self._files.get(key)
+        if texture is None:
+            texture = self._files.put(key, self._read(path, encoded=encoded, flip=sampling.flip))
             if sampling.mipmap:
                 texture.build_mipmaps()
-            self._files[key] = texture
-            while len(self._files) > _MAX_FILES:
-                self._files.popitem(last=False)[1].release()
-        self._files.move_to_end(key)
-        return self._files[key]
+        return texture
 
     def constant(self, name: str) -> moderngl.Texture:
         """Return a texture of one texel: white, black, or zero in every channel."""

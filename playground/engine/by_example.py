@@ -24,7 +24,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from heapq import heappop, heappush
 from pathlib import Path
 from typing import Any
@@ -39,6 +38,7 @@ from playground.data.grid import fitted
 from playground.data.resample import resample
 from playground.engine.source_kinds import Material, Terrain
 from playground.errors import DataError
+from playground.memo import SOURCES, bytes_held
 from playground.sketch.model import Value
 
 Field = NDArray[np.float64]
@@ -454,7 +454,7 @@ def made_like(
     return found
 
 
-@lru_cache(maxsize=2)
+@SOURCES.cached(weight=bytes_held)
 def _ways(
     example: Elevation, spacing_of_example: tuple[float, float], spacing: tuple[float, float]
 ) -> list[Field]:
@@ -462,7 +462,7 @@ def _ways(
     return oriented(example.heights.astype(np.float64), spacing_of_example, spacing)
 
 
-@lru_cache(maxsize=1)
+@SOURCES.cached(weight=bytes_held)
 def _features(
     example: Elevation, spacing_of_example: tuple[float, float], spacing: tuple[float, float], side: int
 ) -> list[Field]:
@@ -563,7 +563,7 @@ def _example(values: Mapping[str, Value]) -> tuple[Elevation, float]:
     return _read(str(path), content_key(path))
 
 
-@lru_cache(maxsize=4)
+@SOURCES.cached(weight=bytes_held)
 def _read(path: str, content: str) -> tuple[Elevation, float]:  # ``content`` changes whenever the file does
     file = open_elevation(Path(path))
     size = fitted(file.size, _LONGEST)

@@ -28,6 +28,7 @@ from playground.engine.meshes import mesh_parameters
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_version, sources_of, walk
 from playground.engine.software import read_by_texels_alone
 from playground.engine.source_kinds import Terrain
+from playground.memo import GRAPHS
 from playground.shader.expressions import counts_frames
 from playground.shader.reserved_names import CLOCKED, GIVEN, MATCHES, PRESSED, TOWARDS
 from playground.sketch.flat import Fed, Ref, Shape, Source
@@ -41,7 +42,6 @@ from playground.sketch.model import (
     VertexShader,
 )
 
-_MAX_TEXTS = 512
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
 _FIXED = frozenset(GIVEN) - {"time", "clip_from_world", "world_from_clip", "eye"}
 """Given names that the same passes of the same terrain are given in every frame."""
@@ -65,6 +65,10 @@ class Keys:
         return Keys(*(getattr(self, name).copy() for name in self.__dataclass_fields__))
 
 
+def _canonical(kernel: Kernel) -> str:
+    return kernel.source.canonical
+
+
 class KeyMaker:
     """Makes the keys of plans; remembers what kernels' texts say.
 
@@ -73,12 +77,11 @@ class KeyMaker:
 
     def __init__(
         self,
-        text: Callable[[Kernel], str] = lambda kernel: kernel.source.canonical,
+        text: Callable[[Kernel], str] = _canonical,
         content: Callable[[Path], str] = content_hash,
     ) -> None:
         self._text = text
         self._content = content
-        self._texts: dict[int, tuple[Kernel, _Text]] = {}
         self._last: _PlanKeys | None = None  # of the last plan
 
     def keys_of(
@@ -111,14 +114,7 @@ class KeyMaker:
 
     def text_of(self, kernel: Kernel) -> _Text:
         """Return what a kernel's text says, worked out once: texts are long, and kernels seldom change."""
-        known = self._texts.get(id(kernel))
-        if known is not None:
-            return known[1]
-        while len(self._texts) >= _MAX_TEXTS:
-            self._texts.pop(next(iter(self._texts)))
-        found = _read_text(kernel, self._text(kernel))
-        self._texts[id(kernel)] = (kernel, found)  # held, so that its identity stays its own
-        return found
+        return _read_text(kernel, self._text)
 
 
 @dataclass(frozen=True)
@@ -131,7 +127,8 @@ class _Text:
     by_texels: frozenset[str]  # inputs of which a kernel that runs once reads single texels and nothing else
 
 
-def _read_text(kernel: Kernel, text: str) -> _Text:
+@GRAPHS.cached(identities=1)
+def _read_text(kernel: Kernel, text_of: Callable[[Kernel], str]) -> _Text:
     header: list[Any] = [kernel.kind, kernel.outputs]
     header += [(row.name, value) for row, value in kernel.options if row.keyed]
     header += [(i.name, i.sampling, i.fallback, i.shape) for i in kernel.inputs]
@@ -158,7 +155,7 @@ def _read_text(kernel: Kernel, text: str) -> _Text:
     if isinstance(kernel, TexelKernel) and kernel.repeat == "1":
         by_texels = read_by_texels_alone(kernel.source)
         by_texels -= {name for name in by_texels if kernel.reads(f"{MATCHES}{name}")}
-    return _Text(_digest([header, text]), frozenset(used), is_moving, by_texels)
+    return _Text(_digest([header, text_of(kernel)]), frozenset(used), is_moving, by_texels)
 
 
 def _vertex(vertex: VertexShader | tuple[tuple[str, str], ...]) -> list[Any]:

@@ -23,7 +23,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -377,7 +377,7 @@ def build_of(renderer: ContextInfo) -> tuple[str, ...]:
     return (*own, *(processor() if renderer.software else ()))
 
 
-@lru_cache(maxsize=1)
+@cache
 def processor() -> tuple[str, str]:
     """Return who made this machine's processor, and which instructions it has that change a picture."""
     if sys.platform.startswith("linux"):

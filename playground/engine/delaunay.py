@@ -27,12 +27,12 @@ import heapq
 import zlib
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
+from playground.memo import SOURCES, bytes_held
 
 SIDE = 2**24
 """Lattice spacings along the longer side of the terrain: a float32 holds every whole number up to it."""
@@ -76,7 +76,7 @@ class Triangulation:
     replaced: int  # edges that the last insertion replaced: those of rows 1 to ``replaced`` of ``destroyed``
 
 
-@lru_cache(maxsize=8)
+@SOURCES.cached(weight=bytes_held)
 def triangulate(rules: Rules) -> Triangulation:
     """Return the triangulation that some rules make; raise ``DataError`` where it would not be exact."""
     if not 0 <= rules.points <= MOST_POINTS:

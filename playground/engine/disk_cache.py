@@ -23,7 +23,7 @@ import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import IO, Any
@@ -177,7 +177,7 @@ def disk_cache_for(renderer: ContextInfo, limit: int, folder: Path | None = None
     return DiskCache(folder or place(), limit=limit, made_by=repr((build_of(renderer), tool())))
 
 
-@lru_cache(maxsize=1)
+@cache
 def tool() -> str:
     """Return a hash of what decides a texture besides the driver: our own files, what reads images."""
     found: list[object] = [__version__]

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
 
@@ -31,10 +30,10 @@ from playground.engine.plan import (
 )
 from playground.engine.results import Result
 from playground.engine.textures import bytes_of
+from playground.memo import PLANS, Memo
 from playground.shader.expressions import follows_time
 from playground.shader.reserved_names import OF_THE_TERRAIN
 from playground.sketch.flat import Ref
-from playground.sketch.identity import Identity
 from playground.sketch.model import PlainShader
 
 _PASSING = ("time", "clip_from_world", "world_from_clip", "eye")  # given names that change while one looks
@@ -47,19 +46,19 @@ def passing(plan: Plan, painted: Collection[Path] = ()) -> frozenset[str]:
     stopped before its last iteration or gone on from by a later draw, or reads a file that is
     ``painted`` in this process, which no other one knows by its version; and each that reads such a one.
     """
-    return _passing(Identity(plan.nodes), plan.frame_size, plan.continued, frozenset(painted))
+    return _passing(plan.nodes, plan.frame_size, plan.continued, frozenset(painted))
 
 
-@lru_cache(maxsize=2)
+@PLANS.cached(identities=1)
 def _passing(
-    key: Identity[tuple[PlanNode, ...]],
+    nodes: tuple[PlanNode, ...],
     frame_size: tuple[int, int],
     continued: frozenset[str],
     painted: frozenset[Path],
 ) -> frozenset[str]:
     """Return what ``passing`` does, worked out once for the frames that have the same passes."""
     found: set[str] = set()
-    for node in key.object:
+    for node in nodes:
         reads = {source.path for source in sources_of(node) if isinstance(source, Ref)}
         steps = list(walk((node,)))
         loops = [loop for loop in every_node((node,)) if isinstance(loop, LoopStep)]
@@ -175,7 +174,7 @@ def worth_caching(
     keys: Keys,
     ref: Ref,
     passes: frozenset[str],
-    costs: Mapping[str, float],
+    costs: Memo[str, float],
     read_time: Callable[[int], float],
     floor: float,
     more: Mapping[str, float] = MappingProxyType({}),

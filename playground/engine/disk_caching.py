@@ -10,7 +10,6 @@ their mipmaps are cached too: a graphics card makes them faster than a disk is r
 from __future__ import annotations
 
 import time
-from collections import OrderedDict
 from collections.abc import Callable, Collection, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import replace
@@ -26,6 +25,7 @@ from playground.engine.frame_record import FrameSource
 from playground.engine.gl_calls import read_mipmap, write_mipmaps
 from playground.engine.plan import Plan, PlanNode, Step, needed
 from playground.engine.textures import bytes_of, levels_of, read_block
+from playground.memo import Memo
 from playground.sketch.flat import Ref
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum inclu
 MIPMAPS = 90.0  # [ms] that llvmpipe takes in each process to compile what makes the first mipmaps of a format
 REST = 1.0  # [s] without another piece of terrain before one is written
 PIECE = 4 * 2**20  # [bytes] read back at once
-_MOST_COSTS = 4096
+_MAX_COSTS = 4096
 
 
 def read_time(size: int) -> float:
@@ -62,7 +62,8 @@ class DiskCaching:
         self.skipped: frozenset[str] = frozenset()  # those of the last frame, by path
         self.reads = 0  # textures of passes read so far
         self._now = now
-        self._costs: OrderedDict[str, float] = OrderedDict()  # [ms] by the key of the step or the loop
+        # [ms] by the key of the step or the loop
+        self._costs: Memo[str, float] = Memo("costs of results", _MAX_COSTS)
         self._costed_at = 0.0
         self._is_new = False  # something was computed since the last look
         self._work: Iterator[None] | None = None
@@ -138,10 +139,7 @@ class DiskCaching:
         return True
 
     def _note(self, key: str, cost: float) -> None:
-        self._costs[key] = cost
-        self._costs.move_to_end(key)
-        while len(self._costs) > _MOST_COSTS:
-            self._costs.popitem(last=False)
+        self._costs.put(key, cost)
 
     # ── at rest ──────────────────────────────────────────────────────────────
 

@@ -9,7 +9,6 @@ instances of a mesh are drawn: OpenGL 3.3 takes no counts from textures by itsel
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -27,6 +26,7 @@ from playground.engine.programs import Program
 from playground.engine.results import Result, Surface, Wired, started
 from playground.engine.textures import drain, make_framebuffer, read_texture, split_format
 from playground.errors import ContextError, SketchError
+from playground.memo import Memo
 from playground.shader import expressions
 from playground.shader.expressions import ExpressionError
 from playground.shader.reserved_names import ZOOM
@@ -48,7 +48,7 @@ class Draws:
         self.ctx = ctx
         self.kernels = kernels
         self.finest: int | None = None  # no mesh is finer than this
-        self._meshes: OrderedDict[_MeshKey, _Loaded] = OrderedDict()
+        self._meshes: Memo[_MeshKey, _Loaded] = Memo("meshes", _MAX_MESHES, dropped=self._release_mesh)
         self._surfaces: list[Surface] = []  # spare, newest last
         self._tables: WeakKeyDictionary[Result, dict[str, NDArray[np.float32]]] = WeakKeyDictionary()
         self._texels = Texels(ctx)
@@ -59,12 +59,9 @@ class Draws:
 
     def release(self) -> None:
         """Release every mesh and surface."""
-        for key, mesh in self._meshes.items():
-            self.kernels.programs.forget_mesh(key)
-            mesh.release()
+        self._meshes.clear()
         for surface in self._surfaces:
             surface.release()
-        self._meshes.clear()
         self._surfaces.clear()
         self._tables.clear()
 
@@ -265,17 +262,15 @@ class Draws:
             raise step.spec.error(str(error)) from None
         if self.finest is not None:
             key = key[0], tuple((name, min(value, self.finest)) for name, value in key[1])
-        if key not in self._meshes:
-            self._meshes[key] = _Loaded(self.ctx, key)
-            while len(self._meshes) > _MAX_MESHES:
-                old, mesh = self._meshes.popitem(last=False)
-                self.kernels.programs.forget_mesh(old)
-                mesh.release()
-        self._meshes.move_to_end(key)
+        mesh: _Loaded = self._meshes.get(key) or self._meshes.put(key, _Loaded(self.ctx, key))
         array = program.arrays.get(key)
         if array is None:
-            array = program.arrays[key] = self._meshes[key].array(program)
-        return self._meshes[key], array
+            array = program.arrays[key] = mesh.array(program)
+        return mesh, array
+
+    def _release_mesh(self, key: _MeshKey, mesh: _Loaded) -> None:
+        self.kernels.programs.forget_mesh(key)
+        mesh.release()
 
 
 def _same_outputs(result: Result, surface: Surface, begun: Mapping[str, moderngl.Texture]) -> bool:

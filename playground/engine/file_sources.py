@@ -20,7 +20,6 @@ import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -46,6 +45,7 @@ from playground.data.resample import resample
 from playground.data.vectors import Grid, Line, Shape, draw, read_vectors
 from playground.engine.source_kinds import Terrain
 from playground.errors import DataError
+from playground.memo import FILES, SOURCES, bytes_held
 from playground.paths import shown
 from playground.sketch.model import Value
 
@@ -100,8 +100,8 @@ def make(
         else:
             heights = np.zeros_like(elevation.heights)
         if math.prod(made) > KEPT:
-            _whole.cache_clear()
-            _large.cache_clear()
+            SOURCES.drop_of(_whole)
+            SOURCES.drop_of(_large)
         del elevation
         if size != made:
             heights = resample(heights, size, within=(0.0, 1.0))
@@ -139,7 +139,7 @@ def _asked(values: Mapping[str, Value]) -> Asked:
     return path, content_key(Path(path)), size, packing, voids, first_row
 
 
-@lru_cache(maxsize=4)
+@SOURCES.cached(weight=2**26)
 def _opened(asked: Asked) -> ElevationFile:
     path, _, raw_size, packing, _, first_row = asked
     with _memory_explained(Path(path)):
@@ -158,7 +158,7 @@ class _Known:
     notes: tuple[str, ...]
 
 
-@lru_cache(maxsize=16)
+@FILES.cached()
 def _known(asked: Asked, size: tuple[int, int]) -> _Known:
     found = _at(asked, size)
     return _Known(found.lowest, found.highest, found.code_range, found.in_metres, found.assumed, found.notes)
@@ -170,12 +170,12 @@ def _at(asked: Asked, size: tuple[int, int]) -> Elevation:
         return _large(asked, size) if math.prod(_opened(asked).size) > LARGE else _whole(asked)
 
 
-@lru_cache(maxsize=4)
+@SOURCES.cached(weight=bytes_held)
 def _whole(asked: Asked) -> Elevation:
     return fill_no_data(_opened(asked).read(), asked[4])
 
 
-@lru_cache(maxsize=2)
+@SOURCES.cached(weight=bytes_held)
 def _large(asked: Asked, size: tuple[int, int]) -> Elevation:
     return fill_no_data(_opened(asked).read_at(size), asked[4])
 
@@ -298,7 +298,7 @@ def _model(values: Mapping[str, Value]) -> Model:
     return _read(path, content_key(path))
 
 
-@lru_cache(maxsize=8)
+@SOURCES.cached(weight=bytes_held)
 def _read(path: Path, _: str) -> Model:
     return read_model(path)
 
@@ -348,7 +348,7 @@ def _vector_request(values: Mapping[str, Value]) -> tuple[str, str, str, str]:
     return paths[0], paths[1], content_key(Path(paths[0])), content_key(Path(paths[1]))
 
 
-@lru_cache(maxsize=4)
+@SOURCES.cached(weight=bytes_held)
 def _placed(vectors: str, elevation: str, *contents: str) -> _Placed:
     path, terrain = Path(vectors), open_elevation(elevation)
     place, extent = terrain.found.place, terrain.extent

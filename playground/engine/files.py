@@ -8,19 +8,18 @@ are looked at first.
 from __future__ import annotations
 
 import stat
-from collections import OrderedDict
 from pathlib import Path
 from typing import NamedTuple
 
 from playground.allowed_files import ELEVATIONS, VECTORS, named_root, outside_sidecar, sidecar_places
 from playground.data.media import SOUND_FILES, VIDEO_FILES
 from playground.errors import DataError, nearest
+from playground.memo import FILES
 from playground.paths import GLSL, shown
 from playground.regular_file import irregularity
 
 _IMAGES = (".jpg", ".jpeg", ".webp")
 _DATA = {*_IMAGES, *ELEVATIONS, *VECTORS, *VIDEO_FILES, *SOUND_FILES}
-_MOST = 256
 
 
 class _Found(NamedTuple):
@@ -37,9 +36,6 @@ class _Found(NamedTuple):
             return False
         places = (self.place,) if self.place == self.file else (self.place, self.file)
         return all(_identity(place) == self.identity for place in places)
-
-
-_found: OrderedDict[tuple[str, str, str], _Found] = OrderedDict()
 
 
 def _identity(path: Path) -> tuple[int, int] | None:
@@ -60,8 +56,8 @@ def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:
     """
     if not text:
         raise DataError(f"{parameter} names no file")
-    key = (text, folder, declared_in)
-    known = _found.get(key)
+    key = (find_file, text, folder, declared_in)
+    known: _Found | None = FILES.get(key)
     if known is not None and known.holds():
         return known.file
     path = Path(text)
@@ -81,9 +77,7 @@ def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:
             identity = _identity(candidate)
             if identity is not None and not sidecar_places(candidate):  # those may come, and lead elsewhere
                 earlier = tuple([before / path for before in places[:number]])
-                _found[key] = _Found(earlier, place / path, candidate, identity)
-                while len(_found) > _MOST:
-                    _found.popitem(last=False)
+                FILES.put(key, _Found(earlier, place / path, candidate, identity))
             return candidate
     folders = [(place / path).parent for place in places] or [path.parent]
     near = sorted(

@@ -19,16 +19,21 @@ from typing import Any
 from playground.engine.cache_keys import KeyMaker
 from playground.engine.plan import Plan, Step
 from playground.shader.reserved_names import MOMENT
+from playground.sketch.model import Kernel
 from playground.sketch.variants import compiled_text
 
 _DIGITS = 9
+
+
+def _compiled_text(kernel: Kernel) -> str:
+    return compiled_text(kernel.source.code)
 
 
 class PictureHasher:
     """Computes the hashes; remembers what kernels' texts say."""
 
     def __init__(self) -> None:
-        self._keys = KeyMaker(lambda kernel: compiled_text(kernel.source.code))
+        self._keys = KeyMaker(_compiled_text)
 
     def hash_of(
         self, plan: Plan, driver: Callable[[Step], str], given: Callable[[Step], Mapping[str, Any]]

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import NamedTuple
 
 from playground.engine.camera import Eye
 from playground.engine.lattice import Between
 from playground.engine.source_kinds import Terrain
+from playground.memo import PLANS
 from playground.shader.expressions import counts_frames
 from playground.sketch.flat import Flat, Ref, Source
-from playground.sketch.identity import Identity
 from playground.sketch.model import Draw, Kernel, PassSpec, Sketch, TexelKernel, Value
-
-_MOST_PLANS = 2  # of so many what follows from their passes alone is remembered: more would live long
 
 
 class LoopIteration(NamedTuple):
@@ -102,7 +100,7 @@ class Plan:
 
     def walk(self) -> list[Step]:
         """Return every step, those inside loops included."""
-        return list(_steps(Identity(self.nodes)))
+        return list(_steps(self.nodes))
 
     @cached_property
     def picture(self) -> Ref:
@@ -112,12 +110,12 @@ class Plan:
     @property
     def draws(self) -> tuple[Step, ...]:
         """The steps that draw meshes, those inside loops included."""
-        return _draws(Identity(self.nodes))
+        return _draws(self.nodes)
 
     @property
     def continued(self) -> frozenset[str]:
         """The paths of the draws that a later draw goes on from, with their samples and depth."""
-        return _continued(Identity(self.nodes))
+        return _continued(self.nodes)
 
     def step(self, path: str) -> Step | None:
         """Return the step of that path, if there is one."""
@@ -139,20 +137,20 @@ def walk(nodes: tuple[PlanNode, ...]) -> list[Step]:
     return found
 
 
-@lru_cache(maxsize=_MOST_PLANS)
-def _steps(key: Identity[tuple[PlanNode, ...]]) -> tuple[Step, ...]:
+@PLANS.cached(identities=1)
+def _steps(nodes: tuple[PlanNode, ...]) -> tuple[Step, ...]:
     """Return every step of a plan's nodes, worked out once for them: most frames have those of the last."""
-    return tuple(walk(key.object))
+    return tuple(walk(nodes))
 
 
-@lru_cache(maxsize=_MOST_PLANS)
-def _draws(key: Identity[tuple[PlanNode, ...]]) -> tuple[Step, ...]:
-    return tuple([step for step in _steps(key) if isinstance(step.kernel, Draw)])
+@PLANS.cached(identities=1)
+def _draws(nodes: tuple[PlanNode, ...]) -> tuple[Step, ...]:
+    return tuple([step for step in _steps(nodes) if isinstance(step.kernel, Draw)])
 
 
-@lru_cache(maxsize=_MOST_PLANS)
-def _continued(key: Identity[tuple[PlanNode, ...]]) -> frozenset[str]:
-    draws = _draws(key)
+@PLANS.cached(identities=1)
+def _continued(nodes: tuple[PlanNode, ...]) -> frozenset[str]:
+    draws = _draws(nodes)
     over = {step.path: step.kernel.over for step in draws if isinstance(step.kernel, Draw)}
     sources = [s for step in draws for name, s in step.inputs if name in ("initial", over[step.path])]
     return frozenset([source.path for source in sources if isinstance(source, Ref)])
@@ -198,14 +196,14 @@ def most_iterations(nodes: tuple[PlanNode, ...]) -> dict[str, int]:
 
 def needed(nodes: tuple[PlanNode, ...], ref: Ref) -> list[PlanNode]:
     """Return the nodes that a texture depends on, in order."""
-    return list(_needed(Identity(nodes), ref))
+    return list(_needed(nodes, ref))
 
 
-@lru_cache(maxsize=_MOST_PLANS)
-def _needed(key: Identity[tuple[PlanNode, ...]], ref: Ref) -> tuple[PlanNode, ...]:
+@PLANS.cached(identities=1)
+def _needed(nodes: tuple[PlanNode, ...], ref: Ref) -> tuple[PlanNode, ...]:
     wanted = {ref.path}
     found: list[PlanNode] = []
-    for node in reversed(key.object):
+    for node in reversed(nodes):
         inside = [node] if isinstance(node, Step) else walk(node.body)
         if not wanted.isdisjoint([step.path for step in inside]):
             found.append(node)

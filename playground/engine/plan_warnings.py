@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from functools import lru_cache
 from pathlib import Path
 
 from playground.data.live_inputs import LiveInputs
@@ -12,12 +11,12 @@ from playground.engine.plan import Plan, PlanNode, Step, most_iterations, walk
 from playground.engine.source_kinds import Terrain
 from playground.engine.sources import source_kind
 from playground.errors import DataError, Diagnostic
+from playground.memo import PLANS
 from playground.paths import GLSL, shown
 from playground.shader import expressions
 from playground.shader.expressions import ExpressionError, Number
 from playground.sketch.assign import effective_values
 from playground.sketch.flat import Flat, Ref, Source
-from playground.sketch.identity import Identity
 from playground.sketch.model import (
     ComputeVariant,
     CpuSource,
@@ -99,7 +98,7 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
     live = inputs or LiveInputs()
     found: dict[str, Diagnostic] = {}
     assumptions = _assumptions(plan)
-    for step in _fed_from_outside(Identity(plan.nodes)):
+    for step in _fed_from_outside(plan.nodes):
         if isinstance(step.kernel, ForeignShader):
             from playground.shader.dialects.foreign import unfed_warnings
 
@@ -116,7 +115,7 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
                 file = spec.file or shown(step.kernel.path)
                 note = note.removeprefix(f"{Path(file).name}: ")  # of a file that was opened itself
                 found.setdefault(note, Diagnostic(note, file, spec.line, severity="warning"))
-    for step, conditions in _with_conditions(Identity(plan.nodes), Identity(plan.flat)):
+    for step, conditions in _with_conditions(plan.nodes, plan.flat):
         spec = plan.flat.user(step.path)
         for condition, message, known in conditions:
             names: dict[str, Number] = {"size.x": step.size[0], "size.y": step.size[1], **known}
@@ -183,19 +182,19 @@ def _numbers(values: Mapping[str, object]) -> dict[str, Number]:
     return {name: value for name, value in values.items() if isinstance(value, int | float)}
 
 
-@lru_cache(maxsize=2)
+@PLANS.cached(identities=2)
 def _with_conditions(
-    nodes: Identity[tuple[PlanNode, ...]], flat: Identity[Flat]
+    nodes: tuple[PlanNode, ...], flat: Flat
 ) -> tuple[tuple[Step, list[tuple[str, str, dict[str, Number]]]], ...]:
     """Return the steps of kernels that warn of some values of their parameters, and what they warn of."""
-    each = [(step, _conditions(flat.object, step)) for step in walk(nodes.object)]
+    each = [(step, _conditions(flat, step)) for step in walk(nodes)]
     return tuple([(step, conditions) for step, conditions in each if conditions])
 
 
-@lru_cache(maxsize=2)
-def _fed_from_outside(key: Identity[tuple[PlanNode, ...]]) -> tuple[Step, ...]:
+@PLANS.cached(identities=1)
+def _fed_from_outside(nodes: tuple[PlanNode, ...]) -> tuple[Step, ...]:
     """Return the steps of sources, and of other tools' shaders."""
-    return tuple([step for step in walk(key.object) if isinstance(step.kernel, ForeignShader | CpuSource)])
+    return tuple([step for step in walk(nodes) if isinstance(step.kernel, ForeignShader | CpuSource)])
 
 
 def _readers(plan: Plan, source: Step) -> str:

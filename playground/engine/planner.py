@@ -7,7 +7,6 @@ size or a count names a changed value or the time, or where the terrain's file i
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -28,12 +27,12 @@ from playground.engine.sizes import MAX_REPEAT, PassSizes, check_shapes, counted
 from playground.engine.source_facts import described, given_values, own_sizes
 from playground.engine.source_kinds import Terrain
 from playground.errors import ParameterError, SketchError, nearest
+from playground.memo import Memo
 from playground.paths import shown
 from playground.shader import expressions
 from playground.shader.expressions import Number
 from playground.sketch.flat import Flat, Leaf, Loop, Node, repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
-from playground.sketch.identity import Identity
 from playground.sketch.model import LARGEST_SIDE, Graph, Sketch, Technique, Value
 from playground.sketch.substitution import substitute_variants
 from playground.sketch.wiring import inner, output_names, target_of
@@ -59,7 +58,7 @@ class Planner:
 
     def __init__(self) -> None:
         self.made_whole = 0  # plans that were not made of an earlier one
-        self._plans: OrderedDict[object, _LastPlan] = OrderedDict()
+        self._plans: Memo[object, _LastPlan] = Memo("plans of an engine", _MOST_PLANS)
 
     def plan(
         self,
@@ -92,7 +91,7 @@ class Planner:
         fills = not wanted if interpolated is None else interpolated
         terrain = Terrain(sketch.size, sketch.extent, sketch.relief, sketch.base_elevation)
         request = PlanRequest(size, tuple(stopped.items()), fills, "compute" in variants, varies, terrain)
-        place = (Identity(sketch.graph), sketch.folder, sketch.plain, tuple(variants), wanted, request)
+        place = (id(sketch.graph), sketch.folder, sketch.plain, tuple(variants), wanted, request)
 
         def flat(refused: Iterable[str]) -> Flat:
             return substitute_variants(
@@ -104,7 +103,7 @@ class Planner:
             )
 
         found = None
-        if known := self._plans.pop(place, None):
+        if known := self._plans.get(place):
             now = known.plan.flat  # most frames set no value
             if sketch.overrides is not known.plan.sketch.overrides:
                 now = flat(known.refusals)
@@ -116,9 +115,7 @@ class Planner:
                 refused |= more
                 making = _Planning(sketch, flat(refused), request, seconds, after=making)
             found = making.whole(refused)
-        self._plans[place] = found
-        while len(self._plans) > _MOST_PLANS:
-            self._plans.popitem(last=False)
+        self._plans.put(place, found, 1, sketch.graph)
         return found.plan
 
 

@@ -16,7 +16,6 @@ import logging
 import re
 import struct
 import time
-from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -24,6 +23,7 @@ from unicodedata import name as name_of
 
 from playground.engine.software import QUICKER, Choices, fixed_texel, specialise
 from playground.errors import Diagnostic, ShaderError
+from playground.memo import GRAPHS, Memo
 from playground.paths import shown
 from playground.shader.own_shaders import TRIANGLE
 from playground.shader.reserved_names import FETCHES
@@ -246,9 +246,12 @@ class Programs:
         self.compile_times: dict[str, float] = {}  # [ms] of each program compiled, by file
         self.compiled = 0  # how many programs were compiled
         self.frame = 0  # frames begun: programs of the current one stay
-        self._by_text: OrderedDict[tuple[str, ...], Program] = OrderedDict()
-        # The kernel is held with its texts so that its identity stays its own.
-        self._texts: OrderedDict[tuple[int, str, Choices], tuple[Kernel, tuple[str, ...]]] = OrderedDict()
+        self._by_text: Memo[tuple[str, ...], Program] = Memo(
+            "programs",
+            _SPARE,
+            dropped=lambda _, program: program.release(),
+            pinned=lambda _, program: program.frame == self.frame,
+        )
 
     def __len__(self) -> int:
         return len(self._by_text)
@@ -258,21 +261,7 @@ class Programs:
 
         Raises ``ShaderError`` where its text is wrong.
         """
-        wanted = (id(kernel), driver, choices)
-        known = self._texts.get(wanted)
-        if known is not None and known[1] in self._by_text:
-            self._texts.move_to_end(wanted)
-            return self._used(known[1])
-        plain = wrap(kernel, driver, self.ctx.version_code)
-        wrapped = specialise(plain, choices) if choices else plain
-        if isinstance(kernel, PlainFragment):
-            from playground.shader.zero_values import with_zeros
-
-            wrapped = with_zeros(wrapped)
-        text = _texts(wrapped)
-        self._texts[wanted] = (kernel, text)
-        while len(self._texts) > 4 * _SPARE:
-            self._texts.popitem(last=False)
+        plain, wrapped, text = _wrapped(kernel, driver, self.ctx.version_code, choices)
         if text not in self._by_text:
             start = time.perf_counter()
             self._keep(text, self._compiled(plain, wrapped, choices))
@@ -313,23 +302,30 @@ class Programs:
 
     def release(self) -> None:
         """Release every program."""
-        for program in self._by_text.values():
-            program.release()
         self._by_text.clear()
-        self._texts.clear()
 
     def _used(self, text: tuple[str, ...]) -> Program:
-        self._by_text.move_to_end(text)
-        program = self._by_text[text]
+        program: Program = self._by_text.get(text)
         program.frame = self.frame
         return program
 
     def _keep(self, text: tuple[str, ...], compiled: Any) -> None:
         self.compiled += 1
-        self._by_text[text] = Program(self.ctx, compiled)
-        for old in list(self._by_text)[:-_SPARE]:
-            if self._by_text[old].frame != self.frame and old != text:
-                self._by_text.pop(old).release()
+        self._by_text.put(text, Program(self.ctx, compiled))
+
+
+@GRAPHS.cached(identities=1)
+def _wrapped(
+    kernel: Kernel, driver: str, version: int, choices: Choices
+) -> tuple[Wrapped, Wrapped, tuple[str, ...]]:
+    """Return a kernel's text for a driver as it is written, as it is compiled first, and what that is."""
+    plain = wrap(kernel, driver, version)
+    wrapped = specialise(plain, choices) if choices else plain
+    if isinstance(kernel, PlainFragment):
+        from playground.shader.zero_values import with_zeros
+
+        wrapped = with_zeros(wrapped)
+    return plain, wrapped, _texts(wrapped)
 
 
 def _texts(wrapped: Wrapped) -> tuple[str, ...]:

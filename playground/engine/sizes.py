@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from functools import lru_cache, partial
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,12 +17,12 @@ from playground.engine.error_place import placed
 from playground.engine.plan_request import PlanRequest
 from playground.engine.textures import misfit
 from playground.errors import DataError, PlaygroundError
+from playground.memo import GRAPHS
 from playground.shader import expressions
 from playground.shader.expressions import CLOCKS, COUNTERS, ITERATION, ExpressionError, Number, names_in
 from playground.sketch.assign import find_targets, resolve
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Shape, Source
 from playground.sketch.flatten import flatten
-from playground.sketch.identity import Identity
 from playground.sketch.model import LARGEST_SIDE, ComputeVariant, Kernel, PassSpec, Sketch, Value
 from playground.sketch.variants import INSIDE
 
@@ -57,12 +57,12 @@ def loops_around(specs: Mapping[str, PassSpec], path: str) -> tuple[str, ...]:
 
 def counting(flat: Flat) -> frozenset[str]:
     """Return the loops of whose iterations each may have sizes and counts of its own, by path."""
-    return _counting(Identity(flat.shape))
+    return _counting(flat.shape)
 
 
-@lru_cache(maxsize=32)
-def _counting(key: Identity[Shape]) -> frozenset[str]:
-    shape, found = key.object, set[str]()
+@GRAPHS.cached(identities=1)
+def _counting(shape: Shape) -> frozenset[str]:
+    found = set[str]()
     for path, spec in shape.specs.items():
         around = loops_around(shape.specs, path)
         texts = [(text, around[-1:]) for text in spec.size or ()]

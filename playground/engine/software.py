@@ -29,7 +29,7 @@ from collections import defaultdict
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import count
 from typing import TYPE_CHECKING
 
@@ -38,6 +38,7 @@ from playground.engine.plan import Step
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Result, Wired, are_of_own_size, has_unwired
 from playground.engine.textures import make_framebuffer
+from playground.memo import TEXTS
 from playground.shader.outline import Declared, outline
 from playground.shader.own_shaders import own_part, own_shader
 from playground.shader.reserved_names import FETCHES, MATCHES, READ, SKIPS, UNWIRED, WIRED
@@ -548,7 +549,7 @@ def fetched_alone(kernel: Kernel) -> FetchedAlone:
     return _fetched_alone(kernel.source, tuple([declared.name for declared in kernel.inputs]))
 
 
-@lru_cache(maxsize=256)
+@TEXTS.cached()
 def _fetched_alone(source: SourceText, inputs: tuple[str, ...]) -> FetchedAlone:
     if "texelFetch" not in source.names or not inputs:
         return FetchedAlone()
@@ -670,7 +671,7 @@ class FixedTexel:
     components: frozenset[int] = frozenset(range(4))  # what the text takes of it
 
 
-@lru_cache(maxsize=256)
+@TEXTS.cached()
 def fixed_texels(source: SourceText) -> tuple[FixedTexel, ...]:
     """Return the fetches of a flattened text at a place written as numbers, in its order.
 
@@ -698,7 +699,7 @@ def fixed_texels(source: SourceText) -> tuple[FixedTexel, ...]:
     return tuple(texels)
 
 
-@lru_cache(maxsize=256)
+@TEXTS.cached()
 def read_by_texels_alone(source: SourceText) -> frozenset[str]:
     """Return the samplers of which a flattened text reads nothing but what ``fixed_texels`` finds."""
     starts: dict[str, set[int]] = {}

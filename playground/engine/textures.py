@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Iterator, Sequence
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,14 +38,12 @@ _LARGEST_HALF = 65504.0
 _BAND = 2**26  # [bytes] of a texture that is read, or of numbers that are written, at once
 
 
-@cache
 def split_format(form: str) -> tuple[int, str]:
     """Return (components, moderngl dtype) of a format, as "rgba16f"."""
     letters = form.rstrip("0123456789f")
     return len(letters), _DTYPES[form[len(letters) :]]
 
 
-@cache
 def bytes_of(size: tuple[int, int], form: str) -> int:
     """Return the bytes that a texture takes, without mipmaps."""
     components, dtype = split_format(form)

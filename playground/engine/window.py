@@ -17,14 +17,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import replace
-from functools import lru_cache
 
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, Window, sources_of, walk
 from playground.errors import SketchError
+from playground.memo import GRAPHS
 from playground.shader.reserved_names import MATCHES, WINDOW, WIRED, ZOOM
 from playground.shader.source import SourceText
 from playground.sketch.flat import Ref
-from playground.sketch.identity import Identity
 from playground.sketch.model import (
     ComputeVariant,
     CpuSource,
@@ -74,7 +73,7 @@ def _in_window(node: PlanNode, of_pixels: set[str], window: Window) -> PlanNode:
     if isinstance(node.kernel, CpuSource | ComputeVariant | PlainCompute):
         raise _refused(node, f"it is a {node.kernel.kind.replace('_', ' ')} shader")
     names = tuple(n for n, source in node.inputs if isinstance(source, Ref) and source.path in of_pixels)
-    kernel = _changed(Identity(node.kernel), names)
+    kernel = _changed(node.kernel, names)
     if isinstance(kernel, str):
         raise _refused(node, kernel, _switch(node))
     return replace(node, kernel=kernel, size=window.size, window=window)
@@ -95,10 +94,9 @@ def _switch(step: Step) -> str:
     return names[0] if len(names) == 1 and " else 0" in step.kernel.repeat else ""
 
 
-@lru_cache(maxsize=64)
-def _changed(key: Identity[Kernel], inputs: tuple[str, ...]) -> Kernel | str:
+@GRAPHS.cached(identities=1)
+def _changed(kernel: Kernel, inputs: tuple[str, ...]) -> Kernel | str:
     """Return a kernel that knows its window, or why there can be none."""
-    kernel = key.object
     code = kernel.source.code
     if isinstance(kernel, TexelKernel):
         if not kernel.runs_once or _names(code, "previous", *_previous(kernel)):

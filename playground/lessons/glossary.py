@@ -9,12 +9,12 @@ from __future__ import annotations
 import tomllib
 import unicodedata
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 
 from playground.lessons.library import HERE
 from playground.lessons.markdown import links
 from playground.lessons.model import Lesson, Markdown
+from playground.memo import INTERFACE
 
 FILE = HERE / "glossary.toml"
 """The terms."""
@@ -42,7 +42,7 @@ class Term:
         return f"{self.names[language][0]}{colon}{self.meaning[language]}"
 
 
-@cache
+@INTERFACE.cached()
 def terms(file: Path = FILE) -> dict[str, Term]:
     """Read the terms by key, in the order of the file; raise ``ValueError`` for one that lacks something."""
     with file.open("rb") as handle:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 
 from playground.lessons.library import HERE, LANGUAGES
 from playground.lessons.model import Scene
 from playground.lessons.scenes import STATE, Sketches, read_scene
+from playground.memo import INTERFACE
 from playground.sketch.toml_table import TomlFile
 
 FILE = HERE / "heroes.toml"
@@ -52,6 +52,6 @@ def hero_of(lesson: str, sketches: Sketches | None = None, path: Path = FILE) ->
     return Hero(scene, alt)
 
 
-@cache
+@INTERFACE.cached()
 def _file(path: Path) -> TomlFile:
     return TomlFile(path, path.parent)

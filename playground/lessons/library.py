@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Mapping
-from functools import cache
 from pathlib import Path
 
 from playground.errors import SketchError, nearest
+from playground.memo import INTERFACE
 
 HERE = Path(__file__).resolve().parent
 
@@ -50,7 +50,7 @@ class Labels(dict[str, str]):
         return self[key].format(**values)
 
 
-@cache
+@INTERFACE.cached()
 def interface_labels(language: str) -> Labels:
     """Return the labels around lessons in a language."""
     with (HERE / "labels" / f"{language}.toml").open("rb") as handle:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache
 from typing import Any
 
 from playground.errors import ParameterError, PlaygroundError, nearest
 from playground.lessons.model import Scene
+from playground.memo import INTERFACE
 from playground.paths import SKETCHES
 from playground.shader.parameter import spell
 from playground.sketch.find import shipped_sketches
@@ -189,6 +189,6 @@ def _from_above(file: TomlFile, table: Mapping[str, Any], place: Place, sketch: 
     return shown.with_value("channel", 0 if output.components > 2 else 1).of(sketch)
 
 
-@cache
+@INTERFACE.cached()
 def _map(ref: str) -> Map:
     return Map(ref)

@@ -7,8 +7,10 @@ parsers say stays as they say it.
 from __future__ import annotations
 
 import tomllib
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
+
+from playground.memo import INTERFACE
 
 
 class Said(str):
@@ -37,7 +39,7 @@ def in_language(text: str, language: str) -> str:
     return patterns(language).get(text.pattern, text.pattern).format(**values)
 
 
-@cache
+@INTERFACE.cached()
 def patterns(language: str) -> dict[str, str]:
     """Return the patterns of a language by their English ones; none for English."""
     file = Path(__file__).resolve().parent / "labels" / f"said_{language}.toml"

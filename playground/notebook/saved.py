@@ -21,6 +21,7 @@ from typing import Any
 from PIL import Image
 
 from playground.markup import Markup, tag
+from playground.memo import INTERFACE
 from playground.web.blobs import packed_json
 from playground.web.bundle import read_bundle
 
@@ -52,7 +53,7 @@ class Runtime:
         return tag("script", self.packed, type="application/gzip", data_terrain_runtime=self.key)
 
 
-@cache
+@INTERFACE.cached()
 def runtime_of(esm: str, css: str) -> Runtime:
     """Return a runtime by the texts that a widget has of it."""
     packed = packed_json({"esm": esm, "css": css})

@@ -13,8 +13,9 @@ import re
 import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import partial
 
+from playground.memo import TEXTS
 from playground.reduce import blocks, edits
 from playground.reduce.case import Case, Pass, glsl_of
 from playground.reduce.ddmin import ddmin
@@ -272,7 +273,7 @@ def _undefined(case: Case) -> frozenset[str]:
     return frozenset(f"{name} {wrong}" for name, text in texts for wrong in _undefined_in(text))
 
 
-@lru_cache(maxsize=4096)
+@TEXTS.cached()
 def _undefined_in(text: str) -> frozenset[str]:
     return edits.undefined(text)
 

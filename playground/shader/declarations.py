@@ -11,9 +11,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from itertools import groupby
 
+from playground.memo import TEXTS
 from playground.shader.preprocessor import Token, readings, value_of
 
 BUILT_IN = re.compile(r"float|double|u?int|bool|[biud]?vec[234]|d?mat[234](?:x[234])?")
@@ -391,7 +391,7 @@ class Declared:
     written: str  # the name, its array and its initial value
 
 
-@lru_cache(maxsize=32)  # passes of one file share a text
+@TEXTS.cached()  # passes of one file share a text
 def uniforms(code: str) -> Mapping[str, Declared]:
     """Return the uniforms that a text declares, by name; of one in two branches, the first."""
     code = expanded(code)
@@ -431,7 +431,7 @@ def is_declared(code: str, name: str, *, anywhere: bool) -> bool:
     return bool(kinds & {"global", "called"}) or (anywhere and bool(kinds))
 
 
-@lru_cache(maxsize=32)
+@TEXTS.cached()
 def declared_names(code: str) -> Mapping[str, frozenset[str]]:
     """Return the names that a text declares, its macros expanded, with their kinds: see ``Declarations``."""
     found: dict[str, frozenset[str]] = {}
@@ -441,7 +441,7 @@ def declared_names(code: str) -> Mapping[str, frozenset[str]]:
     return found
 
 
-@lru_cache(maxsize=32)
+@TEXTS.cached()
 def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
     """Return what the vertex shader gives a fragment shader: declarations, and statements that set them."""
     code = expanded(code)

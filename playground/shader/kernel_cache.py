@@ -7,47 +7,35 @@ also the same object, by whose identity other caches go.
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
+from playground.memo import FILES, GRAPHS
 from playground.shader.header import parse_kernel
 from playground.shader.kernel import Kernel, Variant
 from playground.shader.source import Origin, read_source_and_origin
 
-_MOST = 1024  # the library has some three hundred, each read in its sketches' folders as well
-
-_parsed: OrderedDict[tuple[str, Path, tuple[Path, ...]], tuple[Kernel | None, Origin]] = OrderedDict()
-# What each was made of is referenced too, so that its identity is not given to another object.
-_replaced: OrderedDict[tuple[Any, ...], tuple[Kernel, dict[str, Any], Any]] = OrderedDict()
 _AnyKernel = TypeVar("_AnyKernel", bound=Kernel)
 
 
 def parsed_kernel(name: str, path: Path, roots: Sequence[Path]) -> Kernel | None:
     """Return what ``parse_kernel`` makes of a file, parsed again only if anything it is made of changed."""
-    key = (name, path, tuple(roots))
-    known = _parsed.get(key)
+    key = (parsed_kernel, name, path, tuple(roots))
+    known: tuple[Kernel | None, Origin] | None = FILES.get(key)
     if known is None or not known[1].holds():
         source, origin = read_source_and_origin(path, roots)
-        known = _parsed[key] = (parse_kernel(name, source), origin)
-        while len(_parsed) > _MOST:
-            _parsed.popitem(last=False)
-    _parsed.move_to_end(key)
+        known = FILES.put(key, (parse_kernel(name, source), origin))
     return known[0]
 
 
 def replaced(kernel: _AnyKernel, **changes: Any) -> _AnyKernel:
     """Return a kernel with some fields replaced: the same object for the same kernel and changes."""
-    key = (id(kernel), *((name, _identity(value)) for name, value in changes.items()))
-    known = _replaced.get(key)
-    if known is None:
-        known = _replaced[key] = (kernel, changes, replace(kernel, **changes))
-        while len(_replaced) > _MOST:
-            _replaced.popitem(last=False)
-    _replaced.move_to_end(key)
-    return cast(_AnyKernel, known[2])
+    key = (replaced, id(kernel), *((name, _identity(value)) for name, value in changes.items()))
+    known: _AnyKernel | None = GRAPHS.get(key)
+    # What it is made of is held too, so that its identity is not given to another object.
+    return known or cast(_AnyKernel, GRAPHS.put(key, replace(kernel, **changes), 1, kernel, changes))
 
 
 def _identity(value: Any) -> Any:

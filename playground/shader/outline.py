@@ -9,7 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import lru_cache
+
+from playground.memo import TEXTS
 
 WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 # A number takes its suffix and its exponent, so that their letters are no names.
@@ -55,7 +56,7 @@ class Declared:
         return self.kind == "function" and self.body < 0
 
 
-@lru_cache(maxsize=1024)
+@TEXTS.cached()
 def outline(text: str) -> tuple[Declared, ...]:
     """Return what a text declares at its top level, in its order; lines end in LF."""
     return tuple(sorted((*_macros(text), *_statements(text)), key=lambda one: one.start))
@@ -82,7 +83,7 @@ class Macro:
     end: int
 
 
-@lru_cache(maxsize=256)
+@TEXTS.cached()
 def code_of(text: str) -> str:
     """Return a text as long as this one, with spaces in place of its comments."""
     return _MARK.sub(lambda match: match[0] if match[0][0] == '"' else _blank(match), text)
@@ -112,7 +113,7 @@ def words(text: str) -> Iterator[tuple[str, int]]:
             yield word, at
 
 
-@lru_cache(maxsize=256)
+@TEXTS.cached()
 def _without_strings(text: str) -> str:
     """Return a text with spaces in place of comments, includes and pragmas."""
     return _DIRECTIVE.sub(
@@ -121,13 +122,13 @@ def _without_strings(text: str) -> str:
     )
 
 
-@lru_cache(maxsize=256)
+@TEXTS.cached()
 def _without_directives(text: str) -> str:
     """Return a text with spaces in place of comments and directives."""
     return _DIRECTIVE.sub(_blank, code_of(text))
 
 
-@lru_cache(maxsize=256)
+@TEXTS.cached()
 def macros_of(text: str) -> tuple[Macro, ...]:
     """Return the macros of a text, in its order."""
     found = []
@@ -139,7 +140,7 @@ def macros_of(text: str) -> tuple[Macro, ...]:
     return tuple(found)
 
 
-@lru_cache(maxsize=256)
+@TEXTS.cached()
 def locals_of(text: str, function: Declared) -> tuple[Local, ...]:
     """Return the names that a function declares, its own arguments too, in their order."""
     code = _without_directives(text)[: max(function.end, function.start)]

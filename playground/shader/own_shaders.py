@@ -6,14 +6,15 @@ part is filled in: names and types that a kernel's header declares.
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 from string import Template
+
+from playground.memo import TEXTS
 
 _FOLDER = Path(__file__).parent / "shaders"
 
 
-@cache
+@TEXTS.cached()
 def own_shader(name: str) -> str:
     """Return the text of a file."""
     return (_FOLDER / name).read_text(encoding="utf-8")

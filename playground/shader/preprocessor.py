@@ -14,9 +14,9 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from typing import NamedTuple
 
+from playground.memo import TEXTS
 from playground.shader.source import SourceText
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
@@ -461,7 +461,7 @@ class _Macro:
     body: tuple[str, ...]
 
 
-@lru_cache(maxsize=4)  # tokens are many
+@TEXTS.cached(weight=512)  # tokens are many
 def readings(code: str, version: int = 0) -> tuple[tuple[Token, ...], ...]:
     """Return the tokens of a text whose comments are blanked, once or for two readings.
 

@@ -19,7 +19,7 @@ import re
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
@@ -35,6 +35,7 @@ from playground.allowed_files import (
     unsaved_texts,
 )
 from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError, nearest
+from playground.memo import TEXTS
 from playground.paths import GLSL, shown
 from playground.regular_file import NotRegularError, irregularity, read_regular
 from playground.shader.libraries import how_to_name, libraries, library_around
@@ -337,7 +338,7 @@ class _Reader:
         raw = text.split("\n")
         file = str(path)
         number = 1
-        for split in _split(text) if len(text) <= _SHORT else _split.__wrapped__(text):
+        for split in _remembered_split(text) if len(text) <= _SHORT else _split(text):
             line = Line(
                 raw[number - 1],
                 split.code,
@@ -474,7 +475,6 @@ class _Split(NamedTuple):
     lines: int  # how many lines of the text
 
 
-@lru_cache(maxsize=512)
 def _split(text: str) -> tuple[_Split, ...]:
     """Return what is in each line of a text: once, for many files include the same few."""
     found = []
@@ -504,6 +504,9 @@ def _joined(lines: list[str], index: int) -> tuple[str, int]:
     if last == index:
         return lines[index], 1
     return "".join(line[:-1] for line in lines[index:last]) + lines[last], last - index + 1
+
+
+_remembered_split = TEXTS.cached()(_split)
 
 
 def _split_comments(raw: str, in_block: bool) -> tuple[str, str, bool]:

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 
+from playground.memo import TEXTS
 from playground.shader.declarations import BUILT_IN, Declarations, Function, Type, Variable
 from playground.shader.preprocessor import Call, Token, readings
 from playground.shader.stage_recipe import VERSION_NUMBER
@@ -34,7 +34,7 @@ def with_zeros(wrapped: Wrapped) -> Wrapped:
     )
 
 
-@lru_cache(maxsize=32)
+@TEXTS.cached()
 def zeroed(text: str) -> str:
     """Return a stage's text with its variables beginning at 0, as many lines."""
     version = VERSION_NUMBER.search(text)

@@ -15,12 +15,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
+from playground.memo import NUMBERS
 from playground.shots.compare import worst_window
 
 Floats = NDArray[np.float32]
@@ -99,7 +100,7 @@ def coloured(difference: Floats) -> NDArray[np.uint8]:
     return np.asarray(ramp()[index], np.uint8)
 
 
-@lru_cache(maxsize=1)
+@cache
 def ramp() -> NDArray[np.uint8]:
     """Return 256 colours from black over purple and orange to pale yellow, uint8 (256, 4).
 
@@ -145,7 +146,7 @@ def _seen(picture: NDArray[np.uint8]) -> tuple[Floats, Floats, Floats]:
 # ── colour spaces ────────────────────────────────────────────────────────────
 
 
-@lru_cache(maxsize=1)
+@cache
 def _matrices() -> tuple[Floats, Floats, Floats]:
     """Return XYZ over white from linear sRGB, then YyCxCz from that light, but for its constant, and back.
 
@@ -160,7 +161,7 @@ def _matrices() -> tuple[Floats, Floats, Floats]:
     return tuple(array.astype(np.float32) for array in found)  # type: ignore[return-value]
 
 
-@lru_cache(maxsize=1)
+@cache
 def _linear() -> Floats:
     """Return the light of each of the 256 bytes of sRGB."""
     byte = np.arange(256) / 255
@@ -211,7 +212,7 @@ _ZERO = np.float32(0)
 # ── colours ──────────────────────────────────────────────────────────────────
 
 
-@lru_cache(maxsize=1)
+@cache
 def _blurs() -> tuple[tuple[tuple[Floats, np.float32], ...], ...]:
     """Return, for each opponent channel, the Gaussians whose sum blurs it, with their shares.
 
@@ -245,7 +246,7 @@ def _colour_difference(ours: Floats, theirs: Floats) -> Floats:
     return np.asarray(np.where(power < knee, below, above), np.float32)
 
 
-@lru_cache(maxsize=1)
+@cache
 def _largest_difference() -> float:
     """Return the difference of pure green and pure blue, than which none in sRGB is larger."""
     plain = np.array([[[0, 255, 0]], [[0, 0, 255]]], np.uint8)
@@ -258,7 +259,7 @@ def _largest_difference() -> float:
 # ── features ─────────────────────────────────────────────────────────────────
 
 
-@lru_cache(maxsize=1)
+@cache
 def _feature_lines() -> tuple[Floats, Floats, Floats]:
     """Return a Gaussian and its first and second derivatives, weighing 1 on each side of zero."""
     deviation = 0.5 * _FEATURE_WIDTH * PIXELS_PER_DEGREE
@@ -327,7 +328,7 @@ def _along(values: Floats, line: Floats, axis: int) -> Floats:
     return found
 
 
-@lru_cache(maxsize=64)
+@NUMBERS.cached()
 def _band(line: bytes, count: int) -> Floats:
     """Return the matrix whose rows are a line of weights, each one further along than the last."""
     weights = np.frombuffer(line, np.float32)

@@ -9,13 +9,12 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Protocol
 
 from playground.errors import ParameterError, nearest
+from playground.memo import GRAPHS
 from playground.shader.kernel import Export, Graph, Kernel, Technique
 from playground.shader.parameter import LARGEST_SIDE, Parameter, Value, coerce, spell
-from playground.sketch.identity import Identity
 
 # How many numbers at most, which, and what a message expects.
 _TERRAIN: dict[str, tuple[int, Callable[[float], bool], str]] = {
@@ -192,12 +191,11 @@ def effective_values(technique: Technique) -> dict[str, Value]:
     A pass's own ``set`` wins over what its technique sets inside, and that over the
     kernels' defaults; the targets of one export share the first target's value.
     """
-    return dict(_effective(Identity(technique)))
+    return dict(_effective(technique))
 
 
-@lru_cache(maxsize=128)
-def _effective(key: Identity[Technique]) -> Mapping[str, Value]:
-    technique = key.object
+@GRAPHS.cached(identities=1)
+def _effective(technique: Technique) -> Mapping[str, Value]:
     if isinstance(technique, Kernel):
         return {p.name: p.default for p in technique.parameters}
     found: dict[str, Value] = {}

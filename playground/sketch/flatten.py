@@ -21,9 +21,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache
 
 from playground.errors import SketchError, nearest
+from playground.memo import GRAPHS
 from playground.paths import shown
 from playground.shader.expressions import counts_frames, follows_time
 from playground.shader.kernel_cache import replaced
@@ -31,7 +31,6 @@ from playground.shader.reserved_names import CLOCKED
 from playground.sketch.assign import effective_values, find_targets, resolve, why_absent
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Ref, Shape, Source, leaves_of
 from playground.sketch.follows import follow, rules_of
-from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, PassSpec, PlainFragment, Sketch, Technique
 from playground.sketch.presence import deciding_inputs
 from playground.sketch.wiring import (
@@ -116,7 +115,7 @@ def flatten(sketch: Sketch) -> Flat:
     Raises ``SketchError`` at the pass that is wrong, with the nearest valid name.
     """
     graph = sketch.graph
-    shape = _shape(Identity(graph))
+    shape = _shape(graph)
     values = effective_values(graph)
     for path, value in sketch.overrides:
         if path not in shape.targets:
@@ -128,10 +127,10 @@ def flatten(sketch: Sketch) -> Flat:
     return Flat(shape, values, sketch.folder, tuple(inside))
 
 
-@lru_cache(maxsize=32)
-def _shape(key: Identity[Graph]) -> Shape:
+@GRAPHS.cached(identities=1, weight=256)
+def _shape(graph: Graph) -> Shape:
     maker = Flattener()
-    written = tuple(maker.expand(key.object, "", {}))
+    written = tuple(maker.expand(graph, "", {}))
     return Shape(
         nodes=in_running_order(written, maker.graphs),
         specs=maker.specs,

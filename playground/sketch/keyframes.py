@@ -19,13 +19,12 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
+from playground.memo import GRAPHS
 from playground.shader.kernel import Graph
 from playground.shader.parameter import Parameter, Value, is_whole
 from playground.sketch.assign import resolve
-from playground.sketch.identity import Identity
 
 EASES = ("smooth", "linear", "hold")
 """How values go from a keyframe to the next; the first where it does not say."""
@@ -114,20 +113,18 @@ def at(
 
 def tracks_of(keyframes: tuple[Keyframe, ...], graph: Graph) -> tuple[dict[str, Track], dict[str, Track]]:
     """Return the tracks of the camera's fields, by name, and of the parameters, by path."""
-    return _tracks(keyframes, Identity(graph))
+    return _tracks(graph, keyframes)
 
 
-@lru_cache(maxsize=64)
-def _tracks(
-    keyframes: tuple[Keyframe, ...], graph: Identity[Graph]
-) -> tuple[dict[str, Track], dict[str, Track]]:
+@GRAPHS.cached(identities=1)
+def _tracks(graph: Graph, keyframes: tuple[Keyframe, ...]) -> tuple[dict[str, Track], dict[str, Track]]:
     names = dict.fromkeys(name for keyframe in keyframes for name, _ in keyframe.camera)
     cameras = {
         name: _track(keyframes, "camera", name, angles=(0,) if name == "azimuth" else ()) for name in names
     }
     tracks = {}
     for path in dict.fromkeys(path for keyframe in keyframes for path, _ in keyframe.values):
-        parameter = resolve(graph.object, path)[0].parameter
+        parameter = resolve(graph, path)[0].parameter
         how = {"holds": _holds(parameter), "angles": _angles(parameter)}
         tracks[path] = _track(keyframes, "values", path, **how)
     return cameras, tracks

@@ -14,11 +14,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache
 
+from playground.memo import GRAPHS
 from playground.shader.kernel import Export, Graph, PassSpec, Technique
 from playground.sketch.assign import find_targets
-from playground.sketch.identity import Identity
 from playground.sketch.wiring import check_graph, input_names, output_names, takes_input
 
 
@@ -27,12 +26,11 @@ def as_wired(sketch: Graph) -> Graph:
 
     Raises ``SketchError`` at a pass whose technique has no output without an input that is not wired.
     """
-    return _as_wired(Identity(sketch))
+    return _as_wired(sketch)
 
 
-@lru_cache(maxsize=256)
-def _as_wired(key: Identity[Graph]) -> Graph:
-    sketch = key.object
+@GRAPHS.cached(identities=1)
+def _as_wired(sketch: Graph) -> Graph:
     if not is_conditional(sketch):
         return sketch
     passes: list[PassSpec] = []
@@ -49,12 +47,11 @@ def _as_wired(key: Identity[Graph]) -> Graph:
 def form_of(technique: Graph, wired: Iterable[str]) -> Graph:
     """Return a technique as it is where some of its inputs, or paths inside, are wired."""
     whole = technique.written
-    return _form(Identity(whole), frozenset(wired)) if is_conditional(whole) else whole
+    return _form(whole, frozenset(wired)) if is_conditional(whole) else whole
 
 
-@lru_cache(maxsize=1024)
-def _form(key: Identity[Graph], wired: frozenset[str]) -> Graph:
-    whole = key.object
+@GRAPHS.cached(identities=1)
+def _form(whole: Graph, wired: frozenset[str]) -> Graph:
     passes, absent = _present(whole, wired)
     form = replace(whole, passes=tuple(passes), whole=whole, absent=tuple(absent.items()))
     form = replace(
@@ -92,12 +89,11 @@ def _head(source: str) -> str:
 
 def is_conditional(technique: Technique) -> bool:
     """Return whether any pass inside may be absent."""
-    return isinstance(technique, Graph) and _is_conditional(Identity(technique))
+    return isinstance(technique, Graph) and _is_conditional(technique)
 
 
-@lru_cache(maxsize=1024)
-def _is_conditional(key: Identity[Graph]) -> bool:
-    graph = key.object
+@GRAPHS.cached(identities=1)
+def _is_conditional(graph: Graph) -> bool:
     return (
         graph.whole is not None
         or bool(_named_inputs(graph))
@@ -120,12 +116,11 @@ def sources_of(spec: PassSpec) -> Iterator[tuple[str, tuple[str, ...]]]:
 
 def deciding_inputs(technique: Technique) -> tuple[str, ...]:
     """Return the inputs of a technique by which some pass in it is present or absent."""
-    return _deciding(Identity(technique.written)) if isinstance(technique, Graph) else ()
+    return _deciding(technique.written) if isinstance(technique, Graph) else ()
 
 
-@lru_cache(maxsize=512)
-def _deciding(key: Identity[Graph]) -> tuple[str, ...]:
-    graph = key.object
+@GRAPHS.cached(identities=1)
+def _deciding(graph: Graph) -> tuple[str, ...]:
     named = _named_inputs(graph) if is_conditional(graph) else set()
     for export in graph.inputs if is_conditional(graph) else ():
         for head, _, rest in (target.partition(".") for target in export.targets):

@@ -10,10 +10,10 @@ from __future__ import annotations
 import logging
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from playground.memo import GRAPHS
 from playground.sketch.assign import effective_values, resolve
 from playground.sketch.flat import Flat, Leaf, Loop, Node, Ref, Shape, Source, leaves_of
 from playground.sketch.flatten import (
@@ -25,7 +25,6 @@ from playground.sketch.flatten import (
     leaf_of,
     ordered,
 )
-from playground.sketch.identity import Identity
 from playground.sketch.model import VARIANTS, Graph, Kernel, PassSpec, Sketch, Technique, Value, Variant
 from playground.sketch.variants import INSIDE, Omission, active_variant, unverified
 from playground.sketch.wiring import initial_names, input_names
@@ -49,7 +48,7 @@ def substitute_variants(
     if not kinds:
         return flat
     limits = _Limits(frozenset(kinds), wanted.partition(":")[0], stopped, refused, flat.set_inside)
-    shape = _substituted(Identity(flat.shape), limits)
+    shape = _substituted(flat.shape, limits)
     values = flat.values
     if plain := {path for path, name, default in shape.lacking if values[join(path, name)] != default}:
         more = (*refused, *sorted(plain))
@@ -80,10 +79,10 @@ class _Limits(NamedTuple):
     set_inside: tuple[str, ...]
 
 
-@lru_cache(maxsize=32)
-def _substituted(key: Identity[Shape], limits: _Limits) -> Shape:
-    made = _Substitution(key.object, limits)
-    for path in key.object.specs:  # a technique before what is inside it
+@GRAPHS.cached(identities=1, weight=256)
+def _substituted(shape: Shape, limits: _Limits) -> Shape:
+    made = _Substitution(shape, limits)
+    for path in shape.specs:  # a technique before what is inside it
         made.consider(path)
     for omission in made.omitted:
         _log.debug("%s", omission)

@@ -11,20 +11,20 @@ from __future__ import annotations
 
 import os
 import time
-from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from playground.allowed_files import Signature, note_again, noting_part, signature_in_load, texts_of_load
 from playground.errors import PlaygroundError
+from playground.memo import Memo
 from playground.paths import GLSL
 from playground.shader.source import read_text
 from playground.sketch.model import Technique
 from playground.sketch.techniques import Techniques
 
 RESTED = 3.0  # [s] from a file's last change to its reading, at least; FAT counts in steps of two seconds
-_MOST = 256
+_MAX_TECHNIQUES = 256
 
 _Name = tuple[str, Path, Path]
 
@@ -59,7 +59,7 @@ class TechniqueCache(Techniques):
 
     def __init__(self) -> None:
         super().__init__()
-        self._cached: OrderedDict[_Name, _Entry] = OrderedDict()
+        self._cached: Memo[_Name, _Entry] = Memo("techniques", _MAX_TECHNIQUES)
         self._now: dict[_Name, _Entry] = {}  # what this load has used
 
     def begin(self) -> TechniqueCache:
@@ -97,8 +97,4 @@ class TechniqueCache(Techniques):
         unproven = frozenset(
             path for path, _ in texts if (known := places[path]) is None or known.latest >= rested
         )
-        made = self._cached[name] = _Entry(found, places, texts, unproven, depth)
-        self._cached.move_to_end(name)
-        while len(self._cached) > _MOST:
-            self._cached.popitem(last=False)
-        return made
+        return self._cached.put(name, _Entry(found, places, texts, unproven, depth))

@@ -10,12 +10,12 @@ import math
 import re
 import tomllib
 from collections.abc import Callable, Collection, Mapping
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from playground.errors import Diagnostic, SketchError, nearest
 from playground.json_text import long_number
+from playground.memo import TEXTS
 from playground.paths import shown
 from playground.shader.parameter import spell
 from playground.shader.source import read_text
@@ -133,13 +133,13 @@ _NOUNS = {
 }
 
 
-@lru_cache(maxsize=512)
+@TEXTS.cached()
 def _places_in(text: str) -> TomlPlaces:
     """Return where everything is in a text: once, for a sketch is loaded again at every save."""
     return TomlPlaces(text)
 
 
-@lru_cache(maxsize=512)
+@TEXTS.cached()
 def _table_of(text: str) -> Mapping[str, Any]:
     return tomllib.loads(text)
 

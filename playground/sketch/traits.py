@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
 
+from playground.memo import GRAPHS
 from playground.shader.expressions import follows_time
-from playground.sketch.identity import Identity
 from playground.sketch.model import Draw, Graph, Kernel, Parameter, PlainShader, Sketch, Technique, kernels_of
 
 _MOVING = frozenset({"time", "bands", "frame", "frame_of_time", "delta", "date", "date_from_1"})
@@ -33,7 +32,7 @@ class Traits:
 
 def traits_of(sketch: Sketch) -> Traits:
     """Return the traits of a sketch's graph."""
-    return _traits(Identity(sketch.graph))
+    return _traits(sketch.graph)
 
 
 def is_animated(sketch: Sketch) -> bool:
@@ -46,12 +45,12 @@ def has_moving_counts(sketch: Sketch) -> bool:
     return bool(sketch.keyframes) or traits_of(sketch).counts
 
 
-@lru_cache(maxsize=64)
-def _traits(key: Identity[Graph]) -> Traits:
-    kernels = list(kernels_of(key.object))
+@GRAPHS.cached(identities=1)
+def _traits(graph: Graph) -> Traits:
+    kernels = list(kernels_of(graph))
     plain = {id(kernel) for _, kernel in kernels if isinstance(kernel, PlainShader)}
     files = [(f"{at}.{p.name}", p) for at, k in kernels for p in k.parameters if p.widget.kind == "file"]
-    counts = any(follows_time(text) for text in _counts_of(key.object))
+    counts = any(follows_time(text) for text in _counts_of(graph))
     return Traits(
         moves=counts
         or any(k.reads("time") for _, k in kernels if id(k) not in plain)

@@ -23,7 +23,6 @@ import json
 import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from pathlib import Path
 from shlex import quote
 from typing import Any
@@ -31,10 +30,10 @@ from typing import Any
 from playground.allowed_files import is_file
 from playground.errors import SketchError, nearest
 from playground.json_text import read_json
+from playground.memo import FILES, GRAPHS
 from playground.paths import GLSL, shown
 from playground.shader.options import Bound
 from playground.shader.source import read_text
-from playground.sketch.identity import Identity
 from playground.sketch.model import (
     VARIANTS,
     ComputeVariant,
@@ -60,12 +59,11 @@ _TOKEN = re.compile(
 
 def content_of(technique: Technique) -> str:
     """Return the hash of a technique's canonical text; worked out once for each object."""
-    return _content_of(Identity(technique))
+    return _content_of(technique)
 
 
-@lru_cache(maxsize=2048)
-def _content_of(key: Identity[Technique]) -> str:
-    technique = key.object
+@GRAPHS.cached(identities=1)
+def _content_of(technique: Technique) -> str:
     parts = _of_graph(technique) if isinstance(technique, Graph) else _of_kernel(technique)
     return hashlib.blake2b(repr(parts).encode(), digest_size=16).hexdigest()
 
@@ -144,12 +142,12 @@ def is_verified(technique: Technique, variant: Variant) -> bool:
 
 def unverified(sketch: Sketch, kinds: Collection[str] = VARIANTS) -> tuple[Omission, ...]:
     """Return the fast variants of some ``kinds`` that its sketch cannot have run: they are not verified."""
-    return () if sketch.plain else _unverified(Identity(sketch.graph), frozenset(kinds))
+    return () if sketch.plain else _unverified(sketch.graph, frozenset(kinds))
 
 
-@lru_cache(maxsize=64)
-def _unverified(key: Identity[Graph], kinds: frozenset[str]) -> tuple[Omission, ...]:
-    return tuple(dict.fromkeys(_unverified_inside(key.object, kinds)))
+@GRAPHS.cached(identities=1)
+def _unverified(graph: Graph, kinds: frozenset[str]) -> tuple[Omission, ...]:
+    return tuple(dict.fromkeys(_unverified_inside(graph, kinds)))
 
 
 def _unverified_inside(technique: Technique, kinds: frozenset[str]) -> Iterator[Omission]:
@@ -299,7 +297,7 @@ def read(record: Path) -> dict[str, Verified]:
     return dict(_read(read_text(record), shown(record))) if record.is_file() else {}
 
 
-@lru_cache(maxsize=16)
+@FILES.cached()
 def _read(text: str, name: str) -> Mapping[str, Verified]:
     try:
         table = read_json(text)["variants"]

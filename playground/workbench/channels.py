@@ -12,15 +12,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache
 
 from playground.errors import PlaygroundError, SketchError, nearest
+from playground.memo import GRAPHS
 from playground.paths import GLSL, shown
 from playground.sketch.assign import find_targets
 from playground.sketch.find import shipped_names
 from playground.sketch.flat import Ref, Source, leaves_of
 from playground.sketch.flatten import flatten
-from playground.sketch.identity import Identity
 from playground.sketch.model import (
     ForeignShader,
     Graph,
@@ -71,12 +71,11 @@ class Channel:
 
 def channels(sketch: Sketch) -> tuple[Channel, ...]:
     """Return every channel of a sketch, pass by pass, by name."""
-    return _channels(Identity(sketch.graph))
+    return _channels(sketch.graph)
 
 
-@lru_cache(maxsize=16)
-def _channels(key: Identity[Graph]) -> tuple[Channel, ...]:
-    graph = key.object
+@GRAPHS.cached(identities=1)
+def _channels(graph: Graph) -> tuple[Channel, ...]:
     names = [
         (spec, name)
         for spec in graph.passes
@@ -177,7 +176,7 @@ def in_order(sources: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     return sorted(sources, key=lambda pair: not is_technique(pair[1]))
 
 
-@lru_cache(maxsize=1)
+@cache
 def _feeds() -> tuple[str, ...]:
     """Return the techniques that may feed a channel."""
     found = []

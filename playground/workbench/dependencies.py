@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from functools import lru_cache
 from pathlib import Path
 
 from playground.allowed_files import Signature, sidecar_places
 from playground.engine.files import find_file
 from playground.errors import DataError, PlaygroundError
+from playground.memo import INTERFACE
 from playground.paths import GLSL, current_folder, without_part
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
@@ -24,7 +24,7 @@ def files_of(sketch: Sketch) -> frozenset[Path]:
     return _paths(sketch.files) | data_files(sketch)
 
 
-@lru_cache(maxsize=16)
+@INTERFACE.cached(weight=16)
 def _paths(names: tuple[str, ...]) -> frozenset[Path]:
     """Return paths: the same objects for the same names, whose hashes are worked out once."""
     return frozenset(map(Path, names))

@@ -5,10 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import lru_cache
 from pathlib import Path
 
 from playground.errors import Diagnostic, PlaygroundError
+from playground.memo import INTERFACE
 from playground.paths import shown, without_part
 from playground.workbench.dependencies import path_named
 from playground.workbench.editors import Opener, find_editor
@@ -86,7 +86,7 @@ def editor_name() -> str:
     return _name_at(int(time.monotonic() / _LOOK_AGAIN))
 
 
-@lru_cache(maxsize=1)
+@INTERFACE.cached()
 def _name_at(_: int) -> str:
     """Look for the editor; a tooltip calls this every frame, and the whole PATH is searched."""
     editor, _why = find_editor()

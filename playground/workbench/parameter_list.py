@@ -7,12 +7,12 @@ draft: a panel is drawn many times a second.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import groupby
 
+from playground.memo import INTERFACE
 from playground.shader.parameter import label_of, write
 from playground.sketch.assign import Shown, resolve, shown_parameters, values_of
-from playground.sketch.identity import Identity
 from playground.sketch.model import Parameter, Sketch, Value
 from playground.workbench.edits import Draft
 
@@ -84,40 +84,39 @@ class Listing:
 
     def sections(self, draft: Draft) -> tuple[Section, ...]:
         """Return the passes of a draft, in their order."""
-        return _sections(Identity(draft.base))
+        return _sections(draft.base)
 
     def main(self, draft: Draft) -> tuple[Item, ...]:
         """Return the parameters that a draft's sketch is about, in its order: see ``Sketch.main``."""
-        return _main(Identity(draft.base))
+        return _main(draft.base)
 
     def values(self, draft: Draft) -> Values:
         """Return what its parameters are set to."""
-        return _values(Identity(draft))
+        return _values(draft)
 
     def filtered(self, draft: Draft, wanted: Filter) -> dict[str, Section]:
         """Return the passes with what a filter lets through, by name; none that keeps nothing."""
-        return _filtered(Identity(draft.base), wanted, self.values(draft).changed)
+        return _filtered(draft.base, wanted, self.values(draft).changed)
 
 
-@lru_cache(maxsize=8)
-def _values(key: Identity[Draft]) -> Values:
-    draft = key.object
-    items = [item for section in _sections(Identity(draft.base)) for item in section.items]
-    now, in_file = values_of(draft.sketch), _values_in_file(Identity(draft.base))
+@INTERFACE.cached(identities=1, weight=128)
+def _values(draft: Draft) -> Values:
+    items = [item for section in _sections(draft.base) for item in section.items]
+    now, in_file = values_of(draft.sketch), _values_in_file(draft.base)
     of = {item.path: now[item.leaf] for item in items}
     changed = frozenset(path for path, value in of.items() if value != in_file[path])
     return Values(of, in_file, changed, frozenset(draft.edits.locked))
 
 
-@lru_cache(maxsize=8)
-def _values_in_file(key: Identity[Sketch]) -> dict[str, Value]:
-    file = values_of(key.object)
-    return {item.path: file[item.leaf] for section in _sections(key) for item in section.items}
+@INTERFACE.cached(identities=1, weight=128)
+def _values_in_file(sketch: Sketch) -> dict[str, Value]:
+    file = values_of(sketch)
+    return {item.path: file[item.leaf] for section in _sections(sketch) for item in section.items}
 
 
-@lru_cache(maxsize=8)
-def _filtered(key: Identity[Sketch], wanted: Filter, changed: frozenset[str]) -> dict[str, Section]:
-    left = {section.name: _thinned(section, wanted, changed) for section in _sections(key)}
+@INTERFACE.cached(identities=1, weight=128)
+def _filtered(sketch: Sketch, wanted: Filter, changed: frozenset[str]) -> dict[str, Section]:
+    left = {section.name: _thinned(section, wanted, changed) for section in _sections(sketch)}
     return {name: section for name, section in left.items() if section.items}
 
 
@@ -146,9 +145,9 @@ def _quoted(word: str) -> str:
     return word if plain else f'"{word}"'
 
 
-@lru_cache(maxsize=8)
-def _sections(key: Identity[Sketch]) -> tuple[Section, ...]:
-    sketch, found = key.object, []
+@INTERFACE.cached(identities=1, weight=128)
+def _sections(sketch: Sketch) -> tuple[Section, ...]:
+    found = []
     by_pass = {
         name: list(mine)
         for name, mine in groupby(shown_parameters(sketch), lambda s: s.path.partition(".")[0])
@@ -169,11 +168,11 @@ def _item(sketch: Sketch, shown: Shown) -> Item:
     return Item(shown.path, p, leaf, shown.exported, words, f"##{shown.path}", p.title)
 
 
-@lru_cache(maxsize=8)
-def _main(key: Identity[Sketch]) -> tuple[Item, ...]:
+@INTERFACE.cached(identities=1, weight=128)
+def _main(sketch: Sketch) -> tuple[Item, ...]:
     """Return the main parameters, group or pass named where a title alone would not say what is meant."""
-    sketch, made = key.object, []
-    items = [item for section in _sections(key) for item in section.items]
+    made = []
+    items = [item for section in _sections(sketch) for item in section.items]
     named = {item.path: item for item in items}
     by_leaf = {item.leaf: item for item in items}  # an inner path may be in the list of an outer one
     found = [named.get(path) or by_leaf[resolve(sketch.graph, path)[0].path] for path in sketch.main]

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from pathlib import Path
 
 from playground.allowed_files import root_of
@@ -16,6 +15,7 @@ from playground.data.live_inputs import LiveInputs
 from playground.engine.plan import Plan
 from playground.engine.plan_warnings import source_warnings
 from playground.errors import Diagnostic, PlaygroundError, counted
+from playground.memo import FILES
 from playground.paths import GLSL, without_part
 from playground.regular_file import read_regular
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
@@ -140,7 +140,7 @@ def _lines_of(name: str) -> list[str]:
         return []
 
 
-@lru_cache(maxsize=32)
+@FILES.cached()
 def _lines_at(path: Path, _: str) -> list[str]:
     text = read_regular(path).decode("utf-8-sig", "replace")
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")

@@ -29,6 +29,7 @@ from playground.engine.by_example import (
 )
 from playground.engine.source_kinds import Material
 from playground.errors import DataError
+from playground.memo import SOURCES
 from playground.paths import GLSL
 
 from ..truth.drainage import drained_areas, exponent_of
@@ -266,7 +267,7 @@ def test_it_can_be_stopped_between_any_two_of_its_heavy_steps(example, monkeypat
                 running.pop()
 
         monkeypatch.setattr(by_example, name, noted)
-    by_example._ways.cache_clear()
+    SOURCES.drop_of(by_example._ways)
     guide = lines(65)
     made_like(
         example, example.spacing, (65, 65), (METRES, METRES), FEW, guide, lambda *at: order.append("report")

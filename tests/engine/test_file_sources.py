@@ -7,6 +7,7 @@ import os
 import numpy as np
 import pytest
 
+from playground import memo
 from playground.data.content_hash import content_key
 from playground.engine import file_sources
 from playground.engine.source_kinds import Terrain
@@ -143,7 +144,7 @@ def test_large_heights_are_not_kept_once_a_texture_was_made_and_are_known_all_th
     known, kept = KIND.describe(given), KIND.make(given, (3, 2))["height"]
     monkeypatch.setattr("playground.engine.file_sources.KEPT", 1)
     np.testing.assert_array_equal(KIND.make(given, (3, 2))["height"], kept)
-    assert file_sources._whole.cache_info().currsize == 0
+    assert memo.SOURCES.count_of(file_sources._whole) == 0
     for module in ("arrays", "grid"):
         monkeypatch.setattr(f"playground.data.{module}.open_regular", None)
     assert KIND.describe(given) == known

@@ -653,7 +653,7 @@ def test_only_what_costs_more_than_to_read_it_is_cached(any_shelf, worn, monkeyp
         keys = engine.internal.keys_of(engine.internal.plan)
         engine.internal.disk_caching._costs.clear()
         for name, cost in (costs | more).items():
-            engine.internal.disk_caching._costs[keys.loops.get(name) or keys.steps[name]] = cost
+            engine.internal.disk_caching._costs.put(keys.loops.get(name) or keys.steps[name], cost)
         any_shelf.keep(engine)
         return {each.textures.made_for.partition(": ")[2] for each in listed(any_shelf.folder)}
 
@@ -674,7 +674,7 @@ def test_what_has_mipmaps_is_worth_more_on_a_software_renderer(any_shelf, worn, 
     picture(engine, worn)
     assert "height" in engine.internal.results["terrain"].mipmapped
     for key in engine.internal.disk_caching._costs:
-        engine.internal.disk_caching._costs[key] = 1.0
+        engine.internal.disk_caching._costs.put(key, 1.0)
     any_shelf.keep(engine)
     (found,) = [each.textures for each in listed(any_shelf.folder)]
     assert found.made_for.endswith("worn.add") and found.cost == pytest.approx(2.0)

@@ -16,6 +16,7 @@ from scipy.interpolate import LinearNDInterpolator
 from playground.engine.delaunay import Rules, Triangulation, triangulate
 from playground.engine.engine import Engine
 from playground.errors import DataError
+from playground.memo import SOURCES
 from playground.paths import GLSL
 from playground.sketch.model import kernels_of
 from playground.sketch.techniques import read_technique
@@ -173,7 +174,7 @@ def test_repeated_it_is_the_same(ctx, terrain):
     sketch = terrain((65, 65), points=300)
     found = []
     for _ in range(2):
-        triangulate.cache_clear()
+        SOURCES.drop_of(triangulate)
         with Engine(ctx) as engine:
             found.append(engine.read(sketch, "terrain"))
     np.testing.assert_array_equal(*found)

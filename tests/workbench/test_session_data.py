@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground import memo
 from playground.data import elevation
 from playground.data.image_files import write_png
-from playground.engine import file_sources
 from playground.engine.engine import Engine
 from playground.engine.sandbox import SandboxReport
 from playground.errors import SandboxCrash
@@ -44,9 +44,9 @@ def read(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
 
     whole = elevation.ElevationFile.read
     monkeypatch.setattr(elevation.ElevationFile, "read", reading)
-    file_sources._whole.cache_clear()
+    memo.SOURCES.clear()
     yield names
-    file_sources._whole.cache_clear()
+    memo.SOURCES.clear()
 
 
 @pytest.fixture

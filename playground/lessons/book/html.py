@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import lru_cache
 from typing import Any
 
 from latex2mathml.converter import convert
@@ -12,6 +11,7 @@ from markdown_it.token import Token
 
 from playground.lessons.markdown import parser
 from playground.markup import Markup, joined, tag
+from playground.memo import INTERFACE
 
 Anchor = Callable[[str], dict[str, str]]
 """Maps a link to the attributes of its element: "lesson:fourier" → {"href": "fourier.html"}."""
@@ -45,7 +45,7 @@ def formula(latex: str, *, alone: bool = False) -> Markup:
     return Markup(convert(latex, display="block" if alone else "inline"))
 
 
-@lru_cache(maxsize=512)
+@INTERFACE.cached()
 def code(text: str) -> Markup:
     """Return GLSL as HTML, its tokens marked with classes."""
     from pygments import highlight

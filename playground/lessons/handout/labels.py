@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import tomllib
-from functools import cache
 from pathlib import Path
 
 from playground.lessons.library import Labels
+from playground.memo import INTERFACE
 
 
-@cache
+@INTERFACE.cached()
 def handout_labels(language: str) -> Labels:
     """Return the labels of a hand-out in a language."""
     with (Path(__file__).resolve().parent / "labels" / f"{language}.toml").open("rb") as handle:

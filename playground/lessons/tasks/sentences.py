@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import tomllib
-from functools import cache
 from pathlib import Path
 
 from playground.lessons.library import Labels
@@ -12,12 +11,13 @@ from playground.lessons.measuring import spelled
 from playground.lessons.tasks.match import Match
 from playground.lessons.tasks.verdict import Result, Verdict
 from playground.lessons.translatable import in_language
+from playground.memo import INTERFACE
 from playground.shader.parameter import spell
 
 _BRIGHTER = 1.0  # level of 255, in the mean, from which a picture is called brighter or darker
 
 
-@cache
+@INTERFACE.cached()
 def task_labels(language: str) -> Labels:
     """Return what is said of works, in a language."""
     with (Path(__file__).parent / "labels" / f"{language}.toml").open("rb") as handle:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 from markdown_it.token import Token
 
 from playground.lessons.markdown import parser
+from playground.memo import INTERFACE
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Part:
     close: bool = False  # it follows closely on the part before, as items of a list do
 
 
-@lru_cache(maxsize=512)
+@INTERFACE.cached()
 def parts_of(words: str) -> tuple[Part, ...]:
     """Return the parts of a text."""
     return tuple(_parts(parser().parse(words)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache, partial
+from functools import partial
 from typing import Any
 
 from imgui_bundle import ImVec2, imgui
@@ -19,6 +19,7 @@ from playground.live.code_window import save
 from playground.live.lesson.figure_blocks import draw_parameters
 from playground.live.lesson.markdown_runs import written
 from playground.live.lesson.page import Page
+from playground.memo import INTERFACE
 from playground.workbench.lesson.tasks import Task
 
 _WIDE = 160.0  # of the picture to match, in units of scale 1
@@ -144,7 +145,7 @@ def _verdict(block: Exercise, verdict: Verdict, page: Page) -> None:
             _difference(result, page)
 
 
-@lru_cache(maxsize=8)
+@INTERFACE.cached(weight=128)
 def _map(result: Result) -> Picture:
     assert result.mine is not None and result.wanted is not None
     return difference_map(result.mine, result.wanted)

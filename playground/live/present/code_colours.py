@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 from pygments.lexers.graphics import GLShaderLexer
 from pygments.token import Comment, Keyword, Name, Number, Operator
+
+from playground.memo import INTERFACE
 
 Rgb = tuple[int, int, int]
 
@@ -20,7 +20,7 @@ _COLOURS: tuple[tuple[object, Rgb], ...] = (
 )
 
 
-@lru_cache(maxsize=32)
+@INTERFACE.cached(weight=16)
 def coloured(code: str) -> tuple[tuple[tuple[str, Rgb], ...], ...]:
     """Return the lines of a shader, each as its parts with their colours, 0..255."""
     lines: list[list[tuple[str, Rgb]]] = [[]]

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache, lru_cache
 from itertools import groupby
 from pathlib import Path
 
 import imgui_bundle
 from PIL import ImageFont
+
+from playground.memo import INTERFACE
 
 _FONTS = Path(imgui_bundle.__file__).parent / "assets" / "fonts"
 _SYMBOLS = _FONTS / "latex" / "latinmodern-math.otf"
@@ -51,12 +52,12 @@ class Face:
             yield _font(self.style, number, self.size), "".join(letters)
 
 
-@lru_cache(maxsize=256)
+@INTERFACE.cached()
 def _font(style: str, number: int, size: float) -> ImageFont.FreeTypeFont:
     return ImageFont.truetype(str(_FILES[style][number]), size, layout_engine=ImageFont.Layout.BASIC)
 
 
-@cache
+@INTERFACE.cached()
 def _font_number(style: str, letter: str) -> int:
     """Return which of a style's fonts has a letter; the first where none has it."""
     if letter.isspace():

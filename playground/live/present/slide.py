@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 from PIL import Image, ImageDraw
 
@@ -27,6 +26,7 @@ from playground.live.present.typeset import (
     fitted,
     paint_text,
 )
+from playground.memo import INTERFACE
 
 LEAST = 28.0
 """The smallest letters, on a screen of 1080 lines [pixels]."""
@@ -202,7 +202,7 @@ def plate_of(text: str, sizes: Sizes) -> Image.Image | None:
     return image
 
 
-@lru_cache(maxsize=32)
+@INTERFACE.cached(weight=64)
 def help_of(rows: tuple[tuple[str, str], ...], sizes: Sizes) -> Image.Image:
     """Return the keys of a presentation and their meanings, as large as the picture."""
     image = Image.new("RGBA", sizes.picture, (*_GROUND, 250))

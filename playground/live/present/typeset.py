@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 
 from PIL import Image, ImageDraw
 
@@ -12,6 +11,7 @@ from playground.live.lesson.formulas import set_formula
 from playground.live.lesson.line_breaking import Extent, Line, Placed, broken
 from playground.live.lesson.markdown_runs import Part, Run, Runs, parts_of, written
 from playground.live.present.faces import Face
+from playground.memo import INTERFACE
 
 Rgb = tuple[int, int, int]
 """A display-encoded colour, 0..255."""
@@ -56,7 +56,7 @@ class Laid:
                     _paint_run(image, draw, placed, left, top + piece.line.ascent, piece)
 
 
-@lru_cache(maxsize=128)
+@INTERFACE.cached(weight=16)
 def laid_out(words: Markdown, size: float, width: float, ink: Rgb = INK) -> Laid:
     """Lay out a text of a size [pixels] in a width [pixels]."""
     setter = _Setter(size, width, ink)
@@ -181,7 +181,7 @@ def paint_text(
         x += font.getlength(part)
 
 
-@lru_cache(maxsize=256)
+@INTERFACE.cached()
 def _formula_of(latex: str, size: int, ink: Rgb, display: bool) -> tuple[Image.Image, float] | None:
     red, green, blue = ink
     found = set_formula(latex, size, 255 << 24 | blue << 16 | green << 8 | red, display=display)

@@ -8,13 +8,13 @@ sketches have none.
 from __future__ import annotations
 
 import re
-from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from playground.errors import ParameterError, nearest
+from playground.memo import FILES
 from playground.shader.kernel import Graph
 from playground.shader.source import read_text
 
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 OWN = "own"
 EXPORT = ".json"
 _REFUSED = "sound"
-_MOST = 64
 
 _ISF = re.compile(
     r"(?:\s|//[^\n]*\n)*/\*\s*\{(?:\s*\}|(?:(?!\*/).)*"
@@ -119,8 +118,6 @@ DIALECTS = (
 )
 """The dialects, in the order in which a text is looked at."""
 
-_known: OrderedDict[tuple[Path, Path, str], tuple[Graph | None, Files]] = OrderedDict()
-
 
 def names() -> tuple[str, ...]:
     """Return what ``--dialect`` takes."""
@@ -172,10 +169,9 @@ def read_foreign(
     from playground.shader.dialects.foreign import Files
     from playground.shader.dialects.passes import graph_of_shaders
 
-    key = (path, root, dialect)
-    known = _known.get(key) if not instead else None
+    key = (read_foreign, path, root, dialect)
+    known: tuple[Graph | None, Files] | None = FILES.get(key) if not instead else None
     if known is not None and known[1].hold():
-        _known.move_to_end(key)
         return known[0]
     files = Files(path, root, instead or {}, named=bool(dialect))
     text = files.text()
@@ -188,7 +184,5 @@ def read_foreign(
         title = files.title or graph.title
         graph = replace(graph, title=title, warnings=(*files.notes, *graph.warnings))
     if not instead:
-        _known[key] = graph, files
-        while len(_known) > _MOST:
-            _known.popitem(last=False)
+        FILES.put(key, (graph, files))
     return graph

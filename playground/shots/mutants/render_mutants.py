@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import tomllib
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 from playground.errors import DataError
+from playground.memo import INTERFACE
 from playground.shots.mutants.model import Edit, Rendering
 
 TABLE = Path(__file__).with_name("rendering.toml")
@@ -15,7 +15,7 @@ TABLE = Path(__file__).with_name("rendering.toml")
 _KEYS = {"name", "broke", "edit", "set", "plus", "times", "wire", "samples", "later", "steps", "shot"}
 
 
-@cache
+@INTERFACE.cached()
 def rendering_mutants(table: Path = TABLE) -> tuple[Rendering, ...]:
     """Return the mutants of a table; raise ``DataError`` for a key or a name that is wrong in it."""
     with table.open("rb") as file:

@@ -10,13 +10,13 @@ import base64
 import hashlib
 from collections import Counter
 from collections.abc import Sequence
-from functools import lru_cache
 from pathlib import Path
 from string import Template
 
 from playground._version import __version__
 from playground.errors import counted
 from playground.markup import Markup, joined, tag
+from playground.memo import INTERFACE
 from playground.shots.page.labels import MEANINGS, meaning
 from playground.shots.page.shot import Setting, can_be_accepted, chip, failure, moment, passed_row, row
 from playground.shots.results import Record
@@ -80,7 +80,7 @@ def _hash(text: str) -> str:
     return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
 
 
-@lru_cache
+@INTERFACE.cached()
 def _read(name: str) -> str:
     return (_HERE / name).read_text(encoding="utf-8")
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from playground.memo import INTERFACE
 from playground.paths import GLSL
 from playground.shader.own_shaders import own_shader
 from playground.workbench.inspect.results import TexelShader
@@ -46,7 +46,7 @@ def ends_of(shown: Map) -> tuple[float, float]:
     return middle - half, middle + half
 
 
-@lru_cache(maxsize=256)
+@INTERFACE.cached()
 def ticks(low: float, high: float, most: int = 5) -> tuple[float, ...]:
     """Return round numbers between two, at most so many."""
     span = abs(high - low)
