@@ -54,6 +54,7 @@ LAYERS = (
         "json_text",
         "local_server",
         "markup",
+        "memo",
         "partial",
         "paths",
         "regular_file",
