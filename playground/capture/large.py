@@ -20,8 +20,8 @@ from playground.capture.png_strips import PngStrips
 from playground.data.image_files import replacing
 from playground.engine.engine import Engine
 from playground.engine.internals import opened
-from playground.engine.picture_reduction import drawn_size, reduced
-from playground.engine.plan import Window
+from playground.engine.picture_reduction import reduced
+from playground.engine.plan import Window, drawn_size
 from playground.engine.textures import read_picture
 from playground.errors import DataError, ParameterError, SketchError
 from playground.sketch.model import LARGEST_PICTURE, Sketch

@@ -28,8 +28,7 @@ from playground.capture.sweep import Sweep, sweep_of, with_one_of_each
 from playground.engine.engine import Engine
 from playground.engine.internals import opened
 from playground.engine.plain_forms import silent
-from playground.engine.plan import Plan
-from playground.engine.plan_request import checked_pixels
+from playground.engine.plan import Plan, checked_pixels
 from playground.engine.process.pool import Pool
 from playground.engine.process.worker import Parent, Service
 from playground.engine.view_inputs import view_height

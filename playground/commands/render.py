@@ -270,7 +270,7 @@ def _note_not_finite(engine: Engine) -> None:
 
 def _draw_large(engine: Engine, moment: Moment, size: tuple[int, int], target: Path) -> None:
     from playground.capture.large import TILE, count_tiles, encode_strips, strips, uncut, write_large
-    from playground.engine.picture_reduction import drawn_size
+    from playground.engine.plan import drawn_size
 
     whole = drawn_size(moment.sketch, size, LARGEST_PICTURE)
     tiles = count_tiles(whole, uncut(TILE, moment.sketch.supersample))

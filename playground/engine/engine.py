@@ -16,9 +16,9 @@ from playground.engine.context import ContextInfo
 from playground.engine.frame import Frame
 from playground.engine.internals import CACHE_BYTES, Internals, opened
 from playground.engine.non_finite import NotFinite
-from playground.engine.picture_reduction import drawn_size, reduced
+from playground.engine.picture_reduction import reduced
 from playground.engine.plain_forms import warn
-from playground.engine.plan import most_iterations
+from playground.engine.plan import drawn_size, most_iterations
 from playground.engine.planner import repeated_in
 from playground.engine.textures import read_picture, read_texture
 from playground.errors import SketchError

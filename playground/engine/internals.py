@@ -38,11 +38,10 @@ from playground.engine.last_use import last_uses
 from playground.engine.non_finite import FiniteCheck, NotFinite
 from playground.engine.painted_images import PaintedFiles
 from playground.engine.picture_hash import PictureHasher
-from playground.engine.picture_reduction import drawn_size
 from playground.engine.plain_forms import PlainForms
-from playground.engine.plan import LoopIteration, Plan, Step, Window, needed
+from playground.engine.plan import LoopIteration, Plan, PlanRequest, Step, Window, drawn_size, needed
 from playground.engine.plan_warnings import PlanWarnings
-from playground.engine.planner import Planner
+from playground.engine.planner import planned
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
 from playground.engine.unfinished import Deadline, Piece
@@ -110,7 +109,6 @@ class Internals(Recorded):
         self.painted = PaintedFiles()  # painted in this process, in place of their files
         self._piece = Piece(None, ctx.finish)
         self.runner = Runner(ctx, self.info, self.pool, self.painted)
-        self.planner = Planner()
         self.warnings = PlanWarnings(lambda: self.runner.inputs)
         self.disk_caching: DiskCaching | None = None  # None: nothing is cached on disk
         self.eye_height = EyeHeight()  # over the terrain, in the last frame
@@ -175,23 +173,15 @@ class Internals(Recorded):
         *,
         in_parts: bool = False,
     ) -> Plan:
-        """Make a sketch, or that of a name or path, concrete for this engine; see ``Planner.plan``.
+        """Make a sketch, or that of a name or path, concrete for this engine; see ``PlanRequest``.
 
         A picture to be drawn ``in_parts`` has draws in their plain form: windows are cut out of those.
         """
         self.refuse_misuse()
         found = opened(sketch)
         samples = 0 if in_parts else min(found.samples, self.info.max_samples)
-        return self.planner.plan(
-            found,
-            frame_size=size,
-            time=time,
-            variants=self.plain_forms.kinds if samples == 1 else self.plain_forms.kinds_without_draws,
-            steps=steps,
-            wanted=wanted,
-            interpolated=interpolated,
-            largest=largest,
-        )
+        kinds = self.plain_forms.kinds if samples == 1 else self.plain_forms.kinds_without_draws
+        return planned(found, PlanRequest(size, time, kinds, steps or {}, wanted, interpolated, largest))
 
     def draw(
         self,

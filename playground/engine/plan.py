@@ -1,19 +1,52 @@
-"""What to run for one frame: a sketch made concrete, its passes in order. ``planner`` makes it."""
+"""What to run for one frame: a request, and the plan that ``planner`` makes for it, its passes in order."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from numbers import Integral, Real
+from pathlib import Path
 from typing import NamedTuple
 
 from playground.engine.camera import Eye
 from playground.engine.lattice import Between
 from playground.engine.source_kinds import Terrain
+from playground.errors import ParameterError
 from playground.memo import PLANS
 from playground.shader.expressions import counts_frames
 from playground.sketch.flat import Flat, Ref, Source
-from playground.sketch.model import Draw, Kernel, PassSpec, Sketch, TexelKernel, Value
+from playground.sketch.model import LARGEST_SIDE, Draw, Kernel, PassSpec, Sketch, TexelKernel, Value
+
+
+@dataclass(frozen=True, slots=True)
+class PlanRequest:
+    """What a plan is made for, besides the sketch.
+
+    ``variants`` are the kinds of fast variants that may replace techniques, but not those around the pass
+    that is ``wanted`` itself; ``steps`` stops repeated passes early, by path (that of a technique will do
+    where one pass inside it repeats), and no later than they end unless their number changes with time or
+    keyframes. What a stopped pass has not computed is ``interpolated`` in pictures and not in what is
+    ``wanted``, unless given (see ``lattice``).
+    """
+
+    frame_size: tuple[int, int]  # [pixels] at most ``largest`` a side
+    time: float = 0.0  # [s]
+    variants: Collection[str] = ()
+    steps: Mapping[str, int] = field(default_factory=dict)
+    wanted: str = ""  # a texture, ``pass[.inner…][:output]``; "" for the picture
+    interpolated: bool | None = None
+    largest: int = LARGEST_SIDE
+
+    @property
+    def fills(self) -> bool:
+        """Whether what a stopped pass has not computed is interpolated."""
+        return not self.wanted if self.interpolated is None else self.interpolated
+
+    def steps_of(self, path: str, whole: int) -> int:
+        """Return how many of a repeat's iterations run."""
+        return min(self.steps.get(path, whole), whole)
 
 
 class LoopIteration(NamedTuple):
@@ -83,6 +116,18 @@ class LoopStep:
 PlanNode = Step | LoopStep
 
 
+@dataclass(frozen=True, slots=True)
+class PlanBasis:
+    """What a plan depends on: of the same graph, it holds as long as this says the same."""
+
+    values: Mapping[str, Mapping[str, Value]]  # of each leaf, by its path
+    named: frozenset[str]  # paths of the values that a size or a count names
+    by_time: bool  # one of them names the time
+    pictures: Mapping[Path, tuple[int, int]]  # files whose sizes one of them names
+    refusals: Mapping[str, str]  # why a fast variant does not take its size: a sentence, by its technique
+    own: Mapping[str, tuple[int, int]]  # texels that sources have by themselves, by the path of the leaf
+
+
 @dataclass(frozen=True)
 class Plan:
     """What to run for one frame."""
@@ -94,6 +139,7 @@ class Plan:
     eye: Eye
     frame_size: tuple[int, int]
     time: float
+    basis: PlanBasis = field(repr=False, compare=False)
     steps: Mapping[str, int] = field(default_factory=dict)
     interpolated: bool = False  # what stopped passes have not reached is filled
     lacking: tuple[str, ...] = ()  # a sentence for each technique that does without its fast variant
@@ -219,3 +265,41 @@ def sources_of(node: PlanNode) -> list[Source]:
     for inside in node.body:
         found += sources_of(inside)
     return found
+
+
+# ── checks of a caller's arguments ───────────────────────────────────────────
+
+
+def checked_pixels(size: object, largest: int) -> tuple[int, int]:
+    """Return width and height of a picture; raise ``ParameterError`` unless 1..``largest`` a side."""
+    found = tuple(size) if isinstance(size, Iterable) and not isinstance(size, str) else ()
+    if len(found) != 2 or not all([isinstance(n, Integral) and not isinstance(n, bool) for n in found]):
+        raise ParameterError(f"size {size!r}: expected two whole numbers, width and height in pixels")
+    width, height = int(found[0]), int(found[1])
+    if not (1 <= width <= largest and 1 <= height <= largest):
+        raise ParameterError(f"a picture of {width} x {height} pixels; 1 to {largest} a side were expected")
+    return width, height
+
+
+def checked_seconds(time: object) -> float:
+    """Return a finite number of seconds, or raise ``ParameterError``."""
+    if not isinstance(time, Real) or isinstance(time, bool) or not math.isfinite(time):
+        raise ParameterError(f"time {time!r}: expected a number of seconds")
+    return float(time)
+
+
+def checked_steps(path: str, count: object) -> int:
+    """Return after how many steps a repeat stops, or raise ``ParameterError``."""
+    if not isinstance(count, Integral) or isinstance(count, bool) or count < 0:
+        raise ParameterError(f"steps: '{path}' stops after {count!r} steps; expected a whole number from 0")
+    return int(count)
+
+
+def drawn_size(sketch: Sketch, size: tuple[int, int], largest: int = LARGEST_SIDE) -> tuple[int, int]:
+    """Return the pixels in which a picture of a size is drawn; raise ``ParameterError`` for too many.
+
+    ``largest``: the most that a side may be drawn with.
+    """
+    times = sketch.supersample
+    width, height = checked_pixels(size, largest // times)
+    return width * times, height * times

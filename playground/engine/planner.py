@@ -1,122 +1,77 @@
 """Make a sketch concrete: sizes, counts, files, the terrain's metres. Still no OpenGL.
 
-A plan is made whole once for a graph of passes. Where only values have changed since, the passes
-whose values they are get them, and the rest of the plan stays; it is made whole again where a
-size or a count names a changed value or the time, or where the terrain's file is another one.
+``make_plan`` is a function of a sketch and a request. ``planned`` returns the same plan, made of the last
+plan of the same graph where only values have changed since: the passes whose values they are get them, and
+the rest of the plan stays. It is made whole again where a size or a count names a changed value or the time,
+or where the terrain's file is another one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from playground.data.image_files import picture_size
 from playground.engine.camera import Eye, look
+from playground.engine.error_place import placed
+from playground.engine.files import find_file
 from playground.engine.lattice import between_of
-from playground.engine.plan import LoopStep, Plan, PlanNode, Step, most_iterations
-from playground.engine.plan_request import (
+from playground.engine.plan import (
+    LoopStep,
+    Plan,
+    PlanBasis,
+    PlanNode,
     PlanRequest,
+    Step,
     checked_pixels,
     checked_seconds,
     checked_steps,
+    most_iterations,
 )
-from playground.engine.sizes import MAX_REPEAT, PassSizes, check_shapes, counted, sizes_of_variant
-from playground.engine.source_facts import described, given_values, own_sizes
+from playground.engine.sizes import MAX_REPEAT, PassSizes, counted
 from playground.engine.source_kinds import Terrain
-from playground.errors import ParameterError, SketchError, nearest
-from playground.memo import Memo
+from playground.engine.sources import source_kind
+from playground.engine.textures import misfit
+from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
+from playground.memo import PLANS
 from playground.paths import shown
 from playground.shader import expressions
 from playground.shader.expressions import Number
-from playground.sketch.flat import Flat, Leaf, Loop, Node, repeated_path, repeated_paths
+from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Source, repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
-from playground.sketch.model import LARGEST_SIDE, Graph, Sketch, Technique, Value
+from playground.sketch.model import ComputeVariant, Graph, Sketch, Technique, Value
 from playground.sketch.substitution import substitute_variants
+from playground.sketch.variants import INSIDE
 from playground.sketch.wiring import inner, output_names, target_of
 
-_MOST_PLANS = 8  # of so many graphs, picture sizes and stops the last plan is remembered
+DEFAULT_SIZE = (513, 513)  # texels of a terrain whose size nothing says
+DEFAULT_EXTENT = 10_240.0  # [m] from west to east
+DEFAULT_RELIEF = 1_800.0  # [m]
+
+Values = Mapping[str, Mapping[str, Value]]
+"""The values of each leaf, by its path."""
 
 
-@dataclass(frozen=True, slots=True)
-class _LastPlan:
-    """The last plan of a graph, and what it depends on."""
+def make_plan(sketch: Sketch, request: PlanRequest) -> Plan:
+    """Make a sketch concrete for one frame, its keyframes included.
 
-    plan: Plan
-    values: Mapping[str, Mapping[str, Value]]  # of each leaf, by its path
-    named: frozenset[str]  # paths of the values that a size or a count names
-    by_time: bool  # one of them names the time
-    pictures: Mapping[Path, tuple[int, int]]  # files whose sizes one of them names
-    refusals: Mapping[str, str]  # why a fast variant does not take its size: a sentence, by its technique
-    own: Mapping[str, tuple[int, int]]  # texels that sources have by themselves, by the path of the leaf
+    Raises ``ParameterError`` for a request that cannot be, ``SketchError`` or ``DataError`` at the pass that
+    is wrong, ``ShaderError`` at a kernel's header.
+    """
+    return _made(sketch, _checked(sketch, request), None)
 
 
-class Planner:
-    """Makes plans, and remembers the last of each graph."""
-
-    def __init__(self) -> None:
-        self.made_whole = 0  # plans that were not made of an earlier one
-        self._plans: Memo[object, _LastPlan] = Memo("plans of an engine", _MOST_PLANS)
-
-    def plan(
-        self,
-        sketch: Sketch,
-        *,
-        frame_size: tuple[int, int],
-        time: float = 0.0,
-        variants: Collection[str] = (),
-        steps: Mapping[str, int] | None = None,
-        wanted: str = "",
-        interpolated: bool | None = None,
-        largest: int = LARGEST_SIDE,
-    ) -> Plan:
-        """Make a sketch concrete for one frame of at most ``largest`` pixels a side, its keyframes included.
-
-        ``variants`` are the kinds of fast variants that may replace techniques, but not
-        those around the pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by
-        path (that of a technique will do where one pass inside it repeats), and no later than they
-        end unless their number changes with time or keyframes. What a stopped pass has not computed is
-        ``interpolated`` in pictures and not in what is ``wanted``, unless given (see ``between``).
-        Raises ``SketchError`` or ``DataError`` at the pass that is wrong, ``ShaderError`` at a
-        kernel's header.
-        """
-        size, seconds = checked_pixels(frame_size, largest), checked_seconds(time)
-        varies = any(keyframe.values for keyframe in sketch.keyframes)
-        sketch = sketch.at(seconds)
-        stopped = {
-            repeated_in(sketch, path): checked_steps(path, count) for path, count in (steps or {}).items()
-        }
-        fills = not wanted if interpolated is None else interpolated
-        terrain = Terrain(sketch.size, sketch.extent, sketch.relief, sketch.base_elevation)
-        request = PlanRequest(size, tuple(stopped.items()), fills, "compute" in variants, varies, terrain)
-        place = (id(sketch.graph), sketch.folder, sketch.plain, tuple(variants), wanted, request)
-
-        def flat(refused: Iterable[str]) -> Flat:
-            return substitute_variants(
-                flatten(sketch),
-                () if sketch.plain else variants,
-                wanted=wanted,
-                stopped=tuple(stopped),
-                refused=tuple(refused),
-            )
-
-        found = None
-        if known := self._plans.get(place):
-            now = known.plan.flat  # most frames set no value
-            if sketch.overrides is not known.plan.sketch.overrides:
-                now = flat(known.refusals)
-            found = _Planning(sketch, now, request, seconds, known=known).renewed()
-        if found is None:
-            self.made_whole += 1
-            making, refused = _Planning(sketch, flat(()), request, seconds), dict[str, str]()
-            while more := making.refusals(refused):
-                refused |= more
-                making = _Planning(sketch, flat(refused), request, seconds, after=making)
-            found = making.whole(refused)
-        self._plans.put(place, found, 1, sketch.graph)
-        return found.plan
+def planned(sketch: Sketch, request: PlanRequest) -> Plan:
+    """Return what ``make_plan`` does, made of the last plan of the same graph as far as that still holds."""
+    request = _checked(sketch, request)
+    where = sketch.size, sketch.extent, sketch.relief, sketch.base_elevation
+    variants, steps = tuple(request.variants), tuple(request.steps.items())
+    asked = request.frame_size, variants, steps, request.wanted, request.fills, _varies(sketch)
+    key = (planned, id(sketch.graph), sketch.folder, sketch.plain, where, asked)
+    return PLANS.put(key, _made(sketch, request, PLANS.get(key)), 1, sketch.graph)  # type: ignore[no-any-return]
 
 
 def repeated_in(sketch: Sketch, path: str) -> str:
@@ -134,14 +89,64 @@ def repeated_in(sketch: Sketch, path: str) -> str:
 
 def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: float = 0.0) -> dict[str, int]:
     """Return the iterations in all of every repeated kernel and loop, by path; what draws is left out."""
-    return most_iterations(Planner().plan(sketch, frame_size=frame_size, time=time).nodes)
+    return most_iterations(make_plan(sketch, PlanRequest(frame_size, time)).nodes)
+
+
+def smallest_terrain(sketch: Sketch, least: int = 33) -> tuple[int, int]:
+    """Return the smallest terrain of ``least`` texels a side or more that all its kernels take."""
+    return flatten(sketch).accepted((least, least))
+
+
+def _checked(sketch: Sketch, request: PlanRequest) -> PlanRequest:
+    """Return a request with numbers that can be, and stops by the paths of what repeats."""
+    return replace(
+        request,
+        frame_size=checked_pixels(request.frame_size, request.largest),
+        time=checked_seconds(request.time),
+        steps={
+            repeated_in(sketch, path): checked_steps(path, count) for path, count in request.steps.items()
+        },
+    )
+
+
+def _varies(sketch: Sketch) -> bool:
+    """Return whether keyframes set parameters, and so perhaps counts of steps."""
+    return any(keyframe.values for keyframe in sketch.keyframes)
+
+
+def _made(sketch: Sketch, request: PlanRequest, last: Plan | None) -> Plan:
+    """Make a plan; ``last`` is one of the same graph for the same request, at any time."""
+    varies, sketch = _varies(sketch), sketch.at(request.time)
+
+    def flat(refused: Iterable[str]) -> Flat:
+        return substitute_variants(
+            flatten(sketch),
+            () if sketch.plain else request.variants,
+            wanted=request.wanted,
+            stopped=tuple(request.steps),
+            refused=tuple(refused),
+        )
+
+    if last is not None:
+        now = last.flat  # most frames set no value
+        if sketch.overrides is not last.sketch.overrides:
+            now = flat(last.basis.refusals)
+        renewed = _Planning(sketch, now, request, varies, last=last).renewed()
+        if renewed is not None:
+            return renewed
+    making, refused = _Planning(sketch, flat(()), request, varies), dict[str, str]()
+    while more := making.refusals(refused):
+        refused |= more
+        making = _Planning(sketch, flat(refused), request, varies, after=making)
+    return making.whole(refused)
 
 
 class _Planning:
     """One plan being made.
 
-    ``known`` is the last of the same graph, made for the same request; ``after``: an attempt in which
-    fast variants refused their sizes, which depends on what those sizes name.
+    ``varies``: keyframes set parameters; ``last`` is the last plan of the same graph, made for the same
+    request; ``after``: an attempt in which fast variants refused their sizes, which depends on what those
+    sizes name.
     """
 
     def __init__(
@@ -149,73 +154,71 @@ class _Planning:
         sketch: Sketch,
         flat: Flat,
         request: PlanRequest,
-        time: float,
-        known: _LastPlan | None = None,
+        varies: bool,
+        last: Plan | None = None,
         after: _Planning | None = None,
     ) -> None:
         self.sketch = sketch
         self.flat = flat
         self.request = request
-        self.time = time
-        self.known = known if known and known.plan.flat.shape is flat.shape else None
-        self._most: dict[
-            str, int
-        ] = {}  # iterations in all of each repeat, by path; the most where they differ
+        self.varies = varies
+        self.last = last if last and last.flat.shape is flat.shape else None
+        # Iterations in all of each repeat, by path; the most where they differ.
+        self._most: dict[str, int] = {}
         self._made: dict[tuple[object, ...], PlanNode] = {}  # each once, whatever iterations have it
         self._bodies: dict[tuple[int, ...], tuple[PlanNode, ...]] = {}
         self.values = self._values_now()
-        self.terrain = described(sketch, flat, self.values)
-        self.own = dict(own_sizes(sketch, flat, self.values))
+        self.terrain = _terrain_of(sketch, flat, self.values)
+        self.own = dict(_own_sizes(sketch, flat, self.values))
         self._after = after
 
-    def _values_now(self) -> Mapping[str, Mapping[str, Value]]:
+    def _values_now(self) -> Values:
         """Return the values of each leaf, by its path: the last plan's own where none is another."""
-        known, flat, sketch = self.known, self.flat, self.sketch
-        if known is None:
-            return {leaf.path: given_values(leaf, sketch, flat) for leaf in flat.leaves}
+        last, flat, sketch = self.last, self.flat, self.sketch
+        if last is None:
+            return {leaf.path: _given_values(leaf, sketch, flat) for leaf in flat.leaves}
         # Of the same values a file may have come that is found first.
         doubtful, changed = [(leaf, True) for leaf in flat.with_files], dict[str, Mapping[str, Value]]()
-        if flat is not known.plan.flat:
-            found = [(leaf, flat.has_values_of(known.plan.flat, leaf)) for leaf in flat.leaves]
+        if flat is not last.flat:
+            found = [(leaf, flat.has_values_of(last.flat, leaf)) for leaf in flat.leaves]
             doubtful = [pair for pair in found if not pair[1] or pair[0].kernel.file_parameters]
         for leaf, is_same in doubtful:
-            now = given_values(leaf, sketch, flat)
-            if not is_same or now != known.values[leaf.path]:
+            now = _given_values(leaf, sketch, flat)
+            if not is_same or now != last.basis.values[leaf.path]:
                 changed[leaf.path] = now
-        return {**known.values, **changed} if changed else known.values
+        return {**last.basis.values, **changed} if changed else last.basis.values
 
     @cached_property
     def sizes(self) -> PassSizes:
         """What works out sizes and counts."""
         assert self.terrain.size is not None
-        found = PassSizes(
-            self.sketch, self.flat, self.request, self.time, self.terrain.size, self.values, self.own
-        )
+        found = PassSizes(self.sketch, self.flat, self.request, self.terrain.size, self.values, self.own)
         if self._after is not None:
             copied = self._after.flat.shape.copied
             found.named = {copied.get(path, path) for path in self._after.sizes.named}
             found.by_time = self._after.sizes.by_time
         return found
 
-    def renewed(self) -> _LastPlan | None:
-        """Return the known plan with the values of now; None where it has to be made whole."""
-        known = self.known
+    def renewed(self) -> Plan | None:
+        """Return the last plan with the values of now; None where it has to be made whole."""
+        last, time = self.last, self.request.time
         if (
-            known is None
-            or known.plan.terrain != self.terrain
-            or known.own != self.own
-            or (known.by_time and known.plan.time != self.time)
+            last is None
+            or last.terrain != self.terrain
+            or last.basis.own != self.own
+            or (last.basis.by_time and last.time != time)
         ):
             return None
-        plan, now, before = known.plan, self.flat.values, known.plan.flat.values
-        if now is not before and [path for path in known.named if now[path] is not before[path]]:
+        basis, now, before = last.basis, self.flat.values, last.flat.values
+        if now is not before and [path for path in basis.named if now[path] is not before[path]]:
             return None
-        if any(picture_size(file) != size for file, size in known.pictures.items()):
+        if any(picture_size(file) != size for file, size in basis.pictures.items()):
             return None
-        eye = plan.eye if plan.sketch.camera == self.sketch.camera else self._eye()
-        nodes = plan.nodes if self.values is known.values else self._all_renewed(plan.nodes, {})
-        plan = replace(plan, sketch=self.sketch, nodes=nodes, flat=self.flat, eye=eye, time=self.time)
-        return replace(known, plan=plan, values=self.values)
+        eye = last.eye if last.sketch.camera == self.sketch.camera else self._eye()
+        nodes = last.nodes
+        if self.values is not basis.values:
+            nodes, basis = self._all_renewed(nodes, {}), replace(basis, values=self.values)
+        return replace(last, sketch=self.sketch, nodes=nodes, flat=self.flat, eye=eye, time=time, basis=basis)
 
     def _all_renewed(self, nodes: tuple[PlanNode, ...], done: dict[int, Any]) -> tuple[PlanNode, ...]:
         """Return nodes with the values of now; ``done``: what was returned for nodes and for several."""
@@ -236,7 +239,7 @@ class _Planning:
                 done[id(node)] = replace(node, values=self.values[node.path])
         return done[id(node)]  # type: ignore[no-any-return]
 
-    def whole(self, refused: Mapping[str, str]) -> _LastPlan:
+    def whole(self, refused: Mapping[str, str]) -> Plan:
         """Make the plan from nothing; ``refused``: the sentences that ``refusals`` gave, by technique."""
         # What has the terrain's own size first: the others' sizes follow from it.
         for leaf in self.flat.leaves:
@@ -249,21 +252,27 @@ class _Planning:
             f"see {shown(self.flat.graphs[path].path)}"
             for path in self.sizes.lacking
         )
-        plan = Plan(
+        sizes, request = self.sizes, self.request
+        return Plan(
             sketch=self.sketch,
             nodes=nodes,
             flat=self.flat,
             terrain=self.terrain,
             eye=self._eye(),
-            frame_size=self.request.frame_size,
-            time=self.time,
-            steps=dict(self.request.stopped),
-            interpolated=self.request.fills,
+            frame_size=request.frame_size,
+            time=request.time,
+            basis=PlanBasis(
+                values=self.values,
+                named=frozenset(sizes.named & self.flat.values.keys()),
+                by_time=sizes.by_time,
+                pictures=sizes.pictures,
+                refusals=refused,
+                own=sizes.own,
+            ),
+            steps=request.steps,
+            interpolated=request.fills,
             lacking=(*lacking, *refused.values(), *(str(o) for o in self.flat.shape.omitted if o.is_news)),
         )
-        sizes = self.sizes
-        named = frozenset(sizes.named & self.flat.values.keys())
-        return _LastPlan(plan, self.values, named, sizes.by_time, sizes.pictures, refused, sizes.own)
 
     def refusals(self, before: Collection[str]) -> dict[str, str]:
         """Return a sentence for each technique whose fast variant does not take its size, by its path.
@@ -272,7 +281,7 @@ class _Planning:
         """
         found: dict[str, str] = {}
         for leaf in self.flat.leaves:
-            path, accepts = sizes_of_variant(leaf, self.flat)
+            path, accepts = _sizes_of_variant(leaf, self.flat)
             if accepts and path not in found and path not in before:
                 for size in self.sizes.sizes_of(self._sized(leaf)):
                     if not expressions.is_accepted(accepts, size):
@@ -300,7 +309,7 @@ class _Planning:
         size = self._size_of_leaf(node)
         values = self.values[node.path]
         self._refuse(node, size)
-        check_shapes(node, self.flat, self.sizes.size_of_source)
+        _check_shapes(node, self.flat, self.sizes.size_of_source)
         numbers: dict[str, Number] = {"size.x": size[0], "size.y": size[1], **self.sizes.clocks()}
         numbers |= {k: v for k, v in values.items() if isinstance(v, int | float)}
         if kernel.counts != ("1",):
@@ -335,13 +344,13 @@ class _Planning:
 
     def _stopped(self, path: str, whole: int, repeat: str) -> int:
         """Return how many of a repeat's iterations run."""
-        varies = self.request.varies or expressions.follows_time(repeat)
+        varies = self.varies or expressions.follows_time(repeat)
         self._most[path] = MAX_REPEAT if varies else max(whole, self._most.get(path, 0))
         return self.request.steps_of(path, whole)
 
     def _check_stops(self) -> None:
         """Raise ``ParameterError`` for a repeat that stops after more iterations than it has."""
-        for path, steps in self.request.stopped:
+        for path, steps in self.request.steps.items():
             whole = self._most.get(path, steps)
             if steps > whole:
                 raise ParameterError(f"steps: '{path}' stops after {steps} steps, but it has {whole} in all")
@@ -371,3 +380,109 @@ class _Planning:
                 break
             technique = found
         return path
+
+
+# ── what a plan is made of ───────────────────────────────────────────────────
+
+
+def _sizes_of_variant(leaf: Leaf, flat: Flat) -> tuple[str, str]:
+    """Return which technique a fast variant's kernel runs for, and the sizes that it takes; else nothing."""
+    if isinstance(leaf.kernel, ComputeVariant):
+        return leaf.path, leaf.kernel.own_accepts
+    path, inside, _ = leaf.path.partition(f".{INSIDE}.")
+    is_variant = inside and flat.specs[path].technique.variants
+    return (path, leaf.kernel.accepts) if is_variant else (path, "")
+
+
+def _check_shapes(leaf: Leaf, flat: Flat, size_of: Callable[[Source], tuple[int, int]]) -> None:
+    """Raise ``SketchError`` for what is wired to a cube map, a volume or an array and cannot be one.
+
+    ``size_of`` returns the size in texels of what an input reads.
+    """
+    shapes = {declared.name: declared.shape for declared in leaf.kernel.inputs if declared.shape}
+    for name, source in leaf.inputs if shapes else ():
+        if source is None or name not in shapes:
+            continue
+        size = size_of(source)
+        if isinstance(source, Fed):
+            output = dict(flat.specs[source.loop].feedback)[source.name]
+            source = flat.outputs[source.loop][output]
+        if wrong := misfit(shapes[name], size):
+            message = f"{name} reads '{source.path}', {size[0]} x {size[1]} texels; {wrong}"
+            raise flat.user(leaf.path).error(f"pass '{leaf.path}': {message}")
+
+
+def _known_by_sources(sketch: Sketch, flat: Flat, values: Values) -> Terrain:
+    """Return what the first source that knows anything of the terrain says of it."""
+    for leaf in flat.sources:
+        _check_source(leaf)
+        try:
+            known = source_kind(leaf.kernel.registry).describe(values[leaf.path])
+        except DataError as error:
+            raise placed(error, sketch, flat.user(leaf.path)) from error
+        if known != Terrain():
+            return known
+    return Terrain()
+
+
+def extent_follows_size(sketch: Sketch, flat: Flat, values: Values) -> bool:
+    """Return whether nothing says the terrain's metres: its sides are to each other as its texels are."""
+    known = _known_by_sources(sketch, flat, values)
+    return sketch.extent is None and known.extent is None and known.size is None
+
+
+def _terrain_of(sketch: Sketch, flat: Flat, values: Values) -> Terrain:
+    """Return the terrain with every field known: by the sketch, else by its first source that knows."""
+    known = _known_by_sources(sketch, flat, values)
+    size = sketch.size or flat.accepted(known.size or DEFAULT_SIZE)
+    extent = sketch.extent or known.extent
+    if extent is None:
+        shape = known.size or size
+        ratio = (shape[1] - 1) / max(shape[0] - 1, 1) or 1.0
+        extent = (DEFAULT_EXTENT, DEFAULT_EXTENT * ratio)
+    relief = sketch.relief if sketch.relief is not None else known.relief
+    base = sketch.base_elevation if sketch.base_elevation is not None else known.base_elevation
+    relief = DEFAULT_RELIEF if relief is None else relief
+    return Terrain(size, extent, relief, base or 0.0, known.place)
+
+
+def _own_sizes(sketch: Sketch, flat: Flat, values: Values) -> Iterator[tuple[str, tuple[int, int]]]:
+    """Yield the texels that sources have by themselves, such as a film, where their passes say none."""
+    for leaf in flat.sources:
+        if leaf.spec.size is None and leaf.path != "view":
+            try:
+                size = source_kind(leaf.kernel.registry).size(values[leaf.path])
+            except DataError as error:
+                raise placed(error, sketch, flat.user(leaf.path)) from error
+            if size is not None:
+                yield leaf.path, size
+
+
+def _given_values(leaf: Leaf, sketch: Sketch, flat: Flat) -> dict[str, Value]:
+    """Return a leaf's values as its kernel gets them: files by absolute path, of menus their values."""
+    values = flat.values_of(leaf)
+    for parameter in leaf.kernel.valued_menus:
+        values[parameter.name] = parameter.widget.given(values[parameter.name])
+    for parameter in leaf.kernel.file_parameters:
+        text = str(values[parameter.name])
+        try:
+            path = find_file(text, flat.folder, parameter.file, f"{leaf.path}.{parameter.name}")
+        except DataError as error:
+            raise placed(error, sketch, flat.user(leaf.path)) from error
+        values[parameter.name] = str(path)
+    return values
+
+
+def _check_source(leaf: Leaf) -> None:
+    try:
+        kind = source_kind(leaf.kernel.registry)
+    except PlaygroundError as error:
+        raise leaf.spec.error(str(error)) from None
+    missing = [name for name in kind.parameters if leaf.kernel.parameter(name) is None]
+    if missing:
+        raise leaf.spec.error(f"source '{leaf.kernel.registry}' needs the parameters {', '.join(missing)}")
+    declared = [one.name for one in leaf.kernel.inputs]
+    if set(declared) != set(kind.inputs):
+        wanted = f"the inputs {', '.join(kind.inputs)}" if kind.inputs else "no inputs"
+        found = f"; the file declares {', '.join(declared) or 'none'}"
+        raise leaf.spec.error(f"source '{leaf.kernel.registry}' needs {wanted}{found}")

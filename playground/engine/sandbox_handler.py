@@ -13,10 +13,10 @@ from playground.engine.context import open_context
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Step
+from playground.engine.planner import smallest_terrain
 from playground.engine.process.worker import Parent, Service
 from playground.engine.programs import compile_library
 from playground.engine.sandbox import Activity, Request, SandboxReport, TryLibrary, TrySketch
-from playground.engine.sizes import smallest_terrain
 from playground.engine.textures import drain, is_lost
 from playground.engine.unfinished import Unfinished
 from playground.errors import (

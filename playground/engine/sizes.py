@@ -14,17 +14,14 @@ from typing import NamedTuple
 
 from playground.data.image_files import picture_size
 from playground.engine.error_place import placed
-from playground.engine.plan_request import PlanRequest
-from playground.engine.textures import misfit
+from playground.engine.plan import PlanRequest
 from playground.errors import DataError, PlaygroundError
 from playground.memo import GRAPHS
 from playground.shader import expressions
 from playground.shader.expressions import CLOCKS, COUNTERS, ITERATION, ExpressionError, Number, names_in
 from playground.sketch.assign import find_targets, resolve
-from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Shape, Source
-from playground.sketch.flatten import flatten
-from playground.sketch.model import LARGEST_SIDE, ComputeVariant, Kernel, PassSpec, Sketch, Value
-from playground.sketch.variants import INSIDE
+from playground.sketch.flat import Fed, Flat, Loop, Node, Shape, Source
+from playground.sketch.model import LARGEST_SIDE, Kernel, PassSpec, Sketch, Value
 
 CLOCK, SIZE, PICTURE, VALUE, COMPUTE = "clock", "size", "picture", "value", "compute"
 COUNTER, FED, UNWIRED = "counter", "fed", "unwired"
@@ -120,38 +117,6 @@ def inside(prefix: str, name: str) -> str:
     return f"{prefix}.{name}" if prefix else name
 
 
-def smallest_terrain(sketch: Sketch, least: int = 33) -> tuple[int, int]:
-    """Return the smallest terrain of ``least`` texels a side or more that all its kernels take."""
-    return flatten(sketch).accepted((least, least))
-
-
-def sizes_of_variant(leaf: Leaf, flat: Flat) -> tuple[str, str]:
-    """Return which technique a fast variant's kernel runs for, and the sizes that it takes; else nothing."""
-    if isinstance(leaf.kernel, ComputeVariant):
-        return leaf.path, leaf.kernel.own_accepts
-    path, inside, _ = leaf.path.partition(f".{INSIDE}.")
-    is_variant = inside and flat.specs[path].technique.variants
-    return (path, leaf.kernel.accepts) if is_variant else (path, "")
-
-
-def check_shapes(leaf: Leaf, flat: Flat, size_of: Callable[[Source], tuple[int, int]]) -> None:
-    """Raise ``SketchError`` for what is wired to a cube map, a volume or an array and cannot be one.
-
-    ``size_of`` returns the size in texels of what an input reads.
-    """
-    shapes = {declared.name: declared.shape for declared in leaf.kernel.inputs if declared.shape}
-    for name, source in leaf.inputs if shapes else ():
-        if source is None or name not in shapes:
-            continue
-        size = size_of(source)
-        if isinstance(source, Fed):
-            output = dict(flat.specs[source.loop].feedback)[source.name]
-            source = flat.outputs[source.loop][output]
-        if wrong := misfit(shapes[name], size):
-            message = f"{name} reads '{source.path}', {size[0]} x {size[1]} texels; {wrong}"
-            raise flat.user(leaf.path).error(f"pass '{leaf.path}': {message}")
-
-
 MAX_REPEAT = 1_000_000
 _MAX_BOUND = 2**31 - 1  # of a repeat that ends by itself: what GLSL counts
 _MOST_COUNTED = 1024  # iterations of a loop of which each may have its own sizes: each is planned
@@ -168,7 +133,6 @@ class PassSizes:
         sketch: Sketch,
         flat: Flat,
         request: PlanRequest,
-        time: float,
         terrain: Size,
         values: Mapping[str, Mapping[str, Value]],
         own: Mapping[str, Size],
@@ -176,7 +140,6 @@ class PassSizes:
         self.sketch = sketch
         self.flat = flat
         self.request = request
-        self.time = time
         self.values = values  # of each leaf, by its path
         self.own = own  # of sources that have a size by themselves, by the path of the leaf
         self.counting = counting(flat)
@@ -193,7 +156,7 @@ class PassSizes:
 
     def clocks(self) -> dict[str, Number]:
         """Return the numbers that follow the time."""
-        return {"time": self.time, "frames": expressions.frames_at(self.time)}
+        return {"time": self.request.time, "frames": expressions.frames_at(self.request.time)}
 
     # ── iterations ───────────────────────────────────────────────────────────
 
@@ -346,9 +309,10 @@ class PassSizes:
         if kind == UNWIRED:
             return 1
         if kind == COMPUTE:
-            if not self.request.compute:
+            if "compute" not in self.request.variants:
                 self.lacking[prefix] = None
-            return int(self.request.compute)
+                return 0
+            return 1
         self.named.add(path)
         value = resolve(self.flat.graphs[prefix], name)[0].parameter.widget.given(self.flat.values[path])
         if not isinstance(value, int | float):

@@ -38,7 +38,7 @@ from playground.engine.plan import Step
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Result, Wired, are_of_own_size, has_unwired
 from playground.engine.textures import make_framebuffer
-from playground.memo import TEXTS
+from playground.memo import GRAPHS, TEXTS
 from playground.shader.outline import Declared, outline
 from playground.shader.own_shaders import own_part, own_shader
 from playground.shader.reserved_names import FETCHES, MATCHES, READ, SKIPS, UNWIRED, WIRED
@@ -52,7 +52,6 @@ from playground.shader.wrap import (
     read_by_functions,
     reads_unwired,
 )
-from playground.sketch.identity import Identity
 from playground.sketch.model import ComputeVariant, Input, Kernel, PlainShader, TexelKernel
 
 if TYPE_CHECKING:
@@ -297,18 +296,14 @@ class Filling:
         self.ctx.disable_direct(_COLOR_LOGIC_OP)
 
 
+@GRAPHS.cached(identities=1)
 def quicker_choices(kernel: Kernel) -> frozenset[str]:
     """Return which of ``QUICKER`` may be made for a kernel.
 
     ``OWN_SIZE`` holds where each input is as large as what the kernel makes, ``PLACE`` where the fragment
     driver draws the whole of that at once.
     """
-    return _quicker_choices(Identity(kernel))
-
-
-@lru_cache(maxsize=1024)
-def _quicker_choices(key: Identity[Kernel]) -> frozenset[str]:
-    kernel, found = key.object, set[str]()
+    found = set[str]()
     if fetched_alone(kernel).fetches or any(kernel.reads(previous_name(kernel, o)) for o in kernel.outputs):
         found.add(NEAREST)
     if isinstance(kernel, TexelKernel) and not kernel.fills_lattice:

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from playground.engine.engine import Engine
-from playground.engine.plan import LoopStep, Plan, Step, every_version, needed
-from playground.engine.planner import Planner
+from playground.engine.plan import LoopStep, Plan, PlanRequest, Step, every_version, needed
+from playground.engine.planner import make_plan
 from playground.errors import SketchError
 from playground.lessons.grid import Grid
 from playground.lessons.measures import MEASURES, OfTexture
@@ -110,8 +110,9 @@ def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
         bytes_a_channel = {"f1": 1, "f2": 2, "f4": 4}[texture.dtype]
         return float(width * height * texture.components * bytes_a_channel)
     # Of the plain form: a fast variant has other iterations than the text that the lesson shows.
-    plan = Planner().plan(
-        scene.sketch, frame_size=scene.pixels, time=scene.time, steps=at["steps"], wanted=measure.of
+    plan = make_plan(
+        scene.sketch,
+        PlanRequest(frame_size=scene.pixels, time=scene.time, steps=at["steps"], wanted=measure.of),
     )
     nodes = needed(plan.nodes, plan.flat.ref(measure.of, scene.sketch.name))
     if measure.what == "iterations":

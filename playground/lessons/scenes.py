@@ -111,11 +111,14 @@ def _joined(
 
 def _check_steps(file: TomlFile, place: Place, scene: Scene) -> None:
     """Raise ``SketchError`` where a pass cannot be stopped at the iteration that is named."""
-    from playground.engine.planner import Planner  # it needs what is loaded by then only
+    from playground.engine.plan import PlanRequest
+    from playground.engine.planner import make_plan  # it needs what is loaded by then only
 
     try:
         if scene.steps:
-            Planner().plan(scene.sketch, frame_size=scene.pixels, time=scene.time, steps=dict(scene.steps))
+            make_plan(
+                scene.sketch, PlanRequest(frame_size=scene.pixels, time=scene.time, steps=dict(scene.steps))
+            )
     except ParameterError as error:
         raise file.error(error.diagnostics[0].message, *place, "steps") from None
 

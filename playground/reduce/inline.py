@@ -6,8 +6,8 @@ import json
 import re
 from pathlib import Path
 
-from playground.engine.plan import LoopStep, Plan, PlanNode, Step
-from playground.engine.planner import Planner
+from playground.engine.plan import LoopStep, Plan, PlanNode, PlanRequest, Step
+from playground.engine.planner import make_plan
 from playground.errors import SketchError
 from playground.paths import shown
 from playground.reduce.case import Case, Pass
@@ -32,7 +32,7 @@ def inline_sketch(
     for what has no place in an inlined sketch: a loop of several passes, another tool's shader among
     other passes.
     """
-    plan = Planner().plan(sketch, frame_size=frame, time=time, steps=steps)
+    plan = make_plan(sketch, PlanRequest(frame_size=frame, time=time, steps=steps or {}))
     leaves = list(plan.walk())
     alone = len(leaves) == 1 or Path(sketch.file).suffix != ".toml"  # the rest stands in for its channels
     own = [leaf.kernel for leaf in leaves if isinstance(leaf.kernel, ForeignShader)]

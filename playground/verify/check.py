@@ -21,8 +21,9 @@ from tempfile import TemporaryDirectory
 
 from playground.allowed_files import TEXTS, is_elevation, is_variant, named_root, root_of, unsaved_texts
 from playground.engine.error_place import located_at
+from playground.engine.plan import PlanRequest
 from playground.engine.plan_warnings import kernel_warnings, source_warnings
-from playground.engine.planner import Planner
+from playground.engine.planner import make_plan
 from playground.engine.sandbox import Request, Sandbox, SandboxReport, TryLibrary, TrySketch
 from playground.engine.standalone import free_name, standalone_sketch, with_pictures
 from playground.errors import (
@@ -203,7 +204,9 @@ class _Check:
             if isinstance(kernel, Graph):
                 self.notes = (f"read as {kernel.dialect}",)
                 self.warnings |= dict.fromkeys(warnings_of_sketch(sketch))
-                self.warnings |= dict.fromkeys(source_warnings(Planner().plan(sketch, frame_size=_FRAME)))
+                self.warnings |= dict.fromkeys(
+                    source_warnings(make_plan(sketch, PlanRequest(frame_size=_FRAME)))
+                )
             self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="all"))
         elif isinstance(kernel, ComputeVariant):
             raise lonely_variant(self.path)
@@ -243,15 +246,16 @@ class _Check:
             if self.errors:
                 return
         # The child draws small; what is wrong at the sketch's own size shows in the plan.
-        plan = Planner().plan(sketch, frame_size=_FRAME)
+        plan = make_plan(sketch, PlanRequest(frame_size=_FRAME))
         self.warnings |= dict.fromkeys([*kernel_warnings(sketch.graph), *source_warnings(plan)])
         self.warnings |= dict.fromkeys(found.warning for found in shadowed_by_files(sketch))
         for preset in sketch.presets:
-            Planner().plan(sketch.with_preset(preset.name), frame_size=_FRAME)
+            make_plan(sketch.with_preset(preset.name), PlanRequest(frame_size=_FRAME))
         for shot in sketch.shots:
             with located_at(sketch, shot):
-                Planner().plan(
-                    sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps)
+                make_plan(
+                    sketch.for_shot(shot),
+                    PlanRequest(frame_size=shot.size, time=shot.time, steps=dict(shot.steps)),
                 )
         if not reads:
             self.attempt(request)

@@ -18,10 +18,9 @@ from numpy.typing import NDArray
 from playground.allowed_files import is_elevation
 from playground.engine.engine import Engine
 from playground.engine.files import find_file
-from playground.engine.plan import Plan, Step
-from playground.engine.planner import Planner
+from playground.engine.plan import Plan, PlanRequest, Step
+from playground.engine.planner import extent_follows_size, make_plan
 from playground.engine.sizes import base_of, counting
-from playground.engine.source_facts import extent_follows_size
 from playground.engine.sources import source_kind
 from playground.engine.view_inputs import view_height
 from playground.paths import GLSL, shown
@@ -61,7 +60,9 @@ def sketch_data(
     ``PlaygroundError`` for any mistake in the sketch, and for what no page can run; ``TypeError`` where a
     source is made of textures and there is no engine.
     """
-    plan = Planner().plan(sketch, frame_size=frame, time=time, variants=KINDS, steps=steps, interpolated=True)
+    plan = make_plan(
+        sketch, PlanRequest(frame_size=frame, time=time, variants=KINDS, steps=steps or {}, interpolated=True)
+    )
     return _Writing(sketch, plan, shared, engine).data()
 
 

@@ -8,7 +8,8 @@ from math import prod
 from typing import Any
 
 from playground.allowed_files import looking_once
-from playground.engine.planner import Planner
+from playground.engine.plan import PlanRequest
+from playground.engine.planner import make_plan
 from playground.errors import ParameterError, PlaygroundError, SketchError
 from playground.shader.parameter import label_of
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
@@ -73,7 +74,7 @@ def _fitting(sketch: Sketch, name: str, uses: Sequence[str]) -> list[str]:
 def _is_planned(sketch: Sketch, name: str, use: str) -> bool:
     try:
         changed = with_technique(sketch, name, use)
-        Planner().plan(changed, frame_size=DEFAULT_PICTURE, variants=KINDS)
+        make_plan(changed, PlanRequest(frame_size=DEFAULT_PICTURE, variants=KINDS))
     except PlaygroundError:
         return False
     return True

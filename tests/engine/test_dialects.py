@@ -10,8 +10,9 @@ import pytest
 from playground.capture.large import strips
 from playground.data.image_files import write_png
 from playground.engine.engine import Engine
+from playground.engine.plan import PlanRequest
 from playground.engine.plan_warnings import source_warnings
-from playground.engine.planner import Planner
+from playground.engine.planner import make_plan
 from playground.engine.sandbox import Sandbox
 from playground.errors import ParameterError, PlaygroundError, ShaderError, SketchError
 from playground.reduce.inline import inline_sketch
@@ -238,7 +239,7 @@ def test_a_sketch_wires_a_pass_to_a_channel_and_sets_a_parameter(any_engine, fol
 
 def test_what_nothing_feeds_is_named_once(folder):
     text = TEXTS["kodelife"]
-    plan = Planner().plan(load(folder.write("t.frag", text)), frame_size=SIZE)
+    plan = make_plan(load(folder.write("t.frag", text)), PlanRequest(frame_size=SIZE))
     sound, fed = source_warnings(plan)
     assert "texture0, texture1, texture2, texture3" in fed.message and fed.line == 6
     assert "nothing feeds spectrum: a made-up sound" in sound.message
@@ -251,7 +252,7 @@ def test_what_nothing_feeds_is_named_once(folder):
         'iChannel1 = "card"': ["iChannel0"],
         'iChannel0 = "card", iChannel1 = "card"': [],
     }.items():
-        plan = Planner().plan(folder.sketch(passes + view.format(inputs)), frame_size=SIZE)
+        plan = make_plan(folder.sketch(passes + view.format(inputs)), PlanRequest(frame_size=SIZE))
         assert [w.message.split(":")[0] for w in source_warnings(plan)] == [
             f"nothing feeds {n}" for n in left
         ]

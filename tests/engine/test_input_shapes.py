@@ -10,7 +10,8 @@ import pytest
 from playground.data.image_files import write_png
 from playground.engine import binder
 from playground.engine.engine import Engine
-from playground.engine.planner import Planner
+from playground.engine.plan import PlanRequest
+from playground.engine.planner import make_plan
 from playground.engine.textures import copied
 from playground.errors import SketchError
 from tests.cube_maps import directions, face_and_place
@@ -150,7 +151,7 @@ def test_a_texture_that_cannot_be_a_cube_is_one_sentence_at_the_wire(folder):
         write_png(folder.path / "data.png", np.zeros((2, 2, 4), np.uint8))
         sketch = load(folder.write("sketch.toml", SKETCH.format(*size)))
         with pytest.raises(SketchError, match=wanted) as caught:
-            Planner().plan(sketch, frame_size=(4, 4))
+            make_plan(sketch, PlanRequest(frame_size=(4, 4)))
         found = caught.value.diagnostics[0]
         assert (
             found.file.endswith("sketch.toml")

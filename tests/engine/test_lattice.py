@@ -9,7 +9,8 @@ import pytest
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.engine.planner import Planner
+from playground.engine.plan import PlanRequest
+from playground.engine.planner import make_plan
 from playground.errors import PlaygroundError
 from playground.sketch.model import Sketch
 
@@ -117,7 +118,7 @@ def test_a_run_goes_on_from_what_it_knows_and_ends_the_same(
 def test_all_iterations_none_and_no_stop_at_all_are_left_as_they_are(tmp_path: Path) -> None:
     sketch = sketch_of(tmp_path, "diamond_square")
     for steps in ({}, {"height.raw": 0}, {"height.raw": 9}):
-        step = Planner().plan(sketch, frame_size=(9, 9), steps=steps).step("height.raw")
+        step = make_plan(sketch, PlanRequest(frame_size=(9, 9), steps=steps)).step("height.raw")
         assert step is not None and step.between is None
 
 

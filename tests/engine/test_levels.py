@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.planner import Planner, repeats_of
+from playground.engine.plan import PlanRequest
+from playground.engine.planner import make_plan, repeats_of
 from playground.errors import PlaygroundError
 
 # What it reads, as a share of the terrain, its own size, and where it is in the loop.
@@ -239,7 +240,7 @@ def test_a_loop_of_no_iteration_has_the_size_of_the_only_one(engine, levels):
 
 def test_one_plan_has_one_step_for_one_size(levels):
     sketch = levels.sketch(LOOP.replace(COARSE, '"5 if iteration < 3 else 9"'))
-    loop = Planner().plan(sketch, frame_size=(9, 9)).node("a")
+    loop = make_plan(sketch, PlanRequest(frame_size=(9, 9))).node("a")
     assert [body[0].size for body in loop.bodies] == [(5, 5)] * 3 + [(9, 9)]
     assert loop.bodies[0] is loop.bodies[1] is loop.bodies[2]
     assert loop.body is loop.bodies[3]
@@ -276,7 +277,7 @@ def test_one_plan_has_one_step_for_one_size(levels):
 )
 def test_mistakes_are_said_in_a_sentence(levels, text, sentence):
     with pytest.raises(PlaygroundError) as caught:
-        Planner().plan(levels.sketch(text), frame_size=(9, 9))
+        make_plan(levels.sketch(text), PlanRequest(frame_size=(9, 9)))
     assert caught.value.diagnostics[0].message == sentence
 
 

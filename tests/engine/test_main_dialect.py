@@ -7,8 +7,9 @@ import pytest
 
 from playground.capture.large import strips
 from playground.engine.engine import Engine
+from playground.engine.plan import PlanRequest
 from playground.engine.plan_warnings import source_warnings
-from playground.engine.planner import Planner
+from playground.engine.planner import make_plan
 from playground.errors import ShaderError, SketchError
 from playground.reduce.inline import inline_sketch
 from playground.shader.wrap import FRAGMENT, wrap
@@ -163,7 +164,7 @@ def test_each_of_an_array_of_samplers_may_be_wired(any_engine, folder):
     view = '[view]\nuse = "./t"\n'
     sketch = folder.sketch(f'{passes}{view}inputs = {{ maps_0 = "red", maps_2 = "green" }}\n')
     np.testing.assert_array_equal(any_engine.render(sketch, size=(4, 4)).array[0, 0, :3], [255, 255, 0])
-    (note,) = source_warnings(Planner().plan(folder.sketch(passes + view), frame_size=SIZE))
+    (note,) = source_warnings(make_plan(folder.sketch(passes + view), PlanRequest(frame_size=SIZE)))
     assert (note.line, note.message) == (2, "nothing feeds maps_0, maps_1, maps_2: it reads black")
 
 
@@ -249,7 +250,7 @@ void main() {
 }
 """
     path = folder.write("a.frag", text)
-    plan = Planner().plan(load(path), frame_size=SIZE)
+    plan = make_plan(load(path), PlanRequest(frame_size=SIZE))
     assert [(w.message, w.line) for w in source_warnings(plan)] == [
         ("nothing feeds key, lights, u_values: it is 0, as no panel shows its type", 2)
     ]
@@ -263,7 +264,7 @@ uniform float fGlobalTime;
 out vec4 c;
 void main() { imageStore(computeTex[0], ivec2(0), uvec4(1)); c = vec4(fGlobalTime); }
 """
-    plan = Planner().plan(load(folder.write("a.frag", text)), frame_size=SIZE)
+    plan = make_plan(load(folder.write("a.frag", text)), PlanRequest(frame_size=SIZE))
     (found,) = source_warnings(plan)
     assert (found.message, found.line) == (
         "nothing feeds computeTex: it reads 0, and nothing keeps what is written",
@@ -299,7 +300,7 @@ def test_a_given_name_of_another_type_is_the_text_s_own(any_engine, folder, kind
         sketch = load(folder.write("a.frag" if "ISF" not in form else "a.fs", text))
         found = any_engine.render(sketch, size=(8, 4), time=2.0).array
         assert (found[..., :3] == 0).all(), name
-        said = [str(d) for d in source_warnings(Planner().plan(sketch, frame_size=(8, 4)))]
+        said = [str(d) for d in source_warnings(make_plan(sketch, PlanRequest(frame_size=(8, 4))))]
         said += [str(d) for _, k in kernels_of(sketch.graph) for d in warnings_of_kernel(k)]
         if "version" not in form or "sampler" in kind:
             assert sum(name in one for one in said) == 1, (name, said)

@@ -12,13 +12,14 @@ from playground.data.values import write_values
 from playground.engine import planner as planner_module
 from playground.engine.cache import Cache
 from playground.engine.engine import Engine
-from playground.engine.plan import Plan, every_node
-from playground.engine.planner import Planner
+from playground.engine.plan import Plan, PlanRequest, every_node
+from playground.engine.planner import make_plan, planned
 from playground.errors import DataError
 from playground.sketch.assign import resolve, shown_parameters
 from playground.sketch.model import Sketch, Value
 
 from ..loading import load
+from ..plans import plans_made_whole
 
 SIZE = (64, 36)
 SKETCHES = (
@@ -65,36 +66,45 @@ def other_values(sketch: Sketch) -> list[tuple[str, Value]]:
     return found
 
 
+@pytest.fixture
+def wholes(monkeypatch) -> list[Sketch]:
+    """Give the sketches whose plans were made from nothing."""
+    return plans_made_whole(monkeypatch)
+
+
+def plan_of(sketch: Sketch, time: float = 0.0) -> Plan:
+    return planned(sketch, PlanRequest(SIZE, time))
+
+
 @pytest.mark.parametrize("name", SKETCHES)
-def test_a_renewed_plan_is_the_one_made_from_nothing(name):
-    sketch, planner = load(name), Planner()
-    planner.plan(sketch, frame_size=SIZE)
+def test_a_renewed_plan_is_the_one_made_from_nothing(name, wholes):
+    sketch = load(name)
+    plan_of(sketch)
     for number, (path, value) in enumerate(other_values(sketch)[:40]):
         changed = sketch.with_values({path: value})
         time = 0.5 * (number % 3)
-        assert described(planner.plan(changed, frame_size=SIZE, time=time)) == described(
-            Planner().plan(changed, frame_size=SIZE, time=time)
-        ), path
-    assert planner.made_whole < 41, "some were renewed"
+        from_nothing = make_plan(changed, PlanRequest(SIZE, time))
+        assert described(plan_of(changed, time)) == described(from_nothing), path
+    assert len(wholes) <= 1 + 2 * number, "some were renewed"
 
 
 @pytest.mark.slow
-def test_a_slider_that_no_size_names_plans_no_pass(monkeypatch):
-    planned: Counter[str] = Counter()
+def test_a_slider_that_no_size_names_plans_no_pass(monkeypatch, wholes):
+    nodes: Counter[str] = Counter()
     plan_node = planner_module._Planning._node
 
     def counting(self, node):
-        planned[node.path] += 1
+        nodes[node.path] += 1
         return plan_node(self, node)
 
     monkeypatch.setattr(planner_module._Planning, "_node", counting)
-    sketch, planner = load(""), Planner()
-    first = planner.plan(sketch, frame_size=SIZE)
-    assert set(planned) == {step.path for step in first.walk()} and max(planned.values()) == 1
-    planned.clear()
+    sketch = load("")
+    first = plan_of(sketch)
+    assert set(nodes) == {step.path for step in first.walk()} and max(nodes.values()) == 1
+    nodes.clear()
     for azimuth in range(20):
-        second = planner.plan(sketch.with_values({"light.sun": (100.0 + azimuth, 20.0)}), frame_size=SIZE)
-    assert not planned and planner.made_whole == 1
+        second = plan_of(sketch.with_values({"light.sun": (100.0 + azimuth, 20.0)}))
+    assert not nodes and len(wholes) == 1
     moved = {
         step.path for step, before in zip(second.walk(), first.walk(), strict=True) if step is not before
     }
@@ -102,17 +112,16 @@ def test_a_slider_that_no_size_names_plans_no_pass(monkeypatch):
     assert moved == sun, "only passes that have the value are other ones"
 
 
-def test_a_value_that_a_count_names_plans_anew():
-    sketch, planner = load("fault_formation"), Planner()
-    first = planner.plan(sketch, frame_size=SIZE)
-    named = next(iter(planner._plans.values())).named
-    counts = [path for path in named if path.startswith("height.")]
+def test_a_value_that_a_count_names_plans_anew(wholes):
+    sketch = load("fault_formation")
+    first = plan_of(sketch)
+    counts = [path for path in first.basis.named if path.startswith("height.")]
     assert counts, "its number of faults is the number of its steps"
     for path in counts:
         more = sketch.with_values({path: 7})
-        plan = planner.plan(more, frame_size=SIZE)
-        assert described(plan) == described(Planner().plan(more, frame_size=SIZE)) != described(first)
-    assert planner.made_whole == 1 + len(counts)
+        plan = plan_of(more)
+        assert described(plan) == described(make_plan(more, PlanRequest(SIZE))) != described(first)
+    assert len(wholes) == 1 + 2 * len(counts)
 
 
 def test_another_file_of_the_terrain_plans_anew(tmp_path):
@@ -127,13 +136,13 @@ def test_another_file_of_the_terrain_plans_anew(tmp_path):
         'format = 1\n[[pass]]\nname = "height"\n'
         'use = "generation/heightmap"\nset = { elevation = "rise.npy" }\n'
     )
-    sketch, planner = load(tmp_path), Planner()
-    assert planner.plan(sketch, frame_size=SIZE).terrain.size == (9, 9)
+    sketch = load(tmp_path)
+    assert plan_of(sketch).terrain.size == (9, 9)
     rise(17)
-    assert planner.plan(sketch, frame_size=SIZE).terrain.size == (17, 17)
+    assert plan_of(sketch).terrain.size == (17, 17)
     Path(tmp_path / "rise.npy").unlink()
     with pytest.raises(DataError, match="there is no such file"):
-        planner.plan(sketch, frame_size=SIZE)
+        plan_of(sketch)
 
 
 @pytest.mark.slow

@@ -16,8 +16,8 @@ from pathlib import Path
 import pytest
 
 from playground import cli
+from playground.engine.planner import smallest_terrain
 from playground.engine.sandbox import Sandbox, SandboxReport, TryLibrary, TrySketch, reading_seconds
-from playground.engine.sizes import smallest_terrain
 from playground.errors import SandboxCrash, SandboxTimeout, ShaderError
 
 from ..loading import load

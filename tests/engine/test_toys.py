@@ -12,8 +12,9 @@ import tifffile
 from playground.capture.large import strips
 from playground.data.image_files import write_png
 from playground.engine.engine import Engine
+from playground.engine.plan import PlanRequest
 from playground.engine.plan_warnings import source_warnings
-from playground.engine.planner import Planner
+from playground.engine.planner import make_plan
 from playground.errors import PlaygroundError, ShaderError
 from playground.reduce.inline import inline_sketch
 from playground.sketch.warnings import warnings_of_sketch
@@ -57,7 +58,7 @@ def drawn(engine, sketch, time=0.0, size=SIZE):
 
 
 def notes(sketch):
-    plan = Planner().plan(sketch, frame_size=SIZE)
+    plan = make_plan(sketch, PlanRequest(frame_size=SIZE))
     return [str(d.message) for d in (*warnings_of_sketch(sketch), *source_warnings(plan))]
 
 

@@ -12,8 +12,8 @@ from playground.data.image_files import write_png
 from playground.engine import cache_keys
 from playground.engine.cache_keys import KeyMaker, Keys
 from playground.engine.engine import Engine
-from playground.engine.plan import Plan, every_version
-from playground.engine.planner import Planner
+from playground.engine.plan import Plan, PlanRequest, every_version
+from playground.engine.planner import make_plan
 
 from ..sketch_texts import SMALL_VIEW, passes
 
@@ -158,12 +158,14 @@ def test_keys_made_of_the_last_ones_are_those_made_from_nothing(any_engine, many
     for what in ("nothing", *random.permutation(CHANGES * 3)):
         frames.change(str(what))
         plan, forms = frames.plan(), any_engine.internal.plain_forms
-        from_nothing = Planner().plan(
+        from_nothing = make_plan(
             frames.sketch,
-            frame_size=frames.size,
-            time=frames.time,
-            variants=forms.kinds if frames.sketch.samples == 1 else forms.kinds_without_draws,
-            steps=frames.steps,
+            PlanRequest(
+                frame_size=frames.size,
+                time=frames.time,
+                variants=forms.kinds if frames.sketch.samples == 1 else forms.kinds_without_draws,
+                steps=frames.steps,
+            ),
         )
         assert plan.nodes == from_nothing.nodes
         ours, theirs = any_engine.internal.keys_of(plan), computed_from_nothing(any_engine, plan)

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from scipy.ndimage import distance_transform_edt
 
+from playground.engine.plan import PlanRequest
 from playground.engine.plan_warnings import source_warnings
-from playground.engine.planner import Planner
+from playground.engine.planner import make_plan
 from playground.errors import ShaderError
 from playground.sketch.warnings import warnings_of_kernel, warnings_of_sketch
 
@@ -485,7 +486,7 @@ def test_what_only_an_algorithm_reads_is_not_missed_in_other_passes(folder):
 """
     sketch = load(folder.write("t.frag", HEAD + head + body))
     found = [w.message for _, kernel in sketch.graph.kernels for w in warnings_of_kernel(kernel)]
-    plan = Planner().plan(sketch, frame_size=(32, 18))
+    plan = make_plan(sketch, PlanRequest(frame_size=(32, 18)))
     assert [*found, *(w.message for w in source_warnings(plan))] == []
     lonely = load(folder.write("t.frag", HEAD + head + "uniform bool u_idle;\n" + body))
     found = {w.message for _, kernel in lonely.graph.kernels for w in warnings_of_kernel(kernel)}

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.planner import Planner
+from playground.engine.plan import PlanRequest
+from playground.engine.planner import make_plan
 from playground.engine.sources import source_kind
 from playground.errors import PlaygroundError
 from playground.sketch.catalogue import shipped_sketches
@@ -39,7 +40,7 @@ def small(name: str, land: int = LAND) -> Sketch:
     sketch = load(name)
     try:
         smaller = sketch.with_values({"size": str(land)})
-        Planner().plan(smaller, frame_size=SIZE, variants=KINDS)
+        make_plan(smaller, PlanRequest(frame_size=SIZE, variants=KINDS))
     except PlaygroundError:
         return sketch
     return smaller
@@ -140,7 +141,7 @@ def reads_filtered_floats(data: dict[str, Any]) -> bool:
 def settings_of(sketch: Sketch, data: dict[str, Any]) -> Iterator[Settings]:
     """Yield settings at random, the same in every run, in sizes that are drawn at once."""
     chance = random.Random(sketch.name)
-    plan = Planner().plan(sketch, frame_size=SIZE, variants=KINDS)
+    plan = make_plan(sketch, PlanRequest(frame_size=SIZE, variants=KINDS))
     sources = [step.kernel.registry for step in plan.walk() if step.kernel.kind == "source"]
     for _ in range(SETTINGS):
         found = random_settings(chance, data, plan)

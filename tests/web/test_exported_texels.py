@@ -14,7 +14,8 @@ import pytest
 
 from playground.data.image_files import read_image, write_png
 from playground.engine.engine import Engine
-from playground.engine.planner import Planner
+from playground.engine.plan import PlanRequest
+from playground.engine.planner import make_plan
 from playground.engine.textures import split_format
 from playground.paths import SKETCHES
 from playground.shader.parameter import srgb_to_linear
@@ -211,7 +212,7 @@ def test_what_would_need_another_plan_is_locked_and_nothing_else_is(name: str, i
     found = {row["path"]: row for row in page_data([sketch])["sketches"][0]["shown"]}
 
     def run_with(values: dict[str, object]) -> list[str]:
-        plan = Planner().plan(sketch.with_values(values), frame_size=(64, 36), variants=KINDS)
+        plan = make_plan(sketch.with_values(values), PlanRequest(frame_size=(64, 36), variants=KINDS))
         return [step.path for step in plan.walk()]
 
     usual = run_with({})

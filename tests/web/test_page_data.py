@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.plan import LoopStep, Plan
-from playground.engine.planner import Planner
+from playground.engine.plan import LoopStep, Plan, PlanRequest
+from playground.engine.planner import make_plan
 from playground.errors import PlaygroundError
 from playground.paths import GLSL
 from playground.shader import expressions
@@ -58,7 +58,7 @@ def planned(name: str) -> Plan:
 
 
 def plan_of(sketch: Sketch) -> Plan:
-    return Planner().plan(sketch, frame_size=(320, 180), variants=KINDS)
+    return make_plan(sketch, PlanRequest(frame_size=(320, 180), variants=KINDS))
 
 
 @pytest.mark.parametrize("name", EACH_KIND)

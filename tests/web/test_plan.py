@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from playground.engine.cache_keys import KeyMaker, Keys
-from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node, needed
-from playground.engine.planner import Planner
+from playground.engine.plan import LoopStep, Plan, PlanNode, PlanRequest, Step, every_node, needed
+from playground.engine.planner import make_plan
 from playground.errors import PlaygroundError
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import Camera, Kernel, Sketch
@@ -102,13 +102,15 @@ def exported(sketch: Sketch, shared: SharedData) -> tuple[dict[str, Any], dict[s
 
 def python(sketch: Sketch, settings: Settings) -> Plan | str:
     try:
-        return Planner().plan(
+        return make_plan(
             settings.of(sketch),
-            frame_size=settings.frame,
-            time=settings.time,
-            steps=settings.steps,
-            variants=KINDS,
-            interpolated=True,
+            PlanRequest(
+                frame_size=settings.frame,
+                time=settings.time,
+                steps=settings.steps,
+                variants=KINDS,
+                interpolated=True,
+            ),
         )
     except PlaygroundError as error:
         return f"PlanError: {error.diagnostics[0].message}"
@@ -348,7 +350,7 @@ def test_a_map_takes_the_place_of_the_view(node: Node, shared: SharedData, name:
     }"""
     picture, nodes = node.run(script, data, images, state)
     of = Map(texture["ref"]).of(sketch)
-    plan = Planner().plan(of, frame_size=(64, 36), variants=KINDS, wanted=texture["ref"])
+    plan = make_plan(of, PlanRequest(frame_size=(64, 36), variants=KINDS, wanted=texture["ref"]))
     expected = [node.path for node in needed(plan.nodes, plan.picture)]
     assert picture["path"] == nodes[-1][0] == "#map" and nodes[-1][1] == [64, 36]
     assert [path for path, _ in nodes[:-1]] == expected[:-1]

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground.engine import internals
 from playground.engine.engine import Engine
-from playground.engine.planner import Planner
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
 from playground.workbench.enlarged import Enlarger
@@ -135,9 +135,9 @@ def test_a_saved_text_is_planned_as_a_preview_alone(
     text = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.1; }\n'
     kernel.write_text(text, encoding="utf-8")
     planned: list[int] = []
-    plan = Planner.plan
+    plan = internals.planned
     monkeypatch.setattr(
-        Planner, "plan", lambda own, sketch, **how: planned.append(sketch.samples) or plan(own, sketch, **how)
+        internals, "planned", lambda sketch, request: planned.append(sketch.samples) or plan(sketch, request)
     )
     session = Session(any_engine, file)
     try:

@@ -20,6 +20,7 @@ from playground.workbench.framing import framed
 from playground.workbench.reload_stages import ReloadStage
 from playground.workbench.session import Session
 
+from ..plans import plans_made_whole
 from ..sketch_texts import map_of_height
 
 SIZE = (64, 48)
@@ -412,17 +413,17 @@ def test_it_is_planned_while_the_sandbox_tries_it_and_nothing_is_drawn(
     try:
         session.frame(size)
         session.read()
-        planner, runs = any_engine.internal.planner, sum(any_engine.internal.runs.values())
+        wholes, runs = plans_made_whole(monkeypatch), sum(any_engine.internal.runs.values())
         (tmp_path / "own.glsl").write_text(text.replace("0.1", "0.2"), encoding="utf-8")
         session.drafts.reload()
         for _ in range(3):
             session.frame(size)
-        planned = planner.made_whole
+        planned = len(wholes)
         assert sum(any_engine.internal.runs.values()) == runs and session.drafts.testing
         sandbox.answer = SandboxReport(True)
         session.frame(size)
         assert session.error is None and sum(any_engine.internal.runs.values()) > runs
-        assert planner.made_whole == planned
+        assert len(wholes) == planned
     finally:
         session.release()
 

@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from playground.capture.shader_export.foreign_given import reason_to_stay
-from playground.engine.plan import LoopStep, Plan, PlanNode, Step, needed, sources_of
-from playground.engine.planner import Planner
+from playground.engine.plan import LoopStep, Plan, PlanNode, PlanRequest, Step, needed, sources_of
+from playground.engine.planner import make_plan
 from playground.errors import Diagnostic, PlaygroundError, SketchError
 from playground.shader import expressions
 from playground.shader.reserved_names import GLSL_WORDS
@@ -116,7 +116,7 @@ def leaving(sketch: Sketch, texture: str, kind: str, time: float) -> Leaving:
 
 def plan_of(sketch: Sketch, size: tuple[int, int], time: float) -> Plan:
     """Plan a sketch in its plain forms, which every fragment shader can run."""
-    return Planner().plan(sketch, frame_size=size, time=time, interpolated=False)
+    return make_plan(sketch, PlanRequest(frame_size=size, time=time, interpolated=False))
 
 
 class _Passes:

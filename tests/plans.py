@@ -1,0 +1,24 @@
+"""Note which plans are made from nothing: most frames reuse the last one's."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import pytest
+
+from playground.engine import planner
+from playground.engine.plan import Plan
+from playground.sketch.model import Sketch
+
+
+def plans_made_whole(monkeypatch: pytest.MonkeyPatch) -> list[Sketch]:
+    """Return a list that grows by the sketch of each plan that is made from nothing."""
+    sketches: list[Sketch] = []
+    whole = planner._Planning.whole
+
+    def noted(self: planner._Planning, refused: Mapping[str, str]) -> Plan:
+        sketches.append(self.sketch)
+        return whole(self, refused)
+
+    monkeypatch.setattr(planner._Planning, "whole", noted)
+    return sketches
