@@ -18,7 +18,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from heapq import heappop, heappush
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -47,18 +47,46 @@ _FIXED = frozenset(GIVEN) - {"time", "clip_from_world", "world_from_clip", "eye"
 """Given names that the same passes of the same terrain are given in every frame."""
 
 
+@dataclass(frozen=True, slots=True)
+class StepKey:
+    """What a step's textures depend on: hashes, and what went into them by name."""
+
+    result: str  # of the textures that others read
+    computed: str  # the same of what it has, where more is shown
+    unfinished: str  # the same after any number of iterations
+    # The same without the inputs of which single texels are read and nothing else; "" where there are none.
+    by_texels: str
+    parts: tuple[tuple[str, object], ...] = field(compare=False, repr=False)
+
+    def difference(self, other: StepKey) -> tuple[str, ...]:
+        """Return the names of what differs: why the step runs again after the other.
+
+        They are "text", "driver", "size", "window", "repeat", "iterations", "continued", a value or a file by
+        the name of its parameter ("value amplitude"), "given time" and the like, "input height" where what
+        that reads is another: ask its step why.
+        """
+        ours, theirs = ({name: repr(part) for name, part in key.parts} for key in (self, other))
+        found = [name for name in {**theirs, **ours} if ours.get(name) != theirs.get(name)]
+        return tuple(found or (("iterations of its loop",) if self.result != other.result else ()))
+
+
 @dataclass
 class Keys:
     """The keys of one plan."""
 
-    steps: dict[str, str] = field(default_factory=dict)  # by the step's path
-    raw: dict[str, str] = field(default_factory=dict)  # the same of what it has, where more is shown
-    unfinished: dict[str, str] = field(default_factory=dict)  # the same after any number of iterations
-    # The same without the inputs of which single texels are read and nothing else, by path; of such steps.
-    apart: dict[str, str] = field(default_factory=dict)
-    loops: dict[str, str] = field(default_factory=dict)  # by the loop's path, likewise
+    steps: dict[str, StepKey] = field(default_factory=dict)  # by the step's path
+    loops: dict[str, str] = field(default_factory=dict)  # by the loop's path
     # The paths of the loops around a node whose iterations change it, by the node's identity.
     changes: dict[int, frozenset[str]] = field(default_factory=dict)
+
+    def result(self, path: str) -> str:
+        """Return the key of the textures that others read of a step, or of its last iteration in a loop."""
+        return self.steps[path].result
+
+    def computed(self, path: str) -> str:
+        """Return the key of what a step has computed itself; "" where there is no such step."""
+        key = self.steps.get(path)
+        return key.computed if key is not None else ""
 
     def copy(self) -> Keys:
         """Return the same keys, to be changed."""
@@ -185,23 +213,19 @@ class _Reads(NamedTuple):
     clocked: frozenset[str]  # what is in no key, since it is that of the frame that a loop is at
 
 
-@dataclass(frozen=True, slots=True)
-class _StepKeys:
-    """The keys of a step in one plan; in the next they are the same if the step and what it reads are."""
+class _Known(NamedTuple):
+    """The key of a step in one plan; in the next it is the same if the step and what it reads are."""
 
     step: Step
     reads: str
-    unfinished: str
-    raw: str
-    shown: str
-    apart: str  # "" for none: see ``Keys``
+    key: StepKey
 
 
 class _Part(NamedTuple):
     """A node of a plan whose keys are known, with what is inside it."""
 
     node: PlanNode
-    steps: Mapping[int, _StepKeys]  # by the step's identity
+    steps: Mapping[int, _Known]  # by the step's identity
     moving: tuple[Step, ...]  # steps that the same plan may give something else in the next frame
     given: str  # what they were given
     shown: list[tuple[str, frozenset[str]]]  # what the nodes that read it see of it: see ``_KeyComputation``
@@ -276,8 +300,8 @@ class _KeyComputation:
         self.keys = whole.keys
         self.varies = whole.varies
         self.continued = whole.continued
-        self.before: Mapping[int, _StepKeys] = {}
-        self.found: dict[int, _StepKeys] = {}
+        self.before: Mapping[int, _Known] = {}
+        self.found: dict[int, _Known] = {}
         self.sized: dict[tuple[str, bool], frozenset[str]] = {}  # see ``_note_sized``
         self.text_of = text_of
         self.content = content
@@ -297,7 +321,7 @@ class _KeyComputation:
         self.add(node, _NO_LOOP, {}, {})
         steps = [one for one in _inside(node) if isinstance(one, Step)]
         moving = tuple([step for step in steps if self.text_of(step.kernel).is_moving])
-        shown = [(self.keys.steps[step.path], self.varies[step.path]) for step in steps]
+        shown = [(self.keys.steps[step.path].result, self.varies[step.path]) for step in steps]
         return _Part(node, self.found, moving, self._given_to(moving) if moving else "", shown)
 
     def _given_to(self, steps: Sequence[Step]) -> str:
@@ -325,13 +349,9 @@ class _KeyComputation:
         reads = _Reads(self.driver(node), files, sources, given, path in self.continued, clocked)
         known, written = self.before.get(id(node)), repr(reads)
         if known is None or known.step is not node or known.reads != written:
-            known = self._keys_of(node, reads, written)
+            known = _Known(node, written, self._key_of(node, reads))
         self.found[id(node)] = known
-        self.keys.unfinished[path], self.keys.raw[path] = known.unfinished, known.raw
-        self.keys.steps[path] = known.shown
-        self.keys.apart.pop(path, None)
-        if known.apart:
-            self.keys.apart[path] = known.apart
+        self.keys.steps[path] = known.key
         varies = self.sized.get((path, False), frozenset[str]())
         for _, source in node.inputs:
             varies |= self._varies(source, varying) if source else varies
@@ -341,32 +361,36 @@ class _KeyComputation:
             varies |= {loops.frames}
         self.varies[path] = self.keys.changes[id(node)] = varies
 
-    def _keys_of(self, step: Step, reads: _Reads, written: str) -> _StepKeys:
-        """Return the keys of a step that reads so."""
+    def _key_of(self, step: Step, reads: _Reads) -> StepKey:
+        """Return the key of a step that reads so."""
         kernel, text = step.kernel, self.text_of(step.kernel)
-        parts: list[Any] = [text.digest, reads.driver, step.size, step.window]
+        own: list[tuple[str, Any]] = [("text", text.digest), ("driver", reads.driver)]
+        own += [("size", step.size), ("window", step.window)]
         contents = iter(reads.files)
         for parameter in kernel.parameters:
-            value = step.values[parameter.name]
+            name, value = parameter.name, step.values[parameter.name]
             if parameter.widget.kind == "file":
                 suffix = Path(str(value)).suffix
-                parts.append((parameter.name, parameter.sampling, suffix, next(contents)))
-            elif parameter.name in text.used and parameter.name not in reads.clocked:
-                parts.append((parameter.name, value))
-        more: list[Any] = list(reads.given.items())
+                own.append((f"file {name}", (name, parameter.sampling, suffix, next(contents))))
+            elif name in text.used and name not in reads.clocked:
+                own.append((f"value {name}", (name, value)))
+        more: list[tuple[str, Any]] = [(f"given {pair[0]}", pair) for pair in reads.given.items()]
         if "iterations" in text.used:
-            more.append(step.whole)
+            more.append(("iterations", step.whole))
         if reads.is_continued:
-            more.append("continued")
-        apart = ""
+            more.append(("continued", "continued"))
+        parts, rest = [part for _, part in own], [part for _, part in more]
+        by_texels = ""
         if text.by_texels:
             others = [(name, bool(key) if name in text.by_texels else key) for name, key in reads.sources]
-            apart = _digest([step.repeat, parts, others, more])
-        parts += [*reads.sources, *more]
-        raw = shown = _digest([step.repeat, parts])
+            by_texels = _digest([step.repeat, parts, others, rest])
+        parts += [*reads.sources, *rest]
+        computed = result = _digest([step.repeat, parts])
         if step.between is not None:
-            shown = _digest([raw, *step.between])
-        return _StepKeys(step, written, _digest([step.path, parts]), raw, shown, apart)
+            result = _digest([computed, *step.between])
+        sources = [(f"input {pair[0]}", pair) for pair in reads.sources]
+        named = (*own, *sources, *more, ("repeat", step.repeat), ("between", step.between))
+        return StepKey(result, computed, _digest([step.path, parts]), by_texels, named)
 
     def _loop(
         self,
@@ -394,7 +418,7 @@ class _KeyComputation:
             if id(body) not in found or body is loop.body:
                 for node in body:
                     self.add(node, around, names, changes)
-                found[id(body)] = [self.keys.steps[path] for path in inside]
+                found[id(body)] = [self.keys.steps[path].result for path in inside]
         parts: list[Any] = [loop.path, *found[id(loop.body)]]
         if len(loop.bodies) > 1:
             parts = [loop.path, *(found[id(body)] for body in loop.bodies)]
@@ -405,7 +429,8 @@ class _KeyComputation:
         self.keys.changes[id(loop)] = outer
         for path in inside:
             if loop.path in self.varies[path]:  # what reads it from here on sees the last iteration
-                self.keys.steps[path] = _digest([key, path, loop.repeat])
+                last = _digest([key, path, loop.repeat])
+                self.keys.steps[path] = replace(self.keys.steps[path], result=last)
                 self.varies[path] = (self.varies[path] - {loop.path}) | sized
 
     def _note_sized(self, loop: LoopStep) -> None:
@@ -432,7 +457,7 @@ class _KeyComputation:
     def _source(self, source: Source | None, fed: Mapping[Fed, str]) -> str:
         if source is None:
             return ""
-        return fed[source] if isinstance(source, Fed) else f"{self.keys.steps[source.path]}:{source.output}"
+        return fed[source] if isinstance(source, Fed) else f"{self.keys.result(source.path)}:{source.output}"
 
 
 def _clocked(step: Step, given: Mapping[str, Any]) -> frozenset[str]:

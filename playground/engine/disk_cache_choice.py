@@ -126,9 +126,11 @@ def choose(
         if here is None:
             inside = {step.path: step for step in walk((node,))}
             # Of a loop that was read, each step that others read is cached by itself.
-            missing = [step for path, step in inside.items() if path in wanted and not held(keys.steps[path])]
+            missing = [
+                step for path, step in inside.items() if path in wanted and not held(keys.result(path))
+            ]
             if all(read(step) for step in missing):
-                here = {path: found for path in inside if (found := _alone(held(keys.steps[path])))}
+                here = {path: found for path in inside if (found := _alone(held(keys.result(path))))}
                 skipped |= inside.keys() - here.keys() - {step.path for step in missing}
         if here is not None:
             taken |= here
@@ -141,7 +143,7 @@ def choose(
 def _in_memory(node: PlanNode, keys: Keys, held: Callable[[str], Cached | None]) -> dict[str, Result] | None:
     """Return what is cached in memory of a node, by the step's path; None where it has to be run, or read."""
     if isinstance(node, Step):
-        found = _alone(held(keys.steps[node.path]))
+        found = _alone(held(keys.result(node.path)))
         return None if found is None else {node.path: found}
     cached = held(keys.loops[node.path])
     if cached is None or cached.iterations != node.repeat or not cached.results:
@@ -196,7 +198,7 @@ def worth_caching(
     wholes: list[dict[str, float]] = []  # what was run for a node, nothing read, each with its time
     is_read: list[bool] = []
     for number, node in enumerate(nodes):
-        key = keys.loops[node.path] if isinstance(node, LoopStep) else keys.steps[node.path]
+        key = keys.loops[node.path] if isinstance(node, LoopStep) else keys.result(node.path)
         whole = {key: costs.get(key, 0.0)}
         way = {(True, key): whole[key] + max(more.get(step.path, 0.0) for step in walk((node,)))}
         for path in sources[number]:
@@ -214,7 +216,7 @@ def worth_caching(
         read_here = [step.path for step in walk((nodes[number],)) if step.path in wanted]
         if read_here and is_read[number]:
             cost = sum(wholes[number].values())
-            found += [Worth(path, keys.steps[path], cost) for path in read_here]
+            found += [Worth(path, keys.result(path), cost) for path in read_here]
         elif read_here:
             wanted |= sources[number]
     return found[::-1]

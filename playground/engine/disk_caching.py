@@ -81,7 +81,7 @@ class DiskCaching:
         passes = passing(plan, runner.painted)
 
         def read(step: Step) -> bool:
-            return step.path not in passes and self._take(execution, step, keys.steps[step.path])
+            return step.path not in passes and self._take(execution, step, keys.result(step.path))
 
         def timed(path: str, key: str) -> AbstractContextManager[None]:
             if path in passes:
@@ -100,7 +100,7 @@ class DiskCaching:
         passes = passing(plan, painted)
 
         def read(step: Step) -> bool:
-            return step.path not in passes and keys.steps[step.path] in self.store
+            return step.path not in passes and keys.result(step.path) in self.store
 
         return choose(keys, needed(plan.nodes, ref), ref, cache.peek, read, skips=self.skips).nodes
 
@@ -184,7 +184,8 @@ class DiskCaching:
         if source.runner.info.software:  # one texture whose mipmaps are made anew has that compiled again
             more = {path: MIPMAPS for path, result in source.record.results.items() if result.mipmapped}
         for worth in worth_caching(plan, keys, plan.picture, passes, costs, read_time, self.floor, more):
-            if source.record.keys.steps.get(worth.path) != worth.key:
+            known = source.record.keys.steps.get(worth.path)
+            if known is None or known.result != worth.key:
                 self._is_new = True  # another sketch was drawn since
                 return
             result = source.record.results.get(worth.path)

@@ -70,7 +70,8 @@ class Execution:
     def _drop(self, step: Step) -> None:
         """Drop the textures of a step, and what else has the same ones."""
         found = self.results.get(step.path)
-        for key in {self.keys.steps[step.path], self.keys.raw[step.path]}:
+        own = self.keys.steps[step.path]
+        for key in {own.result, own.computed}:
             self.cache.drop(key)
         for path in [path for path, result in self.results.items() if result is found]:
             del self.results[path]
@@ -85,7 +86,7 @@ class Execution:
             return
         found = self._unchanged_draw(node) if isinstance(node.kernel, Draw) and not node.repeat else None
         if found is None:
-            cached = self.cache.get(self.keys.steps[node.path])
+            cached = self.cache.get(self.keys.result(node.path))
             found = cached.result if cached else self._stale_result(node)
         self.results[node.path] = found
 
@@ -105,15 +106,16 @@ class Execution:
         """Compute a step whose result is not cached, and cache it; of a stopped step, interpolated."""
         if step.between is None:
             return self._computed(step)
-        cached = self.cache.get(self.keys.raw[step.path])
+        cached = self.cache.get(self.keys.computed(step.path))
         raw = cached.result if cached else self._computed(step)
         found = self.runner.kernels.drawn_own("fill_between.frag", raw, **step.between.uniforms)
-        self.cache.put(self.keys.steps[step.path], Cached({step.path: found}))
+        self.cache.put(self.keys.result(step.path), Cached({step.path: found}))
         return found
 
     def _computed(self, step: Step) -> Result:
         """Run a step, from where its earlier iterations are cached, and cache its result."""
-        key, unfinished = self.keys.raw[step.path], self.keys.unfinished[step.path]
+        own = self.keys.steps[step.path]
+        key, unfinished = own.computed, own.unfinished
         goes_on = isinstance(step.kernel, TexelKernel) and step.kernel.repeat != "1"
         earlier = self._earlier(step, unfinished) if goes_on else None
         inputs = {name: self._wired(source, {}) for name, source in step.inputs}
@@ -139,18 +141,18 @@ class Execution:
         Of an input of which it reads single texels, as of a daylight the day of the year, these are all. Only
         on a software renderer, which reads them back anyway: there they are uniforms.
         """
-        apart, software = self.keys.apart.get(step.path), self.runner.software
-        if apart is None or software is None:
+        by_texels, software = self.keys.steps[step.path].by_texels, self.runner.software
+        if not by_texels or software is None:
             return ""
         texels = software.texels_read(step.kernel, inputs)
-        return "" if texels is None else f"{apart} {texels}"  # where 0 is not -0
+        return "" if texels is None else f"{by_texels} {texels}"  # where 0 is not -0
 
     def _earlier(self, step: Step, unfinished: str) -> Result | None:
         """Return the same step after fewer iterations: what is cached, or a copy where a pass reads that."""
         key = self.cache.earlier(step.path, unfinished, step.repeat)
         if not key:
             return None
-        if key not in self.keys.raw.values():
+        if all(known.computed != key for known in self.keys.steps.values()):
             return self.cache.take(key)
         cached = self.cache.get(key)
         assert cached is not None
@@ -386,7 +388,7 @@ def would_run(keys: Keys, cache: Cache, nodes: Iterable[PlanNode], plan: Plan) -
         if isinstance(node, LoopStep):
             if not cache.holds(keys.loops[node.path], node.repeat):
                 found += [step.path for step in walk((node,))]
-        elif keys.steps[node.path] not in cache and not _draws_nothing(node, steps):
+        elif keys.result(node.path) not in cache and not _draws_nothing(node, steps):
             found.append(node.path)
     return found
 

@@ -52,7 +52,7 @@ class EyeHeight:
         if not self.raised_by or self._read is None:
             return None
         source = _terrain_of(plan)
-        if source is None or self._terrain_key != keys_of(plan).steps[source.path]:
+        if source is None or self._terrain_key != keys_of(plan).result(source.path):
             return None
         return self._over(plan, self._read[0][1:], self._read[1])
 
@@ -71,7 +71,7 @@ class EyeHeight:
         key = (result.number, *place)
         if self._read is None or self._read[0] != key:
             self._read = key, _height_at(place, result, source.output, ctx)
-        self._terrain_key = keys.steps[source.path]
+        self._terrain_key = keys.result(source.path)
         return self._over(plan, place, self._read[1])
 
     def _over(self, plan: Plan, place: tuple[float, float], height: float) -> Camera | None:

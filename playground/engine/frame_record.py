@@ -20,12 +20,22 @@ class FrameRecord:
 
     plan: Plan | None = None
     keys: Keys = field(default_factory=Keys)
+    before: Keys = field(default_factory=Keys)  # of the frame before, whatever it was of
     results: Mapping[str, Result] = field(default_factory=dict)  # by path; valid until the next frame
     ran: list[str] = field(default_factory=list)  # paths of the passes that ran, in order
     iterations: Counter[str] = field(default_factory=Counter)  # of each pass that ran, by path
     texels: int = 0  # computed
     times: dict[str, float] = field(default_factory=dict)  # [ms] of each pass that ran, while profiling
     triangles: int = 0  # drawn; of what is cached, none
+
+    def reasons(self, path: str) -> tuple[str, ...]:
+        """Return why a step ran again: what of its key is another than in the frame before, by name.
+
+        See ``StepKey.difference``; ("the pass",) where that frame had none of this path, nothing where the
+        key is the same: its textures had been dropped.
+        """
+        before = self.before.steps.get(path)
+        return ("the pass",) if before is None else self.keys.steps[path].difference(before)
 
     def plus(self, before: FrameRecord) -> FrameRecord:
         """Return the record with the counts of an earlier drawing of the same frame added."""

@@ -341,7 +341,7 @@ class Internals(Recorded):
     def _texture(self, plan: Plan, ref: Ref) -> moderngl.Texture:
         """Run what a texture needs and return it, with the context left as it was found."""
         self.plain_forms.report(plan.sketch, plan.lacking)
-        self.record = record = FrameRecord(plan)
+        self.record = record = FrameRecord(plan, before=self.record.keys)
         self.cache.begin()
         self.runner.look_at(plan)
         self.runner.programs.frame += 1
@@ -351,7 +351,7 @@ class Internals(Recorded):
         execution.deadline = Deadline(self.patience, self.ctx.finish)
         self._piece = Piece(self.piece, self.ctx.finish)
         self.runner.works.waits = self.patience is None
-        self.runner.works.keep(record.keys.raw)
+        self.runner.works.keep(record.keys.computed)
         with self.borrowed():
             if not self.keeps:
                 self._run_once(execution, plan, ref)
@@ -370,7 +370,9 @@ class Internals(Recorded):
         found = choose(keys, needs, ref, self.cache.get, lambda _: False, skips=True)
         self.record.results = execution.results = found.taken
         if self.looks_early:
-            execution.ended = lambda step, result: self._finite.look_early(step, result, keys.raw[step.path])
+            execution.ended = lambda step, result: self._finite.look_early(
+                step, result, keys.computed(step.path)
+            )
         execution.last_uses = last_uses(plan, found.nodes, keys, ref)
         execution.run(found.nodes)
 
@@ -408,7 +410,7 @@ class Internals(Recorded):
                 iteration=iteration,
                 start=start,
                 keeps_surface=continued,
-                key="" if iteration is not None else record.keys.raw.get(step.path, ""),
+                key="" if iteration is not None else record.keys.computed(step.path),
             )
         if objects != self.pool.made + runner.programs.compiled:
             # What has run without an error before will do so again, and a query waits for the driver.
@@ -417,6 +419,9 @@ class Internals(Recorded):
                 raise OpenGLFault(f"pass '{step.path}': OpenGL reports {error}")
         self.runs[step.path] += 1
         record.ran.append(step.path)
+        if iteration is None and _log.isEnabledFor(logging.DEBUG):
+            why = ", ".join(record.reasons(step.path)) or "its textures were dropped"
+            _log.debug("ran %s: %s", step.path, why)
         steps = max((result.settled or step.repeat) - first, 0)
         record.iterations[step.path] += steps
         record.texels += step.size[0] * step.size[1] * max(steps, 1)

@@ -20,13 +20,13 @@ def last_uses(plan: Plan, nodes: Sequence[PlanNode], keys: Keys, ref: Ref) -> di
     stays = {ref.path}.union(*(_read(draw) for draw in draws))
     own = {node.path: node for node in nodes if isinstance(node, Step)}
     # Steps of one key have the same textures.
-    kept = {keys.steps[path] for path in stays if path in keys.steps}
+    kept = {keys.result(path) for path in stays if path in keys.steps}
     last: dict[str, tuple[str, Step]] = {}  # by key: the node that reads it last, and a step of it
     for node in nodes:
         for path in {*_read(node), *({node.path} & own.keys())}:
             step = own.get(path)
-            if step is not None and not isinstance(step.kernel, Draw) and keys.steps[path] not in kept:
-                last[keys.steps[path]] = node.path, step
+            if step is not None and not isinstance(step.kernel, Draw) and keys.result(path) not in kept:
+                last[keys.result(path)] = node.path, step
     found: dict[str, list[Step]] = {}
     for path, step in last.values():
         found.setdefault(path, []).append(step)

@@ -95,7 +95,7 @@ class FiniteCheck:
         self.looked_at = 0
         record = self.source.record
         for step, within in _steps(record.plan):
-            early = step.path, record.keys.raw.get(step.path, "")
+            early = step.path, record.keys.computed(step.path)
             if early in self._early:
                 yield self._early[early]
                 continue

@@ -95,7 +95,7 @@ class OnArrays:
             keys = self.engine.internal.keys_of(plan)
             try:
                 for name, array in given.items():
-                    self._put(plan, keys.steps[name], name, array)
+                    self._put(plan, keys.result(name), name, array)
                 for output in wanted:
                     ref = plan.flat.ref(f"{self.name}:{output}", sketch.name)
                     found[output] = read_texture(self.engine.internal.texture_of(plan, ref))
@@ -171,8 +171,8 @@ class OnArrays:
                 if isinstance(inside, LoopStep):
                     cache.drop(keys.loops[inside.path])
                 else:
-                    cache.drop(keys.raw[inside.path])
-                    cache.drop(keys.steps[inside.path])
+                    cache.drop(keys.computed(inside.path))
+                    cache.drop(keys.result(inside.path))
 
 
 def _array_pass(name: str, shape: _Shape) -> PassSpec:

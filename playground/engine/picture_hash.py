@@ -43,7 +43,7 @@ class PictureHasher:
         def smoothed(step: Step) -> dict[str, Any]:
             return {n: value if n == MOMENT else rounded(value) for n, value in given(step).items()}
 
-        found = self._keys.keys_of(plan, driver, smoothed).steps[plan.picture.path]
+        found = self._keys.keys_of(plan, driver, smoothed).result(plan.picture.path)
         times = plan.sketch.supersample
         return found if times == 1 else f"{found} reduced {times} times"
 

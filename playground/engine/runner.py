@@ -97,7 +97,7 @@ class Runner:
 
     def release(self) -> None:
         """Release every program, mesh and texture."""
-        self.works.keep({})
+        self.works.keep(lambda _: "")
         self.paint.release()
         self.draws.release()
         self.compute_variants.release()

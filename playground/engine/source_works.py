@@ -77,9 +77,9 @@ class SourceWorks:
         self.took[path] = work.seconds
         return work.result()
 
-    def keep(self, keys: Mapping[str, str]) -> None:
-        """Cancel all works but those of these keys, by the path of their step."""
-        for path in [path for path, work in self._works.items() if keys.get(path) != work.key]:
+    def keep(self, key_of: Callable[[str], str]) -> None:
+        """Cancel all works but those of these keys; ``key_of`` returns that of the step of a path."""
+        for path in [path for path, work in self._works.items() if key_of(path) != work.key]:
             self._cancel(path)
 
     def _cancel(self, path: str) -> None:

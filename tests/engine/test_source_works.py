@@ -289,7 +289,7 @@ def test_of_a_step_one_work_runs_at_a_time_however_often_it_is_cancelled():
         with pytest.raises(SourceUnfinished) as met:
             works.made("p", name, task(name))
         assert met.value.path == "p"
-    works.keep({})
+    works.keep(lambda _: "")
     with pytest.raises(SourceUnfinished):
         works.made("p", "e", task("e"))
     with pytest.raises(SourceUnfinished):

@@ -300,3 +300,33 @@ def test_saves_that_keep_inode_size_and_time_are_drawn(any_engine, folder, tmp_p
         save_silently(tmp_path / "ramp.npy", head + (ramp**value).tobytes())
         assert any_engine.read(tmp_path / "sketch.toml", "a")[0, 0] == value * value
         np.testing.assert_allclose(any_engine.read(tmp_path / "sketch.toml", "b"), ramp**value, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("ref", "change", "reasons"),
+    [
+        ("light", {"height.bumps": 4.0}, {"height": ("value bumps",), "light": ("input height",)}),
+        ("light", {"light.sun": (1.0, 2.0)}, {"light": ("value sun",)}),
+        ("span", {"relief": 50.0}, {"span": ("given relief",)}),
+        ("slope", {"extent": (500.0, 500.0)}, {"slope": ("given spacing",)}),
+        ("slope", {"size": 9}, {"height": ("size",), "slope": ("size", "input height", "given spacing")}),
+    ],
+)
+def test_the_keys_of_two_frames_say_why_a_pass_ran(engine, four, ref, change, reasons):
+    engine.texture(four, ref)
+    assert {path: engine.internal.record.reasons(path) for path in engine.internal.ran} == dict.fromkeys(
+        engine.internal.ran, ("the pass",)
+    )
+    engine.texture(four.with_values(change), ref)
+    assert {path: engine.internal.record.reasons(path) for path in engine.internal.ran} == reasons
+
+
+def test_a_text_a_file_and_a_dropped_texture_are_reasons_too(engine, folder, four):
+    engine.texture(four, "slope")
+    folder.write("slope.glsl", SLOPE.replace(").r)", ").r * 2.0)"))
+    engine.texture(folder.sketch(FOUR), "slope")
+    assert engine.internal.record.reasons("slope") == ("text",)
+    engine.internal.cache.clear()
+    engine.texture(folder.sketch(FOUR), "slope")
+    assert engine.internal.ran == ["height", "slope"]
+    assert engine.internal.record.reasons("slope") == ()

@@ -631,7 +631,7 @@ def test_a_texture_of_another_size_is_not_taken(cached, folder):
     store = engine.internal.disk_caching.store
     sketch = folder.one('#pragma kernel(output = "v:r8")\nfloat kernel(ivec2 texel) { return 0.5; }\n')
     picture(engine, sketch)
-    key = engine.internal.keys_of(engine.internal.plan).steps["a"]
+    key = engine.internal.keys_of(engine.internal.plan).steps["a"].result
     store.write(key, CachedTextures((16, 17), (("v", "r8"),), 1.0, "", (memoryview(bytes(16 * 17)),)))
     store.close()
     assert key in store
@@ -653,7 +653,7 @@ def test_only_what_costs_more_than_to_read_it_is_cached(any_shelf, worn, monkeyp
         keys = engine.internal.keys_of(engine.internal.plan)
         engine.internal.disk_caching._costs.clear()
         for name, cost in (costs | more).items():
-            engine.internal.disk_caching._costs.put(keys.loops.get(name) or keys.steps[name], cost)
+            engine.internal.disk_caching._costs.put(keys.loops.get(name) or keys.steps[name].result, cost)
         any_shelf.keep(engine)
         return {each.textures.made_for.partition(": ")[2] for each in listed(any_shelf.folder)}
 
@@ -684,7 +684,7 @@ def test_costs_are_measured_where_terrain_is_made_and_a_loop_counts_as_one(any_s
     engine = any_shelf.engine()
     picture(engine, worn)
     keys = engine.internal.keys_of(engine.internal.plan)
-    expected = {keys.steps["terrain"], keys.loops["worn"], keys.steps["light"]}
+    expected = {keys.steps["terrain"].result, keys.loops["worn"], keys.steps["light"].result}
     assert set(engine.internal.disk_caching._costs) == expected
     assert all(cost > 0.0 for cost in engine.internal.disk_caching._costs.values())
     any_shelf.keep(engine)
