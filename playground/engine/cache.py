@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from dataclasses import dataclass
 
-from playground.engine.kept_states import KeptStates
+from playground.engine.loops import KeptStates
 from playground.engine.results import Pool, Result
 
 # Results of any size: a driver spends memory on each texture besides its texels, so that thousands
@@ -113,8 +113,8 @@ class Cache:
         """Return what is cached, without marking it as used."""
         return self._cached.get(key)
 
-    def put(self, key: str, cached: Cached) -> None:
-        """Cache something, used by the current frame; what is over the bounds goes."""
+    def put(self, key: str, cached: Cached) -> Cached:
+        """Cache something, used by the current frame, and return it; what is over the bounds goes."""
         if key in self._cached:
             self.drop(key)
         self._cached[key] = cached
@@ -130,6 +130,7 @@ class Cache:
             ]:
                 self.drop(old)
         self.trim()
+        return cached
 
     def grew(self, key: str) -> None:
         """Weigh what has grown; what is over the bounds goes."""

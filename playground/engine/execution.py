@@ -11,8 +11,8 @@ from contextlib import AbstractContextManager, nullcontext
 
 from playground.engine.cache import Cache, Cached
 from playground.engine.cache_keys import Keys
+from playground.engine.loops import LoopState, Replay, iteration_of, replay_of
 from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step, walk
-from playground.engine.replay import Replay, replay_of
 from playground.engine.results import UNWIRED, Result, Wired, started
 from playground.engine.runner import Runner
 from playground.engine.unfinished import Deadline
@@ -55,7 +55,7 @@ class Execution:
         self._done: set[int] = set()  # identities of nodes that change with no loop, and have run
         self._fed_from: dict[Fed, tuple[Step, str]] = {}  # the output that a loop feeds back
         self._changing_in: dict[int, list[PlanNode]] = {}  # by the identity of a loop's body
-        self._zeros: dict[Fed, Result] = {}  # what is fed back before a loop's first iteration
+        self._states: dict[str, LoopState] = {}  # of the loops that run, by their paths
 
     def run(self, nodes: Iterable[PlanNode]) -> None:
         """Run nodes in order: those that change with no loop, and loops from their first iteration on."""
@@ -170,60 +170,29 @@ class Execution:
 
     def _run_cached_loop(self, loop: LoopStep) -> None:
         """Run a loop from the iteration that is cached, or from an earlier one where that lies further on."""
-        key = self.keys.loops[loop.path]
-        state = self.cache.get(key)
-        if state is None:
-            state = Cached({})
-            self.cache.put(key, state)
-        taken = self._go_back(loop, state)
-        with self.timed(loop.path, key) if self.timed and state.iterations < loop.repeat else nullcontext():
-            try:
-                self._run_loop(loop, state, {}, {})
-            except BaseException:
-                if taken and state.iterations == taken:  # it is what is fed back only
-                    self._set_aside(loop, state)
-                raise
-        self.cache.grew(key)
-
-    def _go_back(self, loop: LoopStep, state: Cached) -> int:
-        """Set a loop back where it is too far, or on to a later state that was kept.
-
-        Return the iterations of what was taken from the kept states, 0 for nothing.
-        """
-        if state.iterations == loop.repeat:
-            return 0
-        key, states = self.keys.loops[loop.path], self.cache.states
-        latest = states.latest(loop.path, key, loop.repeat - 1)
-        if latest <= state.iterations < loop.repeat:
-            return 0
-        self._set_aside(loop, state)
-        if latest:
-            state.results, state.iterations = states.take(loop.path, key, latest), latest
-        return latest
-
-    def _set_aside(self, loop: LoopStep, state: Cached) -> None:
-        """Keep what a state of a loop that follows the time feeds back, release the rest, and empty it."""
-        if state.iterations and follows_time(loop.spec.repeat):
-            paths = {ref.path for _, _, ref in loop.feedback} & state.results.keys()
-            fed = {path: state.results.pop(path) for path in paths}
-            key = self.keys.loops[loop.path]
-            self.cache.states.keep(loop.path, key, state.iterations, fed, loop.repeat)
-        state.release_to(self.runner.pool)
-        state.iterations = 0
+        key, cache = self.keys.loops[loop.path], self.cache
+        cached = cache.get(key) or cache.put(key, Cached({}))
+        kept = cache.states if follows_time(loop.spec.repeat) else None
+        with LoopState(loop, cached, self.runner.pool, key, kept) as state:
+            is_stale = state.iterations < loop.repeat
+            with self.timed(loop.path, key) if self.timed and is_stale else nullcontext():
+                self._run_loop(state, {}, {})
+        cache.grew(key)
 
     def _run_loop(
         self,
-        loop: LoopStep,
-        state: Cached,
+        state: LoopState,
         around: Mapping[Fed, Wired],
         owned: dict[str, Result],
         frame: int | None = None,
     ) -> None:
-        """Run a loop's iterations after ``state``, which each replaces.
+        """Run a loop's iterations after those of ``state``.
 
         What changes with a loop around it only goes into ``owned``; ``frame`` is that of the loop around
         it that counts frames.
         """
+        loop = state.loop
+        self._states[loop.path] = state
         self.run(loop.body)
         fed, steps = dict(around), {step.path: step for step in walk(loop.body_of(0))}
         for name, first, ref in loop.feedback:
@@ -235,49 +204,27 @@ class Execution:
             if loop.path not in self.keys.changes[id(node)]:
                 self._run_inside(node, around, LoopIteration(frame=frame), owned)
         if loop.repeat == 0 and not state.results:
-            state.results = self._initial(loop, self._changing(loop, 0), fed)
+            state.start(self._initial(loop, self._changing(loop, 0), fed))
         self.results |= state.results
-        first_run = state.iterations
-        for iteration in range(first_run, loop.repeat):
+        for iteration in range(state.iterations, loop.repeat):
             if iteration > 0:
                 for name, _, ref in loop.feedback:
                     fed[Fed(loop.path, name)] = self._wired(ref, fed)
-            if iteration == max(first_run + 1, _REPLAYED_FROM) and (replay := self._replay_of(loop, fed)):
-                self._replay(replay, loop, state, first_run, frame)
+            is_steady = iteration == max(state.started_at + 1, _REPLAYED_FROM)
+            if is_steady and (replay := self._replay_of(loop, fed)):
+                self._replay(replay, state, frame)
                 return
-            computed: dict[str, Result] = {}
-            try:
+            with state.iteration() as computed:
                 for node in self._changing(loop, iteration):
-                    self._run_inside(node, fed, _at(loop, iteration, frame), computed)
-            except BaseException:
-                Cached(computed).release_to(self.runner.pool)
-                raise
-            finally:
-                for name, _, _ in loop.feedback:
-                    if zeros := self._zeros.pop(Fed(loop.path, name), None):
-                        self.runner.pool.give(zeros)
-            if self._is_kept(loop, state.iterations):
-                self._set_aside(loop, state)
-            else:
-                state.release_to(self.runner.pool)
-            state.results, state.iterations = computed, iteration + 1
-            self.results |= computed
-            self._check_deadline(loop, iteration + 1, first_run)
+                    self._run_inside(node, fed, iteration_of(loop, iteration, frame), computed)
+            self.results |= state.results
+            self._check_deadline(state)
 
-    def _check_deadline(self, loop: LoopStep, done: int, first_run: int) -> None:
+    def _check_deadline(self, state: LoopState) -> None:
         """Stop a loop that follows the time where the deadline has passed."""
-        if self.deadline is not None and self._keeps_states(loop):
-            self.deadline.check(done - first_run, done, loop.repeat)
-
-    def _keeps_states(self, loop: LoopStep) -> bool:
-        """Return whether states of a loop are kept: it follows the time, and changes with no other loop."""
-        return follows_time(loop.spec.repeat) and not self.keys.changes[id(loop)]
-
-    def _is_kept(self, loop: LoopStep, iterations: int) -> bool:
-        """Return whether the state of a loop after so many iterations is kept while it goes on."""
-        if not iterations or not self._keeps_states(loop):
-            return False
-        return self.cache.states.is_due(loop.path, self.keys.loops[loop.path], iterations, loop.repeat)
+        if self.deadline is not None and state.follows_time:
+            done = state.iterations
+            self.deadline.check(done - state.started_at, done, state.loop.repeat)
 
     def _replay_of(self, loop: LoopStep, fed: Mapping[Fed, Wired]) -> Replay | None:
         """Return what runs a loop's next iterations as its last one ran, if they do."""
@@ -289,36 +236,14 @@ class Execution:
             loop, nodes, lambda source: self._wired(source, fed), runner.kernels, self.driver_for
         )
 
-    def _replay(
-        self, replay: Replay, loop: LoopStep, state: Cached, first_run: int, frame: int | None
-    ) -> None:
-        """Run the rest of a loop's iterations: two sets of textures change places."""
-        pool, steps, first = self.runner.pool, replay.steps, state.iterations
-        before, now = [state.results[step.path] for step in steps], list[Result]()
-        fed = {ref.path for _, _, ref in loop.feedback}
+    def _replay(self, replay: Replay, state: LoopState, frame: int | None) -> None:
+        first = state.iterations
         try:
-            for step in steps:
-                now.append(pool.take(step.size, step.kernel.outputs))
-            with self.runner.kernels.filling:
-                for iteration in range(first, loop.repeat):
-                    replay.run(_at(loop, iteration, frame), before, now)
-                    before, now, state.iterations = now, before, iteration + 1
-                    if self._is_kept(loop, iteration):
-                        kept: dict[str, Result] = {}
-                        for place, step in enumerate(steps):
-                            if step.path in fed:
-                                kept[step.path] = now[place]
-                                now[place] = pool.take(step.size, step.kernel.outputs)
-                        key = self.keys.loops[loop.path]
-                        self.cache.states.keep(loop.path, key, iteration, kept, loop.repeat)
-                    self._check_deadline(loop, iteration + 1, first_run)
+            state.replay(replay, frame, lambda: self._check_deadline(state))
         finally:
-            state.results = {step.path: result for step, result in zip(steps, before, strict=True)}
             self.results |= state.results
-            for result in now:
-                pool.give(result)
             if self.replayed is not None:
-                self.replayed(steps, state.iterations - first)
+                self.replayed(replay.steps, state.iterations - first)
 
     def _changing(self, loop: LoopStep, iteration: int) -> list[PlanNode]:
         """Return what an iteration of a loop computes anew."""
@@ -339,9 +264,9 @@ class Execution:
         if not self.keys.changes[id(node)]:
             self._run_once(node)
         elif isinstance(node, LoopStep):
-            state = Cached({})
-            self._run_loop(node, state, fed, owned, iteration.frame)
-            owned |= state.results
+            with LoopState(node, Cached({}), self.runner.pool) as state:
+                self._run_loop(state, fed, owned, iteration.frame)
+                owned |= state.take()
         else:
             inputs = {name: self._input(node, name, source, fed) for name, source in node.inputs}
             owned[node.path] = self.results[node.path] = self.compute(node, inputs, iteration, None)
@@ -358,9 +283,8 @@ class Execution:
         if declared is None or not (isinstance(step.kernel, ForeignShader) or declared.fallback == "zero"):
             return found
         origin, output = self._fed_from[source]
-        if source not in self._zeros:
-            self._zeros[source] = self.runner.kernels.empty(origin)
-        zeros = self._zeros[source]
+        kept = self._states[source.loop].zeros
+        zeros = kept[source.name] = kept.get(source.name) or self.runner.kernels.empty(origin)
         return Wired(zeros, zeros.textures[output], output)
 
     def _initial(
@@ -373,11 +297,6 @@ class Execution:
             if texture is not None and ref.path in found:
                 self.runner.kernels.copy_texture(found[ref.path].textures[ref.output], texture)
         return found
-
-
-def _at(loop: LoopStep, iteration: int, frame: int | None) -> LoopIteration:
-    """Return where a loop's steps are in one of its iterations; ``frame`` as ``_run_loop`` takes it."""
-    return LoopIteration(iteration, loop.whole, iteration if loop.counts_frames else frame)
 
 
 def would_run(keys: Keys, cache: Cache, nodes: Iterable[PlanNode], plan: Plan) -> list[str]:

@@ -17,7 +17,7 @@ from playground.engine.lattice import shift_after
 from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
 from playground.engine.results import UNWIRED as NOT_WIRED
-from playground.engine.results import Pool, Result, Wired, wires_of
+from playground.engine.results import Pool, Result, Swap, Wired, wires_of
 from playground.engine.settling import Settling
 from playground.engine.software import FIRST_PART, Software
 from playground.engine.textures import make_framebuffer
@@ -230,18 +230,17 @@ class Kernels:
         unit: int,
     ) -> Result:
         step = job.step
-        before, spare = job.start, None  # two sets of textures that change places
-        iteration = before.iterations if before else 0
+        iteration = job.start.iterations if job.start else 0
         at_once = 1 if kernel.at_once == "1" else max(self._evaluated("at_once", kernel.at_once, job), 1)
         # Where there is something to begin with, texels off the lattice count as well.
         lattice = kernel.fills_lattice and driver == FRAGMENT and not state
         shift = 0
         watch = self.settling.watch(iteration, unit + len(kernel.outputs)) if kernel.until else None
         previous = self.binder.previous_units(program, kernel, unit)
-        with self.filling:
+        with Swap(self.pool, step.size, kernel.outputs, job.start) as swap, self.filling:
             while iteration < step.repeat:
                 count = min(at_once, step.repeat - iteration)
-                result = spare or self.pool.take(step.size, kernel.outputs)
+                result, before = swap.target(), swap.before
                 self.binder.previous(previous, state)
                 job.count(program, iteration, kernel.repeat, step.whole, count)
                 if driver == FRAGMENT:
@@ -253,20 +252,17 @@ class Kernels:
                 iteration += count
                 if before is not None and watch and watch.has_settled(iteration, result, before):
                     result.settled = iteration
-                before, spare, state = result, before, result.textures
-                if spare is not None and (self.pool.clears or spare is job.start):
-                    self.pool.give(spare)  # what was read of a start, as mipmaps, would be its own still
-                    spare = None
+                swap.advance()
+                state = result.textures
                 if result.settled:
                     break
-        assert before is not None
-        if spare is not None:
-            self.pool.give(spare)
+        found = swap.before
+        assert found is not None
         if shift:  # each texel of the lattice goes to its place, with zeros between
-            close, before = before, self.drawn_own("spread.frag", before, k_shift=shift)
+            close, found = found, self.drawn_own("spread.frag", found, k_shift=shift)
             self.pool.give(close)
-        before.iterations = step.repeat
-        return before
+        found.iterations = step.repeat
+        return found
 
     def _in_parts(
         self,

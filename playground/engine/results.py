@@ -146,6 +146,47 @@ class Result:
         self.surface = None
 
 
+class Swap:
+    """Two sets of a pass's textures that change places: each iteration reads one and writes the other.
+
+    ``before`` is the ``start``, if there is one, then the last iteration's, which is the caller's in the end;
+    where an iteration fails everything goes back to the pool.
+    """
+
+    def __init__(
+        self, pool: Pool, size: tuple[int, int], outputs: Sequence[Output], start: Result | None
+    ) -> None:
+        self.before = start
+        self._pool = pool
+        self._size = size
+        self._outputs = outputs
+        self._start = start
+        self._spare: Result | None = None
+        self._target: Result | None = None
+
+    def __enter__(self) -> Swap:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        mine = [self._spare] if kind is None else [self._spare, self._target, self.before]
+        for result in mine:
+            if result is not None:
+                self._pool.give(result)
+
+    def target(self) -> Result:
+        """Return what the next iteration writes."""
+        self._target = self._spare or self._pool.take(self._size, self._outputs)
+        self._spare = None
+        return self._target
+
+    def advance(self) -> None:
+        """Make what was written what is read."""
+        self._spare, self.before, self._target = self.before, self._target, None
+        if self._spare is not None and (self._pool.clears or self._spare is self._start):
+            self._pool.give(self._spare)  # what was read of a start, as mipmaps, would be its own still
+            self._spare = None
+
+
 class Wired(NamedTuple):
     """What an input reads: a texture, and the result that it is part of; nothing where nothing is wired."""
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.kept_states import MOST_STATES, KeptStates
+from playground.engine.loops import MAX_STATES, KeptStates
 from playground.engine.results import Result
 
 from ..sketch_texts import passes
@@ -114,9 +114,9 @@ def test_gaps_grow_with_the_distance(last):
     for number in range(1, last):
         kept.keep("loop", "key", number, of_bytes(4), last)
     numbers = (0, *kept.numbers("loop", "key"), last)
-    assert len(numbers) == MOST_STATES + 2
+    assert len(numbers) == MAX_STATES + 2
     # Evenly in the logarithm, each state would be q times as far away as the next; where one goes, q².
-    share = last ** (2 / MOST_STATES) - 1
+    share = last ** (2 / MAX_STATES) - 1
     for before, number in itertools.pairwise(numbers[:-1]):
         assert number - before <= 1 + share * (last - number + 1)
 
@@ -127,7 +127,7 @@ def test_of_a_long_run_few_states_are_due_and_their_gaps_grow_with_the_distance(
     due = [n for n in range(1, last) if kept.is_due("loop", "key", n, last) and not kept_at(kept, n, last)]
     assert due == list(kept.numbers("loop", "key")), "none is kept that would go again"
     # Evenly in the logarithm, each state would be q times as far away as the next.
-    share = last ** (1 / MOST_STATES) - 1
+    share = last ** (1 / MAX_STATES) - 1
     for before, number in itertools.pairwise((0, *due, last)):
         assert number - before <= 1 + share * (last - number + 1)
     assert not any(kept.is_due("loop", "key", number, last) for number in due), "it is there"

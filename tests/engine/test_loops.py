@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import resource
+from contextlib import suppress
 
+import moderngl
 import numpy as np
 import pytest
 
+from playground.engine.cache import Cached
 from playground.engine.engine import Engine
-from playground.engine.kept_states import MOST_STATES
+from playground.engine.loops import MAX_STATES, LoopState
+from playground.engine.plan import LoopStep
 from playground.engine.programs import Program
+from playground.engine.results import Pool
+from playground.sketch.model import Output, PassSpec
 
+from ..loading import load
 from ..sketch_texts import passes
 
 START = """#pragma kernel(output = "water:r32f")
@@ -415,7 +422,7 @@ def test_an_iteration_sets_only_what_changes(engine, rain, monkeypatch):
 
 def test_five_hundred_iterations_need_no_more_memory_than_a_hundred(any_engine, rain):
     sketch = rain("floor(time)")
-    for time in range(MOST_STATES + 2):
+    for time in range(MAX_STATES + 2):
         any_engine.texture(sketch, "rain:water", time=float(time))  # as many states are kept as may be
     any_engine.texture(sketch, "rain:water", time=100.0)
     made, cached = any_engine.internal.pool.made, any_engine.internal.cache.bytes
@@ -446,3 +453,21 @@ def test_an_iteration_that_fails_leaves_the_last_good_one(any_engine, rain, monk
     monkeypatch.undo()
     np.testing.assert_allclose(any_engine.read(sketch, "rain:water", time=9.0), expected(9)[0], rtol=1e-6)
     assert any_engine.internal.ran.count("rain.move") == 7 - good
+
+
+@pytest.mark.parametrize("fails", [False, True])
+def test_a_loop_gives_back_all_that_a_failed_iteration_made(ctx: moderngl.Context, fails: bool):
+    outputs, pool = (Output("v", "r32f"),), Pool(ctx, 2**20)
+    spec = PassSpec("loop", "generation/diamond_square", load("").graph)
+    loop = LoopStep("loop", 3, 3, ((),), (), spec)
+    with suppress(ZeroDivisionError), LoopState(loop, Cached({}), pool) as state:
+        for number in range(3):
+            with state.iteration() as computed:
+                computed["a"] = pool.take((5, 3), outputs)
+                if fails and number == 2:
+                    raise ZeroDivisionError
+        assert state.iterations == 3
+        for result in state.take().values():
+            pool.give(result)
+    assert pool.made == len(pool) == 2
+    pool.clear()

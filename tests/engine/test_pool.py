@@ -6,7 +6,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from playground.engine.results import Pool
+from playground.engine.results import Pool, Swap
 from playground.sketch.model import Output
 
 
@@ -26,3 +26,21 @@ def test_a_pool_that_clears_gives_zeros_for_what_was_full(ctx: moderngl.Context,
     wanted = (bytes(60), bytes(120)) if clears else full  # without clearing, it is as it was left
     assert (found["height"], found["colour"]) == wanted
     again.release()
+
+
+def test_a_repeat_that_fails_gives_all_its_textures_back(ctx: moderngl.Context):
+    outputs, pool = (Output("height", "r32f"),), Pool(ctx, 2**20)
+    with pytest.raises(ZeroDivisionError), Swap(pool, (5, 3), outputs, pool.take((5, 3), outputs)) as swap:
+        for iteration in range(3):
+            swap.target()
+            if iteration == 2:
+                raise ZeroDivisionError
+            swap.advance()
+    assert len(pool) == pool.made
+    with Swap(pool, (5, 3), outputs, None) as swap:
+        for _ in range(3):
+            swap.target()
+            swap.advance()
+    assert swap.before is not None and len(pool) == pool.made - 1
+    pool.give(swap.before)
+    pool.clear()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.engine.replay import Replay
+from playground.engine.loops import Replay
 from playground.engine.unfinished import Unfinished
 
 from ..sketch_texts import passes
