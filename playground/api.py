@@ -9,10 +9,11 @@ from pathlib import Path
 from playground.engine.context import open_context
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
-from playground.engine.internals import CACHE_BYTES, opened
 from playground.engine.plain_forms import warn
+from playground.engine.renderer import CACHE_BYTES
 from playground.errors import Diagnostic, PlaygroundWarning
 from playground.sketch.assign import shown_parameters, value_of, values_of
+from playground.sketch.load import opened
 from playground.sketch.model import DEFAULT_PICTURE, Parameter, Sketch, Value
 
 
@@ -41,7 +42,7 @@ def headless(
     context = open_context(software=software, device=device)
     engine = Engine(context, driver=driver, cache_bytes=cache_bytes, owns_context=True, notice=notice)
     if notice is warn:
-        engine.internal.warnings.report = _warn
+        engine.warnings.report = _warn
     return engine
 
 
@@ -69,7 +70,7 @@ def render(
     """
     found = opened(sketch)
     with headless() as engine:
-        engine.internal.keeps = False
+        engine.options.keeps = False
         return engine.render(found.plainly(plain).with_values(values or {}), size=size, time=time)
 
 

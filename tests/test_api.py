@@ -67,7 +67,7 @@ def test_a_repeated_kernel_is_run_step_by_step(sketch: playground.Sketch):
 
 
 def _repeated(engine: playground.Engine, sketch: playground.Sketch) -> str:
-    plan = engine.internal.plan_for(sketch, (64, 64))
+    plan = engine.plan(sketch, (64, 64))
     return next(step.path for step in plan.walk() if step.kernel.repeat != "1")
 
 

@@ -51,10 +51,10 @@ from playground.data.grid import fitted
 from playground.data.image_files import encode_samples, naming
 from playground.data.place import Place
 from playground.engine.engine import Engine
-from playground.engine.internals import opened
 from playground.engine.plan import Plan
 from playground.engine.view_inputs import view_input
 from playground.errors import DataError, SketchError
+from playground.sketch.load import opened
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
 
 _NO_TEXTURE = "no texture: the view shows no colour; name one with --texture"
@@ -157,12 +157,12 @@ def prepare(
     """
     check(path, form)
     if path.suffix.lower() in PAGES:
-        plan = engine.internal.plan_for(sketch, frame or DEFAULT_PICTURE, time, steps)
+        plan = engine.plan(sketch, frame or DEFAULT_PICTURE, time, steps)
         page = prepare_page(engine, sketch, path, form.techniques, frame=frame, time=time, steps=steps)
         return ExportJob(sketch=sketch, path=path, form=form, plan=plan, texture="", kind="", page=page)
     if path.suffix.lower() in SHADERS:
         return _prepare_shader(engine, sketch, path, form, time, steps)
-    plan = engine.internal.plan_for(sketch, DEFAULT_PICTURE, time, steps)
+    plan = engine.plan(sketch, DEFAULT_PICTURE, time, steps)
     if path.suffix.lower() in MESHES:
         return _prepare_mesh(sketch, path, form, plan)
     texture, kind = form.texture, form.kind

@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 from playground.api import headless
 from playground.capture.video import QUALITY, Video, alpha_note
 from playground.engine.engine import Engine
-from playground.engine.internals import opened
 from playground.engine.plain_forms import warn
 from playground.errors import ParameterError
+from playground.sketch.load import opened
 from playground.sketch.model import Sketch
 from playground.sketch.traits import traits_of
 
@@ -96,12 +96,12 @@ def film_of(
 @contextmanager
 def frame_uniforms(engine: Engine, film: Film) -> Iterator[None]:
     """Set the time between two pictures for plain shaders, in the block."""
-    before = engine.internal.runner.delta
-    engine.internal.runner.delta = float(1 / film.fps)
+    before = engine.runner.delta
+    engine.runner.delta = float(1 / film.fps)
     try:
         yield
     finally:
-        engine.internal.runner.delta = before
+        engine.runner.delta = before
 
 
 def frames(engine: Engine, film: Film) -> Iterator[NDArray[np.uint8]]:

@@ -19,11 +19,11 @@ from numpy.typing import NDArray
 from playground.capture.png_strips import PngStrips
 from playground.data.image_files import replacing
 from playground.engine.engine import Engine
-from playground.engine.internals import opened
 from playground.engine.picture_reduction import reduced
 from playground.engine.plan import Window, drawn_size
 from playground.engine.textures import read_picture
 from playground.errors import DataError, ParameterError, SketchError
+from playground.sketch.load import opened
 from playground.sketch.model import LARGEST_PICTURE, Sketch
 
 TILE = (2048, 512)
@@ -46,7 +46,7 @@ def is_large(engine: Engine, sketch: Sketch, size: tuple[int, int]) -> bool:
     if size[0] * size[1] <= MOST_WHOLE:
         return False
     try:
-        engine.internal.plan_for_window(sketch, tiles_of(size)[0][0])
+        engine.plan_for_window(sketch, tiles_of(size)[0][0])
     except SketchError:
         return False  # drawing it whole says what else may be wrong
     return True
@@ -102,7 +102,7 @@ def strips(
         strip = np.empty((row[0].size[1], whole[0], 4), np.uint8)
         for window in row:
             left = window.origin[0]
-            texture = engine.internal.draw_window(found, window, time=time, steps=steps)
+            texture = engine.draw_window(found, window, time=time, steps=steps)
             strip[:, left : left + window.size[0]] = read_picture(texture)
             engine.forget_unused()
             done()

@@ -19,8 +19,8 @@ from playground.capture.film import FPS, MOST_FRAMES, USUAL_SIZE, Film, frame_un
 from playground.capture.large import is_large, write_large
 from playground.data.image_files import make_folder, read_png
 from playground.engine.engine import Engine
-from playground.engine.internals import opened
 from playground.errors import DataError, ParameterError
+from playground.sketch.load import opened
 from playground.sketch.model import Sketch
 
 MADE_OF = "Made of"

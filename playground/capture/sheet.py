@@ -19,8 +19,8 @@ from playground.capture.sweep import USUAL_STEPS, Swept, read_sweep, swept
 from playground.capture.video import QUALITY, Video, alpha_note, has_alpha
 from playground.data.image_files import write_png
 from playground.engine.engine import Engine
-from playground.engine.internals import opened
 from playground.errors import ParameterError
+from playground.sketch.load import opened
 from playground.sketch.model import LARGEST_SIDE, Sketch
 
 if TYPE_CHECKING:

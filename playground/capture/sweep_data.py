@@ -26,14 +26,13 @@ from playground.capture.export_textures import kind_of
 from playground.capture.extensions import HEIGHT
 from playground.capture.sweep import Sweep, sweep_of, with_one_of_each
 from playground.engine.engine import Engine
-from playground.engine.internals import opened
 from playground.engine.plain_forms import silent
-from playground.engine.plan import Plan, checked_pixels
+from playground.engine.plan import Plan, checked_pixels, view_height
 from playground.engine.process.pool import Pool
 from playground.engine.process.worker import Parent, Service
-from playground.engine.view_inputs import view_height
 from playground.errors import ParameterError, PlaygroundError
 from playground.extras import needs
+from playground.sketch.load import opened
 from playground.sketch.model import LARGEST_SIDE, Sketch
 
 if TYPE_CHECKING:
@@ -271,7 +270,7 @@ def draw(engine: Engine, case: Case) -> Found:
     measures: dict[str, float] = {}
     units: dict[str, str] = {}
     at = {"size": case.size, "time": case.time}
-    plan = engine.internal.plan_for(case.sketch, case.size, case.time)
+    plan = engine.plan(case.sketch, case.size, case.time)
     for ref in _shown(plan) if case.textures is None else case.textures:
         plan.flat.ref(ref, case.sketch.name)
         values = engine.read(case.sketch, ref, **at).astype(np.float64)  # type: ignore[arg-type]

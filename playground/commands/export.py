@@ -200,7 +200,7 @@ def _write_piped(
         path = Path(folder) / f"{sketch.name}{ending}"
         check(path, form)
         with busy(f"exporting {sketch.name}") as show, renderer.open_engine(driver=driver) as engine:
-            engine.internal.runner.works.on_progress = show
+            engine.runner.works.on_progress = show
             at: dict[str, Any] = {"time": moment.time, "steps": moment.steps, "frame": moment.size}
             done = run(engine, prepare(engine, sketch, path, form, **at))
         if done.sidecars:
@@ -231,7 +231,7 @@ def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: 
         if checked:
             show = stack.enter_context(busy(f"exporting {sketch.name}"))
             engine = stack.enter_context(renderer.open_engine(driver=driver))
-            engine.internal.runner.works.on_progress = show
+            engine.runner.works.on_progress = show
         at: dict[str, Any] = {"time": moment.time, "steps": moment.steps, "frame": moment.size}
         # Every file is prepared before the first is written.
         for path in checked:

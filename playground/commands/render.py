@@ -230,9 +230,9 @@ def _draw(engine: Engine, output: Output, moment: Moment, target: Path) -> None:
         _draw_large(engine, moment, output.size, target)
         return
     at: dict[str, Any] = {"size": output.size, "time": moment.time, "steps": moment.steps}
-    engine.internal.keeps, engine.internal.looks_early = False, True
+    engine.options.keeps, engine.options.looks_early = False, True
     with busy(f"rendering {moment.sketch.name}") as show:
-        engine.internal.runner.works.on_progress = show
+        engine.runner.works.on_progress = show
         if output.profile:
             _prepare_profile(engine, moment.sketch, output.texture, at)
         if output.texture:
@@ -262,7 +262,7 @@ def _write_frame(engine: Engine, sketch: Sketch, target: Path, at: dict[str, Any
 
 def _note_not_finite(engine: Engine) -> None:
     """Note which pass made NaN or infinity, if any did: the picture may show nothing of it."""
-    found = [one for one in engine.internal.not_finite_by_pass() if one is not None]
+    found = [one for one in engine.not_finite_by_pass() if one is not None]
     if found:
         more = f" (first of {len(found)} passes)" if len(found) > 1 else ""
         note(f"{found[0]}{more}")
@@ -302,32 +302,31 @@ def _prepare_profile(engine: Engine, sketch: Sketch, texture: str, at: dict[str,
     else:
         engine.draw(sketch, **at)
     engine.ctx.finish()
-    engine.internal.cache.clear()
-    engine.internal.runs.clear()
-    engine.internal.profiling = True
+    engine.cache.clear()
+    engine.runs.clear()
+    engine.options.profiling = True
 
 
 def _print_profile(engine: Engine) -> None:
     from rich.table import Table
 
-    plan = engine.internal.plan
+    plan = engine.record.plan
     table = Table(title="one frame, every pass run again, nothing compiled", title_justify="left")
     table.add_column("pass", overflow="fold")
     for heading in ("texels", "iterations", "ms"):
         table.add_column(heading, justify="right")
-    for path, milliseconds in engine.internal.times.items():
+    for path, milliseconds in engine.record.times.items():
         step = plan.step(path) if plan is not None else None
         if step is not None:
-            iterations = str(engine.internal.record.iterations[path])
+            iterations = str(engine.record.iterations[path])
             table.add_row(path, f"{step.size[0]} x {step.size[1]}", iterations, f"{milliseconds:.2f}")
     table.add_section()
-    table.add_row("together", "", "", f"{sum(engine.internal.times.values()):.2f}")
+    table.add_row("together", "", "", f"{sum(engine.record.times.values()):.2f}")
     console = console_for(sys.stderr)
     console.print(table)
-    compiled = sum(engine.internal.runner.compile_times.values())
+    compiled = sum(engine.runner.compile_times.values())
     console.print(
-        f"clock: {engine.internal.clock}; compiling took {compiled:.0f} ms before that "
-        f"({engine.info.renderer})",
+        f"clock: {engine.clock}; compiling took {compiled:.0f} ms before that ({engine.info.renderer})",
         highlight=False,
         soft_wrap=True,
     )

@@ -121,7 +121,7 @@ def _verdicts(what: str, renderer: Renderer) -> list[Verdict]:
                 mark = "ok" if verdict.ok else "skipped" if verdict.skipped else "FAILED"
                 print(f"{mark:8}{shown(subject.variant.path)}: {verdict.words}", flush=True)
                 found.append(verdict)
-                engine.internal.cache.clear()
+                engine.cache.clear()
                 advance()
     return found
 

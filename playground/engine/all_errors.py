@@ -20,7 +20,7 @@ def all_errors(
     if not isinstance(error, ShaderError):
         return error
     try:
-        plan = engine.internal.plan_for(sketch, size, time)
+        plan = engine.plan(sketch, size, time)
     except PlaygroundError:
         return error
     found: dict[tuple[str, int, int, str], Diagnostic] = {}
@@ -30,13 +30,13 @@ def all_errors(
         if isinstance(step.kernel, CpuSource) or len(found) >= MOST:
             continue
         try:
-            kernel, driver = step.kernel, engine.internal.driver_for(step)
+            kernel, driver = step.kernel, engine.driver_for(step)
             if (id(kernel), driver) in tried:
                 continue
             tried.add((id(kernel), driver))
-            if engine.internal.runner.before_step is not None:
-                engine.internal.runner.before_step(step)
-            engine.internal.runner.programs.get(kernel, driver)
+            if engine.runner.before_step is not None:
+                engine.runner.before_step(step)
+            engine.runner.programs.get(kernel, driver)
         except ShaderError as other:
             _take(found, other)
         except PlaygroundError:

@@ -21,7 +21,6 @@ from playground.engine.cache_keys import Keys
 from playground.engine.disk_cache import CachedTextures, DiskCache
 from playground.engine.disk_cache_choice import choose, passing, worth_caching
 from playground.engine.execution import Execution
-from playground.engine.frame_record import FrameSource
 from playground.engine.gl_calls import read_mipmap, write_mipmaps
 from playground.engine.plan import Plan, PlanNode, Step, needed
 from playground.engine.textures import bytes_of, levels_of, read_block
@@ -30,6 +29,8 @@ from playground.sketch.flat import Ref
 
 if TYPE_CHECKING:
     import moderngl
+
+    from playground.engine.renderer import Renderer
 
 FLOOR = 20.0  # [ms] that a read must save: less is not visible
 RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum included
@@ -143,7 +144,7 @@ class DiskCaching:
 
     # ── at rest ──────────────────────────────────────────────────────────────
 
-    def look(self, source: FrameSource, plan: Plan) -> float | None:
+    def look(self, source: Renderer, plan: Plan) -> float | None:
         """Do a piece of the work for the frame of a plan; return in how many seconds to call again.
 
         None: not before another frame has run something.
@@ -165,7 +166,7 @@ class DiskCaching:
         self._work = self._write_all(source, plan, source.record.keys)
         return 0.0
 
-    def finish(self, source: FrameSource, plan: Plan) -> None:
+    def finish(self, source: Renderer, plan: Plan) -> None:
         """Do all work for the frame of a plan at once, and wait until it is written."""
         self._costed_at -= self.rest
         while self.look(source, plan) is not None:
@@ -177,7 +178,7 @@ class DiskCaching:
         self._work = None
         self.store.close()
 
-    def _write_all(self, source: FrameSource, plan: Plan, keys: Keys) -> Iterator[None]:
+    def _write_all(self, source: Renderer, plan: Plan, keys: Keys) -> Iterator[None]:
         """Write what is worth it, a piece at a time; ends early where a texture is gone."""
         passes, costs = passing(plan, source.runner.painted), self._costs
         more: dict[str, float] = {}

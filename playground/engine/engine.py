@@ -1,11 +1,13 @@
 """What a program calls: pictures and textures of sketches, drawn on one OpenGL context.
 
-``internals`` does the work: it keeps what was computed, and computes again what is stale.
+``renderer`` does the work: it keeps what was computed, and computes again what is stale.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
+from functools import partial
+from hashlib import blake2b
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,21 +16,21 @@ from numpy.typing import NDArray
 
 from playground.engine.context import ContextInfo
 from playground.engine.frame import Frame
-from playground.engine.internals import CACHE_BYTES, Internals, opened
 from playground.engine.non_finite import NotFinite
 from playground.engine.picture_reduction import reduced
-from playground.engine.plain_forms import warn
 from playground.engine.plan import drawn_size, most_iterations
 from playground.engine.planner import repeated_in
+from playground.engine.renderer import Renderer
 from playground.engine.textures import read_picture, read_texture
 from playground.errors import SketchError
-from playground.sketch.model import DEFAULT_PICTURE, Sketch
+from playground.sketch.load import opened
+from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE, Sketch
 
 if TYPE_CHECKING:
     import moderngl
 
 
-class Engine:
+class Engine(Renderer):
     """Draws sketches on one context, and keeps their textures between frames.
 
     ``playground.headless()`` opens one with a context of its own. Here the context ``ctx`` is the
@@ -41,7 +43,7 @@ class Engine:
     It draws any number of sketches. It belongs to the thread that opened it: a call from another
     raises ``ContextError``; open an engine in each thread. An engine that is dropped without
     ``release`` destroys its own context, and leaks its objects in the caller's, with a
-    ``ResourceWarning``. What ``internal`` has is for the playground's own tools, and changes
+    ``ResourceWarning``. What it has besides (see ``Renderer``) is for the playground's own tools, and changes
     without notice.
 
         sketch = playground.load("l_dot_n")
@@ -52,19 +54,6 @@ class Engine:
     Raises ``ContextError`` for an unknown driver, and for "compute" on a context without it.
     """
 
-    def __init__(
-        self,
-        ctx: moderngl.Context,
-        *,
-        driver: str = "auto",
-        cache_bytes: int = CACHE_BYTES,
-        owns_context: bool = False,
-        notice: Callable[[str], None] = warn,
-    ) -> None:
-        self.internal = Internals(
-            ctx, driver=driver, cache_bytes=cache_bytes, owns_context=owns_context, notice=notice
-        )
-
     @property
     def ctx(self) -> moderngl.Context:
         """Return the OpenGL context, for own calls of moderngl.
@@ -74,7 +63,7 @@ class Engine:
             with playground.headless() as engine:
                 print(engine.ctx.version_code)
         """
-        return self.internal.ctx
+        return self._ctx
 
     @property
     def info(self) -> ContextInfo:
@@ -85,7 +74,7 @@ class Engine:
             with playground.headless() as engine:
                 print(engine.info.renderer, engine.info.opengl)
         """
-        return self.internal.info
+        return self._info
 
     @property
     def driver(self) -> str:
@@ -96,10 +85,10 @@ class Engine:
             with playground.headless(driver="fragment") as engine:
                 assert engine.driver == "fragment"
         """
-        return self.internal.driver
+        return self._driver
 
     def __enter__(self) -> Engine:
-        self.internal.refuse_misuse()
+        self._context.check()
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -115,7 +104,7 @@ class Engine:
 
         Raises ``ContextError`` in another thread than its own.
         """
-        self.internal.release()
+        super().release()
 
     def render(
         self,
@@ -163,7 +152,8 @@ class Engine:
 
         Raises ``PlaygroundError`` for any mistake in the sketch.
         """
-        return self.internal.draw(sketch, size=size, time=time, steps=steps, interpolated=interpolated)
+        plan_of = partial(self.plan, size=size, time=time, steps=steps, interpolated=interpolated)
+        return self.draw_above_terrain(opened(sketch), plan_of)
 
     def texture(
         self,
@@ -187,8 +177,8 @@ class Engine:
         Raises ``PlaygroundError`` for any mistake in the sketch, and with the nearest name for a wrong
         ``ref``.
         """
-        plan = self.internal.plan_for(sketch, size, time, steps, ref, interpolated=interpolated)
-        return self.internal.texture_of(plan, plan.flat.ref(ref, plan.sketch.name))
+        plan = self.plan(sketch, size, time, steps, ref, interpolated=interpolated)
+        return self.texture_of(plan, plan.flat.ref(ref, plan.sketch.name))
 
     def read(
         self,
@@ -236,8 +226,8 @@ class Engine:
 
         Raises as ``texture``, and ``SketchError`` for a texture with several numbers a texel.
         """
-        plan = self.internal.plan_for(sketch, size, time, steps, ref, interpolated=interpolated)
-        found = self.internal.texture_of(plan, plan.flat.ref(ref, plan.sketch.name))
+        plan = self.plan(sketch, size, time, steps, ref, interpolated=interpolated)
+        found = self.texture_of(plan, plan.flat.ref(ref, plan.sketch.name))
         values = read_texture(found)
         if values.ndim != 2:
             raise SketchError(f"texture '{ref}' has {values.shape[2]} channels; heights have one")
@@ -266,7 +256,7 @@ class Engine:
         found = opened(sketch)
         repeated = repeated_in(found, path)
         # No fast variant replaces a pass that is stopped.
-        plan = self.internal.plan_for(found, size, time, {repeated: 0})
+        plan = self.plan(found, size, time, {repeated: 0})
         whole = most_iterations(plan.nodes)[repeated]
         for done in range(whole + 1):
             yield done, self.read(found, repeated, size=size, time=time, steps={repeated: done})
@@ -283,7 +273,8 @@ class Engine:
 
         Raises ``ContextError`` once the engine was released.
         """
-        return self.internal.not_finite()
+        self._context.check()
+        return self._finite.first()
 
     def fingerprint(
         self,
@@ -303,7 +294,11 @@ class Engine:
 
         Raises ``PlaygroundError`` for any mistake in the sketch.
         """
-        return self.internal.fingerprint(sketch, size=size, time=time, steps=steps)
+        found = opened(sketch)
+        size = drawn_size(found, size, LARGEST_PICTURE)
+        plan = self.plan(found, size, time, steps, largest=LARGEST_PICTURE)
+        made = f"{self.picture_hash(plan)} {self._info.renderer} {self._info.opengl}"
+        return blake2b(made.encode(), digest_size=16).hexdigest()
 
     def forget_unused(self) -> None:
         """Drop what is cached but not used for the last frame; without it, a film caches all its frames.
@@ -318,4 +313,5 @@ class Engine:
 
         Raises ``ContextError`` in another thread than its own.
         """
-        self.internal.forget_unused()
+        self._context.check()
+        self.cache.drop_unused()

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
-from typing import Protocol
 
 from playground.engine.cache_keys import Keys
 from playground.engine.plan import Plan
 from playground.engine.results import Result
-from playground.engine.runner import Runner
 
 
 @dataclass
@@ -58,58 +55,3 @@ class FrameRecord:
             times=other.times,
             triangles=other.triangles,
         )
-
-
-class Recorded:
-    """The record of the last frame, for what draws frames."""
-
-    def __init__(self) -> None:
-        self.record = FrameRecord()  # of the last frame
-
-    @property
-    def plan(self) -> Plan | None:
-        """The plan of the last frame."""
-        return self.record.plan
-
-    @property
-    def results(self) -> Mapping[str, Result]:
-        """The textures of the last frame, by path; valid until the next."""
-        return self.record.results
-
-    @property
-    def ran(self) -> list[str]:
-        """The paths of the passes that ran for the last frame, in order."""
-        return self.record.ran
-
-    @property
-    def texels(self) -> int:
-        """How many texels were computed for the last frame."""
-        return self.record.texels
-
-    @property
-    def times(self) -> dict[str, float]:
-        """How long each pass of the last frame ran [ms], while profiling."""
-        return self.record.times
-
-    @property
-    def triangles(self) -> int:
-        """How many triangles were drawn for the last frame; of what is cached, none."""
-        return self.record.triangles
-
-
-class FrameSource(Protocol):
-    """What draws frames, as far as those need it that look at the last one."""
-
-    @property
-    def record(self) -> FrameRecord:
-        """The last frame's."""
-
-    @property
-    def runner(self) -> Runner:
-        """What runs the passes, with its context and its pool of textures."""
-
-    def borrowed(self) -> AbstractContextManager[None]:
-        """Lend the context, made current."""
-
-    def recall(self, plan: Plan) -> None:
-        """Make an earlier frame the last one again."""

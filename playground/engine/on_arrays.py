@@ -91,14 +91,14 @@ class OnArrays:
         stops = {f"{self.name}.{path}".rstrip("."): number for path, number in (steps or {}).items()}
         found: dict[str, NDArray[np.float32]] = {}
         with self._apart():
-            plan = self.engine.internal.plan_for(sketch, (nx, ny), time, stops, interpolated=False)
-            keys = self.engine.internal.keys_of(plan)
+            plan = self.engine.plan(sketch, (nx, ny), time, stops, interpolated=False)
+            keys = self.engine.keys_of(plan)
             try:
                 for name, array in given.items():
                     self._put(plan, keys.result(name), name, array)
                 for output in wanted:
                     ref = plan.flat.ref(f"{self.name}:{output}", sketch.name)
-                    found[output] = read_texture(self.engine.internal.texture_of(plan, ref))
+                    found[output] = read_texture(self.engine.texture_of(plan, ref))
             finally:
                 self._forget(plan, keys, set(given))
         return found
@@ -137,15 +137,14 @@ class OnArrays:
 
         All is waited for, whatever the engine's patience.
         """
-        engine = self.engine.internal
-        runner = engine.runner
-        works, patience, runner.works, engine.patience = runner.works, engine.patience, SourceWorks(), None
+        engine, runner, options = self.engine, self.engine.runner, self.engine.options
+        works, patience, runner.works, options.patience = runner.works, options.patience, SourceWorks(), None
         record, runs, disk, warnings = engine.record, engine.runs.copy(), engine.disk_caching, engine.warnings
         engine.disk_caching, engine.warnings = None, PlanWarnings()
         try:
             yield
         finally:
-            runner.works, engine.patience = works, patience
+            runner.works, options.patience = works, patience
             engine.record, engine.disk_caching, engine.warnings = record, disk, warnings
             engine.runs.clear()
             engine.runs.update(runs)
@@ -154,14 +153,14 @@ class OnArrays:
         """Put an array in the cache as what its pass computed."""
         step = plan.step(name)
         assert step is not None
-        with self.engine.internal.borrowed():
-            result = self.engine.internal.pool.take(step.size, step.kernel.outputs)
+        with self.engine.borrowed():
+            result = self.engine.runner.pool.take(step.size, step.kernel.outputs)
             write_texture(result.textures[name], array)
-        self.engine.internal.cache.put(key, Cached({name: result}))
+        self.engine.cache.put(key, Cached({name: result}))
 
     def _forget(self, plan: Plan, keys: Keys, changed: set[str]) -> None:
         """Drop what was computed of the arrays; ``changed`` are their passes."""
-        cache = self.engine.internal.cache
+        cache = self.engine.cache
         for node in plan.nodes:
             read = {source.path for source in sources_of(node) if isinstance(source, Ref)}
             if node.path not in changed and not read & changed:

@@ -77,9 +77,7 @@ class _Handler:
 
     def _draw(self, request: TrySketch, driver: str) -> None:
         engine = self._engine(driver)
-        engine.internal.runner.before_step = partial(
-            self._before_step, driver if len(request.drivers) > 1 else ""
-        )
+        engine.runner.before_step = partial(self._before_step, driver if len(request.drivers) > 1 else "")
         small = replace(request.sketch, size=smallest_terrain(request.sketch), samples=1)
         drain(engine.ctx)  # what an earlier, failed request left behind
         try:
@@ -96,10 +94,8 @@ class _Handler:
         if driver not in self._engines:
             engine = Engine(self._ctx, driver=driver, cache_bytes=64 * 2**20, notice=silent)
             # A mesh's fineness proves nothing more, and takes longer than all the rest.
-            engine.internal.runner.draws.finest = _FINEST
-            engine.internal.runner.works.idle = (
-                True  # shaders are tried here; sources have no code of the user's
-            )
+            engine.runner.draws.finest = _FINEST
+            engine.runner.works.idle = True  # shaders are tried here; sources have no code of the user's
             self._engines[driver] = engine
         return self._engines[driver]
 
@@ -115,7 +111,7 @@ class _Handler:
 
 def _draw_some_frames(engine: Engine, sketch: Sketch, request: TrySketch) -> None:
     """Draw at the time asked for, or where that takes very many frames, at an earlier one."""
-    at, engine.internal.patience = request.time, _PATIENCE
+    at, engine.options.patience = request.time, _PATIENCE
     try:
         for _ in range(1 + _TRIES):
             try:
@@ -124,17 +120,17 @@ def _draw_some_frames(engine: Engine, sketch: Sketch, request: TrySketch) -> Non
             except Unfinished as stopped:
                 at *= stopped.done / stopped.wanted
     finally:
-        engine.internal.patience = None
+        engine.options.patience = None
     engine.draw(sketch, size=request.size, time=0.0)
 
 
 def _refuse(engine: Engine, what: str) -> None:
     """Raise ``ShaderError`` at the first pass that gives a number that is not finite, or nothing else."""
-    for found in engine.internal.not_finite_by_pass():
-        if found is None or engine.internal.plan is None:
+    for found in engine.not_finite_by_pass():
+        if found is None or engine.record.plan is None:
             continue
         width, height = found.size
         throughout = found.count == width * height
-        step = engine.internal.plan.step(found.path)
+        step = engine.record.plan.step(found.path)
         if step is not None and (throughout or what == "any"):
             raise step.kernel.error(found.everywhere() if throughout else str(found))

@@ -113,7 +113,7 @@ def plot_of(sketch: Sketch, engine: Engine) -> Plot:
     aprons = [f"{name}.{_APRON}" for name in names]
     others = [path for path in aprons if _value(sketch, path, leaves) not in (None, apron)]
     sketch = sketch.with_values(dict.fromkeys(others, apron))
-    ground = engine.internal.plan_for(sketch, (1, 1)).terrain
+    ground = engine.plan(sketch, (1, 1)).terrain
     extent, relief = ground.extent, ground.relief
     assert extent is not None and relief is not None
     used = (_HEIGHT, _COLOUR, LIGHT, DENSITY)
@@ -215,7 +215,7 @@ def _number(sketch: Sketch, path: str, leaves: dict[str, Value]) -> float:
 
 
 def _size(sketch: Sketch, engine: Engine, name: str) -> tuple[int, int]:
-    plan = engine.internal.plan_for(sketch, (1, 1), wanted=name)
+    plan = engine.plan(sketch, (1, 1), wanted=name)
     try:
         step = plan.step(plan.flat.ref(name, sketch.name).path)
     except PlaygroundError as error:

@@ -80,13 +80,13 @@ class Outdoors:
         sketch = self._sketch.with_values({self._plot.hour: hour}) if self._plot.hour else self._sketch
         if self._plot.trees is not None and hour != self._table_hour:
             self._take_table(sketch, hour)
-        plan = self._engine.internal.plan_for(sketch, size, wanted=_PASS)
+        plan = self._engine.plan(sketch, size, wanted=_PASS)
         plan = replace(plan, eye=_eye_at(self.over_tile(eye, seconds), lens))
-        sky = self._engine.internal.texture_of(plan, plan.flat.ref(_PASS, sketch.name))
+        sky = self._engine.texture_of(plan, plan.flat.ref(_PASS, sketch.name))
 
         def of(name: str) -> moderngl.Texture:
             ref: Ref = plan.flat.ref(name, sketch.name)
-            return self._engine.internal.results[ref.path].textures[ref.output]
+            return self._engine.record.results[ref.path].textures[ref.output]
 
         air, cloud = (of(f"{_PASS}:scattered"), of(f"{_PASS}:left")), of("cloud")
         clip = lens.clip_from_near.T.ravel().tolist()

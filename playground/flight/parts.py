@@ -85,7 +85,7 @@ class Parts:
         self.limit = len(self._near) + _SPARE
         _check_memory(plot, radius, self.limit)
         # Each part is a version of every pass, which is taken up again when the part is lit anew.
-        cache = engine.internal.cache
+        cache = engine.cache
         self._versions_before, cache.versions = cache.versions, max(cache.versions, self.limit)
         self._cutter = Cutter(engine.ctx, plot)
         self._spare: list[Slot] = []
@@ -285,7 +285,7 @@ class Parts:
 
     def release(self) -> None:
         """Release every texture."""
-        self.engine.internal.cache.versions = self._versions_before
+        self.engine.cache.versions = self._versions_before
         if self._open is not None:
             self._open[1].close()
         for slot in self._all:

@@ -93,15 +93,15 @@ def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
     if isinstance(found, OfTexture):
         values = engine.read(scene.sketch, measure.of, **at)
         first = values if values.ndim == 2 else values[..., 0]
-        grid = _grid(engine.internal.plan, first.shape)
+        grid = _grid(engine.record.plan, first.shape)
         try:
             return found.function(first.astype(np.float64), grid, **dict(measure.arguments))
         except ValueError as error:
             raise SketchError(f"measure '{measure.name}': {error}", line=measure.line) from None
     if measure.what == "triangles":
-        engine.internal.cache.clear()
+        engine.cache.clear()
         engine.draw(scene.sketch, **at)
-        return float(engine.internal.triangles)
+        return float(engine.record.triangles)
     if measure.what == "milliseconds":
         return min(_seconds(engine, measure, scene, at) for _ in range(3)) * 1e3
     if measure.what == "texture_bytes":
@@ -129,7 +129,7 @@ def _texels(node: Step | LoopStep) -> int:
 
 
 def _seconds(engine: Engine, measure: Measure, scene: Scene, at: dict[str, Any]) -> float:
-    engine.internal.cache.clear()
+    engine.cache.clear()
     engine.ctx.finish()
     begun = time.perf_counter()
     engine.texture(scene.sketch, measure.of, **at)

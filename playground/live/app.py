@@ -222,7 +222,7 @@ class Live:
         self._reloads = session.last_reload
         self.mouse = PictureMouse(session, self.bench.painting)
         self.keys = PictureKeys(self.bench)
-        session.engine.internal.runner.inputs.is_live = True
+        session.engine.runner.inputs.is_live = True
         self.finite = FiniteWatch()
         self.lessons = Lessons(self.bench, autosave, self._remember)
         self.stage = Stage(self.bench, self.lessons.reader, wake)
@@ -280,7 +280,7 @@ class Live:
         self.lessons.release()
         self.stage.release()
         self.painter.release()
-        self.session.engine.internal.runner.inputs.close()
+        self.session.engine.runner.inputs.close()
         self.session.release()
         self.session.engine.release()
 
@@ -412,7 +412,7 @@ class Live:
         self.caching.update(bench.inspection, self.finite)
         self._say_reload()
         bench.take_notes()
-        inputs = session.engine.internal.runner.inputs
+        inputs = session.engine.runner.inputs
         warnings = self.warnings.of(session.sketch, session.plan, inputs)
         bench.problems.take(session.error, warnings, session.sketch)
         self.terminal.take(bench.problems.errors)

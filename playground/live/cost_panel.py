@@ -36,7 +36,7 @@ def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: T
     if not opened:
         return
     inspection.costs_shown = True
-    imgui.text_disabled(f"by {engine.internal.clock}")
+    imgui.text_disabled(f"by {engine.clock}")
     imgui.set_item_tooltip(
         "By the wall clock each pass waits for the one before, so pictures take a little longer"
     )
@@ -55,11 +55,11 @@ def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: T
     ran, idle = theme.colour(theme.ACCENT), theme.colour(theme.INK)
     rows = [
         (
-            partial(imgui.text_colored, ran if path in engine.internal.ran else idle, path),
+            partial(imgui.text_colored, ran if path in engine.record.ran else idle, path),
             partial(imgui.text_disabled, f"{runs} ×"),
             partial(imgui.text, f"{session.times[path]:.2f} ms" if path in session.times else ""),
         )
-        for path, runs in engine.internal.runs.items()
+        for path, runs in engine.runs.items()
         if path.partition(".")[0] in own
     ]
     table("costs", 3, rows, _TABLE)
@@ -67,7 +67,7 @@ def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: T
     if compiled is not None:
         sandbox = f", {compiled.sandbox * 1e3:.0f} of them the sandbox" if compiled.sandbox else ""
         imgui.text_disabled(f"files to picture {compiled.seconds * 1e3:.0f} ms{sandbox}")
-    _compiling(engine.internal.runner.compile_times)
+    _compiling(engine.runner.compile_times)
 
 
 def _plots(record: Record, look: Theme) -> None:

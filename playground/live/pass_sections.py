@@ -142,7 +142,7 @@ class _Drawing:
         unfolded = header(f"{label_of(spec.name)}###pass", look, flags)
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         text, ran, spent = cost_of(session, spec.name)
-        if session.engine.internal.profiling and spent is not None:
+        if session.engine.options.profiling and spent is not None:
             text = f"{spent:.1f} ms    {text}"
         size = imgui.calc_text_size(text)
         right = high.x - slot() - 8 * look.scale

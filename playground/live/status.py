@@ -66,7 +66,7 @@ class Status:
             "saved": str(bench.captures.saved or ""),
             "reload_ms": round(session.last_reload.seconds * 1e3, 1) if session.last_reload else 0.0,
             "not_finite": [str(found) for found in not_finite],
-            "runs": dict(session.engine.internal.runs),
+            "runs": dict(session.engine.runs),
             "edited": dict(session.shown.edits.values) if session.shown else {},
             "trying": checking[0] if checking[1] >= PATIENCE else "",
             "layers": open_layers(bench),

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.engine.internals import opened
 from playground.errors import DataError
 from playground.extras import needs
 from playground.shader.parameter import spell
+from playground.sketch.load import opened
 from playground.sketch.model import Sketch
 
 if TYPE_CHECKING:

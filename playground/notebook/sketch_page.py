@@ -50,7 +50,7 @@ def kernel_outline(sketches: Sequence[Sketch], size: tuple[int, int], engine: En
 
 
 def _outline(sketch: Sketch, size: tuple[int, int], engine: Engine) -> dict[str, Any]:
-    terrain = engine.internal.plan_for(sketch, size).terrain
+    terrain = engine.plan(sketch, size).terrain
     values = values_of(sketch)
     rows = shown_data(sketch, values, _unlocked)
     return {

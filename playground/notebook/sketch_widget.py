@@ -18,13 +18,13 @@ from PIL import Image
 from playground.api import parameters
 from playground.data.image_files import encode_png
 from playground.engine.engine import Engine
-from playground.engine.internals import opened
 from playground.errors import DataError, ParameterError, PlaygroundError, nearest
 from playground.notebook.engine_thread import on_engine, release_engine
 from playground.notebook.sketch_page import browser_page, kernel_outline
 from playground.notebook.widget import BROWSER, KERNEL, LiveWidget
 from playground.shader.parameter import spell
 from playground.sketch.assign import TERRAIN_KEYS, check_value
+from playground.sketch.load import opened
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.toml_sketch import camera_of
 from playground.sketch.toml_table import CAMERA

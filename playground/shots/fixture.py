@@ -339,7 +339,7 @@ def _drawn_by(picture: object, rendered: RenderedShot, by: By | None) -> Rendere
         return rendered
     last = _last_picture(by)
     if last is not None and np.array_equal(last, rendered.array):
-        return replace(rendered, not_finite=str(by.not_finite() or ""), drawn=by.internal.drawn())
+        return replace(rendered, not_finite=str(by.not_finite() or ""), drawn=by.drawn())
     if isinstance(picture, Frame):
         raise ValueError(
             "this is not the last frame of its engine, so what went into it cannot be looked at any more: "
@@ -350,13 +350,13 @@ def _drawn_by(picture: object, rendered: RenderedShot, by: By | None) -> Rendere
 
 def _last_picture(engine: Engine) -> NDArray[np.uint8] | None:
     """Return the picture that an engine drew last; None where it has none."""
-    if engine.internal.plan is None:
+    if engine.record.plan is None:
         return None
-    view = next(iter(engine.internal.plan.flat.outputs["view"].values()))
-    result = engine.internal.results.get(view.path)
+    view = next(iter(engine.record.plan.flat.outputs["view"].values()))
+    result = engine.record.results.get(view.path)
     if result is None:
         return None
-    with engine.internal.borrowed():
+    with engine.borrowed():
         return read_picture(result.textures[view.output])
 
 

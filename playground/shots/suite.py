@@ -103,7 +103,7 @@ def render_shot(engine: Engine, case: ShotCase) -> RenderedShot:
         sketch = case.sketch.for_shot(shot)
         frame = engine.render(sketch, size=shot.size, time=shot.time, steps=dict(shot.steps))
     error = engine.ctx.error
-    found, drawn = engine.not_finite(), engine.internal.drawn()
+    found, drawn = engine.not_finite(), engine.drawn()
     textures = [item for item in shot.mask if isinstance(item, str) and not item.endswith(MASK_ENDING)]
     masks = [
         Light(engine.read(sketch, name, size=shot.size, time=shot.time, steps=dict(shot.steps))[::-1], name)

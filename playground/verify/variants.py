@@ -132,7 +132,7 @@ def verify(engine: Engine, variant: Variant, technique: Technique, places: Itera
     verdict = Verdict(variant, (content_of(technique), content_of(variant.technique)))
     if not variant.technique.agrees:
         verdict.wrong = 'it does not say how closely it agrees, as agrees = "1e-5"'
-    elif variant.kind not in engine.internal.plain_forms.kinds:
+    elif variant.kind not in engine.plain_forms.kinds:
         verdict.skipped = f"this context is {engine.info.opengl}; compute needs 4.3"
     else:
         try:
@@ -331,7 +331,7 @@ def _runs(engine: Engine, place: Place, fast: Sketch, ref: str) -> bool:
 
     A file of both forms tells nothing, so what each runs at the place is compared; nothing is drawn.
     """
-    plans = (engine.internal.plan_for(s, DEFAULT_PICTURE, wanted=ref) for s in (fast, fast.plainly()))
+    plans = (engine.plan(s, DEFAULT_PICTURE, wanted=ref) for s in (fast, fast.plainly()))
     one, other = (
         {
             (step.path, step.kernel.path, step.size, step.repeat, repr(sorted(step.values.items())))

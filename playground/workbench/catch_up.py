@@ -47,7 +47,7 @@ class CatchUp:
         """
         before = self.behind
         self.behind, self.source, at = None, "", seconds
-        engine.internal.patience = None if in_full else PIECE
+        engine.options.patience = None if in_full else PIECE
         try:
             for _ in range(1 + _TRIES):
                 try:
@@ -63,4 +63,4 @@ class CatchUp:
                         self._since = self._since if before else self._now()
             return None
         finally:
-            engine.internal.patience = None
+            engine.options.patience = None

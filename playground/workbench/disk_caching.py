@@ -32,11 +32,11 @@ class SessionCaching:
     def attach(self, engine: Engine) -> None:
         """Have an engine use the disk cache, from its next frame on."""
         if self._limit:
-            engine.internal.disk_caching = DiskCaching(disk_cache_for(engine.info, self._limit))
+            engine.disk_caching = DiskCaching(disk_cache_for(engine.info, self._limit))
 
     def update(self, inspection: Inspection, finite: FiniteWatch) -> None:
         """Do a piece of what is to be done, if it is time to."""
-        session, caching = self._session, self._session.engine.internal.disk_caching
+        session, caching = self._session, self._session.engine.disk_caching
         self.patience = None
         if caching is None or session.plan is None or session.awaits_data:
             return
@@ -47,12 +47,12 @@ class SessionCaching:
             return
         checked = finite.patience is None and not finite.found
         if caching.going or (checked and not session.drafts.testing and not session.is_preview):
-            self.patience = caching.look(session.engine.internal, session.plan)
+            self.patience = caching.look(session.engine, session.plan)
         if caching.store.trouble != self._reported:
             self._reported = caching.store.trouble
             session.notes.append(self._reported)
 
     def close(self) -> None:
         """Wait until all is written that was read back."""
-        if self._session.engine.internal.disk_caching is not None:
-            self._session.engine.internal.disk_caching.close()
+        if self._session.engine.disk_caching is not None:
+            self._session.engine.disk_caching.close()

@@ -69,9 +69,9 @@ class FiniteWatch:
         engine = session.engine
         assert session.plan is not None
         if self._going is None:
-            if engine.internal.plan is not session.plan:  # a texture was read since
-                engine.internal.recall(session.plan)
-            self._going, self._coming, self._spent = engine.internal.not_finite_by_pass(), [], 0.0
+            if engine.record.plan is not session.plan:  # a texture was read since
+                engine.recall(session.plan)
+            self._going, self._coming, self._spent = engine.not_finite_by_pass(), [], 0.0
         for found in self._going:
             self.looks += 1
             if found is not None:
@@ -80,7 +80,7 @@ class FiniteWatch:
                 self._spent += self._now() - start
                 return
         self._going, self._done = None, True
-        if engine.internal.plan is session.plan:
+        if engine.record.plan is session.plan:
             self._take(session)
         self._next = self._now() + max(_SELDOM, _SHARE * (self._spent + self._now() - start))
 
@@ -89,7 +89,7 @@ class FiniteWatch:
         assert session.plan is not None
         earlier: list[NotFinite] = []
         if session.view.map is not None and self._of is session.sketch:
-            ran = (step.path for step in session.plan.walk() if step.path in session.engine.internal.results)
+            ran = (step.path for step in session.plan.walk() if step.path in session.engine.record.results)
             there = {session.view.map.own_path(path) for path in ran}
             earlier = [f for f in self.found if f.path not in there]
         self._of = session.sketch

@@ -241,7 +241,7 @@ class Painting:
                 self.session.notes.append(str(error))
                 self.release()
                 return
-            if canvas.path in self.session.engine.internal.painted:
+            if canvas.path in self.session.engine.painted:
                 self.session.redraw()
             elif at - self._saved_at >= SAVES_EVERY:
                 self._saved(canvas.save)
@@ -263,7 +263,7 @@ class Painting:
             self._reported[canvas.path] = ended
             if canvas.writing.error is not None:
                 self.session.notes.append(str(canvas.writing.error))
-            if canvas.path not in self.session.engine.internal.painted:
+            if canvas.path not in self.session.engine.painted:
                 self.session.redraw()
 
     def settle(self) -> bool:
@@ -326,7 +326,7 @@ class Painting:
 
     def _hand_over(self, canvas: Canvas) -> None:
         """Have the picture show a canvas from memory, where it can."""
-        step, painted = self._step_of(self.target), self.session.engine.internal.painted
+        step, painted = self._step_of(self.target), self.session.engine.painted
         painted.pop(canvas.path, None)
         if step is not None and self._shows(step, canvas.path, canvas.size):
             painted[canvas.path] = canvas

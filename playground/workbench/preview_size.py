@@ -93,13 +93,13 @@ class PreviewSize:
         if len(possible) == 1:
             self.divisor = 1
             return size
-        whole = engine.internal.plan_for(sketch, size, **at)
-        smaller = engine.internal.plan_for(sketch, divided(size, 2), **at)
+        whole = engine.plan(sketch, size, **at)
+        smaller = engine.plan(sketch, divided(size, 2), **at)
         sizes, halved = _texels(whole), _texels(smaller)
         following = {path for path, texels in sizes.items() if halved.get(path) != texels}
         # Of the picture in full it is others: that has fast variants of its own.
         if changed is None or not sizes.keys() >= set(changed):
-            changed = engine.internal.stale(sketch, size=size, **at)
+            changed = engine.stale(sketch, size=size, **at)
         if not _goes_on(whole).isdisjoint(following):
             self.divisor = 1  # it would begin anew at each size
             return size

@@ -63,14 +63,14 @@ class Session:
         is_lost: Callable[[], bool] = lambda: False,
     ) -> None:
         self.engine = engine
-        engine.internal.plain_forms.notice = silent  # ``notes`` say it
+        engine.plain_forms.notice = silent  # ``notes`` say it
         self.clock = Clock()
         self._clock_before = Clock()  # of the sketch that is shown, while another is opened
         self.view = View()
         self.data = DataFiles()
         checks = Checks(
             driver=engine.driver,
-            variants=tuple(engine.internal.plain_forms.kinds),
+            variants=tuple(engine.plain_forms.kinds),
             sandbox=sandbox,
             now=now,
             sketch_time=lambda: self.clock.time,
@@ -214,7 +214,7 @@ class Session:
 
     def point(self, mouse: tuple[float, float, float, float]) -> None:
         """Pass the mouse to plain shaders: pixels from the lower left, then where it was pressed."""
-        runner = self.engine.internal.runner
+        runner = self.engine.runner
         if runner.mouse != mouse and self.sketch is not None and traits_of(self.sketch).mouse:
             runner.mouse = mouse
             self.redraw()
@@ -224,7 +224,7 @@ class Session:
 
         ``clicked``: it was pressed in this very frame.
         """
-        runner = self.engine.internal.runner
+        runner = self.engine.runner
         x, y, press_x, press_y = runner.drag
         if clicked:
             drag = (*place, *place)
@@ -256,7 +256,7 @@ class Session:
 
     def _press(self) -> None:
         """Pass the buttons pressed since the last frame to the engine, and let go of those before."""
-        runner = self.engine.internal.runner
+        runner = self.engine.runner
         if runner.pressed != self._pressed:
             runner.pressed = self._pressed
             self.redraw()
@@ -264,7 +264,7 @@ class Session:
 
     def hold_keys(self, codes: Collection[int]) -> None:
         """Begin a frame in which the picture's keys are down, by their codes in JavaScript."""
-        inputs = self.engine.internal.runner.inputs
+        inputs = self.engine.runner.inputs
         if inputs.keyboard.hold(codes) and self.sketch and traits_of(self.sketch).keys:
             self.redraw()
 
@@ -275,7 +275,7 @@ class Session:
 
     def listen(self) -> None:
         """Begin a frame: take what microphones and cameras delivered."""
-        if self.engine.internal.runner.inputs.begin_frame() and self.listens:
+        if self.engine.runner.inputs.begin_frame() and self.listens:
             self.redraw()
 
     def advance(self, seconds: float, date: datetime) -> None:
@@ -286,7 +286,7 @@ class Session:
         if self.catch_up.behind is None:
             self.clock.advance(seconds)
         midnight = date.replace(hour=0, minute=0, second=0, microsecond=0)
-        runner = self.engine.internal.runner
+        runner = self.engine.runner
         runner.delta = seconds * self.clock.speed
         runner.date = (float(date.year), date.month - 1.0, float(date.day), (date - midnight).total_seconds())
 
@@ -316,7 +316,7 @@ class Session:
         shown = self.view.map
         if shown is not None and self.sketch is not None:
             values = self.read_values(shown.ref)
-            if values is not None or not self.engine.internal.runner.works.at_work:
+            if values is not None or not self.engine.runner.works.at_work:
                 self.view.show(fitted(shown, values) if values is not None else None)
 
     def read_values(self, ref: str) -> NDArray[np.float32] | None:
@@ -328,14 +328,14 @@ class Session:
             return None
         now, engine = self.clock.time, self.engine
         stops, fills = self.view.stops(self.sketch, now), self.view.interpolated
-        engine.internal.patience = float("inf")  # loops run to their end
+        engine.options.patience = float("inf")  # loops run to their end
         try:
             return engine.read(self.sketch, ref, time=now, steps=stops, interpolated=fills)
         except (PlaygroundError, SourceUnfinished) as error:
             self.notes.append(str(error))
             return None
         finally:
-            engine.internal.patience = None
+            engine.options.patience = None
 
     # ── the picture ──────────────────────────────────────────────────────────
 
@@ -380,11 +380,11 @@ class Session:
         What is shown is drawn anew, unless it lost two contexts in a row: then it waits until
         something is changed.
         """
-        runner, before = engine.internal.runner, self.engine.internal.runner
+        runner, before = engine.runner, self.engine.runner
         runner.mouse, runner.inputs = before.mouse, before.inputs
         runner.hover, runner.drag = before.hover, before.drag
-        engine.internal.plain_forms.notice = silent
-        engine.internal.painted.update(self.engine.internal.painted)
+        engine.plain_forms.notice = silent
+        engine.painted.update(self.engine.painted)
         self.engine, self.plan, self._planned, self._drawn = engine, None, None, None
         self.picture = ShownPicture(engine.ctx, self._now)
         shown = self.shown, self.drafts.revision, self.view.revision
@@ -472,17 +472,17 @@ class Session:
         drawn = self.picture.draw(
             engine, sketch, self.view, self.catch_up, size=size, time=self.clock.time, **how
         )
-        if engine.internal.profiling:
-            self.times |= engine.internal.times
+        if engine.options.profiling:
+            self.times |= engine.record.times
         if traits.files and self._data_of is not sketch:
             self.data.take(sketch)
             self._data_of = sketch
         if not drawn:
             return
         self.draws += 1
-        self.plan = engine.internal.plan
-        if engine.internal.eye_height.message:
-            self._note_once("ground", engine.internal.eye_height.message)
+        self.plan = engine.record.plan
+        if engine.eye_height.message:
+            self._note_once("ground", engine.eye_height.message)
 
     def _pause_once(self) -> None:
         """Let time stand still, the first time that a sketch is too slow for it: so it is drawn in full."""

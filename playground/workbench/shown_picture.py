@@ -118,7 +118,7 @@ class ShownPicture:
         if sized or (moves and traits_of(sketch).faster):
             at = _at(view, sketch, time, coming=coming)
             # What a new text runs is asked below, of the preview alone: a plan less.
-            is_new = coming and _has_new_text(engine.internal.plan, sketch)
+            is_new = coming and _has_new_text(engine.record.plan, sketch)
             changed = None if is_new else self._changed(engine, sketch, view, size, at)
             faster |= frozenset(changed or () if moves else ())
         chosen = as_preview(sketch, faster=faster) if previews else sketch
@@ -134,25 +134,25 @@ class ShownPicture:
             return engine.draw(_framed(chosen, view, time, size), size=pixels, **at)
 
         end = self._now() + PIECE * 2 ** max(self._pieces - STEADY, 0)
-        engine.internal.piece = (lambda: self._now() > end) if in_pieces else None
+        engine.options.piece = (lambda: self._now() > end) if in_pieces else None
         try:
-            with _timed(engine), pointed_at(engine.internal.runner, size, pixels):
+            with _timed(engine), pointed_at(engine.runner, size, pixels):
                 texture = catch_up.draw(engine, time, drawn_at, in_full=in_full)
         except PassesUnfinished:
             self._pieces, self.rest = self._pieces + 1, 0.0  # it goes on at once
             return False
         finally:
-            engine.internal.piece = None
+            engine.options.piece = None
         self._pieces = 0
-        if engine.info.software and engine.internal.plan is not None:
+        if engine.info.software and engine.record.plan is not None:
             self._sizes.take(
-                engine.internal.plan,
-                engine.internal.times,
+                engine.record.plan,
+                engine.record.times,
                 in_full=in_full and as_preview(sketch) is not sketch,
             )
         if texture is None:
             return False
-        with engine.internal.borrowed():
+        with engine.borrowed():
             self._picture.copy(texture, size)
         self.is_preview, self._faster = chosen is not sketch or pixels != size, faster
         # Nobody waits for what was drawn small because its cost was not known.
@@ -170,7 +170,7 @@ class ShownPicture:
         with suppress(Exception):
             preview, at = _framed(as_preview(sketch), view, time, size), _at(view, sketch, time, coming=True)
             for divisor in sorted({1, 2, self._sizes.divisor}):
-                engine.internal.stale(preview, size=divided(size, divisor), **at)
+                engine.stale(preview, size=divided(size, divisor), **at)
 
     def differs(self, engine: Engine, sketch: Sketch, view: View, time: float) -> bool:
         """Return whether a sketch would run a pass if it were drawn as this was; raise as ``Engine.draw``."""
@@ -183,8 +183,8 @@ class ShownPicture:
         """Return the passes that would run if a sketch were drawn as the last picture was, by path."""
         pixels = self._drawn_size if self.texture is not None and self.texture.size == size else size
         chosen = as_preview(sketch, size, pixels, self._faster) if self.is_preview else sketch
-        with pointed_at(engine.internal.runner, size, pixels):
-            return engine.internal.stale(_framed(chosen, view, at["time"], size), size=pixels, **at)
+        with pointed_at(engine.runner, size, pixels):
+            return engine.stale(_framed(chosen, view, at["time"], size), size=pixels, **at)
 
 
 def _at(view: View, sketch: Sketch, time: float, *, coming: bool = False) -> dict[str, Any]:
@@ -211,12 +211,12 @@ def _framed(sketch: Sketch, view: View, time: float, size: Size) -> Sketch:
 @contextmanager
 def _timed(engine: Engine) -> Iterator[None]:
     """Have passes timed on a software renderer, where that costs next to nothing."""
-    before = engine.internal.profiling
-    engine.internal.profiling = before or engine.info.software
+    before = engine.options.profiling
+    engine.options.profiling = before or engine.info.software
     try:
         yield
     finally:
-        engine.internal.profiling = before
+        engine.options.profiling = before
 
 
 @contextmanager

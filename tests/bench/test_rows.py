@@ -61,13 +61,13 @@ def test_its_sketch_has_the_texture_and_what_changes(name):
         changed |= dict.fromkeys(row.options.get("nudged", ()), row.options.get("around", 0.5) + 0.01)
         assert changed, "each run is to make something new"
         wanted = str(row.options["texture"])
-        plan = room.engine().internal.plan_for(sketch.with_values(changed), (64, 36), 0.0, None, wanted)
+        plan = room.engine().plan(sketch.with_values(changed), (64, 36), 0.0, None, wanted)
         plan.flat.ref(wanted, "sketch")
         if "part" in row.options:
             assert row.options["part"] != wanted
             engine = room.engine()
             engine.texture(sketch.with_values(changed), row.options["part"])
-            assert "a" not in engine.internal.ran, "the part is made without what is measured"
+            assert "a" not in engine.record.ran, "the part is made without what is measured"
 
 
 @pytest.mark.parametrize(("name", "read"), [("unchanged", 1), ("unchanged_chain", 7)])
@@ -75,10 +75,10 @@ def test_the_picture_of_unchanged_passes_reads_one_or_their_chain(name, read):
     with Room(Options()) as room:
         engine, sketch = room.engine(), unchanging(ROWS[name], room, 7)
         engine.draw(sketch, size=(16, 9))
-        assert sum(path.startswith("p") for path in engine.internal.ran) == read
+        assert sum(path.startswith("p") for path in engine.record.ran) == read
         turned = sketch.with_camera(replace(sketch.camera, azimuth=sketch.camera.azimuth + 1.0))
         engine.draw(turned, size=(16, 9))
-        assert engine.internal.ran and not any(path.startswith("p") for path in engine.internal.ran)
+        assert engine.record.ran and not any(path.startswith("p") for path in engine.record.ran)
 
 
 def test_a_measured_row_has_every_form_and_what_is_missing_is_told(monkeypatch):

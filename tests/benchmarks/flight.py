@@ -72,7 +72,7 @@ def main() -> int:
             )
             triangles = flight.scene.triangles
             print(f"parts in view: {statistics.mean(drawn):.0f}; triangles of the last picture: {triangles}")
-            mine, cached = flight.parts.bytes / 2**20, engine.internal.cache.bytes / 2**20
+            mine, cached = flight.parts.bytes / 2**20, engine.cache.bytes / 2**20
             print(f"cached: {len(flight.parts)} parts, {mine:.0f} MiB, and {cached:.0f} MiB in the engine")
     return 0
 

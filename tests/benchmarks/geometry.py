@@ -84,7 +84,7 @@ def main() -> None:
 
 def table_of(engine: Engine, name: str, sketch: Sketch, samples: list[int], rounds: int) -> Table:
     """Return what the meshes of one terrain cost, and how far from it they lie."""
-    size = engine.internal.plan_for(sketch, SIZE).terrain.size
+    size = engine.plan(sketch, SIZE).terrain.size
     assert size is not None
     meshes = {"full grid, texel by texel": {"detail": "full grid", "grid": max(size)}}
     if max(size) > 1025:  # its own mesh would take a gigabyte
@@ -103,7 +103,7 @@ def table_of(engine: Engine, name: str, sketch: Sketch, samples: list[int], roun
     most = 0
     for mesh, given in meshes.items():
         away = abs(heights(engine, sketch, given) - truth) * scale
-        count = engine.internal.runner.draws.triangles
+        count = engine.runner.draws.triangles
         most = most or count
         error = away[scale > 0]
         table.add_row(
@@ -156,7 +156,7 @@ def heights(engine: Engine, sketch: Sketch, given: dict[str, object]) -> np.ndar
 def pixels(sketch: Sketch, truth: np.ndarray) -> np.ndarray:
     """Return the length in pixels of a metre upwards at each place of the terrain, 0 outside the picture."""
     with playground.headless() as engine:
-        terrain = engine.internal.plan_for(sketch, SIZE).terrain
+        terrain = engine.plan(sketch, SIZE).terrain
     eye = look(sketch.camera, terrain.extent, terrain.relief, SIZE)
     matrix = eye.clip_from_world.astype(np.float64).T
     shares = ((np.arange(n) + 0.5) / n for n in SIZE)
@@ -172,11 +172,11 @@ def errors_time(engine: Engine, sketch: Sketch) -> float:
     times = []
     for _ in range(5):
         engine.texture(sketch, "height")
-        engine.internal.cache.clear()
-        engine.internal.profiling = True
+        engine.cache.clear()
+        engine.options.profiling = True
         engine.texture(sketch, "tiles:errors")
-        engine.internal.profiling = False
-        times.append(engine.internal.times["tiles"])
+        engine.options.profiling = False
+        times.append(engine.record.times["tiles"])
     return statistics.median(times)
 
 

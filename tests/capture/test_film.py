@@ -87,7 +87,7 @@ def test_a_picture_is_that_of_its_number(any_engine: Engine, clock):
     np.testing.assert_allclose(found[:, 0] / 255, times / 10, atol=0.5 / 255)
     np.testing.assert_array_equal(found[:, 1], 60 + 3 * np.arange(10))
     np.testing.assert_allclose(found[:, 2] / 255, 0.05, atol=0.5 / 255)
-    assert any_engine.internal.runner.delta == 1 / 60, "as it was"
+    assert any_engine.runner.delta == 1 / 60, "as it was"
 
 
 def test_keyframes_move_what_a_film_shows(any_engine: Engine, keyed):
@@ -117,19 +117,19 @@ def test_how_long_a_film_is(clock, keyed):
 def test_a_thousand_pictures_leave_as_many_objects_as_ten(any_engine: Engine, keyed, alive: Counter[str]):
     film = Film(sketch=keyed, count=10, fps=Fraction(25), size=(32, 18))
     list(frames(any_engine, film))
-    before, cached = Counter(alive), any_engine.internal.cache.bytes
+    before, cached = Counter(alive), any_engine.cache.bytes
     for number, _ in enumerate(
         frames(any_engine, Film(sketch=keyed, count=1000, fps=Fraction(2500), size=(32, 18)))
     ):
         assert number % 100 or alive == before
-    assert alive == before and any_engine.internal.cache.bytes == cached
+    assert alive == before and any_engine.cache.bytes == cached
 
 
 def test_pictures_leave_no_objects(any_engine: Engine, keyed, alive: Counter[str]):
     list(frames(any_engine, Film(sketch=keyed, count=5, fps=Fraction(25), size=(32, 18))))
-    before, cached = Counter(alive), any_engine.internal.cache.bytes
+    before, cached = Counter(alive), any_engine.cache.bytes
     list(frames(any_engine, Film(sketch=keyed, count=60, fps=Fraction(150), size=(32, 18))))
-    assert alive == before and any_engine.internal.cache.bytes == cached
+    assert alive == before and any_engine.cache.bytes == cached
 
 
 # ── what is in the file ──────────────────────────────────────────────────────

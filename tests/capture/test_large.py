@@ -107,7 +107,7 @@ def test_a_mesh_differs_in_few_pixels_and_at_no_seam(any_engine: Engine, name: s
     sketch = load(name).with_values(SMALL)
     whole = any_engine.render(sketch, size=SIZE).array.astype(int)
     if zoomed:  # as where the driver's viewports are smaller than the picture
-        any_engine.internal.runner.draws.widest = (64, 64)
+        any_engine.runner.draws.widest = (64, 64)
     apart = np.abs(together(any_engine, sketch) - whole).max(axis=2)
     assert np.count_nonzero(apart) < 0.002 * apart.size
     assert apart.mean() < 0.005, "of 255 levels"
@@ -128,9 +128,9 @@ def test_crowns_have_the_same_bits_in_every_part(any_engine: Engine):
     whole = any_engine.read(sketch, ref, size=size).copy()
     parts = np.zeros_like(whole)
     for window in (window for row in tiles_of(size, (96, 64)) for window in row):
-        plan = any_engine.internal.plan_for_window(sketch, window)
+        plan = any_engine.plan_for_window(sketch, window)
         (x, y), (wide, tall) = window.origin, window.size
-        texture = any_engine.internal.texture_of(plan, plan.flat.ref(ref, sketch.name))
+        texture = any_engine.texture_of(plan, plan.flat.ref(ref, sketch.name))
         parts[y : y + tall, x : x + wide] = read_texture(texture)
     crowns = (whole[..., 3] >= FIRST_OBJECT) & (parts[..., 3] >= FIRST_OBJECT)
     other = (whole.view(np.uint32) != parts.view(np.uint32)).any(axis=2) & crowns
@@ -144,9 +144,9 @@ def test_levels_of_detail_are_those_of_the_whole_picture(any_engine: Engine):
     """The mesh chosen by pixels is that of the whole: a tile of its own size would take a coarser one."""
     sketch = load("geomipmap").with_values(SMALL)
     any_engine.render(sketch, size=SIZE)
-    triangles = any_engine.internal.runner.draws.triangles
+    triangles = any_engine.runner.draws.triangles
     list(strips(any_engine, sketch, SIZE, tile=TILES))
-    assert any_engine.internal.runner.draws.triangles == triangles
+    assert any_engine.runner.draws.triangles == triangles
 
 
 # ── sizes, memory, files ─────────────────────────────────────────────────────
@@ -190,7 +190,7 @@ def test_the_far_end_of_a_picture_wider_than_any_viewport(any_engine: Engine):
     """16,640 pixels: what is there is what a tenth of the size shows there, pixel by hundred pixels."""
     sketch = load("jacksboro").with_values(SMALL)
     window = Window((16000, 100), (640, 100), (16640, 9360))
-    texture = any_engine.internal.draw_window(sketch, window)
+    texture = any_engine.draw_window(sketch, window)
     wide = read_picture(texture)[..., :3].astype(float)
     small = any_engine.render(sketch, size=(1664, 936)).array[-20:-10, 1600:, :3]
     means = wide.reshape(10, 10, 64, 10, 3).mean(axis=(1, 3))

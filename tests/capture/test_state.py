@@ -55,7 +55,7 @@ def sketch(tmp_path: Path):
 def test_a_film_runs_each_frame_once(any_engine: Engine, sketch, fps, last):
     film = film_of(sketch, seconds=2, fps=fps, size=SIZE)
     found = list(frames(any_engine, film))
-    assert any_engine.internal.runs["trail"] == last + 1
+    assert any_engine.runs["trail"] == last + 1
     with Engine(any_engine.ctx) as cold:
         for number in (0, film.count // 2, film.count - 1):
             alone = cold.render(sketch, size=SIZE, time=film.time(number)).array
@@ -65,7 +65,7 @@ def test_a_film_runs_each_frame_once(any_engine: Engine, sketch, fps, last):
 
 def test_a_film_that_begins_later_runs_what_is_before_it_once(any_engine: Engine, sketch):
     list(frames(any_engine, film_of(sketch, seconds=0.5, fps=60, size=SIZE, start=1.0)))
-    assert any_engine.internal.runs["trail"] == 60 + 30
+    assert any_engine.runs["trail"] == 60 + 30
 
 
 @pytest.mark.slow
@@ -90,30 +90,30 @@ def test_a_film_rendered_twice_has_the_same_bytes(ctx, sketch, tmp_path: Path):
 def test_a_sequence_runs_each_frame_once_and_goes_on_where_it_stopped(any_engine: Engine, sketch, tmp_path):
     film, pattern = film_of(sketch, seconds=1, fps=30, size=SIZE), tmp_path / "frames" / "%03d.png"
     write_sequence(any_engine, film, pattern)
-    assert any_engine.internal.runs["trail"] == 59
+    assert any_engine.runs["trail"] == 59
     files = sorted((tmp_path / "frames").iterdir())
     first = [file.read_bytes() for file in files]
     for file in files[20:]:
         file.unlink()
     with Engine(any_engine.ctx) as cold:
         assert len(write_sequence(cold, film, pattern, resume=True).kept) == 20
-        assert cold.internal.runs["trail"] == 59, "the frames before those that are missing run once as well"
+        assert cold.runs["trail"] == 59, "the frames before those that are missing run once as well"
     assert [file.read_bytes() for file in files] == first
 
 
 def test_shots_in_the_order_of_their_times_go_on(any_engine: Engine, sketch):
     found = [render_shot(any_engine, case).array for case in shots_of([sketch])]
-    assert any_engine.internal.runs["trail"] == 121
+    assert any_engine.runs["trail"] == 121
     backwards = [render_shot(any_engine, case).array for case in reversed(shots_of([sketch]))]
     np.testing.assert_array_equal(found, backwards[::-1])
-    assert any_engine.internal.runs["trail"] < 121 + 31 + 121
+    assert any_engine.runs["trail"] < 121 + 31 + 121
 
 
 def test_a_sheet_of_what_the_state_does_not_depend_on_runs_it_once(any_engine: Engine, sketch):
     rows = swept(sketch, [read_sweep(sketch, "gain.gain=0.5,1,2", 3)])
     assert len(list(pictures(any_engine, rows, SIZE, time=1.0))) == 3
-    assert any_engine.internal.runs["trail"] == 61
+    assert any_engine.runs["trail"] == 61
     rows = swept(sketch, [read_sweep(sketch, "trail.fade=0.05,0.2", 2)])
     one, other = pictures(any_engine, rows, SIZE, time=1.0)
     assert (one != other).any()
-    assert any_engine.internal.runs["trail"] == 3 * 61, "with another value, each frame is another"
+    assert any_engine.runs["trail"] == 3 * 61, "with another value, each frame is another"

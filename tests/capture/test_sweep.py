@@ -127,7 +127,7 @@ def test_pictures_come_in_order_and_the_terrain_is_made_once(any_engine: Engine,
     rows = swept(sketch, [read_sweep(sketch, "light.gain=1..4,4")])
     found = list(pictures(any_engine, rows, (32, 18)))
     means = [picture[..., :3].mean() for picture in found]
-    assert means == sorted(means) and any_engine.internal.runs["height"] == 1
+    assert means == sorted(means) and any_engine.runs["height"] == 1
 
 
 def test_a_sweep_as_a_film(any_engine: Engine, sketch, tmp_path: Path):

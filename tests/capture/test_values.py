@@ -130,7 +130,7 @@ def test_an_exported_terrain_renders_like_the_one_it_came_from(
     if ending == "r16":
         values["height.raw_size"] = (9, 5)
     again = playground.load("generation/heightmap").with_values(values)
-    plan = any_engine.internal.plan_for(again, (64, 36))
+    plan = any_engine.plan(again, (64, 36))
     assert plan.terrain.size == (9, 5)
     assert plan.terrain.extent == pytest.approx((800.0, 300.0))
     assert (plan.terrain.base_elevation, plan.terrain.relief) == pytest.approx((LOW, HIGH - LOW))
@@ -145,7 +145,7 @@ def test_given_metres_win_over_those_of_the_file(any_engine: Engine, lop: Sketch
     path = tmp_path / "terrain.png"
     playground.export(lop, path, span=(0.0, 2000.0), engine=any_engine)
     values = {"height.elevation": str(path), "height.metres": (1000.0, 2000.0)}
-    plan = any_engine.internal.plan_for(playground.load("generation/heightmap").with_values(values), (64, 36))
+    plan = any_engine.plan(playground.load("generation/heightmap").with_values(values), (64, 36))
     assert plan.terrain.relief == pytest.approx((HIGH - LOW) / 2, abs=0.05)
     assert plan.terrain.base_elevation == pytest.approx(1000.0 + LOW / 2, abs=0.05)
 

@@ -289,7 +289,7 @@ PICTURES = {
 def test_a_picture_is_stretched_and_that_is_reported_once(tmp_path, any_engine, name):
     PICTURES[name](tmp_path / name)
     reports: list[str] = []
-    any_engine.internal.warnings.report = lambda found: reports.append(found.message)
+    any_engine.warnings.report = lambda found: reports.append(found.message)
     sketch = playground.load(tmp_path / name)
     for size in ((16, 9), (9, 16)):
         any_engine.render(sketch, size=size)
@@ -305,7 +305,7 @@ def test_a_picture_is_stretched_and_that_is_reported_once(tmp_path, any_engine, 
 
 def test_what_is_assumed_of_a_unit_is_reported_once(tmp_path, any_engine):
     reports: list[str] = []
-    any_engine.internal.warnings.report = lambda found: reports.append(found.message)
+    any_engine.warnings.report = lambda found: reports.append(found.message)
     sketch = playground.load(raster(tmp_path / "a.tif"))
     for size in ((16, 9), (9, 16)):
         any_engine.render(sketch, size=size)

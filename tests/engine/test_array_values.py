@@ -98,7 +98,7 @@ def test_a_sketch_with_an_array_is_a_value(any_engine, sketch):
     assert marks[0] == marks[1] != marks[2]
     any_engine.read(one, "height")
     any_engine.read(same, "height")
-    assert any_engine.internal.ran == [], "the same numbers are not read again"
+    assert any_engine.record.ran == [], "the same numbers are not read again"
     np.testing.assert_array_equal(any_engine.read(other, "height").shape, (4, 5))
 
 
@@ -165,7 +165,7 @@ SOUTH_FIRST = NORTH_FIRST | {"y": NORTH_FIRST["y"][::-1]}
 def test_coordinates_say_where_rows_go_and_how_far_apart_they_are(any_engine, sketch, labelled):
     found = any_engine.metres(given(sketch, labelled), "height")
     np.testing.assert_allclose(found, HEIGHTS, atol=1e-5)
-    terrain = any_engine.internal.plan.terrain
+    terrain = any_engine.record.plan.terrain
     assert terrain.extent == pytest.approx((120.0, 60.0)) and terrain.size == (5, 4)
     assert terrain.relief == pytest.approx(19.0)
 
@@ -182,7 +182,7 @@ def test_a_reference_system_of_rioxarray_is_kept(any_engine, sketch):
     labelled = Labelled(HEIGHTS[::-1], places=NORTH_FIRST, rio=rio)
     found = given(sketch, labelled).with_values({"height.no_data": "fill"})
     any_engine.read(found, "height")
-    place = any_engine.internal.plan.terrain.place
+    place = any_engine.record.plan.terrain.place
     assert place.crs.name == "EPSG:32633" and place.bounds == (500.0, 30.0, 620.0, 90.0)
     with pytest.raises(playground.DataError, match="1 of 20 texels have no data"):  # the 8 is a gap
         any_engine.read(given(sketch, labelled), "height")
@@ -193,7 +193,7 @@ def test_degrees_become_metres(any_engine, sketch):
     places = {"lat": 36.0 + step * np.arange(4), "lon": -84.0 + step * np.arange(5)}
     labelled = Labelled(HEIGHTS, ("lat", "lon"), places, "degrees_east")
     any_engine.read(given(sketch, labelled), "height")
-    east, north = any_engine.internal.plan.terrain.extent
+    east, north = any_engine.record.plan.terrain.extent
     # A second of arc on WGS 84 at 36 degrees: 30.82 m to the north; to the east cos(36°) of 30.99 m.
     assert (east / 4, north / 3) == pytest.approx((25.05, 30.82), abs=0.05)
 
@@ -335,7 +335,7 @@ def test_an_array_on_an_input_is_a_value_like_any_other(any_engine, adding):
 def test_an_array_of_another_size_keeps_its_own(any_engine, adding):
     larger = adding.with_inputs({"b.first": np.ones((7, 9))})
     any_engine.read(larger, "b")
-    assert any_engine.internal.plan.step("b_first_array").size == (9, 7)
+    assert any_engine.record.plan.step("b_first_array").size == (9, 7)
 
 
 def test_an_input_that_is_not_there_and_what_is_no_texture_are_refused(adding, tmp_path):

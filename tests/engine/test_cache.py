@@ -14,7 +14,7 @@ from ..loading import load
 
 
 def held(engine: Engine) -> int:
-    return sum(cached.bytes for cached in engine.internal.cache._cached.values())
+    return sum(cached.bytes for cached in engine.cache._cached.values())
 
 
 @pytest.mark.slow
@@ -24,13 +24,13 @@ def test_bytes_are_those_of_what_is_cached(ctx):
         for hour in range(3):
             moved = sketch.with_values({"light.sun": (100.0 + hour, 20.0)})
             engine.render(moved, size=(160, 90))  # mipmaps are made after a texture is put away
-            assert engine.internal.cache.bytes == held(engine)
+            assert engine.cache.bytes == held(engine)
             for iteration in (3, 5, 2):
                 engine.read("diamond_square", "height", steps={"height": iteration})
-                assert engine.internal.cache.bytes == held(engine)
-        assert 0 < engine.internal.cache.bytes <= engine.internal.cache.limit
-        engine.internal.cache.clear()
-        assert engine.internal.cache.bytes == held(engine) == 0
+                assert engine.cache.bytes == held(engine)
+        assert 0 < engine.cache.bytes <= engine.cache.limit
+        engine.cache.clear()
+        assert engine.cache.bytes == held(engine) == 0
 
 
 @pytest.mark.slow
@@ -40,9 +40,9 @@ def test_small_results_are_bounded_in_number_too(ctx, monkeypatch):
     with Engine(ctx) as engine:
         for seed in range(5):
             engine.render(sketch.with_values({"height.seed": seed}), size=(16, 9))
-            assert len(engine.internal.cache) <= 24
+            assert len(engine.cache) <= 24
         engine.render(sketch.with_values({"height.seed": 4}), size=(16, 9))
-        assert engine.internal.ran == [], "the newest are cached"
+        assert engine.record.ran == [], "the newest are cached"
 
 
 @pytest.mark.slow
@@ -52,13 +52,13 @@ def test_of_a_pass_that_changes_with_every_picture_few_versions_stay_and_texture
         made = []
         for number in range(20):
             engine.render(sketch.with_values({"light.sun": (10.0 * number, 30.0)}), size=(16, 9))
-            made.append(engine.internal.pool.made)
+            made.append(engine.runner.pool.made)
         assert made[-1] == made[cache.VERSIONS], "no texture is made for what is dragged on"
         engine.render(sketch.with_values({"light.sun": (170.0, 30.0)}), size=(16, 9))
-        assert "height" not in engine.internal.ran and not [p for p in engine.internal.ran if "light" in p]
+        assert "height" not in engine.record.ran and not [p for p in engine.record.ran if "light" in p]
         engine.render(sketch.with_values({"light.sun": (0.0, 30.0)}), size=(16, 9))
-        assert [path for path in engine.internal.ran if "light" in path], "so long ago is forgotten"
-        assert "height" not in engine.internal.ran, "what has stayed is one version"
+        assert [path for path in engine.record.ran if "light" in path], "so long ago is forgotten"
+        assert "height" not in engine.record.ran, "what has stayed is one version"
 
 
 def test_versions_that_a_frame_uses_stay(ctx):

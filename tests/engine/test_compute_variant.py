@@ -85,7 +85,7 @@ def test_it_runs_where_there_is_compute_and_agrees(ctx, sums, ran, driver):
             np.testing.assert_allclose(found, truth(scale), rtol=1e-6)
         assert ("sums.comp" in ran) == (driver != "fragment")
         assert ("sums.glsl" in ran) == (driver == "fragment")
-        assert engine.internal.runs["sums"] == 2
+        assert engine.runs["sums"] == 2
 
 
 def test_its_iterations_are_shown_by_the_kernel(any_engine, sums, ran):
@@ -167,10 +167,10 @@ def test_one_next_to_a_technique_replaces_all_of_it(ctx, folder):
     with Engine(ctx, driver="fragment") as slow, Engine(ctx) as fast:
         np.testing.assert_array_equal(slow.read(sketch, "t"), fast.read(sketch, "t"))
         assert slow.read(sketch, "t").max() == 2 * 3 * 7
-        assert set(slow.internal.runs) == {"values", "t.doubled", "t.add"}
-        assert set(fast.internal.runs) == {"values", "t"}
+        assert set(slow.runs) == {"values", "t.doubled", "t.add"}
+        assert set(fast.runs) == {"values", "t"}
         for _ in range(3):
-            fast.internal.cache.clear()
+            fast.cache.clear()
             np.testing.assert_array_equal(
                 slow.read(sketch, "t"), fast.read(sketch, "t"), "nothing is left over"
             )
@@ -220,7 +220,7 @@ def test_a_spare_buffer_begins_as_zeros_again_unless_it_is_overwritten(any_engin
         sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = 19")
         assert (any_engine.read(sketch, "a") == 1.0).all()
         assert (any_engine.read(sketch.with_values({"a.again": 1.0}), "a") == second).all()
-        any_engine.internal.runner.compute_variants.release()
+        any_engine.runner.compute_variants.release()
 
 
 def test_a_spare_buffer_serves_what_needs_a_little_less(any_engine, folder):
@@ -230,7 +230,7 @@ def test_a_spare_buffer_serves_what_needs_a_little_less(any_engine, folder):
     folder.write("fill.glsl", PLAIN_FILL)
     text = FILL.replace("OPTION", "").replace("500", "size.x * size.y")
     folder.write("fill.comp", text.replace("+= 1.0", "+= float(work.length())"))
-    spare = any_engine.internal.runner.compute_variants._spare
+    spare = any_engine.runner.compute_variants._spare
     found = []
     for side in (19, 18, 12):
         sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {side}")
@@ -249,8 +249,8 @@ def test_of_spare_buffers_over_the_bound_the_largest_stays_while_it_is_used(any_
     folder.write(
         "fill.comp", text.replace("void main() {", f"{again}void main() {{ if (again > 99.0) return;")
     )
-    monkeypatch.setattr(any_engine.internal.pool, "limit", 0)
-    spare = any_engine.internal.runner.compute_variants._spare
+    monkeypatch.setattr(any_engine.runner.pool, "limit", 0)
+    spare = any_engine.runner.compute_variants._spare
 
     def sizes_after(*sides):
         for number, side in enumerate(sides):
@@ -331,11 +331,11 @@ def test_stages_say_what_each_iteration_does(any_engine, folder):
     folder.write("fill.glsl", PLAIN_FILL)
     folder.write("fill.comp", STAGES)
     sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = 19")
-    before = any_engine.internal.runner.programs.compiled
+    before = any_engine.runner.programs.compiled
     for _ in range(2):
         assert (any_engine.read(sketch, "a") == 4 * 294).all()
-        any_engine.internal.cache.clear()
-    made = any_engine.internal.runner.programs.compiled - before
+        any_engine.cache.clear()
+    made = any_engine.runner.programs.compiled - before
     assert made == (3 if any_engine.info.software else 1), "one for each stage, where the processor draws"
 
 
@@ -427,7 +427,7 @@ def test_buffers_are_read_by_functions(any_engine, folder, size, fits, monkeypat
     """By textures on a software renderer, where those may be so long; what a step has written is there."""
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
-    software = any_engine.internal.runner.software
+    software = any_engine.runner.software
     if software is not None and not fits:
         monkeypatch.setattr(software, "max_texels", 16)
     folder.write("fill.glsl", PLAIN_FILL)
@@ -437,7 +437,7 @@ def test_buffers_are_read_by_functions(any_engine, folder, size, fits, monkeypat
     wanted = (0.25 + at + at // 2 * np.where(at % 2, 200, 100)).reshape(size[::-1])
     for _ in range(2):  # the second time buffers are used again
         np.testing.assert_array_equal(any_engine.read(sketch, "a"), wanted)
-        any_engine.internal.cache.clear()
+        any_engine.cache.clear()
     if software is not None:
         assert bool(software._textures) == fits
         software.release()

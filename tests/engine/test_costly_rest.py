@@ -59,9 +59,9 @@ def test_a_software_renderer_draws_each_texel_once(any_engine: Engine, folder: F
         sketch, query = folder.one(KERNEL.replace("REPEAT", ""), size=TEXELS), engine.ctx.query(samples=True)
         with query:
             engine.texture(sketch, "a:found")
-        assert query.samples == texels and engine.internal.runs["a"] == 1
+        assert query.samples == texels and engine.runs["a"] == 1
         monkeypatch.setattr(engine.ctx, "enable", lambda flags: None)
-        engine.internal.cache.clear()
+        engine.cache.clear()
         with query:
             engine.texture(sketch, "a:found")
         assert query.samples > texels, "the query sees it"

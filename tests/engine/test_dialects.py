@@ -47,7 +47,7 @@ def test_each_is_drawn_and_at_a_time_it_is_always_the_same_picture(any_engine, c
     path = folder.write(f"{name}.frag", TEXTS[name])
     first = drawn(any_engine, path, 1.0)
     assert colours(first) > 1
-    any_engine.internal.cache.clear()
+    any_engine.cache.clear()
     drawn(any_engine, path, 2.0)
     np.testing.assert_array_equal(drawn(any_engine, path, 1.0), first)
     with Engine(ctx) as fresh:
@@ -118,7 +118,7 @@ def test_what_shadertoy_gives(any_engine, folder, expression, expected):
 
 
 def test_the_mouse_of_each_dialect(any_engine, folder):
-    any_engine.internal.runner.hover, any_engine.internal.runner.drag = (16.0, 9.0), (8.0, 4.0, -2.0, -1.0)
+    any_engine.runner.hover, any_engine.runner.drag = (16.0, 9.0), (8.0, 4.0, -2.0, -1.0)
     toy = drawn(any_engine, folder.write("t.frag", TOY.format("vec4(iMouse.xy, -iMouse.zw) / 16.0")))
     np.testing.assert_allclose(toy[0, 0], [128, 64, 32, 255], atol=1)
     hover = MAIN.format("uniform vec3 u_mouse;", "vec4(u_mouse.xy / 32.0, 0.0, 1.0)")
@@ -339,7 +339,7 @@ def test_a_made_up_sound_stands_in_for_one_and_is_named(any_engine, folder):
     found = [any_engine.render(sketch, size=(64, 4), time=t).array[0, :, 0].astype(int) for t in (1.1, 1.3)]
     assert found[0].max() > 60 and found[0][-4:].max() < 60, "tones in the west, fewer in the east"
     assert not np.array_equal(*found)
-    plan = any_engine.internal.plan_for(sketch, (64, 4))
+    plan = any_engine.plan(sketch, (64, 4))
     (warning,) = source_warnings(plan)
     assert "nothing feeds texFFT, texFFTSmoothed: a made-up sound stands in" in warning.message
 
@@ -351,7 +351,7 @@ def test_kodelife_s_three_bands_go_by_time_and_are_named(any_engine, folder):
     found = {tuple(picture[0, 0, :3].tolist()) for picture in pictures}
     assert len(found) == 3 and all(min(one) > 0 for one in found)
     assert traits_of(sketch).moves
-    (warning,) = source_warnings(any_engine.internal.plan_for(sketch, (2, 2)))
+    (warning,) = source_warnings(any_engine.plan(sketch, (2, 2)))
     assert "nothing feeds spectrum: a made-up sound stands in" in warning.message
 
 

@@ -55,7 +55,7 @@ def test_a_draw_fills_all_of_its_outputs(any_engine, pairs, samples, start):
     np.testing.assert_array_equal(more[:, :8], np.broadcast_to((-3.0, 1.5), (16, 8, 2)))
     np.testing.assert_array_equal(seen[:, 8:], 8.0 if start else 0.0)
     np.testing.assert_array_equal(more[:, 8:], 9.0 if start else 0.0)
-    assert any_engine.internal.runs["one"] == 1, "one draw gives both"
+    assert any_engine.runs["one"] == 1, "one draw gives both"
 
 
 @pytest.mark.parametrize("samples", [1, 4])
@@ -166,17 +166,15 @@ def test_another_count_draws_again_and_the_same_does_not(any_engine, dots):
         found = first_row(any_engine, changed)
         np.testing.assert_array_equal(found, [*range(1, many + 1), *[0] * (16 - many)])
         any_engine.texture(changed, "dots")
-        assert any_engine.internal.ran == []
+        assert any_engine.record.ran == []
 
 
 def test_a_count_is_read_once_from_the_graphics_card(any_engine, dots, monkeypatch):
     sketch = dots("list.x")
     first_row(any_engine, sketch)
-    monkeypatch.setattr(
-        type(any_engine.internal.runner.draws._texels), "_read", lambda *a: pytest.fail("read again")
-    )
+    monkeypatch.setattr(type(any_engine.runner.draws._texels), "_read", lambda *a: pytest.fail("read again"))
     any_engine.texture(replace(sketch, camera=replace(sketch.camera, azimuth=3.0)), "dots")
-    assert any_engine.internal.record.triangles == 0
+    assert any_engine.record.triangles == 0
 
 
 @pytest.mark.parametrize(

@@ -108,7 +108,7 @@ def test_it_starts_from_an_earlier_draw_with_its_depth(any_engine, plates, sampl
     assert found[8, 12, 0] == 1.0
     one = any_engine.read(sketch, "one")
     assert one[8, 4, 2] == 0.0, "the earlier one is left alone"
-    assert any_engine.internal.ran == []
+    assert any_engine.record.ran == []
 
 
 def test_an_earlier_draw_hands_on_each_sample(any_engine, plates):
@@ -174,14 +174,14 @@ def test_a_draw_on_top_does_not_depend_on_what_was_drawn_before_it(ctx, plates):
     with Engine(ctx) as engine, Engine(ctx) as fresh:
         engine.texture(below, "one")
         np.testing.assert_array_equal(engine.read(both, "two"), fresh.read(both, "two"))
-        assert engine.internal.runs["one"] == 2
+        assert engine.runs["one"] == 2
 
 
 def test_the_number_of_samples_makes_draws_stale_and_nothing_else(any_engine, plates):
     sketch = plates(("one", "", {}, "back"), samples=1)
     any_engine.texture(sketch, "one")
     any_engine.texture(replace(sketch, samples=4), "one")
-    assert any_engine.internal.ran == ["one"]
+    assert any_engine.record.ran == ["one"]
 
 
 def test_a_draw_that_draws_nothing_hands_on_what_it_starts_from(any_engine, plates):
@@ -192,7 +192,7 @@ def test_a_draw_that_draws_nothing_hands_on_what_it_starts_from(any_engine, plat
         samples=4,
     )
     found = any_engine.read(sketch, "three")
-    assert "two" not in any_engine.internal.ran
+    assert "two" not in any_engine.record.ran
     assert found[3, 3, 0] == 1.0, "hidden by the first draw's depth"
     np.testing.assert_array_equal(any_engine.read(sketch, "two"), any_engine.read(sketch, "one"))
 
@@ -208,7 +208,7 @@ def test_surfaces_and_vertex_arrays_are_used_again(any_engine, plates, monkeypat
         )
     for i in range(5):
         any_engine.texture(sketch.with_values({"one.right": i / 10}), "one")
-        assert any_engine.internal.ran == ["one"]
+        assert any_engine.record.ran == ["one"]
     assert made == []
 
 
@@ -331,7 +331,7 @@ def test_triangles_take_their_places_from_a_texture(any_engine, stripes):
         found = any_engine.read(sketch.with_values({"a.stripes": number}), "a")[:, 1, 0]
         expected = [16 - row if row >= 16 - 2 * number else 0 for row in range(16)]
         np.testing.assert_array_equal(found, expected)
-        assert any_engine.internal.ran[-1:] == ["a"]
+        assert any_engine.record.ran[-1:] == ["a"]
 
 
 def test_a_count_that_is_wrong_has_a_sentence(any_engine, stripes, folder):
@@ -353,7 +353,7 @@ def test_a_draw_may_keep_to_one_sample(any_engine, plates):
     found = any_engine.read(sketch, "one")
     assert np.all(found % 1 == 0)
     np.testing.assert_array_equal(any_engine.read(replace(sketch, samples=1), "one"), found)
-    assert any_engine.internal.ran == [], "the view's samples are nothing to it"
+    assert any_engine.record.ran == [], "the view's samples are nothing to it"
 
 
 @pytest.mark.parametrize(("first", "second"), [(", samples = 1", ""), ("", ", samples = 1")])
@@ -378,9 +378,9 @@ def test_a_mesh_as_large_as_it_gets_is_not_cached_for_ever(any_engine, folder):
     sketch = folder.sketch('[[pass]]\nname="a"\nuse="./g"\n')
     for n in range(2, 40):
         any_engine.texture(sketch.with_values({"a.grid": n}), "a")
-    draws = any_engine.internal.runner.draws
+    draws = any_engine.runner.draws
     assert len(draws._meshes) <= 8
-    assert sum(len(p.arrays) for p in any_engine.internal.runner.programs._by_text.values()) <= 8 + 2
+    assert sum(len(p.arrays) for p in any_engine.runner.programs._by_text.values()) <= 8 + 2
 
 
 OVER = """#pragma draw(mesh = "sheet", output = "frame:rgba32f", over = "below")

@@ -196,13 +196,13 @@ def test_an_engine_says_which_drivers_there_are(ctx):
 def test_an_opengl_error_names_the_pass(any_engine, folder, monkeypatch):
     """An error that the driver reports when something new was made names the pass."""
     sketch = folder.one(GOOD)
-    run = any_engine.internal.runner.run
+    run = any_engine.runner.run
 
     def faulty(step, *arguments, **named):
         result = run(step, *arguments, **named)
         any_engine.ctx.enable_direct(0x1234)
         return result
 
-    monkeypatch.setattr(any_engine.internal.runner, "run", faulty)
+    monkeypatch.setattr(any_engine.runner, "run", faulty)
     with pytest.raises(ContextError, match="pass 'a': OpenGL reports GL_INVALID_ENUM"):
         any_engine.texture(sketch, "a")

@@ -86,7 +86,7 @@ def slopes(scale=1.0):
 
 
 def ran_fast(engine: Engine) -> bool:
-    return any(step.kernel.kind == "compute" or ".fast." in step.path for step in engine.internal.plan.walk())
+    return any(step.kernel.kind == "compute" or ".fast." in step.path for step in engine.record.plan.walk())
 
 
 def test_a_verified_variant_runs_and_says_nothing(drawing, hill):
@@ -273,7 +273,7 @@ def test_an_inner_pass_counts_for_a_technique_s_variant(drawing, hill, kind):
     )
     trust(hill.path)
     engine.read(hill.sketch(NESTED), "h")
-    assert ran_fast(engine) and "h.hill" not in engine.internal.runs
+    assert ran_fast(engine) and "h.hill" not in engine.runs
     hill.write("rise.glsl", RISE.replace("0.25", "0.5"))
     np.testing.assert_allclose(engine.read(hill.sketch(NESTED), "h"), slopes(2.0))
     assert len(sentences) == 2, "neither the technique's nor its pass's runs"
@@ -305,10 +305,10 @@ def test_which_form_ran_is_in_keys_and_hashes(drawing, hill):
     assert len({engine.fingerprint(one) for one in forms}) == 2
     for one in forms:
         engine.render(one, size=(32, 32))
-        assert engine.internal.stale(one, size=(32, 32)) == []
+        assert engine.stale(one, size=(32, 32)) == []
     engine.render(sketch, size=(32, 32))
-    assert engine.internal.stale(sketch.plainly(), size=(32, 32)) == []
-    assert not any(path.startswith("h") for path in engine.internal.ran), "both stay in memory"
+    assert engine.stale(sketch.plainly(), size=(32, 32)) == []
+    assert not any(path.startswith("h") for path in engine.record.ran), "both stay in memory"
 
 
 def test_only_what_cannot_run_here_is_reported(ctx, hill, kind):
@@ -329,9 +329,9 @@ def test_the_passes_of_a_variant_are_no_paths_of_the_sketch(drawing, hill, kind)
     engine, _ = drawing
     sketch = hill.sketch(BODY)
     engine.read(sketch, "h")
-    assert engine.internal.plan.flat.outputs.keys() == {"h", "view"}
+    assert engine.record.plan.flat.outputs.keys() == {"h", "view"}
     if kind == "passes":
-        assert {"h.fast.part", "h.fast.height"} <= set(engine.internal.ran)
+        assert {"h.fast.part", "h.fast.height"} <= set(engine.record.ran)
         with pytest.raises(SketchError, match=r"no pass 'h\.fast\.part'"):
             engine.read(sketch, "h.fast.part")
     with pytest.raises(PlaygroundError, match=r"no parameter 'h\.fast\.part\.scale'"):
@@ -348,7 +348,7 @@ def test_the_fastest_goes_first(ctx, folder):
     for driver in ("auto", "fragment"):
         with Engine(ctx, driver=driver) as engine:
             engine.read(folder.sketch(BODY), "h")
-            runs[driver] = engine.internal.ran
+            runs[driver] = engine.record.ran
     assert runs["fragment"] == ["h.fast.part", "h.fast.height"]
     if ctx.version_code >= 430:
         assert runs["auto"] == ["h"]

@@ -183,7 +183,7 @@ def test_a_pass_whose_texels_are_as_they_were_does_not_run_again(
             changed = {f"row.{name}" if name != "gain" else "a.gain": v for name, v in values.items()}
             found = engine.read(sketch.with_values(changed), "a")
             assert (found == found[0, 0]).all()
-            return float(found[0, 0]), "a" in engine.internal.record.ran
+            return float(found[0, 0]), "a" in engine.record.ran
 
         assert look(day=7) == (21, True)
         assert look(day=7, hour=2) == (21, not software)

@@ -98,17 +98,17 @@ def test_a_frame_is_that_of_a_twin_stepped_from_the_first(any_engine, sketch, ti
 
 def test_what_reads_neither_time_nor_what_is_fed_back_runs_once(any_engine, sketch):
     any_engine.draw(sketch, size=(8, 6), time=0.5)
-    assert any_engine.internal.runs == {
+    assert any_engine.runs == {
         "view.loop.other": 31,
         "view.loop.state": 31,
         "view.loop.still": 1,
         "view.loop.show": 31,
     }
     any_engine.draw(sketch, size=(8, 6), time=0.75)
-    assert any_engine.internal.runs["view.loop.state"] == 46, "frames that are cached are not run again"
-    assert any_engine.internal.runs["view.loop.still"] == 1
+    assert any_engine.runs["view.loop.state"] == 46, "frames that are cached are not run again"
+    assert any_engine.runs["view.loop.still"] == 1
     any_engine.draw(sketch, size=(8, 6), time=0.755)
-    assert any_engine.internal.ran == [], "the same frame"
+    assert any_engine.record.ran == [], "the same frame"
 
 
 @pytest.mark.slow
@@ -145,17 +145,17 @@ def test_another_tools_shader_reads_zeros_of_its_own_size_before_the_first_frame
 
 def test_the_mouse_enters_at_its_frame_and_makes_no_frame_before_stale(any_engine, drawing):
     any_engine.read(drawing, "view.loop", size=(4, 4), time=4 / 60)
-    any_engine.internal.runner.drag = (2.0, 0.0, 0.0, 0.0)
+    any_engine.runner.drag = (2.0, 0.0, 0.0, 0.0)
     any_engine.read(drawing, "view.loop", size=(4, 4), time=4 / 60)
-    assert any_engine.internal.ran == []
+    assert any_engine.record.ran == []
     found = any_engine.read(drawing, "view.loop", size=(4, 4), time=7 / 60)
-    assert any_engine.internal.ran == ["view.loop.view"] * 3
+    assert any_engine.record.ran == ["view.loop.view"] * 3
     np.testing.assert_array_equal(np.round(255 * found[0, 0]), [6, 8, 47, 255])
 
 
 def test_all_that_the_window_changes_from_frame_to_frame_belongs_to_a_frame(any_engine, drawing):
     any_engine.draw(drawing, size=(4, 4))
-    runner, step = any_engine.internal.runner, any_engine.internal.plan.step("view.loop.view")
+    runner, step = any_engine.runner, any_engine.record.plan.step("view.loop.view")
     before = runner._usual(step, 3)
     runner.mouse, runner.hover, runner.drag = (1.0, 2.0, 3.0, 4.0), (5.0, 6.0), (7.0, 8.0, 9.0, 10.0)
     runner.delta, runner.date = 0.5, (2026.0, 1.0, 2.0, 3.0)
@@ -179,7 +179,7 @@ def test_a_kernel_of_ones_own_gets_the_frames_time_and_its_fallback_as_in_any_lo
     for last in (0, 1, 12, 6, 18):
         expected = sum(n / 60 + (100 if n else 0) for n in range(last + 1))
         np.testing.assert_allclose(engine.read(sketch, "a", time=last / 60), expected, rtol=1e-6)
-    assert engine.internal.runs["a"] < 13 + 13 + 18, "it went on"
+    assert engine.runs["a"] < 13 + 13 + 18, "it went on"
 
 
 def test_a_kernel_that_repeats_by_frames_itself_gets_their_times_and_goes_on(engine, folder):
@@ -190,7 +190,7 @@ def test_a_kernel_that_repeats_by_frames_itself_gets_their_times_and_goes_on(eng
     for last in (0, 12, 30):
         expected = sum(n / 60 for n in range(last + 1))
         np.testing.assert_allclose(engine.read(sketch, "a", time=last / 60), expected, rtol=1e-5)
-    assert engine.internal.texels == 18 * 17 * 17, "18 more frames"
+    assert engine.record.texels == 18 * 17 * 17, "18 more frames"
 
 
 def test_an_inner_loop_and_what_is_around_it_have_the_time_of_the_frame(engine, folder):
@@ -213,7 +213,7 @@ def test_an_inner_loop_and_what_is_around_it_have_the_time_of_the_frame(engine, 
         total += n / 60 * (1 + 2 + 3) + 300
     np.testing.assert_allclose(engine.read(sketch, "a:sum", time=0.1), total, rtol=1e-6)
     np.testing.assert_allclose(engine.read(sketch, "a:now", time=0.1), 0.1, rtol=1e-6)
-    assert engine.internal.runs == {"a.sum": 21, "a.now": 7}
+    assert engine.runs == {"a.sum": 21, "a.now": 7}
 
 
 def test_a_sketch_that_counts_frames_is_known_to_move(sketch):

@@ -90,7 +90,7 @@ def test_each_frame_reads_what_was_shown_then(any_engine, sketch, time):
 
 def test_a_later_moment_runs_only_the_frames_between(any_engine, sketch):
     any_engine.draw(sketch, size=(8, 8), time=0.5)
-    assert {name: any_engine.internal.runs[name] for name in ("film", "red", "second", "sums", "still")} == {
+    assert {name: any_engine.runs[name] for name in ("film", "red", "second", "sums", "still")} == {
         "film": 31,
         "red": 31,
         "second": 31,
@@ -98,7 +98,7 @@ def test_a_later_moment_runs_only_the_frames_between(any_engine, sketch):
         "still": 1,
     }
     any_engine.draw(sketch, size=(8, 8), time=0.6)
-    assert any_engine.internal.runs["sums"] == 37 and any_engine.internal.runs["still"] == 1
+    assert any_engine.runs["sums"] == 37 and any_engine.runs["still"] == 1
 
 
 def test_the_picture_is_the_same_from_cold_and_from_warm(ctx, sketch):

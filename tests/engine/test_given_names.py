@@ -39,7 +39,7 @@ void main() {
 def each_engine(request, any_engine):
     """Give an engine that compiles in what is wired, as where the processor draws, and one that does not."""
     software = Software(any_engine.ctx) if request.param == "compiled in" else None
-    any_engine.internal.runner.kernels.software = software
+    any_engine.runner.kernels.software = software
     return any_engine
 
 

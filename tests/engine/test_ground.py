@@ -55,15 +55,15 @@ UNDER = Camera(azimuth=200, elevation=5, distance=300, target=(450, 800, 60))
 
 
 def test_an_eye_under_the_terrain_is_raised_just_over_it(any_engine, sketch):
-    x, y, z = any_engine.internal.plan_for(sketch.with_camera(UNDER), (64, 36)).eye.position
+    x, y, z = any_engine.plan(sketch.with_camera(UNDER), (64, 36)).eye.position
     assert z < ground(x, y) - 50
     any_engine.render(sketch.with_camera(UNDER), size=(64, 36))
-    eye = any_engine.internal.plan.eye
+    eye = any_engine.record.plan.eye
     assert eye.position[:2] == pytest.approx((x, y), abs=0.01)
     assert eye.position[2] == pytest.approx(ground(x, y) + 0.002 * 300, abs=0.05)
     assert eye.target == pytest.approx(UNDER.target)
-    assert any_engine.internal.eye_height.raised_by == pytest.approx(eye.position[2] - z, abs=0.01)
-    assert f"{any_engine.internal.eye_height.raised_by:.0f} m" in any_engine.internal.eye_height.message
+    assert any_engine.eye_height.raised_by == pytest.approx(eye.position[2] - z, abs=0.01)
+    assert f"{any_engine.eye_height.raised_by:.0f} m" in any_engine.eye_height.message
 
 
 @pytest.mark.parametrize(
@@ -76,20 +76,15 @@ def test_an_eye_under_the_terrain_is_raised_just_over_it(any_engine, sketch):
     ids=["above", "beside", "default"],
 )
 def test_any_other_eye_stays(any_engine, sketch, camera):
-    wanted = any_engine.internal.plan_for(sketch.with_camera(camera), (64, 36)).eye
+    wanted = any_engine.plan(sketch.with_camera(camera), (64, 36)).eye
     any_engine.render(sketch.with_camera(camera), size=(64, 36))
-    assert (
-        any_engine.internal.plan.eye.position == wanted.position
-        and any_engine.internal.eye_height.message == ""
-    )
+    assert any_engine.record.plan.eye.position == wanted.position and any_engine.eye_height.message == ""
 
 
 def test_an_eye_straight_over_its_target_may_be_raised_too(any_engine, sketch):
     down = Camera(azimuth=30, elevation=89, distance=20, target=(500, 750, 100))
     frame = any_engine.render(sketch.with_camera(down), size=(64, 36))
-    assert any_engine.internal.eye_height.raised_by > 200 and math.isfinite(
-        any_engine.internal.plan.eye.distance
-    )
+    assert any_engine.eye_height.raised_by > 200 and math.isfinite(any_engine.record.plan.eye.distance)
     assert frame.array[..., :3].max() > 0
 
 
@@ -101,7 +96,7 @@ def test_the_terrain_is_read_once_for_a_place_and_made_once(any_engine, sketch, 
     monkeypatch.setattr(module, "_height_at", lambda *given: reads.append(1) or real(*given))
     for _ in range(3):
         any_engine.render(sketch.with_camera(UNDER), size=(64, 36))
-    assert len(reads) == 1 and any_engine.internal.runs["height"] == 1
+    assert len(reads) == 1 and any_engine.runs["height"] == 1
     any_engine.render(sketch.with_values({"relief": 500.0}).with_camera(UNDER), size=(64, 36))
     assert len(reads) <= 2
 
@@ -110,26 +105,26 @@ def test_an_eye_that_stays_under_the_terrain_costs_one_drawing(any_engine, sketc
     """The first frame draws twice, and reports both; the next ones know how high the ground is."""
     seen = sketch.with_camera(UNDER)
     first = any_engine.render(seen, size=(64, 36)).array
-    (land,) = {path for path in any_engine.internal.ran if path in ("view.land", "view.fast.land")}
-    assert "height" in any_engine.internal.ran
-    before = any_engine.internal.runs[land]
+    (land,) = {path for path in any_engine.record.ran if path in ("view.land", "view.fast.land")}
+    assert "height" in any_engine.record.ran
+    before = any_engine.runs[land]
     other = any_engine.render(sketch.with_values({"view.exposure": 0.5}).with_camera(UNDER), size=(64, 36))
-    assert any_engine.internal.runs[land] - before <= 1 and any_engine.internal.eye_height.raised_by > 0
+    assert any_engine.runs[land] - before <= 1 and any_engine.eye_height.raised_by > 0
     assert (other.array != first).any()
 
 
 def test_a_terrain_that_becomes_wider_or_another_is_looked_at_again(any_engine, sketch):
     any_engine.render(sketch.with_camera(UNDER), size=(64, 36))
-    raised = any_engine.internal.eye_height.raised_by
-    x, y, _ = any_engine.internal.plan.eye.position
+    raised = any_engine.eye_height.raised_by
+    x, y, _ = any_engine.record.plan.eye.position
     any_engine.render(sketch.with_values({"extent": "1100,1650"}).with_camera(UNDER), size=(64, 36))
-    assert any_engine.internal.eye_height.raised_by == pytest.approx(
+    assert any_engine.eye_height.raised_by == pytest.approx(
         raised - ground(x, y) + ground(x / 1.1, y / 1.1), abs=0.1
     )
     text = HILL.replace("exp(", "0.95 * exp(")
     Path(sketch.folder, "hill.glsl").write_text(text)
     any_engine.render(load(Path(sketch.file)).with_camera(UNDER), size=(64, 36))
-    assert any_engine.internal.eye_height.raised_by == pytest.approx(raised - 0.05 * ground(x, y), abs=0.1)
+    assert any_engine.eye_height.raised_by == pytest.approx(raised - 0.05 * ground(x, y), abs=0.1)
 
 
 def test_a_window_of_a_large_picture_has_the_raised_eye_too(any_engine, sketch):
@@ -137,7 +132,7 @@ def test_a_window_of_a_large_picture_has_the_raised_eye_too(any_engine, sketch):
 
     seen = sketch.with_camera(UNDER)
     whole = any_engine.render(seen, size=(64, 36)).array
-    texture = any_engine.internal.draw_window(seen, Window((0, 0), (32, 36), (64, 36)))
+    texture = any_engine.draw_window(seen, Window((0, 0), (32, 36), (64, 36)))
     part = np.frombuffer(texture.read(), np.uint8).reshape(36, 32, 4)[::-1]
     assert (np.abs(part.astype(int) - whole[:, :32]) > 8).mean() < 0.02
 
@@ -177,5 +172,5 @@ def test_a_sketch_may_let_the_eye_be_under_the_ground(any_engine, sketch):
     Path(sketch.file).write_text(text)
     below = load(Path(sketch.file)).with_camera(UNDER)
     any_engine.render(below, size=(64, 36))
-    assert any_engine.internal.eye_height.raised_by == 0
-    assert any_engine.internal.plan.eye.position == any_engine.internal.plan_for(below, (64, 36)).eye.position
+    assert any_engine.eye_height.raised_by == 0
+    assert any_engine.record.plan.eye.position == any_engine.plan(below, (64, 36)).eye.position

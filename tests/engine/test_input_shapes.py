@@ -175,10 +175,10 @@ def test_copies_are_released(any_engine, folder, alive):
         read = Reader(any_engine, folder, "cube", "textureLod(data, at, 0.0)", seed=turn)
         read((1, 0, 0))
         if turn == 0:
-            any_engine.internal.cache.clear()
+            any_engine.cache.clear()
             gc.collect()
             before = dict(alive)
-    any_engine.internal.cache.clear()
+    any_engine.cache.clear()
     gc.collect()
     assert alive["TextureCube"] == 0 == before.get("TextureCube", 0)
     assert alive["Buffer"] == before["Buffer"] and alive["Framebuffer"] <= before["Framebuffer"] + 2

@@ -54,7 +54,7 @@ def test_each_is_drawn_and_at_a_time_it_is_always_the_same_picture(any_engine, c
     first = drawn(any_engine, path, 1.0)
     assert colours(first) > 1
     assert ctx.error == "GL_NO_ERROR"
-    any_engine.internal.cache.clear()
+    any_engine.cache.clear()
     drawn(any_engine, path, 2.0)
     np.testing.assert_array_equal(drawn(any_engine, path, 1.0), first)
     with Engine(ctx) as fresh:
@@ -152,9 +152,9 @@ def test_values_of_inputs(any_engine, isf):
     assert (found["level"].title, found["level"].line) == ("Level of red", 4)
     off = drawn(any_engine, path, **{"view.on": False, "view.level": 0.25, "view.mode": "nine"})
     np.testing.assert_allclose(off[0, 0, :3], 255 * 0.25 * 9 / 4, atol=1)
-    any_engine.internal.runner.pressed = frozenset({"view.go"})
+    any_engine.runner.pressed = frozenset({"view.go"})
     pressed = drawn(any_engine, path, **{"view.on": False, "view.level": 0.25})
-    any_engine.internal.runner.pressed = frozenset()
+    any_engine.runner.pressed = frozenset()
     np.testing.assert_allclose(pressed[0, 0, :3], 255 * 0.75, atol=1)
 
 
@@ -193,7 +193,7 @@ def test_places_in_pixels_without_a_range_are_kept(isf):
 
 
 def sizes(engine, path, size=(64, 36), **values):
-    plan = engine.internal.plan_for(load(path).with_values(values), size)
+    plan = engine.plan(load(path).with_values(values), size)
     return {
         step.path: (step.size, step.kernel.outputs[0].format)
         for step in plan.walk()

@@ -52,9 +52,9 @@ def after(engine: Engine, sketch, frame: int) -> np.ndarray:
 
 def steps_of(engine: Engine, sketch, frame: int) -> int:
     """Return how many frames a picture runs."""
-    before = engine.internal.runs["grow.state"]
+    before = engine.runs["grow.state"]
     engine.texture(sketch, "after", time=frame / 60)
-    return engine.internal.runs["grow.state"] - before
+    return engine.runs["grow.state"] - before
 
 
 @pytest.mark.slow
@@ -164,16 +164,16 @@ def test_a_state_that_is_larger_than_the_bound_is_not_kept():
 def test_the_cache_counts_and_drops_them(ctx, sketch):
     with Engine(ctx, cache_bytes=40 * 17 * 17 * 4) as engine:
         steps_of(engine, sketch, 200)
-        states = engine.internal.cache.states
+        states = engine.cache.states
         assert 2 <= len(states) <= 10, "a quarter of the bytes"
-        assert engine.internal.cache.bytes <= engine.internal.cache.limit
-        bare = engine.internal.cache.bytes - states.bytes
-        engine.internal.cache.limit = bare + 17 * 17 * 4
+        assert engine.cache.bytes <= engine.cache.limit
+        bare = engine.cache.bytes - states.bytes
+        engine.cache.limit = bare + 17 * 17 * 4
         assert steps_of(engine, sketch, 200) == 0
-        assert engine.internal.cache.bytes <= engine.internal.cache.limit
+        assert engine.cache.bytes <= engine.cache.limit
         assert len(states) <= 1
-        engine.internal.cache.clear()
-        assert engine.internal.cache.bytes == 0
+        engine.cache.clear()
+        assert engine.cache.bytes == 0
 
 
 def test_a_changed_value_starts_anew_and_the_former_ones_states_are_gone_when_forgotten(any_engine, sketch):
@@ -187,7 +187,7 @@ def test_a_changed_value_starts_anew_and_the_former_ones_states_are_gone_when_fo
 def test_a_frame_that_fails_after_going_back_leaves_nothing_half_done(any_engine, sketch, monkeypatch):
     truth = {frame: after(any_engine, sketch, frame) for frame in (30, 50)}
     steps_of(any_engine, sketch, 100)
-    run = any_engine.internal.runner.run
+    run = any_engine.runner.run
 
     def fails(step, *arguments, **named):
         if step.path == "grow.shown":
@@ -195,7 +195,7 @@ def test_a_frame_that_fails_after_going_back_leaves_nothing_half_done(any_engine
         return run(step, *arguments, **named)
 
     with monkeypatch.context() as broken:
-        broken.setattr(any_engine.internal.runner, "run", fails)
+        broken.setattr(any_engine.runner, "run", fails)
         with pytest.raises(RuntimeError, match="on purpose"):
             any_engine.texture(sketch, "after", time=50 / 60)
     for frame, expected in truth.items():
@@ -206,4 +206,4 @@ def test_a_film_goes_on_from_frame_to_frame(any_engine, sketch):
     for frame in range(0, 120, 2):
         any_engine.texture(sketch, "after", time=frame / 60)
         any_engine.forget_unused()
-    assert any_engine.internal.runs["grow.state"] == 119
+    assert any_engine.runs["grow.state"] == 119

@@ -43,7 +43,7 @@ def chain(folder):
 
 
 def once(engine: Engine) -> Engine:
-    engine.internal.keeps, engine.internal.looks_early = False, True
+    engine.options.keeps, engine.options.looks_early = False, True
     return engine
 
 
@@ -52,11 +52,11 @@ def test_the_picture_is_the_same_and_what_is_read_no_more_is_gone(ctx, chain):
         expected = usual.render(chain(), size=(40, 30))
         found = once(engine).render(chain(), size=(40, 30))
         np.testing.assert_array_equal(found.array, expected.array)
-        assert set(usual.internal.results) == {"first", "second", "third", "both", "last", "view"}
-        assert set(engine.internal.results) == {"view"}
-        assert engine.internal.cache.bytes == 40 * 30 * 4
+        assert set(usual.record.results) == {"first", "second", "third", "both", "last", "view"}
+        assert set(engine.record.results) == {"view"}
+        assert engine.cache.bytes == 40 * 30 * 4
         # A texture that was given back was written by a later pass: two hold what five passes gave.
-        assert engine.internal.pool.made < usual.internal.pool.made
+        assert engine.runner.pool.made < usual.runner.pool.made
 
 
 def test_passes_of_one_key_share_a_texture_until_the_last_of_them_is_read(ctx, folder):
@@ -92,18 +92,18 @@ def test_what_was_not_finite_in_a_texture_that_is_gone_is_told(ctx, chain):
     with Engine(ctx) as usual, Engine(ctx) as engine:
         usual.render(broken, size=(16, 16))
         once(engine).render(broken, size=(16, 16))
-        assert engine.internal.results.keys() == {"view"}
-        expected = [str(one) for one in usual.internal.not_finite_by_pass()]
-        assert [str(one) for one in engine.internal.not_finite_by_pass()] == expected
+        assert engine.record.results.keys() == {"view"}
+        expected = [str(one) for one in usual.not_finite_by_pass()]
+        assert [str(one) for one in engine.not_finite_by_pass()] == expected
         assert "pass 'second', output 'height'" in str(engine.not_finite())
 
 
 def test_a_texture_with_mipmaps_has_no_framebuffer_that_holds_its_first_texels(ctx, chain):
     with Engine(ctx) as engine:
         engine.render(chain(), size=(16, 16))
-        assert engine.internal.results["last"].mipmapped
-        assert engine.internal.results["last"]._framebuffer is None
-        assert engine.internal.results["both"]._framebuffer is not None
+        assert engine.record.results["last"].mipmapped
+        assert engine.record.results["last"]._framebuffer is None
+        assert engine.record.results["both"]._framebuffer is not None
 
 
 def test_terrain_under_the_eye_stays(ctx, folder):
@@ -113,7 +113,7 @@ def test_terrain_under_the_eye_stays(ctx, folder):
         "camera = { elevation = 1, distance = 0.3 }\n"
     )
     with Engine(ctx) as usual, Engine(ctx) as engine:
-        usual.internal.warnings.report = engine.internal.warnings.report = lambda _: None
+        usual.warnings.report = engine.warnings.report = lambda _: None
         expected = usual.render(sketch, size=(32, 18)).array
-        assert usual.internal.eye_height.raised_by > 0
+        assert usual.eye_height.raised_by > 0
         np.testing.assert_array_equal(once(engine).render(sketch, size=(32, 18)).array, expected)

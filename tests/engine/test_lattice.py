@@ -127,9 +127,9 @@ def test_the_picture_of_a_stopped_run_has_a_fingerprint_and_a_hash_of_its_own(
 ) -> None:
     sketch, steps = sketch_of(tmp_path, "diamond_square"), {"height.raw": 3}
     engine.render(sketch, size=(9, 9), steps=steps)
-    drawn = engine.internal.drawn()
+    drawn = engine.drawn()
     engine.render(sketch, size=(9, 9), steps=steps, interpolated=False)
-    assert engine.internal.drawn() != drawn
+    assert engine.drawn() != drawn
 
 
 @pytest.mark.parametrize(

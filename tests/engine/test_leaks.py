@@ -130,7 +130,7 @@ def test_a_hundred_changed_programs_are_bounded(ctx, folder, sketch, alive):
             if i in (75, 99):
                 seen.append(total(alive))
         assert seen[0] == seen[1], "old programs go"
-        assert len(engine.internal.runner.programs) <= 65
+        assert len(engine.runner.programs) <= 65
 
 
 @pytest.mark.slow
@@ -147,7 +147,7 @@ def test_changing_sizes_and_meshes_are_bounded(ctx, sketch, alive):
 def test_release_gives_all_back(ctx, sketch, alive, driver):
     before = total(alive)
     with small_engine(ctx, driver) as engine:
-        engine.internal.profiling = True
+        engine.options.profiling = True
         for i in range(3):
             engine.render(sketch.with_values({"height.bumps": i}), size=(64, 36))
         list(engine.steps(sketch, "height", size=(64, 36)))
@@ -178,13 +178,13 @@ first = one.render(sketch, size=(64, 36)).array
 two = playground.headless()
 other = [two.ctx.buffer(reserve=4) for _ in range(50)] + [two.ctx.texture((1, 1), 4) for _ in range(50)]
 for engine in (one, two, one):
-    engine.internal.cache.clear()
-    engine.internal.pool.clear()
+    engine.cache.clear()
+    engine.runner.pool.clear()
     assert np.array_equal(engine.render(sketch, size=(64, 36)).array, first)
-    assert engine.internal.ran
+    assert engine.record.ran
 two.release()
 assert isinstance(two.ctx.mglo, moderngl.InvalidObject), "its own context goes with it"
-one.internal.cache.clear()
+one.cache.clear()
 assert np.array_equal(one.render(sketch, size=(64, 36)).array, first)
 ctx = open_context()
 with Engine(ctx) as borrowed:

@@ -108,7 +108,7 @@ def test_stopped_early_it_leaves_the_smaller_texture(engine, levels, steps):
 def test_steps_yield_every_level_and_run_each_once(engine, levels):
     sketch = levels.sketch(LOOP, size="size = 33")
     assert [values.shape[0] for _, values in engine.steps(sketch, "a")] == [5, 5, 9, 17, 33]
-    assert engine.internal.runs["a"] == 4
+    assert engine.runs["a"] == 4
     before = next(iter(engine.steps(sketch, "a")))[1]
     y, x = np.round(np.mgrid[0:5, 0:5] * 8)
     assert before.shape == (5, 5) and (np.abs(before - 2.0 * (x - y)) <= 2.0 * 8).all()
@@ -187,7 +187,7 @@ def test_what_stays_runs_once_and_what_has_another_size_runs_in_each(engine, lev
         'feedback = { ground_before = "ground" }\n'
     )
     found = engine.read(sketch, "a")
-    assert engine.internal.runs == {"a.once": 1, "a.each": 3, "a.two": 3}
+    assert engine.runs == {"a.once": 1, "a.each": 3, "a.two": 3}
     assert found[0, 0] == 3 * 6 + 4 + 8 + 16
 
 
@@ -195,10 +195,10 @@ def test_only_what_is_stale_runs_again(engine, levels):
     sketch = levels.sketch(LOOP, size="size = 33")
     engine.texture(sketch, "a")
     engine.texture(sketch, "a")
-    assert engine.internal.ran == []
+    assert engine.record.ran == []
     changed = sketch.with_values({"a.rise": 2.0})
     found = engine.read(changed, "a").copy()
-    assert engine.internal.ran == ["a"] * 4
+    assert engine.record.ran == ["a"] * 4
     with Engine(engine.ctx, driver=engine.driver) as fresh:
         np.testing.assert_array_equal(found, fresh.read(changed, "a"))
 
@@ -207,7 +207,7 @@ def test_more_levels_begin_again_since_the_first_have_other_sizes(engine, levels
     engine.texture(levels.sketch(LOOP, size="size = 33"), "a")
     more = levels.sketch(LOOP.replace("repeat = 4", "repeat = 5"), size="size = 33")
     found = engine.read(more, "a")
-    assert engine.internal.ran == ["a"] * 5
+    assert engine.record.ran == ["a"] * 5
     hand = engine.read(levels.sketch(by_hand([3, 5, 9, 17, 33]), size="size = 33"), "level4")
     np.testing.assert_array_equal(found, hand)
 

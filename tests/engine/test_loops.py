@@ -117,7 +117,7 @@ def test_no_iteration_gives_what_the_first_would_read(engine, rain):
 
 def test_what_does_not_change_with_the_loop_runs_once(engine, rain):
     engine.texture(rain("6"), "after")
-    assert engine.internal.runs == {"start": 1, "rain.rough": 1, "rain.flow": 6, "rain.move": 6, "after": 1}
+    assert engine.runs == {"start": 1, "rain.rough": 1, "rain.flow": 6, "rain.move": 6, "after": 1}
 
 
 def test_a_cached_loop_runs_nothing(engine, rain):
@@ -125,18 +125,18 @@ def test_a_cached_loop_runs_nothing(engine, rain):
     engine.texture(sketch, "after")
     for ref in ("rain:water", "rain:silt", "rain.flow", "rain.rough", "after"):
         engine.texture(sketch, ref)
-        assert engine.internal.ran == []
+        assert engine.record.ran == []
 
 
 def test_more_iterations_go_on_from_those_that_are_cached(engine, rain):
     engine.texture(rain("3"), "rain:water")
-    assert engine.internal.runs["rain.move"] == 3
+    assert engine.runs["rain.move"] == 3
     found = engine.read(rain("5"), "rain:water")
-    assert engine.internal.runs["rain.move"] == 5
+    assert engine.runs["rain.move"] == 5
     np.testing.assert_allclose(found, expected(5)[0], rtol=1e-6)
     np.testing.assert_allclose(engine.read(rain("5"), "after"), expected(5)[0] * 0.5, rtol=1e-6)
     engine.texture(rain("2"), "rain:water")
-    assert engine.internal.runs["rain.move"] == 7, "fewer iterations begin again"
+    assert engine.runs["rain.move"] == 7, "fewer iterations begin again"
 
 
 @pytest.mark.parametrize("path", ["start.level", "rain.rough.grain", "rain.move.bias"])
@@ -144,13 +144,13 @@ def test_a_changed_value_begins_again(engine, rain, path):
     sketch = rain("3")
     engine.texture(sketch, "rain:water")
     engine.texture(sketch.with_values({path: 0.75}), "rain:water")
-    assert engine.internal.runs["rain.move"] == 6
+    assert engine.runs["rain.move"] == 6
 
 
 def test_what_reads_a_loop_is_stale_when_its_iterations_are(engine, rain):
     engine.texture(rain("3"), "after")
     engine.texture(rain("4"), "after")
-    assert engine.internal.runs["after"] == 2
+    assert engine.runs["after"] == 2
 
 
 def test_a_repeat_that_reads_time_goes_on_and_goes_back_to_an_earlier_state(engine, rain):
@@ -159,7 +159,7 @@ def test_a_repeat_that_reads_time_goes_on_and_goes_back_to_an_earlier_state(engi
     for time in (0.0, 1.0, 1.2, 4.0, 4.0, 1.0, 1.5):
         found = engine.read(sketch, "rain:water", time=time)
         np.testing.assert_allclose(found, expected(int(time * 2))[0], rtol=1e-6)
-        counts.append(engine.internal.ran.count("rain.move"))
+        counts.append(engine.record.ran.count("rain.move"))
     assert counts == [0, 2, 0, 6, 0, 1, 1]
 
 
@@ -169,14 +169,14 @@ def test_going_on_gives_the_same_bits_as_beginning_anew(ctx, engine, rain):
         gone_on = engine.read(sketch, "rain:water", time=time).copy()
     with Engine(ctx, driver=engine.driver) as fresh:
         np.testing.assert_array_equal(gone_on, fresh.read(sketch, "rain:water", time=9.0))
-        assert fresh.internal.runs["rain.move"] == 9
+        assert fresh.runs["rain.move"] == 9
 
 
 def test_steps_of_a_loop_run_each_iteration_once(engine, rain):
     sketch = rain("5")
     for iteration, values in engine.steps(sketch, "rain"):
         np.testing.assert_allclose(values, expected(iteration)[0], rtol=1e-6)
-    assert engine.internal.runs["rain.move"] == 5
+    assert engine.runs["rain.move"] == 5
 
 
 def test_the_iteration_is_known_inside(engine, folder):
@@ -218,7 +218,7 @@ def test_what_reads_the_iteration_runs_in_every_iteration_though_nothing_is_fed_
         '[[pass]]\nname = "a"\nuse = "./add_up"\nrepeat = 5\nfeedback = { sum_before = "sum" }\n'
     )
     assert engine.read(sketch, "a")[2, 2] == 0 + 1 + 4 + 9 + 16
-    assert engine.internal.runs["a.now"] == 5
+    assert engine.runs["a.now"] == 5
 
 
 def test_a_single_kernel_may_be_looped_as_well(engine, folder):
@@ -298,7 +298,7 @@ def test_nested_loops(engine, folder):
         np.testing.assert_allclose(engine.read(sketch, "o.round.still", time=time), y * 0.125, rtol=1e-6)
         np.testing.assert_allclose(engine.read(sketch, "o", time=time), v, rtol=1e-6)
     iterations = 5 + 1  # 2, then 3 more, then 1 anew
-    assert engine.internal.runs == {
+    assert engine.runs == {
         "o.round.still": 1,  # nothing changes it
         "o.round.slow": iterations,  # once in an iteration of the outer loop
         "o.round.go": 3 * iterations,
@@ -326,7 +326,7 @@ def test_a_loop_that_no_loop_around_it_changes_runs_once(engine, folder):
     for iteration in range(3):
         v = v * 0.5 + x + y * 0.125 + iteration
     np.testing.assert_allclose(engine.read(sketch, "o"), 4 * v, rtol=1e-6)
-    assert engine.internal.runs == {"o.round.still": 1, "o.round.slow": 1, "o.round.go": 3, "o.sum": 4}
+    assert engine.runs == {"o.round.still": 1, "o.round.slow": 1, "o.round.go": 3, "o.sum": 4}
 
 
 def test_what_changes_with_an_outer_loop_by_way_of_what_is_fed_back(engine, folder):
@@ -425,12 +425,12 @@ def test_five_hundred_iterations_need_no_more_memory_than_a_hundred(any_engine, 
     for time in range(MAX_STATES + 2):
         any_engine.texture(sketch, "rain:water", time=float(time))  # as many states are kept as may be
     any_engine.texture(sketch, "rain:water", time=100.0)
-    made, cached = any_engine.internal.pool.made, any_engine.internal.cache.bytes
+    made, cached = any_engine.runner.pool.made, any_engine.cache.bytes
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     any_engine.texture(sketch, "rain:water", time=500.0)
-    assert any_engine.internal.runs["rain.move"] == 500
-    assert any_engine.internal.pool.made == made, "every iteration finds its textures in the pool"
-    assert any_engine.internal.cache.bytes == cached
+    assert any_engine.runs["rain.move"] == 500
+    assert any_engine.runner.pool.made == made, "every iteration finds its textures in the pool"
+    assert any_engine.cache.bytes == cached
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 8 * 1024  # [KiB]
 
 
@@ -438,7 +438,7 @@ def test_five_hundred_iterations_need_no_more_memory_than_a_hundred(any_engine, 
 def test_an_iteration_that_fails_leaves_the_last_good_one(any_engine, rain, monkeypatch, good):
     sketch = rain("floor(time)")
     any_engine.texture(sketch, "rain:water", time=2.0)
-    write, moves = any_engine.internal.runner.kernels.write, []
+    write, moves = any_engine.runner.kernels.write, []
 
     def fails_once(program, driver, result, *more):
         if result.outputs[0].name == "moved":
@@ -447,12 +447,12 @@ def test_an_iteration_that_fails_leaves_the_last_good_one(any_engine, rain, monk
                 raise RuntimeError("on purpose")
         write(program, driver, result, *more)
 
-    monkeypatch.setattr(any_engine.internal.runner.kernels, "write", fails_once)
+    monkeypatch.setattr(any_engine.runner.kernels, "write", fails_once)
     with pytest.raises(RuntimeError, match="on purpose"):
         any_engine.texture(sketch, "rain:water", time=9.0)
     monkeypatch.undo()
     np.testing.assert_allclose(any_engine.read(sketch, "rain:water", time=9.0), expected(9)[0], rtol=1e-6)
-    assert any_engine.internal.ran.count("rain.move") == 7 - good
+    assert any_engine.record.ran.count("rain.move") == 7 - good
 
 
 @pytest.mark.parametrize("fails", [False, True])

@@ -34,7 +34,7 @@ def test_each_is_drawn_and_at_a_time_it_is_always_the_same_picture(any_engine, c
     path = folder.write(f"{name}.frag", MAIN_TEXTS[name])
     first = drawn(any_engine, path, 1.0)
     assert len(np.unique(first[..., :3].reshape(-1, 3), axis=0)) > 1
-    any_engine.internal.cache.clear()
+    any_engine.cache.clear()
     drawn(any_engine, path, 2.0)
     np.testing.assert_array_equal(drawn(any_engine, path, 1.0), first)
     with Engine(ctx) as fresh:

@@ -130,17 +130,17 @@ def test_the_picture_stays_the_last_frame_and_nothing_of_the_arrays_stays_cached
     engine.draw(sketch, size=(32, 24))
     hills = engine.read(sketch, "hills").copy()
     engine.draw(sketch, size=(32, 24))
-    record, runs, held = engine.internal.record, engine.internal.runs.copy(), len(engine.internal.cache)
+    record, runs, held = engine.record, engine.runs.copy(), len(engine.cache)
     brush = OnArrays(engine, slumps)
     for _ in range(3):
         brush.run({"height_before": hills}, **OPTIONS)
-    made, count = engine.internal.pool.made, len(engine.internal.cache)
+    made, count = engine.runner.pool.made, len(engine.cache)
     for _ in range(5):
         brush.run({"height_before": hills}, **OPTIONS)
-    assert engine.internal.pool.made == made and len(engine.internal.cache) == count == held
-    assert engine.internal.record is record and engine.internal.runs == runs
+    assert engine.runner.pool.made == made and len(engine.cache) == count == held
+    assert engine.record is record and engine.runs == runs
     engine.draw(sketch, size=(32, 24))
-    assert engine.internal.ran == []
+    assert engine.record.ran == []
 
 
 def test_a_source_that_a_window_waits_for_goes_on(engine, sketch, slumps):
@@ -154,17 +154,17 @@ def test_a_source_that_a_window_waits_for_goes_on(engine, sketch, slumps):
             ended.set()
         return {"height": np.ones((2, 2), np.float32)}
 
-    works = engine.internal.runner.works
+    works = engine.runner.works
     works.waits = False
     with pytest.raises(SourceUnfinished):
         works.made("height", "key", lambda: work)
-    engine.internal.patience = 0.1
+    engine.options.patience = 0.1
     try:
         OnArrays(engine, slumps).run({"height_before": np.zeros((5, 4), np.float32)}, **OPTIONS)
-        assert engine.internal.patience == 0.1
+        assert engine.options.patience == 0.1
     finally:
-        engine.internal.patience = None
-    assert engine.internal.runner.works is works and not works.waits
+        engine.options.patience = None
+    assert engine.runner.works is works and not works.waits
     assert not ended.wait(0.1) and works.at_work
     may_end.set()
     assert ended.wait(5.0)
@@ -178,7 +178,7 @@ def test_warm_it_neither_compiles_nor_plans_anew(any_engine, slumps, monkeypatch
     counts = []
     for number in range(4):
         brush.run({"height_before": hills + number}, values={"rate": 0.1 * number}, **OPTIONS)
-        counts.append((len(wholes), any_engine.internal.runner.programs.compiled))
+        counts.append((len(wholes), any_engine.runner.programs.compiled))
     assert counts[0] == counts[-1]
 
 

@@ -31,8 +31,8 @@ def picture(path: Path, width: int, height: int) -> None:
 
 def size_of(engine: Engine, folder: Path) -> tuple[int, int]:
     engine.draw(load(folder), size=(8, 8))
-    assert engine.internal.plan is not None
-    return engine.internal.plan.step("photo").size  # type: ignore[union-attr]
+    assert engine.record.plan is not None
+    return engine.record.plan.step("photo").size  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize(
@@ -57,11 +57,11 @@ def test_it_follows_the_file_and_the_value(tmp_path: Path, any_engine: Engine) -
     sketch = load(tmp_path)
     for file, expected in (("a.png", (24, 16)), ("b.png", (5, 7)), ("a.png", (24, 16))):
         any_engine.draw(sketch.with_values({"photo.image": file}), size=(8, 8))
-        assert any_engine.internal.plan is not None
-        assert any_engine.internal.plan.step("photo").size == expected  # type: ignore[union-attr]
+        assert any_engine.record.plan is not None
+        assert any_engine.record.plan.step("photo").size == expected  # type: ignore[union-attr]
     picture(tmp_path / "a.png", 9, 9)
     any_engine.draw(sketch, size=(8, 8))
-    assert any_engine.internal.plan.step("photo").size == (9, 9)  # type: ignore[union-attr]
+    assert any_engine.record.plan.step("photo").size == (9, 9)  # type: ignore[union-attr]
 
 
 def test_a_file_that_is_missing_or_no_picture_is_named(tmp_path: Path, any_engine: Engine) -> None:

@@ -73,17 +73,17 @@ def test_the_frame_number_fits_its_type(any_engine, folder, kind):
 def test_the_mouse_is_passed_on_and_a_still_one_makes_nothing_stale(any_engine, toy):
     any_engine.render(toy, size=(8, 8), time=1.0)
     any_engine.render(toy, size=(8, 8), time=1.0)
-    assert any_engine.internal.ran == []
-    any_engine.internal.runner.mouse = (100.0, 0.0, 0.0, 0.0)
+    assert any_engine.record.ran == []
+    any_engine.runner.mouse = (100.0, 0.0, 0.0, 0.0)
     assert any_engine.render(toy, size=(8, 8), time=1.0).array[0, 0, 2] == 255
-    assert any_engine.internal.ran == ["view"]
+    assert any_engine.record.ran == ["view"]
 
 
 def test_what_reads_no_time_is_not_drawn_again(any_engine, folder):
     path = folder.write("still.frag", "#version 330\nout vec4 c;\nvoid main() { c = vec4(1.0); }\n")
     any_engine.render(load(path), size=(8, 8), time=1.0)
     any_engine.render(load(path), size=(8, 8), time=2.0)
-    assert any_engine.internal.ran == []
+    assert any_engine.record.ran == []
 
 
 COMPUTE = """#version 430

@@ -55,10 +55,10 @@ def test_it_is_drawn_again_when_the_file_s_contents_change_and_only_then(any_eng
     any_engine.render(sketch, size=(8, 6))
     write_png(folder.path / "x.png", pixels)
     any_engine.render(sketch, size=(8, 6))
-    assert any_engine.internal.ran == []
+    assert any_engine.record.ran == []
     write_png(folder.path / "x.png", 255 - pixels | np.uint8([0, 0, 0, 255]))
     frame = any_engine.render(sketch, size=(8, 6))
-    assert any_engine.internal.ran == ["view"]
+    assert any_engine.record.ran == ["view"]
     np.testing.assert_array_equal(frame.array[..., :3], 255 - pixels[..., :3])
 
 

@@ -159,9 +159,9 @@ def test_what_is_used_is_weighed_twice_a_frame_at_most(ctx, monkeypatch):
         engine.render(sketch, size=SIZE)
         monkeypatch.setattr(Cache, "_weigh", counting)
         engine.render(sketch.with_values({"light.sun": (130.0, 20.0)}), size=SIZE)
-        passes = len(list(engine.internal.plan.walk()))
+        passes = len(list(engine.record.plan.walk()))
         # What ran is weighed as it is put away as well, once more where something stood under its key.
-        assert sum(weighed.values()) <= passes + 2 * len(engine.internal.ran)
+        assert sum(weighed.values()) <= passes + 2 * len(engine.record.ran)
         weighed.clear()
         engine.render(sketch.with_values({"light.sun": (130.0, 20.0)}), size=SIZE)
-        assert engine.internal.ran == [] and sum(weighed.values()) <= passes
+        assert engine.record.ran == [] and sum(weighed.values()) <= passes

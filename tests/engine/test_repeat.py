@@ -51,8 +51,8 @@ def test_previous_is_the_iteration_before_and_zero_on_the_first(engine, folder, 
     np.testing.assert_array_equal(
         engine.read(sketch, "a"), np.full((17, 17), counted(iterations), np.float32)
     )
-    assert engine.internal.texels == 17 * 17 * iterations
-    assert engine.internal.runs["a"] == 1
+    assert engine.record.texels == 17 * 17 * iterations
+    assert engine.runs["a"] == 1
 
 
 def test_no_iteration_at_all_gives_zeros(engine, folder):
@@ -73,7 +73,7 @@ def test_steps_go_on_from_iteration_to_iteration(engine, folder):
     texels = []
     for iteration, values in engine.steps(sketch, "a"):
         assert values[0, 0] == counted(iteration, whole=5)
-        texels.append(engine.internal.texels // (17 * 17))
+        texels.append(engine.record.texels // (17 * 17))
     assert texels == [1, 1, 1, 1, 1, 1], "each iteration is run once; the first is the empty texture"
 
 
@@ -187,7 +187,7 @@ def test_a_repeat_that_reads_time_goes_on_and_starts_again(engine, folder):
         for iteration in range(int(time)):
             fresh = fresh * 2.0 + iteration + 0.25
         assert value == fresh
-        texels.append(engine.internal.texels // 17**2)
+        texels.append(engine.record.texels // 17**2)
     assert texels == [1, 3, 0, 4, 2]
 
 
@@ -328,7 +328,7 @@ def test_keyframes_may_change_how_many_steps_there_are_to_stop_at(any_engine):
     frames = (Keyframe(0.0, values=tuple(names.items())), Keyframe(1.0, values=(("height.iterations", 4),)))
     moving = replace(sketch.with_values({"size": 33}), keyframes=frames)
     for seconds, runs in ((0.0, 8), (1.0, 4)):
-        plan = any_engine.internal.plan_for(moving, (16, 9), seconds, {"height.sum": 8})
+        plan = any_engine.plan(moving, (16, 9), seconds, {"height.sum": 8})
         assert max(step.repeat for step in plan.walk() if step.path.startswith("height.sum")) == runs
 
 
@@ -356,7 +356,7 @@ def test_more_iterations_go_on_from_those_that_are_cached(ctx, engine, folder):
     taken = []
     for count in (3, 10, 11, 4, 20):
         found = engine.read(sketch.with_values({"a.count": count}), "a:a").copy()
-        taken.append(engine.internal.texels // 17**2)
+        taken.append(engine.record.texels // 17**2)
         with Engine(ctx, driver=engine.driver) as fresh:
             np.testing.assert_array_equal(found, fresh.read(sketch.with_values({"a.count": count}), "a:a"))
     assert taken == [3, 7, 1, 4, 16]
@@ -366,14 +366,14 @@ def test_what_names_iterations_begins_again(engine, folder):
     sketch = folder.one(COUNT)
     for count in (3, 5):
         found = engine.read(sketch.with_values({"a.count": count}), "a")
-        assert found[2, 3] == counted(count) and engine.internal.texels == 17 * 17 * count
+        assert found[2, 3] == counted(count) and engine.record.texels == 17 * 17 * count
 
 
 def test_another_value_begins_again(engine, folder):
     sketch = folder.one(ADD)
     engine.read(sketch, "a:a")
     engine.read(sketch.with_values({"a.count": 5, "a.rate": 0.25}), "a:a")
-    assert engine.internal.texels == 17 * 17 * 5
+    assert engine.record.texels == 17 * 17 * 5
 
 
 @pytest.mark.parametrize("text", ["VISITS", "AT_ONCE"])
@@ -385,7 +385,7 @@ def test_visits_and_iterations_at_once_go_on_as_well(ctx, engine, folder, text):
     sketch, ref = folder.one(kernel), "a:a"
     engine.read(sketch.with_values({"a.count": 2}), ref)
     found = engine.read(sketch.with_values({"a.count": 5}), ref).copy()
-    assert engine.internal.texels == 17 * 17 * 3
+    assert engine.record.texels == 17 * 17 * 3
     with Engine(ctx, driver=engine.driver) as fresh:
         np.testing.assert_array_equal(found, fresh.read(sketch.with_values({"a.count": 5}), ref))
 
@@ -400,7 +400,7 @@ def test_a_stride_that_names_iterations_begins_again(ctx, folder):
         with contextlib.suppress(PlaygroundError):
             engine.read(sketch, "a")
         engine.read(sketch.with_values({"a.count": 5}), "a")
-        assert engine.internal.texels == 17 * 17 * 5
+        assert engine.record.texels == 17 * 17 * 5
 
 
 def test_the_earlier_result_is_taken_over_and_copied_only_where_another_pass_reads_it(engine, folder):
@@ -408,12 +408,12 @@ def test_the_earlier_result_is_taken_over_and_copied_only_where_another_pass_rea
     folder.write("sum.glsl", SUM)
     both = folder.sketch(passes(a="./one", b="./one", sum=("./sum", 'inputs = { a = "a:a", b = "b:a" }')))
     engine.read(both, "sum")
-    assert engine.internal.ran == ["a", "sum"], "both are the same"
+    assert engine.record.ran == ["a", "sum"], "both are the same"
     before = engine.read(both, "b:a").copy()
     found = engine.read(both.with_values({"a.count": 8}), "sum").copy()
-    assert engine.internal.ran == ["a", "sum"] and engine.internal.texels == 17 * 17 * (5 + 1)
+    assert engine.record.ran == ["a", "sum"] and engine.record.texels == 17 * 17 * (5 + 1)
     np.testing.assert_array_equal(engine.read(both, "b:a"), before)
-    assert engine.internal.ran == []
+    assert engine.record.ran == []
     alone = engine.read(both.with_values({"a.count": 8}), "a:a") + before
     np.testing.assert_array_equal(found, alone)
 
@@ -422,10 +422,10 @@ def test_going_on_step_by_step_makes_no_more_textures(engine, folder):
     sketch = folder.one(ADD)
     for count in (3, 4, 5):
         engine.texture(sketch.with_values({"a.count": count}), "a:a")
-    made = engine.internal.pool.made
+    made = engine.runner.pool.made
     for count in range(6, 40):
         engine.texture(sketch.with_values({"a.count": count}), "a:a")
-    assert engine.internal.pool.made == made
+    assert engine.runner.pool.made == made
 
 
 MEAN = """#pragma kernel(output = "mean:r32f")

@@ -87,10 +87,10 @@ def written(folder):
 
 def drawn(engine: Engine, sketch, frame: int):
     """Return what a loop gives at a frame, and what the engine counted."""
-    engine.internal.runs.clear()
+    engine.runs.clear()
     values = engine.read(sketch, "l:v", time=frame / 60).copy()
-    record = engine.internal.record
-    return values, dict(engine.internal.runs), +record.iterations, record.texels, sorted(record.ran)
+    record = engine.record
+    return values, dict(engine.runs), +record.iterations, record.texels, sorted(record.ran)
 
 
 @pytest.mark.parametrize("name", SKETCHES)
@@ -103,7 +103,7 @@ def test_a_loop_gives_the_same_replayed_or_not(ctx, written, driver, name, monke
     monkeypatch.setattr(Replay, "run", lambda self, *given: replays.append(self) or usual(self, *given))
     sketch = written[name]
     with Engine(ctx, driver=driver) as quick, Engine(ctx, driver=driver) as slow:
-        slow.internal.profiling = True  # each pass is measured, so each runs by itself
+        slow.options.profiling = True  # each pass is measured, so each runs by itself
         for level in (1.0, 2.0):
             changed = sketch.with_values({"start.level": level})
             for frame in (5, 12, 13, 40, 7):
@@ -117,7 +117,7 @@ def test_a_loop_that_is_stopped_in_between_goes_on_where_it_was(any_engine, writ
     sketch = written["goes on"]
     wanted = any_engine.read(sketch, "l:v", time=0.5).copy()
     with Engine(any_engine.ctx) as hasty:
-        hasty.internal.patience = -1.0
+        hasty.options.patience = -1.0
         stops = 0
         for _ in range(20):
             try:
@@ -127,19 +127,19 @@ def test_a_loop_that_is_stopped_in_between_goes_on_where_it_was(any_engine, writ
                 stops += 1
         np.testing.assert_array_equal(found, wanted)
         assert stops == 7, "every four iterations of thirty"
-        assert hasty.internal.runs["l.a"] == 30
+        assert hasty.runs["l.a"] == 30
 
 
 def test_what_is_called_before_each_step_is_called_before_each(any_engine, written):
     seen = []
-    any_engine.internal.runner.before_step = lambda step: seen.append(step.path)
+    any_engine.runner.before_step = lambda step: seen.append(step.path)
     any_engine.texture(written["several kernels"], "l:v")
     assert seen.count("l.b") == 9
 
 
 def test_two_sets_of_textures_change_places(any_engine, written):
     any_engine.texture(written["several kernels"], "l:v")
-    assert any_engine.internal.pool.made <= 1 + 2 * (2 + 1 + 2), "the start's, and two of each output"
+    assert any_engine.runner.pool.made <= 1 + 2 * (2 + 1 + 2), "the start's, and two of each output"
 
 
 @pytest.mark.parametrize("pressed", [False, True])
@@ -151,5 +151,5 @@ def test_buttons_and_parameters_stay_set(any_engine, folder, pressed):
         "float kernel(ivec2 texel) { return texelFetch(before, texel, 0).r + (tap ? 2.0 : 1.0); }\n",
     )
     sketch = folder.sketch(passes(l=("./tap", "repeat = 6", 'feedback = { before = "v" }')))
-    any_engine.internal.runner.pressed = frozenset({"l.tap"}) if pressed else frozenset()
+    any_engine.runner.pressed = frozenset({"l.tap"}) if pressed else frozenset()
     assert any_engine.read(sketch, "l:v")[0, 0] == (12.0 if pressed else 6.0)

@@ -70,24 +70,24 @@ def flood(folder):
 @pytest.mark.parametrize("size", ["1", "2", "33", "[29, 18]", "65"])
 def test_a_flood_ends_few_steps_after_it_has_settled(engine, flood, size, waits):
     """A graphics card is not waited for: there an answer is read at the next comparison."""
-    engine.internal.runner.kernels.settling.software = waits
+    engine.runner.kernels.settling.software = waits
     found = engine.read(flood(size=f"size = {size}"), "a")
     truth = serpentine(*found.shape)
     np.testing.assert_array_equal(found > 0, truth > 0)
-    settled, ran = int(truth.max()), engine.internal.record.iterations["a"]
+    settled, ran = int(truth.max()), engine.record.iterations["a"]
     assert settled < ran <= settled + (1 if waits else 2) * (isqrt(settled) + 4)
-    assert engine.internal.results["a"].iterations == 4096
-    assert engine.internal.runner.kernels.settling.compared <= 2 * isqrt(ran) + 2
+    assert engine.record.results["a"].iterations == 4096
+    assert engine.runner.kernels.settling.compared <= 2 * isqrt(ran) + 2
 
 
 @pytest.mark.slow
 def test_its_bits_are_those_of_every_step_run(ctx, engine, flood):
     blur = SPREAD.replace("max(previous(texel), max(", "max(0.5 * previous(texel), 0.999 * max(")
     found = engine.read(flood(blur), "a").copy()
-    ran = engine.internal.record.iterations["a"]
+    ran = engine.record.iterations["a"]
     with Engine(ctx, driver=engine.driver) as whole:
         np.testing.assert_array_equal(found, whole.read(flood(blur.replace(UNTIL, "")), "a"))
-        assert ran < whole.internal.record.iterations["a"] == 4096
+        assert ran < whole.record.iterations["a"] == 4096
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 3, 7, 100])
@@ -95,7 +95,7 @@ def test_a_count_below_is_kept(ctx, engine, flood, count):
     sketch = flood().with_values({"a.count": count})
     found = engine.read(sketch, "a").copy()
     np.testing.assert_array_equal(found > 0, (serpentine(33, 33) <= count) & (serpentine(33, 33) > 0))
-    assert engine.internal.record.iterations["a"] == count
+    assert engine.record.iterations["a"] == count
 
 
 def test_a_settled_result_goes_on_without_a_step(engine, flood):
@@ -103,7 +103,7 @@ def test_a_settled_result_goes_on_without_a_step(engine, flood):
     engine.read(sketch.with_values({"a.count": 1000}), "a")
     before = engine.read(sketch.with_values({"a.count": 1000}), "a").copy()
     np.testing.assert_array_equal(engine.read(sketch.with_values({"a.count": 5000}), "a"), before)
-    assert engine.internal.record.iterations["a"] == 0
+    assert engine.record.iterations["a"] == 0
 
 
 def test_each_step_can_be_shown(engine, flood):
@@ -124,7 +124,7 @@ def test_nan_that_stays_is_unchanged_and_minus_zero_is_not_zero(engine, folder):
     found = engine.read(folder.one(text.replace("\n    ", "\n")), "a:a")
     assert np.isnan(found[..., 0]).all()
     assert np.signbit(found[..., 1]).all()
-    assert 18 <= engine.internal.record.iterations["a"] <= 18 + 2 * (isqrt(18) + 3)
+    assert 18 <= engine.record.iterations["a"] <= 18 + 2 * (isqrt(18) + 3)
 
 
 def test_an_output_that_changes_alone_is_seen(engine, folder):
@@ -136,7 +136,7 @@ def test_an_output_that_changes_alone_is_seen(engine, folder):
     """
     found = engine.read(folder.one(text.replace("\n    ", "\n")), "a:b")
     assert (found[..., 3] == 1.0).all()
-    assert 255 < engine.internal.record.iterations["a"] < 300
+    assert 255 < engine.record.iterations["a"] < 300
 
 
 @pytest.mark.parametrize(
@@ -163,7 +163,7 @@ def test_in_a_loop_each_run_of_it_ends_by_itself(ctx, engine, folder, flood):
     loop = '[[pass]]\nname = "again"\nuse = "./spread"\ninputs = { wall = "wall" }\nrepeat = 3\n'
     sketch = folder.sketch(PASSES + loop + 'feedback = { wall = "wet" }\n')
     found = engine.read(sketch, "again").copy()
-    assert engine.internal.record.iterations["again"] < 3 * 4096
+    assert engine.record.iterations["again"] < 3 * 4096
     folder.write("spread.glsl", SPREAD.replace(UNTIL, ""))
     with Engine(ctx, driver=engine.driver) as whole:
         np.testing.assert_array_equal(

@@ -100,9 +100,9 @@ def sketch(turned, folder):
 @pytest.fixture
 def patient(any_engine):
     """Give an engine that does not wait for sources."""
-    any_engine.internal.patience = 0.1
+    any_engine.options.patience = 0.1
     yield any_engine
-    any_engine.internal.patience = None
+    any_engine.options.patience = None
 
 
 def until_drawn(engine, sketch, most=500):
@@ -204,7 +204,7 @@ def test_another_value_cancels_it(patient, sketch, turned):
 
 def test_another_sketch_and_the_engines_end_cancel_it(ctx, sketch, folder, turned):
     with Engine(ctx) as engine:
-        engine.internal.patience = 0.1
+        engine.options.patience = 0.1
         turned.may_go_on.clear()
         with pytest.raises(SourceUnfinished):
             engine.read(sketch, "height")
@@ -221,14 +221,14 @@ def test_who_waits_gets_the_same(patient, sketch, turned):
     turned.may_go_on.clear()
     with pytest.raises(SourceUnfinished):
         patient.read(sketch, "height")
-    patient.internal.patience = None
+    patient.options.patience = None
     seen = []
 
     def progress(*at):
         seen.append(at)
         turned.may_go_on.set()
 
-    patient.internal.runner.works.on_progress = progress
+    patient.runner.works.on_progress = progress
     assert patient.read(sketch, "height").max() == 24.0
     assert seen[0] == ("height", 0, 4) and len(turned.materials) == 1
     patient.read(sketch.with_values({"height.gain": 3.0}), "height")
@@ -238,11 +238,11 @@ def test_who_waits_gets_the_same(patient, sketch, turned):
 @pytest.mark.parametrize("waits", [True, False])
 def test_its_error_is_raised_at_its_pass(any_engine, sketch, turned, waits):
     turned.error = DataError("there is too little of it")
-    any_engine.internal.patience = None if waits else 0.1
+    any_engine.options.patience = None if waits else 0.1
     with pytest.raises(DataError, match="there is too little of it") as met:
         until_drawn(any_engine, sketch)
     assert met.value.diagnostics[0].file.endswith("sketch.toml") or "height" in str(met.value)
-    any_engine.internal.patience, turned.error = None, None
+    any_engine.options.patience, turned.error = None, None
     assert any_engine.read(sketch, "height").max() == 24.0, "and the next time it is tried again"
 
 
@@ -314,10 +314,10 @@ def test_it_is_cached_on_disk(ctx, sketch, turned, tmp_path, waits):
     turned.seconds = 0.1
     for _ in range(2):
         with Engine(ctx) as engine:
-            engine.internal.disk_caching = DiskCaching(DiskCache(tmp_path / "cache"), floor=90.0)
-            engine.internal.patience = None if waits else 0.1
+            engine.disk_caching = DiskCaching(DiskCache(tmp_path / "cache"), floor=90.0)
+            engine.options.patience = None if waits else 0.1
             until_drawn(engine, sketch)
-            engine.internal.disk_caching.finish(engine.internal, engine.internal.plan)
+            engine.disk_caching.finish(engine, engine.record.plan)
         assert len(turned.materials) == 1
 
 

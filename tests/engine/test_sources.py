@@ -33,7 +33,7 @@ def test_a_file_becomes_heights_row_0_in_the_south(any_engine, heightmap):
     found = any_engine.read(sketch, "height")
     span = heights.max() - heights.min()
     np.testing.assert_allclose(found, (heights[::-1] - heights.min()) / span, atol=1e-6)
-    plan = any_engine.internal.plan
+    plan = any_engine.record.plan
     assert plan is not None
     assert plan.terrain.size == (7, 5)
 
@@ -52,10 +52,10 @@ def test_it_is_read_again_when_the_file_changes_and_not_before(any_engine, heigh
     sketch = folder.sketch('[[pass]]\nname = "height"\nuse = "./terrain"\n', size="")
     any_engine.texture(sketch, "height")
     any_engine.texture(sketch, "height")
-    assert any_engine.internal.ran == []
+    assert any_engine.record.ran == []
     np.save(folder.path / "heights.npy", heights[:, ::-1])
     found = any_engine.read(sketch, "height")
-    assert any_engine.internal.ran == ["height"]
+    assert any_engine.record.ran == ["height"]
     assert found[0, 0] > found[0, -1]
 
 
@@ -136,4 +136,4 @@ def test_a_source_that_knows_nothing_of_its_terrain_leaves_it_to_the_next(any_en
     made = '[[pass]]\nname = "tin"\nuse = "generation/delaunay"\n'
     sketch = folder.sketch(f'{made}[[pass]]\nname = "height"\nuse = "./terrain"\n', size="")
     any_engine.texture(sketch, "height")
-    assert any_engine.internal.plan is not None and any_engine.internal.plan.terrain.size == (7, 5)
+    assert any_engine.record.plan is not None and any_engine.record.plan.terrain.size == (7, 5)

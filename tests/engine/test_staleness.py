@@ -62,15 +62,15 @@ def ran_after(engine: Engine, sketch, time: float = 0.0) -> set[str]:
     found: set[str] = set()
     for path in (*EVERYTHING, "view:frame"):
         engine.texture(sketch, path, size=(32, 18), time=time)
-        found |= set(engine.internal.ran)
+        found |= set(engine.record.ran)
     return found
 
 
 def test_the_same_sketch_twice_runs_nothing(engine, four):
     assert ran_after(engine, four) == {*EVERYTHING, "view"}
     assert ran_after(engine, four) == set()
-    assert engine.internal.texels == 0
-    assert engine.internal.runs == dict.fromkeys((*EVERYTHING, "view"), 1)
+    assert engine.record.texels == 0
+    assert engine.runs == dict.fromkeys((*EVERYTHING, "view"), 1)
 
 
 def test_moving_the_light_runs_light_and_view_only(engine, four):
@@ -86,8 +86,8 @@ def test_a_changed_terrain_runs_what_reads_it(engine, four):
 
 def test_only_what_is_requested_runs(engine, four):
     engine.texture(four, "slope")
-    assert engine.internal.ran == ["height", "slope"]
-    assert engine.internal.texels == 2 * 17 * 17
+    assert engine.record.ran == ["height", "slope"]
+    assert engine.record.texels == 2 * 17 * 17
 
 
 def test_a_value_that_the_text_never_uses_makes_nothing_stale(engine, four):
@@ -145,9 +145,9 @@ def test_the_camera_matters_to_what_names_it(engine, folder):
     engine.texture(sketch, "height")
     turned = replace(sketch, camera=replace(sketch.camera, azimuth=10.0))
     engine.texture(turned, "height")
-    assert engine.internal.ran == []
+    assert engine.record.ran == []
     engine.texture(turned, "e")
-    assert engine.internal.ran == ["e"]
+    assert engine.record.ran == ["e"]
 
 
 def test_a_file_matters_by_its_contents(engine, folder, tmp_path):
@@ -160,10 +160,10 @@ def test_a_file_matters_by_its_contents(engine, folder, tmp_path):
     assert engine.read(sketch, "a").max() == 1.0
     os.utime(tmp_path / "p.png", ns=(1, 1))  # another time, the same contents
     engine.texture(sketch, "a")
-    assert engine.internal.ran == []
+    assert engine.record.ran == []
     write_png(tmp_path / "p.png", picture // 255)
     assert engine.read(sketch, "a").max() < 0.001
-    assert engine.internal.ran == ["a"]
+    assert engine.record.ran == ["a"]
 
 
 def test_a_count_of_visits_may_depend_on_a_parameter_that_the_code_never_names(any_engine, folder):
@@ -183,13 +183,11 @@ def test_the_driver_and_the_form_enter_the_key(ctx, four):
     with Engine(ctx, driver="fragment") as one, Engine(ctx, driver="auto") as two:
         one.texture(four, "height")
         two.texture(four, "height")
-        assert set(one.internal.cache._cached) == set(two.internal.cache._cached), (
-            "auto draws a plain kernel by fragment"
-        )
+        assert set(one.cache._cached) == set(two.cache._cached), "auto draws a plain kernel by fragment"
     if ctx.version_code >= 430:
         with Engine(ctx, driver="compute") as three:
             three.texture(four, "height")
-            assert set(three.internal.cache._cached) != set(one.internal.cache._cached)
+            assert set(three.cache._cached) != set(one.cache._cached)
 
 
 # ── the bound ────────────────────────────────────────────────────────────────
@@ -201,20 +199,20 @@ def test_the_cache_keeps_its_bound_and_drops_the_oldest(ctx, folder):
     with Engine(ctx, cache_bytes=4 * each) as engine:
         for bumps in range(10):
             engine.texture(sketch.with_values({"a.bumps": bumps}), "a")
-            assert engine.internal.cache.bytes <= 4 * each
-        assert len(engine.internal.cache) == 4
+            assert engine.cache.bytes <= 4 * each
+        assert len(engine.cache) == 4
         for bumps, runs in ((9, 0), (6, 0), (5, 1), (9, 0), (7, 1)):
             engine.texture(sketch.with_values({"a.bumps": bumps}), "a")
-            assert len(engine.internal.ran) == runs, f"bumps {bumps}"
+            assert len(engine.record.ran) == runs, f"bumps {bumps}"
 
 
 def test_what_a_frame_uses_is_cached_even_over_the_bound(ctx, four):
     with Engine(ctx, cache_bytes=1000) as engine:
         values = engine.read(four, "light", size=(32, 18))
-        assert engine.internal.cache.bytes == 2 * 17 * 17 * 4 > 1000
+        assert engine.cache.bytes == 2 * 17 * 17 * 4 > 1000
         assert values.shape == (17, 17)
         engine.texture(four, "span")
-        assert engine.internal.cache.bytes == 17 * 17 * 4, "the next frame needs one texture only"
+        assert engine.cache.bytes == 17 * 17 * 4, "the next frame needs one texture only"
 
 
 def test_a_texture_lives_until_the_next_frame(ctx, four):
@@ -233,9 +231,9 @@ def test_mipmaps_count(ctx, folder):
     )
     with Engine(ctx) as engine:
         engine.texture(sketch, "a")
-        before = engine.internal.cache.bytes
+        before = engine.cache.bytes
         engine.texture(sketch, "b")
-        assert engine.internal.cache.bytes == 2 * before + before // 3
+        assert engine.cache.bytes == 2 * before + before // 3
 
 
 def test_keys_and_plan_take_little_time(any_engine, four):
@@ -247,7 +245,7 @@ def test_keys_and_plan_take_little_time(any_engine, four):
         start = time.process_time()  # of this process: others on the machine do not count
         any_engine.texture(four, "light", size=(32, 18), time=float(i))
         spent.append(time.process_time() - start)
-    assert any_engine.internal.ran == []
+    assert any_engine.record.ran == []
     assert min(spent) < 0.02, "a second of Python in every frame would be felt"
 
 
@@ -264,14 +262,14 @@ CHANGES = {
 def test_what_would_run_is_what_runs_and_asking_changes_nothing(engine, folder, four, what):
     four = folder.sketch(f'{FOUR}[view]\nuse = "view/terrain"\n')
     engine.draw(four, size=(32, 18))
-    plan, drawn = engine.internal.plan, engine.internal.drawn()
+    plan, drawn = engine.record.plan, engine.drawn()
     changed = CHANGES[what](four)
-    would = engine.internal.stale(changed, size=(32, 18))
+    would = engine.stale(changed, size=(32, 18))
     fingerprint = engine.fingerprint(changed, size=(32, 18))
-    assert engine.internal.plan is plan and engine.internal.drawn() == drawn
+    assert engine.record.plan is plan and engine.drawn() == drawn
     assert (fingerprint == engine.fingerprint(four, size=(32, 18))) == (what == "nothing")
     engine.draw(changed, size=(32, 18))
-    assert engine.internal.ran == would
+    assert engine.record.ran == would
     assert bool(would) == (what != "nothing")
 
 
@@ -314,19 +312,19 @@ def test_saves_that_keep_inode_size_and_time_are_drawn(any_engine, folder, tmp_p
 )
 def test_the_keys_of_two_frames_say_why_a_pass_ran(engine, four, ref, change, reasons):
     engine.texture(four, ref)
-    assert {path: engine.internal.record.reasons(path) for path in engine.internal.ran} == dict.fromkeys(
-        engine.internal.ran, ("the pass",)
+    assert {path: engine.record.reasons(path) for path in engine.record.ran} == dict.fromkeys(
+        engine.record.ran, ("the pass",)
     )
     engine.texture(four.with_values(change), ref)
-    assert {path: engine.internal.record.reasons(path) for path in engine.internal.ran} == reasons
+    assert {path: engine.record.reasons(path) for path in engine.record.ran} == reasons
 
 
 def test_a_text_a_file_and_a_dropped_texture_are_reasons_too(engine, folder, four):
     engine.texture(four, "slope")
     folder.write("slope.glsl", SLOPE.replace(").r)", ").r * 2.0)"))
     engine.texture(folder.sketch(FOUR), "slope")
-    assert engine.internal.record.reasons("slope") == ("text",)
-    engine.internal.cache.clear()
+    assert engine.record.reasons("slope") == ("text",)
+    engine.cache.clear()
     engine.texture(folder.sketch(FOUR), "slope")
-    assert engine.internal.ran == ["height", "slope"]
-    assert engine.internal.record.reasons("slope") == ()
+    assert engine.record.ran == ["height", "slope"]
+    assert engine.record.reasons("slope") == ()

@@ -139,15 +139,15 @@ class Shelf:
     def engine(self, floor: float = ALWAYS, **options: int) -> Engine:
         """Return an engine as a new session has it."""
         made = Engine(self.ctx, driver=self.driver, **options)
-        made.internal.disk_caching = DiskCaching(disk_cache_for(made.info, 2**26, self.folder), floor=floor)
+        made.disk_caching = DiskCaching(disk_cache_for(made.info, 2**26, self.folder), floor=floor)
         self.engines.append(made)
         return made
 
     def keep(self, engine: Engine) -> None:
         """Keep what is worth it of an engine's last frame."""
-        assert engine.internal.disk_caching is not None and engine.internal.plan is not None
-        engine.internal.disk_caching.finish(engine.internal, engine.internal.plan)
-        assert engine.internal.disk_caching.store.trouble == ""
+        assert engine.disk_caching is not None and engine.record.plan is not None
+        engine.disk_caching.finish(engine, engine.record.plan)
+        assert engine.disk_caching.store.trouble == ""
 
     def close(self) -> None:
         """Release all of it."""
@@ -212,13 +212,13 @@ def test_reopened_textures_of_every_format_have_the_same_bits(shelf, folder):
     sketch = sketch_of_every_format(folder, "input", "texelFetch({}, texel, 0)")
     first = shelf.engine()
     seen = picture(first, sketch)
-    made = {form: read_raw(first.internal.results[form].textures["bits"]) for form in FORMATS}
+    made = {form: read_raw(first.record.results[form].textures["bits"]) for form in FORMATS}
     shelf.keep(first)
     second = shelf.engine()
     assert picture(second, sketch) == seen
-    assert second.internal.ran == ["all", "view"]
+    assert second.record.ran == ["all", "view"]
     for form in FORMATS:
-        found = read_raw(second.internal.results[form].textures["bits"])
+        found = read_raw(second.record.results[form].textures["bits"])
         assert found.dtype == made[form].dtype and found.tobytes() == made[form].tobytes(), form
         assert len(np.unique(made[form])) > 100, f"{form}: these are bits"
     floats = made["rgba32f"]
@@ -244,22 +244,22 @@ def test_reopened_mipmaps_of_every_format_have_the_same_bits_and_are_not_made_an
     second = shelf.engine()
     assert picture(second, sketch) == seen
     assert (67, 41) not in anew, "they are on disk"
-    assert second.internal.ran == ["all", "view"]
+    assert second.record.ran == ["all", "view"]
     for form in FORMATS:
         assert levels(second, form) == made[form], form
         assert len(made[form]) == 7 and len(made[form][-1]) == len(made[form][0]) // (67 * 41)
     for each in listed(shelf.folder):
         each.path.unlink()
-    second.internal.disk_caching._is_new = True
+    second.disk_caching._is_new = True
     shelf.keep(second)  # what came from there is read back as well
     third = shelf.engine()
-    assert picture(third, sketch) == seen and third.internal.ran == ["all", "view"]
+    assert picture(third, sketch) == seen and third.record.ran == ["all", "view"]
     assert shelf.ctx.error == "GL_NO_ERROR"
 
 
 def levels(engine: Engine, form: str) -> list[bytes]:
     """Return the texels of a pass, and of each of its mipmaps."""
-    texture = engine.internal.results[form].textures["bits"]
+    texture = engine.record.results[form].textures["bits"]
     sizes = levels_of(texture.size)
     return [read_mipmap(texture, level, size) for level, size in enumerate(sizes)]
 
@@ -284,21 +284,21 @@ def test_a_reopened_sketch_shows_the_same_and_runs_only_what_the_camera_changes(
     """Loops, several outputs, mipmaps and a mesh over them; the terrain itself is not even read."""
     first = shelf.engine()
     seen = picture(first, worn)
-    assert set(first.internal.runs) == {*TERRAIN_PASSES, "view"}
+    assert set(first.runs) == {*TERRAIN_PASSES, "view"}
     shelf.keep(first)
     second = shelf.engine()
     assert picture(second, worn) == seen
-    assert dict(second.internal.runs) == {"view": 1}
-    assert second.internal.disk_caching.reads == 2 and set(second.internal.results) == {
+    assert dict(second.runs) == {"view": 1}
+    assert second.disk_caching.reads == 2 and set(second.record.results) == {
         "worn.add",
         "light",
         "view",
     }
-    assert second.internal.disk_caching.skipped == {"terrain"}
+    assert second.disk_caching.skipped == {"terrain"}
     turned = replace(worn, camera=replace(worn.camera, azimuth=worn.camera.azimuth + 40.0))
     with Engine(shelf.ctx, driver=shelf.driver) as plain:
         assert picture(second, turned) == picture(plain, turned)
-    assert dict(second.internal.runs) == {"view": 2}, "the second frame skips what the first skipped"
+    assert dict(second.runs) == {"view": 2}, "the second frame skips what the first skipped"
 
 
 def test_what_was_skipped_runs_where_it_is_wanted(any_shelf, worn):
@@ -307,12 +307,12 @@ def test_what_was_skipped_runs_where_it_is_wanted(any_shelf, worn):
     any_shelf.keep(first)
     second = any_shelf.engine()
     seen = picture(second, worn)
-    second.internal.disk_caching.skips = False
+    second.disk_caching.skips = False
     assert picture(second, worn) == seen
     assert {"terrain", "worn.add", "light", "view"} == set(
-        second.internal.results
-    ) and not second.internal.disk_caching.skipped
-    assert second.internal.runs["terrain"] == 1 and second.internal.runs["light"] == 0
+        second.record.results
+    ) and not second.disk_caching.skipped
+    assert second.runs["terrain"] == 1 and second.runs["light"] == 0
     with Engine(any_shelf.ctx) as plain:
         for path in ("terrain:water", "worn", "light"):
             np.testing.assert_array_equal(second.read(worn, path), plain.read(worn, path))
@@ -334,22 +334,22 @@ def test_any_order_of_edits_and_sessions_shows_what_an_engine_without_a_store_sh
                 case 2:
                     sketch = sketch.with_values({"worn.add.share": rng.choice((0.25, 0.5))})
                 case 3:
-                    engine.internal.disk_caching.skips = not engine.internal.disk_caching.skips
-                case 4 if engine.internal.plan is not None:
+                    engine.disk_caching.skips = not engine.disk_caching.skips
+                case 4 if engine.record.plan is not None:
                     any_shelf.keep(engine)
-                    reads += engine.internal.disk_caching.reads
+                    reads += engine.disk_caching.reads
                     engine = any_shelf.engine(cache_bytes=memory)
                 case 5:
                     steps = rng.choice(({}, {"worn": 1}, {"worn": 2}, {"terrain": 2}))
-                case 6 if engine.internal.plan is not None:
+                case 6 if engine.record.plan is not None:
                     any_shelf.keep(engine)
-            expected = set(engine.internal.stale(sketch, size=(64, 36), steps=steps))
+            expected = set(engine.stale(sketch, size=(64, 36), steps=steps))
             assert picture(engine, sketch, steps) == picture(plain, sketch, steps)
             # What is read may take the place of what was still there when stale() looked.
-            assert set(engine.internal.ran) == expected or memory < 2**20, "stale() returns what runs"
+            assert set(engine.record.ran) == expected or memory < 2**20, "stale() returns what runs"
         path = rng.choice(("terrain", "worn", "light"))
         np.testing.assert_array_equal(engine.read(sketch, path), plain.read(sketch, path))
-    assert reads + engine.internal.disk_caching.reads > 0, "the disk cache was used"
+    assert reads + engine.disk_caching.reads > 0, "the disk cache was used"
 
 
 # ── what is another terrain ─────────────────────────────────────────────────────
@@ -360,7 +360,7 @@ def reopened(shelf: Shelf, sketch) -> set[str]:
     engine = shelf.engine()
     with Engine(shelf.ctx, driver=shelf.driver) as plain:
         assert picture(engine, sketch) == picture(plain, sketch)
-    return set(engine.internal.runs) - {"view"}
+    return set(engine.runs) - {"view"}
 
 
 @pytest.fixture
@@ -462,7 +462,7 @@ def test_each_form_of_a_pass_has_its_own(ctx, folder, tmp_path):
         engine = shelf.engine()
         picture(engine, sketch)
         shelf.keep(engine)
-        assert engine.internal.runs["a"] == 1, driver
+        assert engine.runs["a"] == 1, driver
         shelf.close()
 
 
@@ -534,7 +534,7 @@ class Strokes:
 def test_what_reads_a_painted_file_is_not_cached(any_shelf, folder, worn):
     """No other process knows it by that version: the cache would fill with what is never read again."""
     engine = any_shelf.engine()
-    engine.internal.painted[folder.path / "p.png"] = Strokes()
+    engine.painted[folder.path / "p.png"] = Strokes()
     engine.render(worn, size=(64, 36))
     any_shelf.keep(engine)
     assert not listed(any_shelf.folder)
@@ -558,7 +558,7 @@ def test_nothing_is_cached_unless_somebody_asks(any_engine, worn, monkeypatch, t
     """A picture for a test must not come from a store."""
     monkeypatch.setattr(DiskCache, "read", lambda *_: pytest.fail("the disk cache was read"))
     monkeypatch.setattr(DiskCache, "write", lambda *_: pytest.fail("the disk cache was written"))
-    assert any_engine.internal.disk_caching is None
+    assert any_engine.disk_caching is None
     picture(any_engine, worn)
     using = {
         p.relative_to(ROOT / "playground").as_posix()
@@ -628,10 +628,10 @@ def test_a_file_under_anothers_name_is_dropped(cached, worn):
 def test_a_texture_of_another_size_is_not_taken(cached, folder):
     """Not even where the key agrees, as with a technique whose fast variant has other outputs."""
     engine = cached.engine()
-    store = engine.internal.disk_caching.store
+    store = engine.disk_caching.store
     sketch = folder.one('#pragma kernel(output = "v:r8")\nfloat kernel(ivec2 texel) { return 0.5; }\n')
     picture(engine, sketch)
-    key = engine.internal.keys_of(engine.internal.plan).steps["a"].result
+    key = engine.keys_of(engine.record.plan).steps["a"].result
     store.write(key, CachedTextures((16, 17), (("v", "r8"),), 1.0, "", (memoryview(bytes(16 * 17)),)))
     store.close()
     assert key in store
@@ -650,10 +650,10 @@ def test_only_what_costs_more_than_to_read_it_is_cached(any_shelf, worn, monkeyp
         clear(any_shelf.folder)
         engine = any_shelf.engine(floor)
         picture(engine, worn)
-        keys = engine.internal.keys_of(engine.internal.plan)
-        engine.internal.disk_caching._costs.clear()
+        keys = engine.keys_of(engine.record.plan)
+        engine.disk_caching._costs.clear()
         for name, cost in (costs | more).items():
-            engine.internal.disk_caching._costs.put(keys.loops.get(name) or keys.steps[name].result, cost)
+            engine.disk_caching._costs.put(keys.loops.get(name) or keys.steps[name].result, cost)
         any_shelf.keep(engine)
         return {each.textures.made_for.partition(": ")[2] for each in listed(any_shelf.folder)}
 
@@ -672,9 +672,9 @@ def test_what_has_mipmaps_is_worth_more_on_a_software_renderer(any_shelf, worn, 
     if not engine.info.software:
         pytest.skip("a graphics card has nothing to compile")
     picture(engine, worn)
-    assert "height" in engine.internal.results["terrain"].mipmapped
-    for key in engine.internal.disk_caching._costs:
-        engine.internal.disk_caching._costs.put(key, 1.0)
+    assert "height" in engine.record.results["terrain"].mipmapped
+    for key in engine.disk_caching._costs:
+        engine.disk_caching._costs.put(key, 1.0)
     any_shelf.keep(engine)
     (found,) = [each.textures for each in listed(any_shelf.folder)]
     assert found.made_for.endswith("worn.add") and found.cost == pytest.approx(2.0)
@@ -683,47 +683,47 @@ def test_what_has_mipmaps_is_worth_more_on_a_software_renderer(any_shelf, worn, 
 def test_costs_are_measured_where_terrain_is_made_and_a_loop_counts_as_one(any_shelf, worn):
     engine = any_shelf.engine()
     picture(engine, worn)
-    keys = engine.internal.keys_of(engine.internal.plan)
+    keys = engine.keys_of(engine.record.plan)
     expected = {keys.steps["terrain"].result, keys.loops["worn"], keys.steps["light"].result}
-    assert set(engine.internal.disk_caching._costs) == expected
-    assert all(cost > 0.0 for cost in engine.internal.disk_caching._costs.values())
+    assert set(engine.disk_caching._costs) == expected
+    assert all(cost > 0.0 for cost in engine.disk_caching._costs.values())
     any_shelf.keep(engine)
     (light,) = (each.textures for each in listed(any_shelf.folder) if "light" in each.textures.made_for)
-    assert light.cost == pytest.approx(sum(engine.internal.disk_caching._costs.values()), abs=0.01)
+    assert light.cost == pytest.approx(sum(engine.disk_caching._costs.values()), abs=0.01)
 
 
 def test_it_waits_until_the_terrain_rests_and_reads_a_piece_a_call(any_shelf, worn, monkeypatch):
     monkeypatch.setattr("playground.engine.disk_caching.PIECE", 33 * 4 * 10)  # rows of 33 floats, ten at once
     now = 100.0
     engine = any_shelf.engine()
-    caching = engine.internal.disk_caching = DiskCaching(
-        engine.internal.disk_caching.store, floor=ALWAYS, rest=1.0, now=lambda: now
+    caching = engine.disk_caching = DiskCaching(
+        engine.disk_caching.store, floor=ALWAYS, rest=1.0, now=lambda: now
     )
-    assert caching.look(engine.internal, None) is None, "nothing has been made yet"
+    assert caching.look(engine, None) is None, "nothing has been made yet"
     picture(engine, worn)
-    assert caching.look(engine.internal, engine.internal.plan) == pytest.approx(1.0)
+    assert caching.look(engine, engine.record.plan) == pytest.approx(1.0)
     now += 0.75
     picture(engine, worn.with_values({"terrain.bumps": 4.0}))  # a slider that moves
-    assert caching.look(engine.internal, engine.internal.plan) == pytest.approx(1.0)
+    assert caching.look(engine, engine.record.plan) == pytest.approx(1.0)
     now += 1.5
     iterations = 0
-    while caching.look(engine.internal, engine.internal.plan) is not None:
+    while caching.look(engine, engine.record.plan) is not None:
         iterations += 1
         picture(engine, worn.with_values({"terrain.bumps": 4.0}))
     assert iterations > 4 + 4, "both textures, each in four pieces"
     caching.close()
     assert len(listed(any_shelf.folder)) == 2
-    assert caching.look(engine.internal, engine.internal.plan) is None
+    assert caching.look(engine, engine.record.plan) is None
     assert reopened(any_shelf, worn.with_values({"terrain.bumps": 4.0})) == set()
 
 
 def test_a_terrain_that_goes_while_it_is_read_back_is_not_cached(any_shelf, worn, monkeypatch):
     monkeypatch.setattr("playground.engine.disk_caching.PIECE", 33 * 4 * 10)
     engine = any_shelf.engine(cache_bytes=20_000)
-    engine.internal.disk_caching.rest = 0.0
+    engine.disk_caching.rest = 0.0
     picture(engine, worn)
-    engine.internal.disk_caching.look(engine.internal, engine.internal.plan)
-    engine.internal.disk_caching.look(engine.internal, engine.internal.plan)
+    engine.disk_caching.look(engine, engine.record.plan)
+    engine.disk_caching.look(engine, engine.record.plan)
     other = worn.with_values({"terrain.bumps": 9.0})
     picture(engine, other)
     any_shelf.keep(engine)
@@ -738,9 +738,9 @@ def test_another_sketch_that_is_drawn_before_it_begins_is_not_cached_for_the_fir
         size="size = 33",
     )
     engine = any_shelf.engine()
-    engine.internal.disk_caching.rest = 0.0
+    engine.disk_caching.rest = 0.0
     picture(engine, worn)
-    engine.internal.disk_caching.look(engine.internal, engine.internal.plan)
+    engine.disk_caching.look(engine, engine.record.plan)
     picture(engine, bare)
     any_shelf.keep(engine)
     assert {each.textures.made_for for each in listed(any_shelf.folder)} <= {f"{bare.name}: terrain"}

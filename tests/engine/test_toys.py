@@ -67,7 +67,7 @@ def test_each_is_drawn_and_at_a_time_it_is_always_the_same_picture(any_engine, c
     sketch = opened(TOYS[name].files, TOYS[name].opens)
     first = drawn(any_engine, sketch, 1.0)
     assert len(np.unique(first[..., :3].reshape(-1, 3), axis=0)) > 1
-    any_engine.internal.cache.clear()
+    any_engine.cache.clear()
     drawn(any_engine, sketch, 2.0)
     np.testing.assert_array_equal(drawn(any_engine, sketch, 1.0), first)
     with Engine(ctx) as fresh:
@@ -655,7 +655,7 @@ def test_keys_are_those_of_the_window(any_engine, opened, row):
     code = opened({"a.glsl": f"#iKeyboard\n{text}"}, "a.glsl")
     site = opened({"a.json": export(one("Image", toy.replace("ROW", str(row)), keyboard))}, "a.json")
     assert first_texel(any_engine, code)[0] == first_texel(any_engine, site)[0] == 0
-    any_engine.internal.runner.inputs.keyboard.hold([65])
+    any_engine.runner.inputs.keyboard.hold([65])
     assert list(first_texel(any_engine, code)[:2]) == [255, 0]
     assert first_texel(any_engine, site)[0] == 255
 
@@ -691,7 +691,7 @@ def test_the_button_of_the_mouse(any_engine, opened):
     text = "#iUniform float x = 0.0\nvoid mainImage(out vec4 c, in vec2 p) { c = iMouseButton + x; }\n"
     sketch = opened({"a.glsl": text}, "a.glsl")
     for press, level in [(2.0, 255), (-2.0, 0)]:
-        any_engine.internal.runner.drag = (3.0, 3.0, press, press)
+        any_engine.runner.drag = (3.0, 3.0, press, press)
         assert first_texel(any_engine, sketch)[0] == level
 
 

@@ -114,10 +114,10 @@ class Frames:
         elif what == "file":
             picture(self.folder, number)
         elif what == "button":
-            pressed = self.engine.internal.runner.pressed
-            self.engine.internal.runner.pressed = frozenset() if pressed else frozenset({"tapped.tap"})
+            pressed = self.engine.runner.pressed
+            self.engine.runner.pressed = frozenset() if pressed else frozenset({"tapped.tap"})
         elif what == "mouse":
-            self.engine.internal.runner.mouse = (float(number), 0.0, 0.0, 0.0)
+            self.engine.runner.mouse = (float(number), 0.0, 0.0, 0.0)
         elif what == "stop":
             self.steps = {} if self.steps else {"repeated": 1}
         elif what == "samples":
@@ -137,7 +137,7 @@ class Frames:
         self.sketch = sketch
 
     def plan(self) -> Plan:
-        return self.engine.internal.plan_for(self.sketch, self.size, self.time, self.steps)
+        return self.engine.plan(self.sketch, self.size, self.time, self.steps)
 
 
 VALUES = ["start.value", "metric.value", "timed.value", "loop.a.value", "film.value", "grown.value"]
@@ -146,10 +146,9 @@ CHANGES += ["relief", "mouse", "repeated.steps", "grown.wide", *VALUES]
 
 
 def computed_from_nothing(engine: Engine, plan: Plan) -> Keys:
-    inside = engine.internal
-    maker = KeyMaker(content=inside.painted.content)
-    inside.runner.look_at(plan)
-    return maker.keys_of(plan, inside.driver_for, inside.runner.given_for_key)
+    maker = KeyMaker(content=engine.painted.content)
+    engine.runner.look_at(plan)
+    return maker.keys_of(plan, engine.driver_for, engine.runner.given_for_key)
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
@@ -157,7 +156,7 @@ def test_keys_made_of_the_last_ones_are_those_made_from_nothing(any_engine, many
     frames, random = Frames(any_engine, many, folder), np.random.default_rng(seed)
     for what in ("nothing", *random.permutation(CHANGES * 3)):
         frames.change(str(what))
-        plan, forms = frames.plan(), any_engine.internal.plain_forms
+        plan, forms = frames.plan(), any_engine.plain_forms
         from_nothing = make_plan(
             frames.sketch,
             PlanRequest(
@@ -168,7 +167,7 @@ def test_keys_made_of_the_last_ones_are_those_made_from_nothing(any_engine, many
             ),
         )
         assert plan.nodes == from_nothing.nodes
-        ours, theirs = any_engine.internal.keys_of(plan), computed_from_nothing(any_engine, plan)
+        ours, theirs = any_engine.keys_of(plan), computed_from_nothing(any_engine, plan)
         assert ours == theirs, what
         assert ours.changes.keys() == {id(node) for node in every_version(plan.nodes)}
 
@@ -177,15 +176,15 @@ def test_two_sketches_in_turn_have_keys_of_their_own(any_engine, many, folder):
     other = folder.sketch(TEXT.replace('"end"', '"last"'))
     for number in range(3):
         for sketch in (many, other, many.plainly(), many.with_values({"start.value": 5.0 + number})):
-            plan = any_engine.internal.plan_for(sketch, (32, 18))
-            assert any_engine.internal.keys_of(plan) == computed_from_nothing(any_engine, plan)
+            plan = any_engine.plan(sketch, (32, 18))
+            assert any_engine.keys_of(plan) == computed_from_nothing(any_engine, plan)
 
 
 def test_keys_are_those_of_the_plan_s_terrain(any_engine, many):
-    plan = any_engine.internal.plan_for(many, (32, 18))
-    any_engine.internal.keys_of(plan)
+    plan = any_engine.plan(many, (32, 18))
+    any_engine.keys_of(plan)
     flat = replace(plan, terrain=replace(plan.terrain, relief=1.0))
-    assert any_engine.internal.keys_of(flat) == computed_from_nothing(any_engine, flat)
+    assert any_engine.keys_of(flat) == computed_from_nothing(any_engine, flat)
 
 
 REACHED = {
@@ -206,13 +205,13 @@ def test_keys_are_computed_for_what_a_change_reaches(any_engine, many, folder, w
     of_one_plan = folder.sketch(TEXT.replace('"frames"', "5"))  # a count that names the time plans anew
     frames, made = Frames(any_engine, of_one_plan, folder), []
     usual = cache_keys._KeyComputation.part
-    any_engine.internal.keys_of(frames.plan())
+    any_engine.keys_of(frames.plan())
     frames.change(what)
     plan = frames.plan()
     monkeypatch.setattr(
         cache_keys._KeyComputation, "part", lambda self, node, *a: made.append(node) or usual(self, node, *a)
     )
-    any_engine.internal.keys_of(plan)
+    any_engine.keys_of(plan)
     assert {node.path.partition(".")[0] for node in made} == REACHED[what]
 
 
@@ -235,7 +234,7 @@ def test_a_frame_takes_next_to_nothing_for_a_pass_that_has_not_changed(any_engin
             for each in moved[:-1]:
                 engine.draw(each, size=(16, 9))
             calls[count] = calls_of(lambda draw=engine.draw, last=moved[-1]: draw(last, size=(16, 9)))
-            assert engine.internal.ran and all(path.startswith("view") for path in engine.internal.ran)
+            assert engine.record.ran and all(path.startswith("view") for path in engine.record.ran)
     # One call a pass would be 200. What is in use is taken from the cache and weighed, which is nine.
     most = 10 * 200 if what == CHAINED else 100
     assert calls[210] - calls[10] <= most

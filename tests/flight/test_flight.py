@@ -190,9 +190,9 @@ def test_a_flight_of_ten_minutes_at_full_speed_keeps_its_memory(small_engine, te
     assert flight.craft.steps == steps and flight.craft.seconds == pytest.approx(600.0)
     assert flight.parts.made > 100 and len(flight.parts._all) <= slots < 30
     assert flight.parts.bytes == len(flight.parts._all) * next(iter(flight.parts.slots.values())).bytes
-    assert small_engine.internal.cache.bytes <= small_engine.internal.cache.limit
-    assert small_engine.internal.pool.bytes <= small_engine.internal.pool.limit
-    assert small_engine.internal.runs["height.detail"] <= 3
+    assert small_engine.cache.bytes <= small_engine.cache.limit
+    assert small_engine.runner.pool.bytes <= small_engine.runner.pool.limit
+    assert small_engine.runs["height.detail"] <= 3
     flights.close()
 
 

@@ -141,13 +141,13 @@ def test_at_another_hour_all_are_lit_anew_nearest_first_and_the_terrain_stays(sm
     parts.look(*middle(plot, (0, 0)), 0.0)
     parts.tend(100)
     before = {p: contents(parts.slots[p]) for p in parts.wanted}
-    heights = small_engine.internal.runs["height.shape"]
+    heights = small_engine.runs["height.shape"]
     parts.hour = 15.0
     assert parts.missing == len(parts.wanted) == 5
     parts.tend(1)
     assert parts.slots[(0, 0)].hour == 15.0 and parts.missing == 4
     parts.tend(100)
-    assert parts.missing == 0 and small_engine.internal.runs["height.shape"] == heights
+    assert parts.missing == 0 and small_engine.runs["height.shape"] == heights
     for part, (height, ground) in before.items():
         now = contents(parts.slots[part])
         np.testing.assert_array_equal(now[0], height)

@@ -225,7 +225,7 @@ def test_two_directions_are_enough_for_the_arc(read):
 
 def ran(kept):
     """Return what ran for the last picture, but for what only a software renderer knows to be the same."""
-    return sorted(set(kept.internal.ran) - (set() if kept.info.software else {"light.between"}))
+    return sorted(set(kept.record.ran) - (set() if kept.info.software else {"light.between"}))
 
 
 @pytest.mark.parametrize("use", ["horizon_sun", "analytic"])
@@ -255,7 +255,7 @@ def test_a_sun_that_comes_between_two_other_horizons_has_those_taken(kept, sketc
         moved = made.with_values({"light.sun": (azimuth, 15)})
         found = kept.read(moved, "light:visibility")
         if kept.info.software:
-            assert ("light.between" in kept.internal.ran) == taken, azimuth
+            assert ("light.between" in kept.record.ran) == taken, azimuth
         angles = [kept.read(moved, f"light.angles:{name}") for name in ("upright", "slanting")]
         around = 90 * np.concatenate(angles, axis=-1)[..., [0, 4, 2, 6, 1, 5, 3, 7]].astype(np.float64)
         sector = (-azimuth / 45) % 8
@@ -302,7 +302,7 @@ def test_a_sun_on_a_free_arc_is_measured_anew_when_its_azimuth_changes(kept, ske
     kept.read(made.with_values({"light.sun": (135, 60)}), "light")
     assert ran(kept) == ["light.light", "light.stand", "light.table"]
     kept.read(made.with_values({"light.sun": (140, 60)}), "light")
-    assert any("horizons" in path for path in kept.internal.ran)
+    assert any("horizons" in path for path in kept.record.ran)
     eight = made.with_values({"light.measured": "eight directions", "light.sun": (140, 60)})
     kept.read(eight, "light")
     kept.read(eight.with_values({"light.sun": (150, 60)}), "light")

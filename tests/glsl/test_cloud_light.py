@@ -142,8 +142,8 @@ def test_heaps_send_as_much_light_as_photons_do(any_engine, make_sketch, cover, 
     found = any_engine.read(sketch, "seen", size=SEEN).astype(np.float64)[..., 1].mean()
     tile = any_engine.read(sketch, "cloud", size=SEEN).astype(np.float64)[..., 0]
     cube = cube_of(any_engine.read(sketch, "billows", size=SEEN).astype(np.float64)[..., 0])
-    eye = np.asarray(any_engine.internal.plan.eye.position, np.float64)
-    ahead = rays(any_engine.internal.plan.eye, SEEN).reshape(-1, 3)
+    eye = np.asarray(any_engine.record.plan.eye.position, np.float64)
+    ahead = rays(any_engine.record.plan.eye, SEEN).reshape(-1, 3)
     truth = photons(Heaps(tile, cube), eye, ahead, sun, np.random.default_rng(5))
     assert found == pytest.approx(truth, rel=0.2)
 

@@ -98,7 +98,7 @@ def test_clouds_hide_as_much_as_their_shadows_do(any_engine, outdoors, drawn, co
         for north in np.arange(0.0, 6000.0, 1000.0):
             now = looking(sketch, 0.0, 89.9, (east, north, 10.0), 5.0)
             left.append(any_engine.read(now, "seen", size=(32, 32)).astype(np.float64)[..., 3].mean())
-            eye = any_engine.internal.plan.eye
+            eye = any_engine.record.plan.eye
             towards = rays(eye, (32, 32))
             place = np.asarray(eye.position)[:2] + towards[..., :2] / towards[..., 2:] * 11_700
             x, y = ((place / 6000 % 1) * 256).astype(int).transpose(2, 0, 1)
@@ -173,7 +173,7 @@ def test_an_even_layer_sends_back_and_on_what_photons_do(any_engine, make_sketch
     for height, elevation, truth in ((12000.0, -89.9, above), (50.0, 89.9, below)):
         now = looking(sketch, 0.0, elevation, (500.0, 500.0, height), 88.0)
         found = any_engine.read(now, "seen", size=(64, 64)).astype(np.float64)
-        cosine = np.abs(rays(any_engine.internal.plan.eye, (64, 64))[..., 2])
+        cosine = np.abs(rays(any_engine.record.plan.eye, (64, 64))[..., 2])
         for k, wanted in enumerate(truth):
             ring = (cosine > edges[k]) & (cosine < edges[k + 1])
             assert found[ring, 1].mean() == pytest.approx(wanted, rel=0.2), (height, edges[k])
@@ -197,7 +197,7 @@ def test_without_clouds_it_is_the_sky_and_the_sun(any_engine, outdoors, drawn):
     sketch = looking(outdoors(rest, {"look": LOOK}, sun=[95.0, 12.0], clouds=0.0), 90.0, 8.0)
     found = any_engine.read(sketch, "sky", size=SEEN).astype(np.float64)[..., :3]
     wanted = any_engine.read(sketch, "look", size=SEEN).astype(np.float64)[..., :3]
-    towards = rays(any_engine.internal.plan.eye)
+    towards = rays(any_engine.record.plan.eye)
     sun = np.arccos(np.clip(towards @ sun_vector(95.0, 12.0), -1, 1))
     above = (towards[..., 2] > 0.01) & (sun > np.radians(1.5))
     np.testing.assert_allclose(found[above], wanted[above], rtol=0.03)
@@ -238,7 +238,7 @@ def test_far_clouds_have_the_colour_of_the_air(any_engine, outdoors, drawn):
     slices = [any_engine.read(sketch, f"air:{name}", size=SEEN) for name in ("scattered", "left")]
     # The farthest slice, 32 x 20 texels of three pixels and 3.2; the horizon is between two of its rows.
     far, left = (each.astype(np.float64)[69:71, 96:, :3].mean(axis=0) for each in slices)
-    rises = rays(any_engine.internal.plan.eye)[..., 2]
+    rises = rays(any_engine.record.plan.eye)[..., 2]
     assert (np.abs(rises[31:33]) < 1e-3).all()
     columns = slice(1, None, 3)  # in the middles of texels
     found, clear = (each[31:33, columns, :3].mean(axis=0, dtype=np.float64) for each in (found, clear))

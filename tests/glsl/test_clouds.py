@@ -57,7 +57,7 @@ def test_their_cover_is_daylight_s(any_engine, make_sketch):
     sketch = field(make_sketch, day=day)
     any_engine.read(sketch, "field")
     any_engine.read(sketch.with_values({"daylight.hour": 15.0}), "field")
-    assert not any(name.startswith("field") for name in any_engine.internal.ran)
+    assert not any(name.startswith("field") for name in any_engine.record.ran)
 
 
 def test_a_tile_fits_beside_its_copy(any_engine, make_sketch):

@@ -75,7 +75,7 @@ def test_with_a_clock_the_sun_moves_and_without_one_nothing_runs(any_engine, mak
     sketch = make_sketch(still.format(9.0, 100))
     any_engine.read(sketch, "daylight", time=0.0)
     any_engine.read(sketch, "daylight", time=5.0)
-    assert any_engine.internal.ran == []
+    assert any_engine.record.ran == []
 
 
 # ── its light, and the sky's ─────────────────────────────────────────────────
@@ -428,7 +428,7 @@ def test_the_sun_s_disc_is_where_the_sun_is_and_half_a_degree_wide(any_engine, o
     sketch = looking(outdoors(sun), sun[0] + 1.0, field=12.0)
     size = (320, 240)
     found = any_engine.read(sketch, "view.sky", size=size)[..., 0].astype(np.float64)
-    plan = any_engine.internal.plan
+    plan = any_engine.record.plan
     assert plan is not None
     far = np.asarray(plan.eye.position, np.float64) + 1e7 * sun_vector(*sun)
     clip = plan.eye.clip_from_world.astype(np.float64) @ [*far, 1.0]
@@ -447,7 +447,7 @@ def test_the_sky_behind_the_terrain_is_daylight_s(any_engine, outdoors):
     dome = any_engine.read(sketch, "daylight", size=SEEN).astype(np.float64)[..., :3]
     row, dome = dome[0], dome[1:]
     any_engine.render(sketch, size=SEEN)
-    eye = any_engine.internal.plan.eye
+    eye = any_engine.record.plan.eye
     y, x = np.mgrid[0 : SEEN[1], 0 : SEEN[0]] + 0.5
     clip = np.stack([x / SEEN[0] * 2 - 1, y / SEEN[1] * 2 - 1, np.ones_like(x), np.ones_like(x)], axis=-1)
     away = clip @ np.linalg.inv(eye.clip_from_world.astype(np.float64)).T
@@ -480,8 +480,8 @@ def test_a_camera_that_moves_lights_nothing_anew(any_engine, outdoors):
     sketch = outdoors((180.0, 40.0))
     any_engine.draw(looking(sketch, 180.0), size=(32, 24))
     any_engine.draw(looking(sketch, 190.0), size=(32, 24))
-    assert any_engine.internal.ran and all(path.startswith("view.") for path in any_engine.internal.ran), (
-        any_engine.internal.ran
+    assert any_engine.record.ran and all(path.startswith("view.") for path in any_engine.record.ran), (
+        any_engine.record.ran
     )
 
 
@@ -494,5 +494,5 @@ def test_a_dome_of_any_width_has_the_same_bits_by_its_halves(any_engine, make_sk
     text += 'bounced = "daylight:bounced", air = "daylight.air:air" }\n'
     sketch = make_sketch(text)
     found = any_engine.read(sketch, "dome")
-    assert "dome.fast.dome" in any_engine.internal.record.ran
+    assert "dome.fast.dome" in any_engine.record.ran
     np.testing.assert_array_equal(found, any_engine.read(sketch.plainly(), "dome"))

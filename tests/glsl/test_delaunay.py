@@ -192,7 +192,7 @@ def test_samples_of_the_view_leave_heights_alone(any_engine, terrain):
     sketch = terrain((33, 33), points=60)
     first = any_engine.read(replace(sketch, samples=1), "terrain.tin")
     np.testing.assert_array_equal(any_engine.read(replace(sketch, samples=8), "terrain.tin"), first)
-    assert any_engine.internal.runs["terrain.tin"] == 1
+    assert any_engine.runs["terrain.tin"] == 1
 
 
 def test_more_triangles_than_there_are_add_nothing(any_engine, make_sketch):

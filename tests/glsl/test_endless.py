@@ -159,7 +159,7 @@ def test_a_part_does_not_depend_on_the_way_there(ctx, part_of):
         for part in ((0, 0), (1, 0), (2, 0), (7, 7)):
             one.read(part_of(part), "light")
         first = {ref: one.read(part_of((7, 7)), ref) for ref in ("height", "colour", "light")}
-        one.internal.cache.clear()
+        one.cache.clear()
         for ref, values in first.items():
             np.testing.assert_array_equal(one.read(part_of((7, 7)), ref), values)
             np.testing.assert_array_equal(other.read(part_of((7, 7)), ref), values)
@@ -168,8 +168,8 @@ def test_a_part_does_not_depend_on_the_way_there(ctx, part_of):
 def test_the_detail_is_made_once_for_all_parts(any_engine, part_of):
     for x in range(6):
         any_engine.texture(part_of((x, 1)), "height")
-    assert any_engine.internal.runs["height.detail"] == 1
-    assert any_engine.internal.runs["height.shape"] == any_engine.internal.runs["height.height"] == 6
+    assert any_engine.runs["height.detail"] == 1
+    assert any_engine.runs["height.shape"] == any_engine.runs["height.height"] == 6
 
 
 def test_the_detail_fits_next_to_its_copy(any_engine, part_of):

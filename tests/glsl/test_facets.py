@@ -23,8 +23,8 @@ def sketch_of(make_sketch):
 
 def pixels_of(engine, points):
     """Return where points of the terrain are in the last picture: column and row from the foot."""
-    clip = np.c_[points, np.ones(len(points))] @ engine.internal.plan.eye.clip_from_world.astype(float).T
-    return ((clip[:, :2] / clip[:, 3:] + 1) / 2 * engine.internal.plan.frame_size).astype(int)
+    clip = np.c_[points, np.ones(len(points))] @ engine.record.plan.eye.clip_from_world.astype(float).T
+    return ((clip[:, :2] / clip[:, 3:] + 1) / 2 * engine.record.plan.frame_size).astype(int)
 
 
 def triangles(heights):

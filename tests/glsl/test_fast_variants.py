@@ -141,7 +141,7 @@ def test_where_the_plain_form_runs_nothing_is_compared_and_nothing_drawn(ctx):
     place = next(p for p in places_in(sketch, GLSL) if p.path == "view")
     with Engine(ctx) as engine:
         assert compared(engine, place).drawings == 0
-        assert not engine.internal.runs
+        assert not engine.runs
 
 
 @pytest.mark.parametrize("path", ["height.noise.direction", "height.spectrum.direction"])

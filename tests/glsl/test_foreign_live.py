@@ -77,8 +77,8 @@ def test_a_key_is_down_pressed_once_and_toggled():
 def test_the_texture_is_shadertoy_s(any_engine, sketch):
     assert any_engine.read(sketch, "a").shape == (3, 256)
     assert (any_engine.read(sketch, "a") == 0).all(), "a shot has no keys"
-    any_engine.internal.runner.inputs.keyboard.hold([LEFT, A])
-    any_engine.internal.runner.inputs.keyboard.hold([A])
+    any_engine.runner.inputs.keyboard.hold([LEFT, A])
+    any_engine.runner.inputs.keyboard.hold([A])
     found = any_engine.read(sketch, "a")
     assert [np.flatnonzero(row).tolist() for row in found] == [[A], [], [LEFT, A]]
     assert found.max() == 1.0
@@ -88,29 +88,29 @@ def test_the_texture_is_shadertoy_s(any_engine, sketch):
 def test_a_picture_s_hash_goes_by_its_keys(any_engine, sketch):
     hashes = []
     for codes in ([], [A], [A]):
-        any_engine.internal.runner.inputs.keyboard.hold(codes)
+        any_engine.runner.inputs.keyboard.hold(codes)
         any_engine.draw(sketch, size=(4, 4))
-        hashes.append((any_engine.internal.drawn(), any_engine.fingerprint(sketch, size=(4, 4))))
+        hashes.append((any_engine.drawn(), any_engine.fingerprint(sketch, size=(4, 4))))
     assert len({*hashes}) == 3, "none; pressed; held"
 
 
 def test_its_pass_runs_only_when_a_key_changes(any_engine, sketch):
-    keyboard = any_engine.internal.runner.inputs.keyboard
+    keyboard = any_engine.runner.inputs.keyboard
     for codes in ([], [A], [A], [A], [A, LEFT], [A, LEFT]):
         keyboard.hold(codes)
         any_engine.draw(sketch, size=(4, 4), time=keyboard.now.down.count(A))
-    assert any_engine.internal.runs["a"] == 5, "none; A pressed, held; both pressed, held"
+    assert any_engine.runs["a"] == 5, "none; A pressed, held; both pressed, held"
 
 
 def test_a_loop_over_frames_goes_on_when_a_key_changes(any_engine, tmp_path):
     (tmp_path / "counts.glsl").write_text(COUNTS)
     (tmp_path / "s.toml").write_text(STATE)
-    sketch, keyboard = load(tmp_path / "s.toml"), any_engine.internal.runner.inputs.keyboard
+    sketch, keyboard = load(tmp_path / "s.toml"), any_engine.runner.inputs.keyboard
     for frame in range(30):
         keyboard.hold([A] if frame in (5, 6, 20) else [])
         found = any_engine.read(sketch, "sums", time=frame / 60)[0, 0]
     assert found[:2].tolist() == [2.0, 30.0], "two presses in thirty frames"
-    assert any_engine.internal.runs["sums"] == 30, "each frame once"
+    assert any_engine.runs["sums"] == 30, "each frame once"
 
 
 # ── microphones and cameras ──────────────────────────────────────────────────
@@ -160,7 +160,7 @@ def live_sketch(tmp_path, source: str, setting: str = ""):
 
 @pytest.fixture
 def inputs(any_engine):
-    found = any_engine.internal.runner.inputs
+    found = any_engine.runner.inputs
     found.is_live = True
     yield found
     found.close()
@@ -176,9 +176,9 @@ def test_a_microphone_s_tone_stands_in_its_texture(any_engine, inputs, tmp_path)
     heard = any_engine.read(sketch, "a")
     assert heard[0].argmax() == 120 and heard[1].std() > 0
     assert (sounds.asked["samplerate"], sounds.asked["channels"]) == (44_100, 1)
-    runs = any_engine.internal.runs["a"]
+    runs = any_engine.runs["a"]
     any_engine.read(sketch, "a", time=3.0)
-    assert any_engine.internal.runs["a"] == runs, "nothing new was heard"
+    assert any_engine.runs["a"] == runs, "nothing new was heard"
     assert not inputs.begin_frame()
     inputs.close()
     assert sounds.closed
@@ -214,8 +214,8 @@ def test_a_camera_s_pictures_are_shown(any_engine, inputs, tmp_path):
 @pytest.mark.parametrize("source", ["microphone", "camera"])
 def test_without_a_window_nothing_is_opened_and_it_is_said_once(any_engine, tmp_path, source):
     opened, reported = [], []
-    any_engine.internal.runner.inputs.makers[source] = opened.append
-    any_engine.internal.warnings.report = reported.append
+    any_engine.runner.inputs.makers[source] = opened.append
+    any_engine.warnings.report = reported.append
     sketch = live_sketch(tmp_path, source)
     for moment in (0.0, 1.0):
         picture = any_engine.read(sketch, "a", time=moment)
@@ -229,7 +229,7 @@ def test_without_a_window_nothing_is_opened_and_it_is_said_once(any_engine, tmp_
 
 def test_a_device_that_is_not_there_is_said_with_its_channel(any_engine, inputs, tmp_path):
     reported = []
-    any_engine.internal.warnings.report = reported.append
+    any_engine.warnings.report = reported.append
     sounds = FakeSounds(np.zeros(1), fails=OSError("PortAudio library not found"))
     inputs.makers["microphone"] = lambda number: microphone(number, lambda: sounds)
     sketch = live_sketch(tmp_path, "microphone")
@@ -271,11 +271,11 @@ def exported(code: str) -> str:
 )
 def test_a_shadertoy_that_reads_the_keyboard_gets_it(any_engine, tmp_path, name, text):
     (tmp_path / name).write_text(text)
-    sketch, keyboard = load(tmp_path / name), any_engine.internal.runner.inputs.keyboard
+    sketch, keyboard = load(tmp_path / name), any_engine.runner.inputs.keyboard
     assert traits_of(sketch).keys
     red = []
     for codes in ([], [A], [], [A]):
         keyboard.hold(codes)
         red.append(int(any_engine.render(sketch, size=(2, 2)).array[0, 0, 0]))
     assert red == [0, 255, 255, 0]
-    assert source_warnings(any_engine.internal.plan_for(sketch, (2, 2))) == (), "it is fed"
+    assert source_warnings(any_engine.plan(sketch, (2, 2))) == (), "it is fed"

@@ -70,9 +70,9 @@ def test_a_film_s_pass_runs_only_when_its_frame_changes(any_engine, sketch, tmp_
     made = sketch("video", 'video = "v.mp4"')
     for time in (0.0, 0.01, 0.099, 0.1, 0.15, 0.5, 0.55):  # frames 0 0 0 1 1 0 0
         any_engine.draw(made, size=(32, 24), time=time)
-    assert any_engine.internal.runs["a"] == 2, "the loop's first frame is still there"
-    assert any_engine.internal.stale(made, size=(32, 24), time=0.19) == []
-    assert any_engine.internal.stale(made, size=(32, 24), time=0.2) == ["a", "view.view"]
+    assert any_engine.runs["a"] == 2, "the loop's first frame is still there"
+    assert any_engine.stale(made, size=(32, 24), time=0.19) == []
+    assert any_engine.stale(made, size=(32, 24), time=0.2) == ["a", "view.view"]
 
 
 @pytest.mark.parametrize(
@@ -158,7 +158,7 @@ def test_a_film_moves_the_picture_and_is_not_cached_on_disk(any_engine, sketch, 
     own_film(tmp_path / "v.mp4", count=2)
     made = sketch("video", 'video = "v.mp4"')
     assert is_animated(made)
-    assert "a" in passing(any_engine.internal.plan_for(made, (32, 24)))
+    assert "a" in passing(any_engine.plan(made, (32, 24)))
 
 
 def test_a_misspelt_film_has_its_nearest_name(any_engine, sketch, tmp_path):

@@ -443,9 +443,9 @@ def test_the_magnitude_of_a_spectrum(engine, make_sketch):
 def test_the_fast_variant_makes_the_terrain_where_there_is_compute(any_engine, sketch_of):
     sketch = sketch_of((64, 64))
     any_engine.read(sketch, "terrain")
-    assert (any_engine.internal.ran == ["terrain"]) == any_engine.info.compute
+    assert (any_engine.record.ran == ["terrain"]) == any_engine.info.compute
     any_engine.read(sketch, "terrain", steps={"terrain.spectrum": 3})
-    assert "terrain.spectrum" in any_engine.internal.ran, "iterations are not shown by the fast variant"
+    assert "terrain.spectrum" in any_engine.record.ran, "iterations are not shown by the fast variant"
 
 
 @pytest.mark.parametrize("side", [2**n + more for n in range(1, 10) for more in (0, 1)])
@@ -477,7 +477,7 @@ def test_sides_too_long_for_the_fast_variant_have_the_plain_form_run(ctx, sketch
             "the plain form runs"
         ]
         engine.read(sketch_of((8193, 2)), "terrain")
-        assert engine.internal.ran == ["terrain"] and len(notices) == 1, "by the fast variant"
+        assert engine.record.ran == ["terrain"] and len(notices) == 1, "by the fast variant"
 
 
 @pytest.mark.parametrize("seed", [3, 8])
@@ -491,7 +491,7 @@ def test_long_sides_of_the_fast_variant_are_scipys(ctx, sketch_of, size, seed):
     nx, ny = even(size)
     with Engine(ctx) as engine:
         found = engine.read(sketch_of(size, seed=seed), "terrain")
-        assert engine.internal.ran == ["terrain"], "by the fast variant"
+        assert engine.record.ran == ["terrain"], "by the fast variant"
         waves = as_complex(engine.read(sketch_of(size, seed=seed), "terrain.waves"))
     f = frequencies(nx, ny)
     f[0, 0] = 1.0

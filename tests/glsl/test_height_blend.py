@@ -164,7 +164,7 @@ def test_its_own_images_stand_in_where_none_is_wired(any_engine, make_sketch):
     assert grass[1] > grass[0] > grass[2]
     assert grass.sum() < rock.sum() < snow.sum()
     inside = ("grass_tile", "grass", "rock_tile", "rock", "snow_tile", "snow", "ragged", "mix")
-    assert any_engine.internal.ran == ["height", *(f"colour.{name}" for name in inside)]
+    assert any_engine.record.ran == ["height", *(f"colour.{name}" for name in inside)]
 
 
 def test_less_detail_is_less_contrast_about_the_same_mean(engine, make_sketch):

@@ -33,7 +33,7 @@ def metres():
 
 def test_a_real_terrain_comes_back_in_metres(engine, sketch_of, metres):
     sketch = sketch_of()
-    terrain = engine.internal.plan_for(sketch, (64, 64)).terrain
+    terrain = engine.plan(sketch, (64, 64)).terrain
     found = engine.read(sketch, "terrain").astype(np.float64)
     assert terrain.size == metres.shape[::-1] and found.shape == metres.shape
     assert (found.min(), found.max()) == (0.0, 1.0)
@@ -44,7 +44,7 @@ def test_a_real_terrain_comes_back_in_metres(engine, sketch_of, metres):
 
 def test_a_real_terrain_is_as_long_as_its_degrees(engine, sketch_of):
     """Three arc seconds at 36.6 degrees north: about 92.5 m north and 74.5 m east."""
-    terrain = engine.internal.plan_for(sketch_of(), (64, 64)).terrain
+    terrain = engine.plan(sketch_of(), (64, 64)).terrain
     spacing = terrain.extent[0] / (terrain.size[0] - 1), terrain.extent[1] / (terrain.size[1] - 1)
     assert spacing == pytest.approx((74.5, 92.5), abs=0.3)
 
@@ -69,7 +69,7 @@ def test_twice_as_fine_a_grid_keeps_the_texels_of_the_file(engine, sketch_of, me
 
 
 def test_the_sketch_may_overrule_the_files_metres(engine, sketch_of):
-    terrain = engine.internal.plan_for(
+    terrain = engine.plan(
         sketch_of("relief = 10.0\nextent = [5.0, 6.0]\nbase_elevation = -2.0"), (64, 64)
     ).terrain
     assert (terrain.relief, terrain.extent, terrain.base_elevation) == (10.0, (5.0, 6.0), -2.0)
@@ -80,7 +80,7 @@ def test_greys_stand_between_two_heights(engine, sketch_of, tmp_path):
     greys = np.linspace(51, 204, 12).astype(np.uint8).reshape(3, 4)  # north first
     PillowImage.fromarray(greys).save(tmp_path / "grey.png")
     sketch = sketch_of(values='elevation = "grey.png"\nmetres = [100.0, 1120.0]')
-    terrain = engine.internal.plan_for(sketch, (64, 64)).terrain
+    terrain = engine.plan(sketch, (64, 64)).terrain
     found = engine.read(sketch, "terrain") * terrain.relief + terrain.base_elevation
     np.testing.assert_allclose(found, 100 + greys[::-1] / 255 * 1020, atol=1e-3)
 

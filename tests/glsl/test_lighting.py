@@ -373,10 +373,10 @@ def test_moving_the_sun_leaves_the_terrain_and_what_is_known_of_it_alone(any_eng
     sketch = lit(HILLS, "ray_cast", (135, 25), form=form)
     any_engine.read(sketch, "light")
     known = {"light.visibility.fast.block_maxima", "light.visibility.fast.range.whole"}
-    assert known | {"height"} < set(any_engine.internal.ran)
+    assert known | {"height"} < set(any_engine.record.ran)
     any_engine.read(sketch.with_values({"light.sun": (140, 25)}), "light")
-    assert any_engine.internal.ran == ["light.horizon", "light.visibility.fast.visibility", "light.light"]
-    shapes = {step.path: step.size for step in any_engine.internal.plan.walk()}
+    assert any_engine.record.ran == ["light.horizon", "light.visibility.fast.visibility", "light.light"]
+    shapes = {step.path: step.size for step in any_engine.record.plan.walk()}
     assert shapes["light.horizon"] == ((65, 65) if form == "sweep" else (1, 1))
 
 

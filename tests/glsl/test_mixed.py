@@ -53,9 +53,9 @@ def test_its_shape_is_the_technique_with_its_fast_form(ctx, sketch_of):
     for use in ("mixed", "mixed_tiled"):
         with Engine(ctx) as engine:
             engine.texture(sketch_of(use=use), "terrain")
-            assert "terrain.shape" in engine.internal.ran
-            assert not [name for name in engine.internal.ran if name.startswith("terrain.shape.")], (
-                engine.internal.ran
+            assert "terrain.shape" in engine.record.ran
+            assert not [name for name in engine.record.ran if name.startswith("terrain.shape.")], (
+                engine.record.ran
             )
 
 

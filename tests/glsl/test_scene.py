@@ -94,7 +94,7 @@ def test_what_a_pixel_is_comes_back(on_gpu):
 def test_each_pixel_has_the_point_of_a_plane_that_its_ray_meets(any_engine, scene, detail):
     sketch = scene(given=f'detail = "{detail}"').with_camera(replace(LOOK, distance=1500))
     found = any_engine.read(sketch, "view.where", size=SIZE).astype(float)
-    eye, ahead = rays(any_engine.internal.plan, all_pixels())
+    eye, ahead = rays(any_engine.record.plan, all_pixels())
     points = on_plane(eye, ahead)
     land = inside(points)
     assert land.sum() > 4000
@@ -137,7 +137,7 @@ def test_the_ground_is_read_by_its_finer_axis(any_engine, make_sketch, size):
 
 def test_a_footprint_is_the_way_to_the_points_of_the_next_pixels(any_engine, on_gpu, scene):
     any_engine.read(scene(), "view.where", size=SIZE)
-    plan = any_engine.internal.plan
+    plan = any_engine.record.plan
     pixels = np.array([[70, 60], [20, 40], [140, 30], [75, 10]])
     eye, ahead = rays(plan, pixels)
     normal = np.array([-SLOPE[0], -SLOPE[1], 1.0]) / np.linalg.norm([*SLOPE, 1.0])
@@ -298,7 +298,7 @@ def test_another_picture_of_the_sky_takes_the_plain_one_s_place(any_engine, scen
     expected = np.concatenate([all_pixels() / 256, np.full((*SIZE[::-1], 1), 0.5)], axis=-1)
     assert sky.sum() > 500
     np.testing.assert_allclose(found[sky], expected[sky], atol=1e-3)
-    assert any_engine.internal.plan.step("view.sky") is None, "which is not made in vain"
+    assert any_engine.record.plan.step("view.sky") is None, "which is not made in vain"
 
 
 def test_nothing_lights_up_at_night(any_engine, scene):
@@ -332,11 +332,11 @@ def test_a_picture_in_parts_is_the_whole_picture(any_engine, scene):
     for name, value in (("antialias", True), ("bloom", 0.1), ("adapts", True)):
         looking = sketch.with_values({"view.antialias": False, f"view.{name}": value})
         with pytest.raises(SketchError, match=f"turn '{name}' off or choose a smaller picture"):
-            any_engine.internal.draw_window(looking, window)
+            any_engine.draw_window(looking, window)
     sketch = sketch.with_values({"view.antialias": False})
     whole = any_engine.render(sketch, size=SIZE).array
     for part in (window, Window((70, 50), (80, 47), SIZE)):
         (x, y), (width, height) = part.origin, part.size
-        found = read_picture(any_engine.internal.draw_window(sketch, part))
+        found = read_picture(any_engine.draw_window(sketch, part))
         rows = slice(SIZE[1] - y - height, SIZE[1] - y)
         np.testing.assert_array_equal(found, whole[rows, x : x + width])

@@ -46,7 +46,7 @@ def slices(engine, sketch, output):
     """Read one output as (slice, row from the south, column, channel), and each column's and row's ray."""
     found = engine.read(sketch, f"air:{output}", size=SEEN).astype(np.float64)[..., :3]
     found = found.reshape(4, 20, 4, 32, 3).transpose(0, 2, 1, 3, 4).reshape(SLICES, 20, 32, 3)
-    eye = engine.internal.plan.eye
+    eye = engine.record.plan.eye
     y, x = (np.mgrid[0:20, 0:32] + 0.5) / np.array([20, 32])[:, None, None] * 2 - 1
     clip = np.stack([x, y, np.ones_like(x), np.ones_like(x)], axis=-1)
     away = clip @ np.linalg.inv(eye.clip_from_world.astype(np.float64)).T

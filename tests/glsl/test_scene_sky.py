@@ -64,7 +64,7 @@ def test_colours_fade_by_the_air_in_front_of_them(any_engine, scene):
     """What brighter ground adds has gone through air and mist; black ground shows what they add."""
     scene = scene.with_values({"view.mist": 0.3, "view.mist_top": 200.0})
     seen = read(any_engine, scene, 0.5, "view.where")
-    eye = np.asarray(any_engine.internal.plan.eye.position, np.float64)
+    eye = np.asarray(any_engine.record.plan.eye.position, np.float64)
     black, grey = read(any_engine, scene, 0.0), read(any_engine, scene, 0.5)
     row = any_engine.read(scene, "daylight", size=SIZE)[0].astype(np.float64)
     shade = any_engine.read(scene, "shade", size=SIZE).astype(np.float64)
@@ -92,7 +92,7 @@ def test_where_no_clouds_are_drawn_they_throw_no_shadows(any_engine, scene):
     """All ground is in the light of daylight's even cover, and so is the air in front of it."""
     scene = scene.with_values({"view.clouds": "none"})
     seen = read(any_engine, scene, 0.5, "view.where")
-    eye = np.asarray(any_engine.internal.plan.eye.position, np.float64)
+    eye = np.asarray(any_engine.record.plan.eye.position, np.float64)
     added = read(any_engine, scene, 0.5) - read(any_engine, scene, 0.0)
     row = any_engine.read(scene, "daylight", size=SIZE)[0].astype(np.float64)
     shade = any_engine.read(scene, "shade", size=SIZE).astype(np.float64)

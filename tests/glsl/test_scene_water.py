@@ -64,7 +64,7 @@ def read(engine, sketch, name, size=SIZE):
 
 def test_water_is_where_the_rays_meet_its_level_before_the_ground(any_engine, scene):
     found = read(any_engine, scene(), "watered.where:seen_water")
-    eye, ahead = rays(any_engine.internal.plan, all_pixels())
+    eye, ahead = rays(any_engine.record.plan, all_pixels())
     ground = on_plane(eye, ahead)
     surface = eye + ahead * ((LEVEL - eye[2]) / ahead[..., 2:])
     below = ground[..., 2] < LEVEL
@@ -85,7 +85,7 @@ def test_the_sea_goes_on_to_the_horizon_and_ends_there(any_engine, scene):
     low = Camera(azimuth=180, elevation=0.0, distance=300, target=(450, 350, LEVEL + 60.0), field_of_view=20)
     sketch = scene(height="0.05 + 0.0 * float(texel.x)").with_camera(low)
     found = read(any_engine, sketch, "watered.where:seen_water", (60, 800))
-    eye, ahead = rays(any_engine.internal.plan, np.stack(np.indices((60, 800)), axis=-1)[30][:, ::1])
+    eye, ahead = rays(any_engine.record.plan, np.stack(np.indices((60, 800)), axis=-1)[30][:, ::1])
     rise = ahead[:, 2] / np.linalg.norm(ahead[:, :2], axis=1)
     column = found[:, 30]
     water = column[:, 3] == 3
@@ -133,7 +133,7 @@ def test_calm_water_mirrors_a_peak_within_a_pixel(any_engine, scene, peak, away,
     found = read(any_engine, dark, "watered.surface", size)[..., 0]
     places = read(any_engine, dark, "watered.where:seen_water", size)
     water = places[..., 3] == 3
-    plan = any_engine.internal.plan
+    plan = any_engine.record.plan
     heights = any_engine.read(dark, "height").astype(float)
     row, column = np.unravel_index(heights.argmax(), heights.shape)
     top = np.array([column / 180 * EXTENT[0], row / 140 * EXTENT[1], 2 * 15.0 - heights.max() * RELIEF, 1.0])
@@ -161,7 +161,7 @@ def test_what_is_mirrored_is_lit_as_it_is_seen(any_engine, scene):
         read(any_engine, lit, name, size)
         for name in ("shaded", "watered.surface", "where", "watered.where:seen_water")
     )
-    eye = any_engine.internal.plan.eye
+    eye = any_engine.record.plan.eye
     high = (seen[..., 3] == 1) & (seen[..., 2] > 25.0)
     points, light = seen[high][:, :3], shown[high][:, :3]
     image = np.column_stack([points[:, :2], 30.0 - points[:, 2], np.ones(len(points))])
@@ -192,7 +192,7 @@ def test_a_picture_in_parts_is_the_whole_picture(any_engine, scene):
     sketch = scene(given="wind = 5.0, foam = 1.0")
     whole = any_engine.render(sketch, size=SIZE).array
     part = Window((40, 20), (80, 47), SIZE)
-    found = read_picture(any_engine.internal.draw_window(sketch, part))
+    found = read_picture(any_engine.draw_window(sketch, part))
     (x, y), (width, height) = part.origin, part.size
     there = whole[SIZE[1] - y - height : SIZE[1] - y, x : x + width]
     # A corner of the mesh is rounded otherwise from another corner of the picture.
@@ -244,7 +244,7 @@ def mirrored_and_above(engine, make_sketch, cover):
     for azimuth in range(0, 360, 60):
         look = Camera(azimuth=azimuth, distance=50.0, target=(2000.0, 2000.0, 80.0), field_of_view=24)
         below = read(engine, sketch.with_camera(replace(look, elevation=18.0)), "watered.surface", size)
-        _, ahead = rays(engine.internal.plan, all_pixels(size))
+        _, ahead = rays(engine.record.plan, all_pixels(size))
         rise = ahead[..., 2] / np.linalg.norm(ahead, axis=-1)
         below = below[..., :3] / fresnel(-rise)[..., None]
         up = replace(look, elevation=-18.0)
@@ -298,7 +298,7 @@ def test_deep_water_is_darker_and_less_red(any_engine, scene):
     land = read(any_engine, sketch, "where")[..., 3] == 1
     mask = water & land & (depth > 0.3) & (depth < 3.0)
     assert mask.sum() > 20
-    to_eye = np.array(any_engine.internal.plan.eye.position) - place[mask][:, :3]
+    to_eye = np.array(any_engine.record.plan.eye.position) - place[mask][:, :3]
     up = to_eye[:, 2] / np.linalg.norm(to_eye, axis=1)
     # Snell: a path of a metre's depth, from the sun, of which CALM has the place only, and to the eye.
     path = sum(1 / np.sqrt(1 - (1 - c**2) / INDEX**2) for c in (np.sin(np.radians(25.0)), up))

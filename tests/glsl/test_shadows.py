@@ -386,7 +386,7 @@ def test_both_drivers_sweep_alike(ctx, lit):
             sketch = lit(HILLS, "sun_sweep", (azimuth, 9.0), size=[49, 65], relief=300.0, **shape)
             found = [engine.read(sketch, "light") for engine in (plain, swept)]
             np.testing.assert_array_equal(found[0], found[1])
-        assert swept.internal.plan.step("light").kernel.kind == "compute"
+        assert swept.record.plan.step("light").kernel.kind == "compute"
 
 
 @pytest.mark.parametrize("method", ["ray_cast", "soft_cone", "sun_disc"])
@@ -399,16 +399,16 @@ def test_without_compute_shaders_the_sweep_is_a_march_and_one_sentence_says_so(c
     with Engine(ctx, driver="fragment", notice=said.append) as plain, Engine(ctx) as swept:
         march, sweep = (lit(HILLS, method, (100, 9), form=form, **values) for form in ("march", "sweep"))
         sweep_on_grid = visible(plain, sweep)
-        assert plain.internal.plan.step("light.horizon").size == (1, 1)
+        assert plain.record.plan.step("light.horizon").size == (1, 1)
         assert said == [
             f"light does without compute shaders, which are not here: see glsl/lighting/{method}.toml"
         ]
         assert visible(swept, sweep).shape == sweep_on_grid.shape == (65, 65), (
             "a texel for each of the terrain's"
         )
-        assert swept.internal.plan.step("light.horizon").size == (65, 65)
+        assert swept.record.plan.step("light.horizon").size == (65, 65)
         np.testing.assert_array_equal(sweep_on_grid[::2, ::2], visible(plain, march))
-        assert len(said) == 1 and plain.internal.plan.step("light.visibility.fast.block_maxima").size == (
+        assert len(said) == 1 and plain.record.plan.step("light.visibility.fast.block_maxima").size == (
             5,
             5,
         )

@@ -371,7 +371,7 @@ def test_another_sun_sums_no_sky_anew(ctx, kept, tmp_path):
     sketch = lit_by(tmp_path, real(33), "under_test", "interreflection", passes=passes)
     kept.read(sketch, "under_test")
     kept.read(sketch.with_values({"light.sun": (100, 30), "under_test.ambient": 0.2}), "under_test")
-    assert kept.internal.ran == ["light", "under_test.add"]
+    assert kept.record.ran == ["light", "under_test.add"]
 
 
 @pytest.mark.parametrize("use", ["horizon_sky", "sky_patches", "interreflection"])

@@ -294,7 +294,7 @@ def test_far_away_one_layer_gives_way_to_another(any_engine, make_sketch):
     assert (found.sum(axis=-1) == 255).all()
     y, x = np.indices((21, 41))
     places = np.stack([x * 25.0, y * 25.0, 300 * (0.3 + 0.002 * x)], axis=-1)
-    away = np.linalg.norm(places - np.array(any_engine.internal.plan.eye.position), axis=-1)
+    away = np.linalg.norm(places - np.array(any_engine.record.plan.eye.position), axis=-1)
     assert away.min() < 700 and away.max() > 1100
     gone = np.clip((away - 700) / 400, 0, 1)
     np.testing.assert_allclose(found[..., 2], 153 * gone, atol=1.01)
@@ -310,4 +310,4 @@ def test_a_moved_camera_runs_the_distance_and_not_the_rules(any_engine, make_ske
     sketch = make_sketch(text, terrain=HEIGHT.format("0.5"))
     any_engine.read(sketch, "weights")
     any_engine.read(sketch.with_camera(Camera(azimuth=100)), "weights")
-    assert any_engine.internal.ran == ["weights"]
+    assert any_engine.record.ran == ["weights"]

@@ -50,7 +50,7 @@ def test_each_pixel_of_level_terrain_has_its_layers_by_their_weights(any_engine,
     )
     found = any_engine.read(above(sketch), "view.land", size=(128, 128))[..., :3].astype(float)
     rows, columns = np.indices((128, 128)) + 0.5
-    clip = any_engine.internal.plan.eye.clip_from_world.astype(float)
+    clip = any_engine.record.plan.eye.clip_from_world.astype(float)
     # Pixels back to the level ground.
     inverse = np.linalg.inv(clip[np.ix_([0, 1, 3], [0, 1, 3])])
     place = np.stack([columns / 64 - 1, rows / 64 - 1, np.ones_like(rows)], axis=-1) @ inverse.T
@@ -251,7 +251,7 @@ def test_tiles_repeat_so_often_each(any_engine, make_sketch):
     sketch = above(make_sketch(text, terrain=HEIGHT.format("0.0"), weights=alone, **half))
     row = any_engine.read(sketch, "view.land", size=(200, 200))[100, :, 0].astype(float)
     clip = (
-        any_engine.internal.plan.eye.clip_from_world.astype(float)
+        any_engine.record.plan.eye.clip_from_world.astype(float)
         @ np.array([[0, 500, 0, 1], [1000, 500, 0, 1]]).T
     )
     left, right = ((clip[0] / clip[3] + 1) * 100).round().astype(int)

@@ -53,7 +53,7 @@ def linear_frame(engine, sketch, name="view.land"):
 
 def on_the_ground(engine, shape):
     """Where each pixel's ray meets height 0, and how far from the eye, in float64."""
-    eye = engine.internal.plan.eye
+    eye = engine.record.plan.eye
     rows, columns = shape
     x = (np.arange(columns) + 0.5) / columns * 2 - 1
     y = (np.arange(rows) + 0.5) / rows * 2 - 1

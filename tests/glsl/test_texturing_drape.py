@@ -102,7 +102,7 @@ def test_a_pass_in_the_image_s_place_keeps_its_bits_at_its_own_size(engine, make
     )
     sketch = make_sketch(text, size=33, photo=EASTWARD)
     np.testing.assert_array_equal(engine.read(sketch, "c"), engine.read(sketch, "photo"))
-    assert "c.image" not in engine.internal.ran, "a file that nobody reads is not read"
+    assert "c.image" not in engine.record.ran, "a file that nobody reads is not read"
 
 
 def test_a_pass_of_another_size_is_stretched_corner_to_corner(engine, make_sketch):

@@ -197,7 +197,7 @@ def test_a_tile_has_a_share_of_the_interpolations(any_engine, sketch_of, use):
     """Interpolations are counted as texels of the pass that makes the tile."""
     texels = {}
     for tiles in (1, 2, 4, 8, 16):
-        plan = any_engine.internal.plan_for(sketch_of(use, 1025, tiles=tiles), (64, 64))
+        plan = any_engine.plan(sketch_of(use, 1025, tiles=tiles), (64, 64))
         makes_it = "terrain.tile" if any_engine.info.compute else "terrain.tile.fast.along"
         width, height = plan.node(makes_it).size
         texels[tiles] = width * height
@@ -257,7 +257,7 @@ def test_the_tile_shows_in_the_curvature(any_engine, sketch_of):
 def test_a_tile_without_detail_is_warned_of(any_engine, sketch_of, use, size, values):
     """Whether a tile has detail is seen in the tile itself."""
     warned = []
-    any_engine.internal.warnings.report = lambda found: warned.append(found.message)
+    any_engine.warnings.report = lambda found: warned.append(found.message)
     sketch = sketch_of(use, size, **values)
     tile = any_engine.read(sketch, "terrain.tile").astype(np.float64)
     any_engine.read(sketch, "terrain")

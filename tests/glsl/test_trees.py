@@ -95,7 +95,7 @@ def test_none_stands_in_water_and_all_others_stay(kept, ctx, make_sketch, level)
 def test_farther_away_fewer_are_kept_by_a_known_share(kept, ctx, make_sketch):
     sketch = placed(make_sketch, "all_round = true, whole = 150, reach = 1200, trees = 200000")
     tree, key = table(kept, sketch)
-    eye = np.array(kept.internal.plan_for(sketch, (640, 360)).eye.position)
+    eye = np.array(kept.plan(sketch, (640, 360)).eye.position)
 
     def share(x, y):
         away = np.sqrt(
@@ -114,7 +114,7 @@ def test_a_tree_stays_where_it_is_when_the_eye_moves(kept, ctx, make_sketch):
     near = "all_round = true, whole = 5000, reach = 700, trees = 200000"
     moves = [dict(at=(1300.0, 700.0)), dict(at=(1553.0, 711.0)), dict(at=(1300.0, 700.0), azimuth=77.0)]
     found = [table(kept, placed(make_sketch, near, **move)) for move in moves]
-    eyes = [kept.internal.plan_for(placed(make_sketch, near, **m), (640, 360)).eye.position for m in moves]
+    eyes = [kept.plan(placed(make_sketch, near, **m), (640, 360)).eye.position for m in moves]
     for (tree, _), eye in zip(found[1:], eyes[1:], strict=True):
         first = found[0][0]
         # Where both see all trees, both have the same.
@@ -139,10 +139,7 @@ def test_what_the_picture_shows_does_not_depend_on_its_size(kept, ctx, make_sket
     every = table(kept, placed(make_sketch, values.format(30) + ", all_round = true"))[0]
     assert len(small) < 0.5 * len(every) and rows(table(kept, sketch)[0]) <= rows(every)
     # Nobody who is in the picture is left out.
-    clip = (
-        np.c_[every[:, :3], np.ones(len(every))]
-        @ kept.internal.plan_for(sketch, (640, 360)).eye.clip_from_world.T
-    )
+    clip = np.c_[every[:, :3], np.ones(len(every))] @ kept.plan(sketch, (640, 360)).eye.clip_from_world.T
     shown = (np.abs(clip[:, :2]) < clip[:, 3:]).all(1)
     assert rows(every[shown]) <= rows(table(kept, sketch)[0]) and shown.sum() > 100
 

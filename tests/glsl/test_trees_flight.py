@@ -35,11 +35,11 @@ def test_no_tree_pops_along_a_flight_of_240_frames(ctx: moderngl.Context) -> Non
             east, north, up = camera.target
             moved = replace(camera, target=(east - STEP * frame, north, up))
             now = sketch.with_camera(moved)
-            plan = engine.internal.plan_for(now, (96, 54), wanted="view.place:tree")
+            plan = engine.plan(now, (96, 54), wanted="view.place:tree")
             ground = plan.terrain
             assert ground.extent is not None and ground.relief is not None
             eye = np.array(look(moved, ground.extent, ground.relief, (96, 54)).position)
-            tree = engine.internal.texture_of(plan, plan.flat.ref("view.place:tree", now.name))
+            tree = engine.texture_of(plan, plan.flat.ref("view.place:tree", now.name))
             rows = np.frombuffer(tree.read(alignment=1), np.float32).reshape(-1, 4)
             rows = rows[rows[:, 3] > 0]
             places = rows[:, 0] + 1j * rows[:, 1]

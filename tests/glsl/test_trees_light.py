@@ -171,7 +171,7 @@ def test_a_shadow_lies_where_rays_to_the_sun_meet_the_crown(
     text = SHADE.format(azimuth=azimuth, elevation=elevation)
     sketch = make_sketch(text, size=3, extent=2000.0, relief=1.0, list=LIST)
     shade = kept.read(sketch, "shade").astype(np.float64)
-    eye = np.array(kept.internal.plan_for(sketch, (640, 360)).eye.position)
+    eye = np.array(kept.plan(sketch, (640, 360)).eye.position)
     if elevation < 0:
         assert not shade.any(), "by night there are none"
         return
@@ -277,7 +277,7 @@ def test_single_trees_end_where_their_table_ends(kept, ctx, make_sketch):
     for reach in (1024, 8000):
         given = f"cell = 1, tallest = 3, whole = 60, reach = {reach}"
         found.append(stand(kept, make_sketch, 1100.0, given=given))
-        sides += [max(step.size) for step in kept.internal.plan.walk() if step.path == "view.place.cells"]
+        sides += [max(step.size) for step in kept.record.plan.walk() if step.path == "view.place.cells"]
     assert sides == [2050, 2050]
     np.testing.assert_array_equal(found[0], found[1])
 
@@ -342,7 +342,7 @@ def test_the_sun_beside_a_wood_is_what_its_trees_leave(kept, ctx, on_gpu, make_s
     place, share, tree = meadow_sun(kept, make_sketch, 700.0)
     crowns = "crown_of(t, s)"
     form = f"vec3({crowns}.middle.z, {crowns}.across, {crowns}.up)"
-    species = kept.read(kept.internal.plan.sketch, "view.species").astype(np.float64)
+    species = kept.read(kept.record.plan.sketch, "view.species").astype(np.float64)
     at = tree[:, 1::-1].T / [[8.0], [8.0]]
     shares = [map_coordinates(species[..., k], at, order=1, mode="nearest") for k in range(4)]
     shares = np.stack(shares, 1).astype(np.float32)
@@ -362,9 +362,9 @@ def test_the_sun_beside_a_wood_is_what_its_trees_leave(kept, ctx, on_gpu, make_s
 
 def test_beyond_the_square_of_tree_shadows_the_wood_shades_as_one_body(kept, ctx, make_sketch):
     place, share, _ = meadow_sun(kept, make_sketch, 100.0)
-    east, north = np.array(kept.internal.plan.eye.position[:2])
+    east, north = np.array(kept.record.plan.eye.position[:2])
     beyond = np.maximum(abs(place[:, 0] - east), abs(place[:, 1] - north)) > 50.0
-    visibility = kept.read(kept.internal.plan.sketch, "high.visibility").astype(np.float64)
+    visibility = kept.read(kept.record.plan.sketch, "high.visibility").astype(np.float64)
     x, y = place[beyond, 0] / 8, place[beyond, 1] / 8
     column, row = x.astype(int), y.astype(int)
     corners = [[visibility[row + j, column + i] for i in (0, 1)] for j in (0, 1)]

@@ -147,7 +147,7 @@ def test_a_rock_s_shadow_lies_where_rays_to_the_sun_meet_it(kept, ctx, make_sket
         SHADE.format(azimuth=azimuth, elevation=elevation), size=3, extent=200.0, relief=1.0, list=ROCKS
     )
     shade = kept.read(sketch, "shade").astype(np.float64)
-    eye = np.array(kept.internal.plan_for(sketch, (640, 360)).eye.position)
+    eye = np.array(kept.plan(sketch, (640, 360)).eye.position)
     if elevation < 0:
         assert not shade.any(), "by night there are none"
         return
@@ -174,7 +174,7 @@ def test_rocks_are_where_the_list_says_and_face_outwards(kept, ctx, make_sketch)
     assert set(nearest) == {0, 1, 2}
     assert np.hypot(own[:, 0], own[:, 1]).max() < 0.667 * 1.25 + 1e-3 and -0.3 < own[:, 2].min()
     assert 0.5 < own[:, 2].max() < 0.35 + 0.667 * 0.75 + 1e-3
-    eye = np.array(kept.internal.plan_for(sketch, (400, 300)).eye.position)
+    eye = np.array(kept.plan(sketch, (400, 300)).eye.position)
     bits = (point[:, 3] - 4).astype(int) // 64
     square = np.stack([bits // 256, bits % 256], 1) / 255 * 2 - 1
     normal = np.c_[square, 1 - np.abs(square).sum(1)]

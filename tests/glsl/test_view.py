@@ -33,7 +33,7 @@ def above(sketch, azimuth=180.0, elevation=60.0, **more):
 
 def pixels_of(engine, points):
     """Where points of the terrain are in the last picture: column and row from the top left."""
-    plan = engine.internal.plan
+    plan = engine.record.plan
     clip = np.c_[points, np.ones(len(points))] @ plan.eye.clip_from_world.astype(float).T
     place = clip[:, :2] / clip[:, 3:]
     width, height = plan.frame_size
@@ -266,9 +266,9 @@ def test_no_sea_costs_nothing(any_engine, terrain):
     for sketch, inside in ((above(terrain()).plainly(), ""), (above(terrain()), "fast.")):
         inside = inside if any_engine.info.software else ""
         any_engine.render(sketch, size=(40, 30))
-        assert {"view.sea", "view.fast.sea"}.isdisjoint(any_engine.internal.ran)
+        assert {"view.sea", "view.fast.sea"}.isdisjoint(any_engine.record.ran)
         any_engine.render(sketch.with_values({"view.sea": True}), size=(40, 30))
-        assert any_engine.internal.ran == [f"view.{inside}sea", f"view.{inside}present"]
+        assert any_engine.record.ran == [f"view.{inside}sea", f"view.{inside}present"]
 
 
 # ── the last pass ────────────────────────────────────────────────────────────

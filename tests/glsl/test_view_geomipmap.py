@@ -251,13 +251,13 @@ def test_what_is_left_out_is_nowhere_in_the_picture(engine, shown, monkeypatch):
     for camera in flight(8):
         seen = sketch.with_camera(camera)
         engine.render(seen, size=SIZE)
-        drawn = engine.internal.runner.draws.triangles
+        drawn = engine.runner.draws.triangles
         culled = engine.read(seen, "view.land", size=SIZE)
         with monkeypatch.context() as patch:
             patch.setattr(sight.Boxes, "visible", lambda self, view: np.ones(self.up.shape[1:], bool))
             other = seen.with_values({"view.tolerance": 1.0000001})  # or it would not be drawn again
             whole = engine.read(other, "view.land", size=SIZE)
-        left_out += engine.internal.runner.draws.triangles - drawn
+        left_out += engine.runner.draws.triangles - drawn
         np.testing.assert_array_equal(culled, whole)
     assert left_out > 1000
 
@@ -379,7 +379,7 @@ def test_fewer_triangles_the_more_is_allowed_and_no_errors_for_a_full_grid(engin
     counts = []
     for tolerance in (0.0, 0.5, 1.0, 2.0, 4.0):
         engine.render(shown(size=257).with_values({"view.tolerance": tolerance}), size=SIZE)
-        counts.append(engine.internal.runner.draws.triangles)
+        counts.append(engine.runner.draws.triangles)
     assert counts == sorted(counts, reverse=True) and counts[0] > 10 * counts[-1]
     full = shown(detail="full grid")
     assert engine.texture(full, "view.tiles:errors", size=SIZE).size == (1, 1)

@@ -64,7 +64,7 @@ def forms(engine, sketch, size=SIZE):
     the slope of a square, which the plain draw takes from each triangle in it, the variant from one.
     """
     found = engine.read(sketch, "view.sea", size=size)[..., :3].astype(float)
-    ground = read_texture(engine.internal.record.results["view.land.fast.ground"].textures["ground"])
+    ground = read_texture(engine.record.results["view.land.fast.ground"].textures["ground"])
     slopes = unpacked(np.maximum(ground[..., 1], 0))
     squares = slopes.reshape(size[1] // 2, 2, size[0] // 2, 2, 2)
     low, high = squares.min(axis=(1, 3)), squares.max(axis=(1, 3))
@@ -89,7 +89,7 @@ def test_each_pixel_has_its_place_its_distance_and_how_far_the_next_is(software,
     sketch = make_sketch(READ, terrain=HEIGHT.format("0.0"), place=PLACE).with_camera(LOOKS[0])
     found = software.read(sketch, "ground").astype(float)
     read = software.read(sketch, "place").astype(float)
-    eye = software.internal.plan.eye
+    eye = software.record.plan.eye
     clip = eye.clip_from_world.astype(float)
     inverse = np.linalg.inv(clip[np.ix_([0, 1, 3], [0, 1, 3])])
 
@@ -185,9 +185,9 @@ def test_what_the_variant_lacks_has_the_plain_draw_run(any_engine, make_sketch, 
     text = f'[view]\nuse = "view/terrain"\nsamples = {samples}\nset = {{ grid = 17 }}\n'
     sketch = make_sketch('[[pass]]\nname = "height"\nuse = "./terrain"\n' + text, terrain=HILLS)
     any_engine.render(sketch.with_values(values), size=(48, 30))
-    assert not [step.path for step in any_engine.internal.plan.walk() if ".fast." in step.path]
+    assert not [step.path for step in any_engine.record.plan.walk() if ".fast." in step.path]
     any_engine.render(replace(sketch, samples=1), size=(48, 30))  # and back
-    paths = [step.path for step in any_engine.internal.plan.walk()]
+    paths = [step.path for step in any_engine.record.plan.walk()]
     assert ("view.fast.ground" in paths) == any_engine.info.software
 
 
@@ -201,7 +201,7 @@ def test_the_sky_is_there_where_nothing_else_is(software, make_sketch, view, sea
     for look in LOOKS:
         seen = sketch.with_camera(look)
         found = software.render(seen, size=SIZE).array.astype(int)
-        assert "view.fast.sky" in [step.path for step in software.internal.plan.walk()]
+        assert "view.fast.sky" in [step.path for step in software.record.plan.walk()]
         plain = software.render(seen.plainly(), size=SIZE).array.astype(int)
         ground = software.read(seen.plainly(), "view.land", size=SIZE)
         sky = software.read(seen.plainly(), "view.sky", size=SIZE)

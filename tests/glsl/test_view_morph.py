@@ -233,12 +233,12 @@ def test_what_is_left_out_is_nowhere_in_the_picture(engine, shown, monkeypatch):
     for camera in list(flight(12))[::2]:
         seen = shown().with_camera(camera)
         culled = engine.read(seen, "view.land", size=SIZE)
-        drawn = engine.internal.runner.draws.triangles
+        drawn = engine.runner.draws.triangles
         with monkeypatch.context() as patch:
             patch.setattr(sight.Boxes, "visible", lambda self, view: np.ones(self.up.shape[1:], bool))
             other = seen.with_values({"view.land.tolerance": 1.0000001})  # or it would not be drawn again
             whole = engine.read(other, "view.land", size=SIZE)
-        left_out += engine.internal.runner.draws.triangles - drawn
+        left_out += engine.runner.draws.triangles - drawn
         np.testing.assert_array_equal(culled, whole)
     assert left_out > 1000
 
@@ -314,5 +314,5 @@ def test_it_has_fewer_triangles_the_more_is_allowed(engine, shown):
     counts = []
     for tolerance in (0.0, 0.5, 2.0, 8.0):
         engine.render(shown(513, tolerance).with_camera(list(flight(6))[4]), size=SIZE)
-        counts.append(engine.internal.runner.draws.triangles)
+        counts.append(engine.runner.draws.triangles)
     assert counts == sorted(counts, reverse=True) and counts[0] > 8 * counts[-1]

@@ -520,7 +520,7 @@ def test_no_texel_of_another_s_work_is_left_in_a_picture(ctx, monkeypatch):
 
     def engine(context, *, owns_context, cache_bytes, notice):
         made.append(Engine(context, cache_bytes=2**21, notice=notice))  # full after two works
-        made[0].internal.pool.limit = 2**26
+        made[0].runner.pool.limit = 2**26
         return made[0]
 
     monkeypatch.setattr(handler, "open_context", lambda **choice: ctx)
@@ -531,7 +531,7 @@ def test_no_texel_of_another_s_work_is_left_in_a_picture(ctx, monkeypatch):
         assert judge(handler.Request(one.name, f"{right}\n// {number}\n")).is_full
         varied = students.around(right, f"return given() + 1e-9 * {number}.0;")
         assert judge(handler.Request(one.name, varied)).is_full
-    assert len(made[0].internal.pool) > 0, "there are textures to be used again, with right heights in them"
+    assert len(made[0].runner.pool) > 0, "there are textures to be used again, with right heights in them"
     nothing = students.around(
         right, "if (texel.x >= 0) JOINED(dis, card); return given();", "#define JOINED(a, b) a##b"
     )

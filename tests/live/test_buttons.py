@@ -29,8 +29,8 @@ vec4 kernel(ivec2 texel) { return vec4(place, go ? 1.0 : 0.0, 1.0); }
 
 def test_a_press_is_seen_by_one_frame_and_changes_no_value(bare: Bare) -> None:
     pressed: list[bool] = []
-    bare.session.engine.internal.runner.before_step = lambda step: (
-        pressed.append(bool(bare.session.engine.internal.runner.pressed)) if step.path == "a" else None
+    bare.session.engine.runner.before_step = lambda step: (
+        pressed.append(bool(bare.session.engine.runner.pressed)) if step.path == "a" else None
     )
     bare.run_frames(3)
     label = next(label for label in bare.places if label.startswith("Go"))
@@ -55,7 +55,7 @@ def test_a_point_is_dragged_over_its_own_ranges(bare: Bare) -> None:
 
 
 def test_a_remote_presses_it_for_one_frame_and_sets_the_rest(bare: Bare) -> None:
-    runner, pressed = bare.session.engine.internal.runner, list[bool]()
+    runner, pressed = bare.session.engine.runner, list[bool]()
     runner.before_step = lambda step: pressed.append(bool(runner.pressed)) if step.path == "a" else None
     controls = Controls(bare.bench)
     controls.do({"set": {"a.go": True, "a.place": [0.5, 2.5]}})

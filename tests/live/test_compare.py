@@ -210,22 +210,22 @@ def test_to_draw_a_leaves_the_engine_s_account_of_b(session: Session, compare: C
     assert picture is not None
     engine = session.engine
     counters = (
-        list(engine.internal.ran),
-        engine.internal.texels,
-        dict(engine.internal.runs),
-        engine.internal.triangles,
-        dict(engine.internal.times),
+        list(engine.record.ran),
+        engine.record.texels,
+        dict(engine.runs),
+        engine.record.triangles,
+        dict(engine.record.times),
     )
     inspector = Inspector(session)
     under = inspector.at((30, 20), picture)
     compare.follow(picture)
     assert compare.draws == 1
     assert counters == (
-        list(engine.internal.ran),
-        engine.internal.texels,
-        dict(engine.internal.runs),
-        engine.internal.triangles,
-        dict(engine.internal.times),
+        list(engine.record.ran),
+        engine.record.texels,
+        dict(engine.runs),
+        engine.record.triangles,
+        dict(engine.record.times),
     )
     again = Inspector(session)
     assert again.at((30, 20), picture) == under and under is not None and under.ground is not None

@@ -71,7 +71,7 @@ def test_nothing_is_timed_before_it_is_looked_at(bare: Bare) -> None:
     bare.session.drafts.set("height.level", 0.25)
     bare.run_frames(3)
     assert (
-        not bare.session.engine.internal.profiling
+        not bare.session.engine.options.profiling
         and not bare.session.times
         and not bare.bench.inspection.record.pictures
     )
@@ -80,7 +80,7 @@ def test_nothing_is_timed_before_it_is_looked_at(bare: Bare) -> None:
 def test_each_frame_is_recorded_while_the_costs_are_shown(bare: Bare) -> None:
     engine, record = bare.session.engine, bare.bench.inspection.record
     bare.click("Cost###costs")
-    assert engine.internal.profiling
+    assert engine.options.profiling
     before = record.pictures
     for n in range(5):
         bare.session.drafts.set("height.level", 0.1 * n)
@@ -88,7 +88,7 @@ def test_each_frame_is_recorded_while_the_costs_are_shown(bare: Bare) -> None:
     bare.run_frames(4)
     assert record.pictures == before + 5  # a frame without a picture is none
     assert record.texels[-1] == 33 * 17 + 48 * 32
-    assert record.triangles[-1] == engine.internal.triangles == _triangles(engine, 5)
+    assert record.triangles[-1] == engine.record.triangles == _triangles(engine, 5)
     assert set(record.passes) == {"height", "view"} and record.whole[-1] > 0
     assert np.isclose(record.whole, np.sum(list(record.passes.values()), axis=0)).all()
     assert implot.get_current_context() is not None
@@ -98,19 +98,19 @@ def test_each_frame_is_recorded_while_the_costs_are_shown(bare: Bare) -> None:
     assert record.triangles[-1] == _triangles(engine, 9)
     assert record.passes["height"][-1] == 0
     bare.click("Cost###costs")
-    assert not engine.internal.profiling and record.pictures == 0 and not bare.session.times
+    assert not engine.options.profiling and record.pictures == 0 and not bare.session.times
 
 
 def test_it_is_not_timed_while_the_panel_is_away(bare: Bare) -> None:
     bare.click("Cost###costs")
-    assert bare.session.engine.internal.profiling
+    assert bare.session.engine.options.profiling
     bare.bench.inspection.begin()  # a frame in which no panel is drawn
     bare.bench.inspection.update()
-    assert not bare.session.engine.internal.profiling
+    assert not bare.session.engine.options.profiling
 
 
 def test_programs_are_listed_with_what_they_took(bare: Bare) -> None:
-    times = bare.session.engine.internal.runner.compile_times
+    times = bare.session.engine.runner.compile_times
     assert {Path(path).name for path in times} == {"terrain.glsl", "mesh.glsl"} and min(times.values()) > 0
     bare.click("Cost###costs")
     bare.run_frames(2)

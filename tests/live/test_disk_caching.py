@@ -96,7 +96,7 @@ class Desk:
     @property
     def runs(self) -> dict[str, int]:
         assert self.session is not None
-        return dict(self.session.engine.internal.runs)
+        return dict(self.session.engine.runs)
 
 
 @pytest.fixture
@@ -175,11 +175,11 @@ def test_who_looks_at_every_pass_sees_every_pass(desk: Desk, tool: str) -> None:
     desk.run_frames()
     assert desk.session is not None
     engine = desk.session.engine
-    assert "low" not in engine.internal.results
+    assert "low" not in engine.record.results
     getattr(desk.bench.inspection, tool).on = True
     desk.run_frames()
     desk.run_frames()
-    assert set(engine.internal.results) == {"low", "height", "view"}
+    assert set(engine.record.results) == {"low", "height", "view"}
     assert desk.runs["low"] == 1 and desk.runs.get("height", 0) == 0
     draws = desk.session.draws
     for _ in range(5):
@@ -226,7 +226,7 @@ def test_a_folder_that_cannot_be_written_is_reported_once(desk: Desk, tmp_path: 
 
 def test_without_a_limit_there_is_no_store(desk: Desk, tmp_path: Path) -> None:
     assert desk.session is not None
-    desk.session.engine.internal.disk_caching = None
+    desk.session.engine.disk_caching = None
     desk.storing = SessionCaching(desk.session, 0)
     desk.rest()
     desk.close()
@@ -282,15 +282,15 @@ def test_terrain_that_was_read_is_recognised_by_itself_and_not_by_its_texture(de
     thumbnails = Thumbnails(session)
     thumbnails.refresh([name], now=0.0)
     assert thumbnails.is_current(name)
-    pool, outputs = engine.internal.pool, engine.internal.results["height"].outputs
+    pool, outputs = engine.runner.pool, engine.record.results["height"].outputs
     first = pool.take((5, 3), outputs)
-    engine.internal.record.results = {**engine.internal.results, "height": first}
+    engine.record.results = {**engine.record.results, "height": first}
     thumbnails.refresh([name], now=1.0)
     assert thumbnails.is_current(name)
     pool.give(first)
     again = pool.take((5, 3), outputs)
     assert again.textures["height"] is first.textures["height"]
-    engine.internal.record.results = {**engine.internal.results, "height": again}
+    engine.record.results = {**engine.record.results, "height": again}
     assert not thumbnails.is_current(name)
     thumbnails.release()
     again.release()

@@ -173,12 +173,12 @@ def test_a_click_shows_a_texture_and_another_the_view(bare: Bare) -> None:
 def test_passes_are_timed_only_on_request(bare: Bare) -> None:
     bare.key(imgui.Key.g)
     bare.run_frames(3)
-    assert not bare.session.engine.internal.profiling
+    assert not bare.session.engine.options.profiling
     bare.click("Time each pass")
-    assert bare.session.engine.internal.profiling
+    assert bare.session.engine.options.profiling
     bare.key(imgui.Key.g)
     bare.run_frames(3)
-    assert not bare.session.engine.internal.profiling
+    assert not bare.session.engine.options.profiling
 
 
 @pytest.mark.parametrize("scale", [1.0, 1.5])

@@ -169,7 +169,7 @@ def test_the_legend_has_the_colours_of_the_map(folder: Path, any_engine: Engine,
     session.frame((64, 8))
     frame = session.read()
     assert frame is not None
-    with any_engine.internal.borrowed():
+    with any_engine.borrowed():
         legend = np.array(colours_of(any_engine.ctx, ramp)) * 255
     assert len(legend) == STEPS == 64
     np.testing.assert_allclose(frame.array[4, :, :3], legend, atol=0.51)  # the slope has the same 64 numbers
@@ -190,7 +190,7 @@ def test_around_a_middle_both_sides_have_one_scale(folder: Path, any_engine: Eng
     assert (low + high) / 2 == pytest.approx(middle) and high - low == pytest.approx(
         2 * max(middle, 1 - middle)
     )
-    with any_engine.internal.borrowed():
+    with any_engine.borrowed():
         legend = np.array(colours_of(any_engine.ctx, 4)) * 255
     numbers = np.arange(64) / 63
     places = (numbers - low) / (high - low) * (STEPS - 1)

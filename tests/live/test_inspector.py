@@ -101,11 +101,11 @@ def test_every_pass_is_read_exactly_where_the_ray_meets_the_terrain(
         path, _, output = name.partition(":")
         ref = session.plan.flat.outputs[path][output]
         values = (
-            read_texture(engine.internal.results[ref.path].textures[ref.output]) if path != "light" else None
+            read_texture(engine.record.results[ref.path].textures[ref.output]) if path != "light" else None
         )
         whole[name] = values
     # The light is not in the picture where the view does not read it; then it is named as missing.
-    runs, draws = dict(engine.internal.runs), session.draws
+    runs, draws = dict(engine.runs), session.draws
     heights = whole["height:height"]
     assert heights is not None
     met = 0
@@ -138,7 +138,7 @@ def test_every_pass_is_read_exactly_where_the_ray_meets_the_terrain(
             assert found.ground.above_sea == found.ground.height + 120.0
             assert found.samples[0].metres == found.samples[0].values[0] * 300.0
     assert met > 40
-    assert dict(engine.internal.runs) == runs and session.draws == draws  # nothing was drawn for it
+    assert dict(engine.runs) == runs and session.draws == draws  # nothing was drawn for it
 
 
 @pytest.mark.slow

@@ -488,7 +488,7 @@ def test_what_was_typed_in_a_copy_and_not_saved_is_there_again(desk):
 def test_numbers_are_computed_while_nothing_moves_and_the_picture_stays(desk):
     desk.open(1)
     desk.run_frames(3)
-    seen, runs = as_seen(desk), dict(desk.session.engine.internal.runs)
+    seen, runs = as_seen(desk), dict(desk.session.engine.runs)
     number = desk.reader.numbers.known["halving"]["peaks"]
     values = desk.session.engine.read(block(desk, "peaks").scene.sketch, "height")
     peaks = sum(

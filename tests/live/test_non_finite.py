@@ -118,10 +118,10 @@ def test_a_map_of_the_texture_shows_it_in_magenta_where_the_mark_is(desk: Desk) 
 def test_a_texture_that_was_read_since_changes_nothing(desk: Desk) -> None:
     desk.run_frames()
     desk.session.read_values("first:first")
-    ran = list(desk.session.engine.internal.ran)
-    runs = dict(desk.session.engine.internal.runs)
+    ran = list(desk.session.engine.record.ran)
+    runs = dict(desk.session.engine.runs)
     assert desk.rest() == ["first", "second"]
-    assert dict(desk.session.engine.internal.runs) == runs and desk.session.engine.internal.ran == ran, (
+    assert dict(desk.session.engine.runs) == runs and desk.session.engine.record.ran == ran, (
         "nothing ran again"
     )
 

@@ -45,7 +45,7 @@ def keys(bare: Bare, monkeypatch) -> PictureKeys:
 
 
 def down(bare: Bare) -> tuple[int, ...]:
-    return bare.session.engine.internal.runner.inputs.keyboard.now.down
+    return bare.session.engine.runner.inputs.keyboard.now.down
 
 
 def hold(key: imgui.Key, is_down: bool) -> None:

@@ -258,10 +258,10 @@ def test_closing_the_last_releases_what_all_hold(slope):
     one, other = (playground.widget(slope, size=SIZE) for _ in range(2))
     (engine,) = engine_thread._open
     one.close()
-    assert engine_thread._open == [engine] and not engine.internal._released
+    assert engine_thread._open == [engine] and not engine._context.released
     other.close()
     other.close()
-    assert engine_thread._open == [] and engine.internal._released and other.page == "" == one.page
+    assert engine_thread._open == [] and engine._context.released and other.page == "" == one.page
     again = playground.widget(slope, size=SIZE)
     assert again.page
     again.close()

@@ -188,7 +188,7 @@ def drawn(
     engine: Engine, folder: Path, size: tuple[int, int] = (24, 16), time: float = 0.0, **steps: int
 ) -> str:
     engine.render(load(folder / "hills.toml"), size=size, time=time, steps=steps)
-    return engine.internal.drawn()
+    return engine.drawn()
 
 
 def edited(folder: Path, file: str, old: str, new: str) -> Path:
@@ -199,7 +199,7 @@ def edited(folder: Path, file: str, old: str, new: str) -> Path:
 
 
 def test_nothing_drawn_has_no_hash(drawing: Engine) -> None:
-    assert drawing.internal.drawn() == ""
+    assert drawing.drawn() == ""
 
 
 @pytest.mark.parametrize(
@@ -292,7 +292,7 @@ def test_the_shots_own_settings_change_the_hash(drawing: Engine, folder: Path) -
     found.append(drawn(drawing, folder, height=1))
     sketch = load(folder / "hills.toml")
     drawing.render(replace(sketch, samples=1), size=(24, 16))
-    found.append(drawing.internal.drawn())
+    found.append(drawing.drawn())
     assert len(set(found)) == 5
 
 

@@ -222,14 +222,14 @@ def test_an_opengl_error_left_behind_is_reported(
 def test_an_opengl_error_within_a_pass_has_its_own_kind(
     drawing: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run = drawing.internal.runner.run
+    run = drawing.runner.run
 
     def careless(*arguments: object, **named: object) -> object:
         found = run(*arguments, **named)  # type: ignore[arg-type]
         drawing.ctx.enable_direct(0xFFFF)
         return found
 
-    monkeypatch.setattr(drawing.internal.runner, "run", careless)
+    monkeypatch.setattr(drawing.runner, "run", careless)
     with pytest.raises(OpenGLFault, match="OpenGL reports GL_INVALID_ENUM") as caught:
         render_shot(drawing, slope(tmp_path))
     assert isinstance(caught.value, ContextError)

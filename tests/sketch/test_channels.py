@@ -80,8 +80,8 @@ def test_a_stand_in_for_a_filter_s_image_stays_as_large_as_the_picture(
     found = load(folder / "filter.fs")
     for source in ("foreign/picture", "foreign/noise", "foreign/black"):
         any_engine.render(with_source(found, "view.inputImage", source), size=(12, 7))
-        assert any_engine.internal.plan is not None
-        assert any_engine.internal.plan.step("inputImage").size == (12, 7)  # type: ignore[union-attr]
+        assert any_engine.record.plan is not None
+        assert any_engine.record.plan.step("inputImage").size == (12, 7)  # type: ignore[union-attr]
 
 
 CUBE = """uniform samplerCube iChannel0;
@@ -95,8 +95,8 @@ def test_a_cube_is_fed_from_what_has_six_faces(folder: Path, any_engine: Engine)
     assert sources(found, "view.iChannel0") == ["foreign/black", "foreign/cube_faces", "foreign/sky_box"]
     for source in sources(found, "view.iChannel0"):
         any_engine.render(with_source(found, "view.iChannel0", source), size=(4, 4))
-        assert any_engine.internal.plan is not None
-        wide, high = any_engine.internal.plan.step("iChannel0").size  # type: ignore[union-attr]
+        assert any_engine.record.plan is not None
+        wide, high = any_engine.record.plan.step("iChannel0").size  # type: ignore[union-attr]
         assert high == 6 * wide
 
 
@@ -106,7 +106,7 @@ def test_each_source_has_the_size_of_its_kind(folder: Path, any_engine: Engine) 
     sizes |= {"video": (160, 90), "camera": (640, 480), "noise": (256, 256)}
     for name, size in sizes.items():
         any_engine.render(with_source(found, "view.iChannel0", f"foreign/{name}"), size=(4, 4))
-        plan = any_engine.internal.plan
+        plan = any_engine.record.plan
         assert plan is not None and plan.step("iChannel0").size == size  # type: ignore[union-attr]
 
 

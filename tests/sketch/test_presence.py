@@ -109,7 +109,7 @@ def test_a_pass_is_there_only_where_its_input_is_wired(engine, make, use):
     by_name = make("density density", f"it {use}")
     for sketch, wanted in ((bare, 10 * 3 + 0.5), (wired, 10 * 7 + 14), (by_name, 10 * 7 + 14)):
         np.testing.assert_array_equal(engine.read(sketch, "it"), np.float32(wanted))
-    ran = {step.path for step in engine.internal.plan.walk()}
+    ran = {step.path for step in engine.record.plan.walk()}
     assert not any("plain" in path for path in ran) and any("added" in path for path in ran)
 
 

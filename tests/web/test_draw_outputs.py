@@ -59,7 +59,7 @@ def test_outputs_instances_and_what_goes_on_are_the_engines(
         view = map_of(f"two:{shown}").replace("[view]\n", f"[view]\nsamples = {samples}\n")
         file.write_text(f"format = 1\nsize = 33\n{body}{view}", "utf-8")
         sketches.append(load(file))
-    drawn.internal.cache.clear()
+    drawn.cache.clear()
     data = page_data(sketches, frame=SIZE)
     pages.begin(data)
     for one in data["sketches"]:
@@ -70,7 +70,7 @@ def test_outputs_instances_and_what_goes_on_are_the_engines(
             frame = drawn.render(sketch.with_values(changes), size=SIZE)
             picture = pages.picture(sketch.name, values=changes)
             assert picture.levels_off(frame.array) == 0, (sketch.name, many)
-            assert picture.ran == drawn.internal.ran
+            assert picture.ran == drawn.record.ran
     with pytest.raises(PageError, match="instances = -1"):
         pages.picture(sketch.name, values={"list.many": -1.0})
 
@@ -97,7 +97,7 @@ def test_a_draw_has_as_many_triangles_as_an_input_s_size_says(pages: Pages, draw
         file = tmp_path / f"wide{wide}.toml"
         file.write_text(f"format = 1\nsize = 33\n{body}{map_of('row')}", "utf-8")
         sketches.append(load(file))
-    drawn.internal.cache.clear()
+    drawn.cache.clear()
     data = page_data(sketches, frame=SIZE)
     pages.begin(data)
     lit = []

@@ -108,7 +108,7 @@ def test_sketches_of_each_kind_are_drawn_with_the_engines_bits(pages: Pages, dra
 def test_what_runs_is_what_the_engine_would_run(pages: Pages, drawn: Engine, sketch: Made):
     whole = sketch(CHAIN)
     begun(pages, whole)
-    drawn.internal.cache.clear()
+    drawn.cache.clear()
     for changes in (
         {},
         {"sloped.steep": 2.5},
@@ -120,7 +120,7 @@ def test_what_runs_is_what_the_engine_would_run(pages: Pages, drawn: Engine, ske
         frame = drawn.render(whole.with_values(changes), size=SIZE)
         picture = pages.picture(whole.name, values=changes)
         assert picture.levels_off(frame.array) == 0
-        assert picture.ran == drawn.internal.ran
+        assert picture.ran == drawn.record.ran
     assert pages.picture(whole.name).ran == []
 
 
@@ -143,12 +143,12 @@ def test_a_loop_feeds_back(pages: Pages, drawn: Engine, sketch: Made):
     loop = '[[pass]]\nname = "rain"\nuse = "./flows"\ninputs = { water = "seed" }\nrepeat = "7"\n'
     whole = sketch(passes(seed="./seed") + loop + 'feedback = { water = "water" }\n' + map_of("rain"))
     begun(pages, whole)
-    drawn.internal.cache.clear()
+    drawn.cache.clear()
     for steps in ({}, {"rain": 3}, {"rain": 5}, {"rain": 0}):
         frame = drawn.render(whole, size=SIZE, steps=steps)
         picture = pages.picture(whole.name, steps=steps)
         assert picture.levels_off(frame.array) == 0
-        assert picture.ran == drawn.internal.ran
+        assert picture.ran == drawn.record.ran
 
 
 def test_a_repeat_ends_once_it_has_settled(pages: Pages, drawn: Engine, sketch: Made):
@@ -164,9 +164,9 @@ def test_a_repeat_ends_once_it_has_settled(pages: Pages, drawn: Engine, sketch: 
     )
     whole = sketch(chain, spread=text)
     begun(pages, whole)
-    drawn.internal.cache.clear()
+    drawn.cache.clear()
     frame = drawn.render(whole, size=SIZE)
-    assert 255 < drawn.internal.record.iterations["spread"] < 300
+    assert 255 < drawn.record.iterations["spread"] < 300
     assert pages.picture(whole.name).levels_off(frame.array) == 0
 
 
@@ -182,12 +182,12 @@ def test_levels_of_a_loop_have_their_own_sizes_and_counts(pages: Pages, drawn: E
         flows=FLOWS.replace('inputs = { rough = "rough" }\n', more),
     )
     begun(pages, whole)
-    drawn.internal.cache.clear()
+    drawn.cache.clear()
     for changes, steps in (({}, {}), ({"seed.level": 0.25}, {}), ({}, {"rain": 2}), ({}, {"rain.flow": 3})):
         frame = drawn.render(whole.with_values(changes), size=SIZE, steps=steps)
         picture = pages.picture(whole.name, values=changes, steps=steps)
         assert picture.levels_off(frame.array) == 0
-        assert picture.ran == drawn.internal.ran
+        assert picture.ran == drawn.record.ran
 
 
 def test_a_loop_that_counts_frames_goes_on_and_back(pages: Pages, drawn: Engine, sketch: Made):
@@ -198,7 +198,7 @@ def test_a_loop_that_counts_frames_goes_on_and_back(pages: Pages, drawn: Engine,
         time = frame / 60
         picture = pages.picture(whole.name, time=time)
         assert picture.levels_off(drawn.render(whole, size=SIZE, time=time).array) == 0
-        assert picture.ran == drawn.internal.ran
+        assert picture.ran == drawn.record.ran
 
 
 def test_work_in_slices_gives_the_same_and_an_estimate(pages: Pages, drawn: Engine, sketch: Made):

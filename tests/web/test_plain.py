@@ -115,12 +115,12 @@ def test_the_pointer_and_the_date_are_what_the_page_says(pages: Pages, drawn: En
     (tmp_path / "pointer.frag").write_text(POINTER, "utf-8")
     sketch = load(tmp_path / "pointer.frag")
     agree(pages, drawn, sketch, 0.0)
-    drawn.internal.runner.drag = (24.0, 36.0, 24.0, -36.0)
-    drawn.internal.runner.date = (2024.0, 1.0, 29.0, 43_200.0)
+    drawn.runner.drag = (24.0, 36.0, 24.0, -36.0)
+    drawn.runner.date = (2024.0, 1.0, 29.0, 43_200.0)
     try:
         expected = drawn.render(sketch, size=SIZE).array
     finally:
-        drawn.internal.runner.drag, drawn.internal.runner.date = (0.0, 0.0, 0.0, 0.0), (1970.0, 0.0, 1.0, 0.0)
+        drawn.runner.drag, drawn.runner.date = (0.0, 0.0, 0.0, 0.0), (1970.0, 0.0, 1.0, 0.0)
     data = page_data([sketch], frame=SIZE)
     pages.begin(data)
     pages.open(data["sketches"][0])

@@ -46,9 +46,7 @@ def followed(node: Node, *turns: Any, playing: bool = False) -> list[dict[str, A
 def test_the_pointer_is_told_as_in_a_window(node: Node):
     chance, down, turns, expected = random.Random(7), False, [], []
     runner = SimpleNamespace(hover=(0.0, 0.0), drag=(0.0, 0.0, 0.0, 0.0))
-    window: Any = SimpleNamespace(
-        engine=SimpleNamespace(internal=SimpleNamespace(runner=runner)), sketch=None
-    )
+    window: Any = SimpleNamespace(engine=SimpleNamespace(runner=runner), sketch=None)
     place = (0.0, 0.0)
     for _ in range(60):
         event = chance.choice(["pointermove", "pointerup" if down else "pointerdown", ""])

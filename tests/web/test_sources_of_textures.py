@@ -43,10 +43,10 @@ def test_the_engine_of_an_export_makes_a_source_once(
 ):
     """Neither another technique nor the poster makes it again."""
     monkeypatch.setattr("playground.capture.web_page.read_bundle", lambda name: f"/* {name} */")
-    engine.internal.runs.clear()
+    engine.runs.clear()
     job = prepare(engine, sketch, tmp_path / "a.html", Form(techniques={"height": ("./two",)}))
     assert job.page is not None and len(job.page.data["sketches"]) == 2
     [source] = {n["path"] for one in job.page.data["sketches"] for n in one["nodes"] if n.get("data")}
-    assert engine.internal.runs[source] == 1
+    assert engine.runs[source] == 1
     run(engine, job)
-    assert engine.internal.runs[source] == 1
+    assert engine.runs[source] == 1

@@ -49,7 +49,7 @@ def slow(session, monkeypatch):
 
 def test_a_jump_shows_how_far_it_came_and_ends_at_the_same_picture(slow):
     engine = slow.engine
-    slow.clock.time, before = 1.0, engine.internal.runs["count"]
+    slow.clock.time, before = 1.0, engine.runs["count"]
     done = []
     while True:
         slow.frame(SIZE)
@@ -59,9 +59,7 @@ def test_a_jump_shows_how_far_it_came_and_ends_at_the_same_picture(slow):
         assert not slow.rests
         assert len(done) < 100
     assert done == [(number, 61) for number in range(5, 61, 4)], "each piece goes on from the last"
-    assert engine.internal.runs["count"] - before <= 60 + 2 * len(done), (
-        "a picture on the way is one frame at most"
-    )
+    assert engine.runs["count"] - before <= 60 + 2 * len(done), "a picture on the way is one frame at most"
     assert slow.clock.time == 1.0
     found = slow.read().array
     with Engine(engine.ctx) as cold:
@@ -98,7 +96,7 @@ def test_a_save_at_a_late_time_shows_how_far_it_came_as_well(slow):
     assert slow.catch_up.behind == (8, 61), "a piece to see that it draws, and one to show"
     while slow.catch_up.behind is not None:
         slow.frame(SIZE)
-    assert slow.engine.internal.runs["count"] <= 1 + 61 + 2 * 15
+    assert slow.engine.runs["count"] <= 1 + 61 + 2 * 15
 
 
 def test_a_short_run_is_not_parted(session, monkeypatch):
@@ -109,11 +107,11 @@ def test_a_short_run_is_not_parted(session, monkeypatch):
 
 
 def test_an_engine_without_patience_runs_to_the_end(any_engine, session):
-    any_engine.internal.patience = -1.0
+    any_engine.options.patience = -1.0
     with pytest.raises(Unfinished) as stopped:
         any_engine.draw(session.sketch, size=SIZE, time=2.0)
     assert stopped.value.wanted == 121
-    any_engine.internal.patience = None
+    any_engine.options.patience = None
     assert any_engine.draw(session.sketch, size=SIZE, time=2.0) is not None
 
 

@@ -183,9 +183,7 @@ def test_the_engine_keeps_its_frame_and_warm_stamps_compile_nothing(
     work(on, HERE, (0.6, 0.5), seconds=0.3)
     engine, known = any_engine, []
     for _ in range(2):
-        known.append(
-            (len(engine.internal.cache), engine.internal.runner.programs.compiled, engine.internal.pool.made)
-        )
+        known.append((len(engine.cache), engine.runner.programs.compiled, engine.runner.pool.made))
         wholes.clear()
         work(on, (0.3, 0.5), (0.6, 0.7), seconds=0.5)
         assert len(wholes) <= 1, "one plan a stroke: of its own level"

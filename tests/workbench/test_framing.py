@@ -73,5 +73,5 @@ def test_the_window_opens_a_view_and_a_render_does_not(any_engine: Engine, tmp_p
     assert session.plan.sketch.camera == session.sketch.camera
     session.release()
     any_engine.render(load(find("low_detail")), size=(48, 48))
-    assert any_engine.internal.plan is not None
-    assert any_engine.internal.plan.sketch.camera.field_of_view == 35.0
+    assert any_engine.record.plan is not None
+    assert any_engine.record.plan.sketch.camera.field_of_view == 35.0

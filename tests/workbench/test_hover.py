@@ -9,7 +9,7 @@ from playground.workbench.session import Session
 
 def test_a_press_has_four_numbers_whose_signs_are_its_state():
     runner = SimpleNamespace(hover=(0.0, 0.0), drag=(0.0, 0.0, 0.0, 0.0))
-    session = SimpleNamespace(engine=SimpleNamespace(internal=SimpleNamespace(runner=runner)), sketch=None)
+    session = SimpleNamespace(engine=SimpleNamespace(runner=runner), sketch=None)
 
     def after(x: float, y: float, *, pressed: bool = False, clicked: bool = False) -> tuple[float, ...]:
         Session.hover(session, (x, y), pressed=pressed, clicked=clicked)

@@ -370,7 +370,7 @@ def test_only_the_part_that_changed_goes_to_the_graphics_card(session: Session, 
     painting.brush = Brush(layer=1, radius=40.0, strength=1.0, softness=0.0)
     painting.press((0.45, 0.5))
     weights(session)
-    paint, whole = session.engine.internal.runner.paint, 128 * 128
+    paint, whole = session.engine.runner.paint, 128 * 128
     before = paint.uploaded
     painting.move((0.47, 0.5))
     weights(session)
@@ -438,7 +438,7 @@ def test_a_canvas_that_no_source_reads_texel_for_texel_is_followed_by_its_file(
         painting.toggle()
         painting.press((0.4, 0.5))
         canvas = painting.canvas
-        assert canvas is not None and canvas.saved and not session.engine.internal.painted
+        assert canvas is not None and canvas.saved and not session.engine.painted
         painting.move((0.45, 0.5))
         assert not canvas.saved
         clock[0] = 1.0

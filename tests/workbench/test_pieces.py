@@ -62,7 +62,7 @@ def of_a_full_picture(session: Session) -> list[str]:
     turned(session, 10.0)
     session.frame(SIZE)
     session.read()
-    return list(session.engine.internal.record.ran)
+    return list(session.engine.record.ran)
 
 
 def pieces(session: Session) -> list[list[str]]:
@@ -71,7 +71,7 @@ def pieces(session: Session) -> list[list[str]]:
     while session.is_preview:
         session.frame(SIZE)
         assert session.error is None and len(found) < 20
-        found.append(list(session.engine.internal.record.ran))
+        found.append(list(session.engine.record.ran))
     return found
 
 
@@ -126,17 +126,16 @@ def test_pieces_grow_so_that_a_picture_ends_that_no_cache_holds(session: Session
     """With no room for textures each piece would begin anew for ever."""
     monkeypatch.setattr(shown_picture, "PIECE", 1e-4)
     monkeypatch.setattr(shown_picture, "STEADY", 3)
-    internal = session.engine.internal
-    monkeypatch.setattr(internal.cache, "limit", 1)
+    monkeypatch.setattr(session.engine.cache, "limit", 1)
     turned(session, 40.0)
     session.frame(SIZE)
     assert pieces(session)
 
 
 def test_all_passes_run_where_no_piece_is_asked_for(session: Session):
-    internal = session.engine.internal
-    internal.piece = lambda: True
+    options = session.engine.options
+    options.piece = lambda: True
     with pytest.raises(PassesUnfinished):
         session.engine.render(session.sketch.with_values({"height.seed": 99}), size=SIZE)
-    internal.piece = None
+    options.piece = None
     session.engine.render(session.sketch.with_values({"height.seed": 99}), size=SIZE)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from playground.engine import internals
+from playground.engine import renderer
 from playground.engine.engine import Engine
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
@@ -53,7 +53,7 @@ def test_half_of_the_pixels_a_side_jump_no_more_than_stated(any_engine: Engine):
     sketch = load("jacksboro")
     full = any_engine.render(sketch, size=size).array[..., :3].astype(np.float64)
     small = any_engine.draw(as_preview(sketch, size, half), size=half)
-    with any_engine.internal.borrowed():
+    with any_engine.borrowed():
         target = any_engine.ctx.simple_framebuffer(size, 4)
         enlarger = Enlarger(any_engine.ctx)
         enlarger.draw(small, target)
@@ -119,7 +119,7 @@ def test_it_has_its_own_fast_variants_when_a_full_picture_starts_to_move(terrain
             session.frame((640, 360))
             assert session.error is None
             assert session.is_preview == any_engine.info.software
-        ran = set(any_engine.internal.ran)
+        ran = set(any_engine.record.ran)
         assert ("view.fast.land" if any_engine.info.software else "view.land") in ran
     finally:
         session.release()
@@ -135,9 +135,9 @@ def test_a_saved_text_is_planned_as_a_preview_alone(
     text = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.1; }\n'
     kernel.write_text(text, encoding="utf-8")
     planned: list[int] = []
-    plan = internals.planned
+    plan = renderer.planned
     monkeypatch.setattr(
-        internals, "planned", lambda sketch, request: planned.append(sketch.samples) or plan(sketch, request)
+        renderer, "planned", lambda sketch, request: planned.append(sketch.samples) or plan(sketch, request)
     )
     session = Session(any_engine, file)
     try:

@@ -92,7 +92,7 @@ def test_it_alone_makes_a_preview(path: Path):
 def test_a_dragged_sun_sweeps_and_one_at_rest_marches(session: Session, any_engine: Engine):
     sketch = load(session.path).with_values({"light.sun": (200.0, 20.0)})
     full = any_engine.render(sketch, size=SIZE).array
-    runs = session.engine.internal.runs
+    runs = session.engine.runs
     session.drafts.set("light.sun", (200.0, 20.0))
     session.frame(SIZE)
     assert session.error is None and session.is_preview and form(session) == 1
@@ -106,20 +106,20 @@ def test_a_dragged_sun_sweeps_and_one_at_rest_marches(session: Session, any_engi
 
 
 def test_a_camera_that_moves_leaves_the_shadow_as_it_is(session: Session):
-    before = session.engine.internal.runs["light.visibility"]
+    before = session.engine.runs["light.visibility"]
     for azimuth in (10.0, 11.0, 12.0):
         session.drafts.set_camera(replace(session.sketch.camera, azimuth=azimuth))
         session.frame(SIZE)
         assert session.is_preview and form(session) == 0
-    assert session.engine.internal.runs["light.visibility"] == before
+    assert session.engine.runs["light.visibility"] == before
 
 
 def test_a_preview_that_rests_runs_nothing_until_it_is_drawn_in_full(session: Session):
     session.drafts.set("light.sun", (200.0, 20.0))
     session.frame(SIZE)
-    before = dict(session.engine.internal.runs)
+    before = dict(session.engine.runs)
     session.frame(SIZE)
-    assert session.engine.internal.runs == before
+    assert session.engine.runs == before
 
 
 @pytest.mark.usefixtures("compute")

@@ -66,7 +66,7 @@ class MadeUpTimer:
     @contextmanager
     def measure(self, into: dict[str, float], name: str) -> Iterator[None]:
         yield
-        step = self.engine.internal.record.plan.step(name)
+        step = self.engine.record.plan.step(name)
         texels = step.size[0] * step.size[1]
         into[name] = self.busy() * (self.fixed.get(name, 0.0) + self.each.get(name, 0.0) * texels)
 
@@ -102,7 +102,7 @@ def slow(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) ->
         (tmp_path / name).write_text(text, encoding="utf-8")
     monkeypatch.setattr(ContextInfo, "software", True)
     timer = MadeUpTimer(any_engine, each={"view": 1000.0 / (SIZE[0] * SIZE[1])})
-    monkeypatch.setattr(any_engine.internal, "_timer_of", lambda: timer)
+    monkeypatch.setattr(any_engine, "_timer_of", lambda: timer)
     now = [0.0]
     made = Slow(Session(any_engine, tmp_path / "sketch.toml", now=lambda: now[0]), timer, now)
     yield made
@@ -115,7 +115,7 @@ def test_a_slow_picture_moves_in_fewer_pixels_and_rests_in_full(slow: Slow):
     slow.frame(1.0)
     assert session.picture.drawn_size == SIZE and not session.is_preview
     divisors = slow.move(12)
-    spent = sum(session.engine.internal.times.values())
+    spent = sum(session.engine.record.times.values())
     assert set(divisors[-6:]) == {3} and spent < 1e3 * BUDGETS[3], "the largest within its budget: 111 ms"
     assert session.is_preview and session.picture.texture.size == SIZE and not session.rests
     assert slow.frame(REST / 2) != SIZE and slow.frame(REST) == SIZE
@@ -258,7 +258,7 @@ def test_compared_pictures_have_the_same_pixels(slow: Slow):
     slow.session.clock.time = 0.0
     compare.follow(slow.session.picture.texture)
     assert compare.picture.size == SIZE and slow.session.is_preview
-    assert slow.session.engine.internal.plan.frame_size == slow.session.picture.drawn_size != SIZE
+    assert slow.session.engine.record.plan.frame_size == slow.session.picture.drawn_size != SIZE
     slow.frame(1.0)
     compare.follow(slow.session.picture.texture)
     assert slow.session.picture.drawn_size == SIZE
@@ -298,7 +298,7 @@ def test_a_cubic_surface_is_enlarged_to_itself(
     picture = ctx.texture(small, 4, np.repeat(texels[..., None], 4, 2).tobytes())
     shown = ctx.texture(large, 4)
     target = ctx.framebuffer([shown])
-    with any_engine.internal.borrowed():
+    with any_engine.borrowed():
         enlarger.draw(picture, target)
     found = np.frombuffer(shown.read(), np.uint8).reshape(large[1], large[0], 4)
     for made in (enlarger, target, shown, picture):
@@ -315,7 +315,7 @@ def test_grey_pictures_and_coloured_ones_are_enlarged_in_turn(any_engine: Engine
     target = ctx.framebuffer([shown])
     grey, coloured = ctx.texture(size, 1, level[..., 0].tobytes(), alignment=1), ctx.texture(size, 4, level)
     for picture, expected in ((grey, (200, 200, 200)), (coloured, (200, 90, 30)), (grey, (200, 200, 200))):
-        with any_engine.internal.borrowed():
+        with any_engine.borrowed():
             enlarger.draw(picture, target)
         found = np.frombuffer(shown.read(), np.uint8).reshape(-1, 4)
         np.testing.assert_allclose(found[:, :3], np.tile(expected, (len(found), 1)), atol=1)

@@ -132,7 +132,7 @@ def test_the_file_has_the_window_s_bits_and_draws_its_picture(
         other = Session(another, tmp_path / "saved.toml")
         try:
             np.testing.assert_array_equal(read_texture(other.frame(PICTURE)), picture)  # type: ignore[arg-type]
-            assert other.error is None and not another.internal.painted
+            assert other.error is None and not another.painted
         finally:
             other.release()
 
@@ -199,7 +199,7 @@ def test_only_the_rectangle_goes_to_the_graphics_card(session: Session, painting
     painting.brush = Brush(tool="raise", radius=60.0, strength=1.0)
     painting.press(PLACE)
     read(session, "height.strokes")
-    paint = session.engine.internal.runner.paint
+    paint = session.engine.runner.paint
     before = paint.uploaded
     painting.move((0.47, 0.5))
     canvas = painting.canvas

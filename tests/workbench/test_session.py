@@ -413,16 +413,16 @@ def test_it_is_planned_while_the_sandbox_tries_it_and_nothing_is_drawn(
     try:
         session.frame(size)
         session.read()
-        wholes, runs = plans_made_whole(monkeypatch), sum(any_engine.internal.runs.values())
+        wholes, runs = plans_made_whole(monkeypatch), sum(any_engine.runs.values())
         (tmp_path / "own.glsl").write_text(text.replace("0.1", "0.2"), encoding="utf-8")
         session.drafts.reload()
         for _ in range(3):
             session.frame(size)
         planned = len(wholes)
-        assert sum(any_engine.internal.runs.values()) == runs and session.drafts.testing
+        assert sum(any_engine.runs.values()) == runs and session.drafts.testing
         sandbox.answer = SandboxReport(True)
         session.frame(size)
-        assert session.error is None and sum(any_engine.internal.runs.values()) > runs
+        assert session.error is None and sum(any_engine.runs.values()) > runs
         assert len(wholes) == planned
     finally:
         session.release()

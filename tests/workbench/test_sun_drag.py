@@ -49,7 +49,7 @@ def test_a_drag_turns_every_sun_and_runs_the_light_alone(path: Path, any_engine:
         session.frame((64, 48))
         assert session.sketch is not None
         assert suns_of(session.sketch) == {"light.sun": (8.0, 29.0), "second.sun": (108.0, 90.0)}
-        assert not [path for path in any_engine.internal.ran if path.startswith("height")]
+        assert not [path for path in any_engine.record.ran if path.startswith("height")]
         assert session.shown is not None and session.shown.edits.has("light.sun")
     finally:
         session.release()

@@ -25,7 +25,7 @@ def _passes(row: Row, room: Room, size: int) -> Iterator[Figure]:
     options, engine = row.options, room.engine()
     sketch, wanted = room.sketch(options, size), str(options["texture"])
     change = changing(room, options)
-    plan = engine.internal.plan_for(sketch, (64, 36), 0.0, None, wanted)
+    plan = engine.plan(sketch, (64, 36), 0.0, None, wanted)
     steps = _steps_of(plan, str(options["loop"]))
     found = Samples()
     for number in range(-2, room.options.rounds):

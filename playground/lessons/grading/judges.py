@@ -163,7 +163,7 @@ def open_service(parent: Parent, options: Options) -> Service:
     """Open a context and an engine on it, and read the lessons."""
     context = open_context(software=options.software, device=options.device)
     engine = Engine(context, owns_context=True, cache_bytes=_CACHE, notice=silent)
-    engine.internal.pool.clears = True  # a text that gets around writing a texel shows nobody else's there
+    engine.runner.pool.clears = True  # a text that gets around writing a texel shows nobody else's there
     lessons = [read_lesson(name, options.language) for name in options.lessons]
     return Service(_Handler(parent, engine, options, assignments_of(lessons)).answer, context_info(context))
 

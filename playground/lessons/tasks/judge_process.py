@@ -112,7 +112,7 @@ def open_service(parent: Parent, options: tuple[bool, int | None]) -> Service:
         engine.ctx.finish()  # the time of a step is its own
         parent.report(step.path)
 
-    engine.internal.runner.before_step = begin
+    engine.runner.before_step = begin
     return Service(_Judge(engine).answer_or_give_up)
 
 

@@ -50,7 +50,7 @@ def draw_graph(session: Session, inspection: Inspection, look: Theme, area: Area
         if visible:
             _switches(inspection)
             corner = imgui.get_cursor_screen_pos()
-            lines = 3 if session.engine.internal.profiling else 2
+            lines = 3 if session.engine.options.profiling else 2
             high = (_THUMB + 8) * scale + lines * imgui.get_text_line_height()
             _nodes(_Drawing(graph.wiring(sketch), session, graph.thumbnails, look, corner, high))
         imgui.end()
@@ -111,7 +111,7 @@ def _node(node: str, ref: str, drawing: _Drawing) -> None:
         draw.add_image(imgui.ImTextureRef(texture.glo), low, high, ImVec2(0, 1), ImVec2(1, 0), tint)
     runs, ran, spent = cost_of(session, node)
     lines = [(node, theme.INK), (runs, theme.ACCENT if ran else theme.DIM)]
-    if session.engine.internal.profiling:
+    if session.engine.options.profiling:
         lines.append((f"{spent:.2f} ms" if spent is not None else "", theme.DIM))
     line = imgui.get_text_line_height()
     for number, (text, ink) in enumerate(lines):

@@ -15,7 +15,7 @@ import numpy as np
 from playground.allowed_files import is_absolute, is_file
 from playground.engine.context import ContextInfo, open_context
 from playground.engine.engine import Engine
-from playground.engine.internals import CACHE_BYTES
+from playground.engine.renderer import CACHE_BYTES
 from playground.engine.plain_forms import silent
 from playground.engine.process.pool import Pool
 from playground.engine.process.worker import Parent, Service

@@ -161,7 +161,7 @@ class Compare:
             session.notes.append(f"A of the last session is left out: {report.error}")
             return True
         try:
-            plan = session.engine.internal.plan_for(draft.sketch, session.plan.frame_size, session.clock.time)
+            plan = session.engine.plan(draft.sketch, session.plan.frame_size, session.clock.time)
         except PlaygroundError as error:
             session.notes.append(f"A of the last session is left out: {error}")
             return True
@@ -210,7 +210,7 @@ class Compare:
             self._picture = Picture(self._painter)
         wanted = self._wanted(stored, plan, picture.size)
         if self._drawn is None and stored.draft is session.shown and stored.steps == session.view.steps:
-            with session.engine.internal.borrowed():
+            with session.engine.borrowed():
                 self._picture.copy(picture)
             self._drawn, self._is_preview = wanted, session.is_preview
         elif self._is_preview and not session.is_preview:
@@ -252,9 +252,9 @@ class Compare:
                 repeats = repeats_of(chosen, time=plan.time)
                 # A save may have left fewer steps than it stopped at.
                 steps = {path: step for path, step in stored.steps.items() if step < repeats.get(path, 0)}
-                with pointed_at(engine.internal.runner, size, plan.frame_size):
+                with pointed_at(engine.runner, size, plan.frame_size):
                     texture = _drawn(engine, chosen, plan, steps)
-                with engine.internal.borrowed():
+                with engine.borrowed():
                     self._picture.copy(texture, size)
         except Exception as error:
             if not self._reported:
@@ -274,8 +274,8 @@ class Compare:
 @contextmanager
 def as_before(engine: Engine, plan: Plan) -> Iterator[None]:
     """Draw something else, and leave the engine's records those of the picture before it."""
-    record, runs, profiling = engine.internal.record, engine.internal.runs.copy(), engine.internal.profiling
-    engine.internal.profiling = False
+    record, runs, profiling = engine.record, engine.runs.copy(), engine.options.profiling
+    engine.options.profiling = False
     try:
         yield
     finally:
@@ -283,10 +283,10 @@ def as_before(engine: Engine, plan: Plan) -> Iterator[None]:
         try:
             _drawn(engine, plan.sketch, plan, plan.steps)
         finally:
-            engine.internal.profiling = profiling
-            engine.internal.record = engine.internal.record.counted_as(record)
-            engine.internal.runs.clear()
-            engine.internal.runs.update(runs)
+            engine.options.profiling = profiling
+            engine.record = engine.record.counted_as(record)
+            engine.runs.clear()
+            engine.runs.update(runs)
 
 
 def _drawn(engine: Engine, sketch: Sketch, plan: Plan, steps: Mapping[str, int]) -> moderngl.Texture:

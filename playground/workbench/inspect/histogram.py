@@ -185,7 +185,7 @@ class Counter:
             self._of, self._work = of, count(texture, self.piece)
         if self._work is None:
             return
-        with self.session.engine.internal.borrowed():
+        with self.session.engine.borrowed():
             done = next(self._work)
         if done is not None:
             self.latest, self._counted, self._work = done, of, None

@@ -89,7 +89,7 @@ class Inspector:
         key = pixel, self.session.draws, self.inner, id(self.session.engine)
         if key != self._key:
             self._key = key
-            with self.session.engine.internal.borrowed():
+            with self.session.engine.borrowed():
                 self._found = self._look(pixel, picture)
             self.reads += 1
         return self._found

@@ -52,10 +52,10 @@ def cost_of(session: Session, node: str) -> tuple[str, bool, float | None]:
     What is inside it counts. Without a time None.
     """
     engine = session.engine
-    inside = [path for path in engine.internal.runs if path == node or path.startswith(f"{node}.")]
+    inside = [path for path in engine.runs if path == node or path.startswith(f"{node}.")]
     spent = [session.times[path] for path in inside if path in session.times]
-    runs = counted(sum(engine.internal.runs[path] for path in inside), "run")
-    return runs, any(path in inside for path in engine.internal.ran), sum(spent) if spent else None
+    runs = counted(sum(engine.runs[path] for path in inside), "run")
+    return runs, any(path in inside for path in engine.record.ran), sum(spent) if spent else None
 
 
 def placed(nodes: Sequence[str], edges: Sequence[Edge]) -> dict[str, tuple[int, int]]:

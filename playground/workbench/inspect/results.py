@@ -24,10 +24,10 @@ def result_of(session: Session, name: str) -> tuple[moderngl.Texture, Version] |
     plan, engine = session.plan, session.engine
     path, _, output = name.partition(":")
     ref = plan.flat.outputs.get(path, {}).get(output) if plan is not None else None
-    result = engine.internal.results.get(ref.path) if ref is not None else None
+    result = engine.record.results.get(ref.path) if ref is not None else None
     if ref is None or result is None or ref.output not in result.textures:
         return None
-    return result.textures[ref.output], (id(engine), result.number, engine.internal.runs[ref.path])
+    return result.textures[ref.output], (id(engine), result.number, engine.runs[ref.path])
 
 
 class TexelShader(FullScreen):

@@ -74,7 +74,7 @@ class Thumbnails:
         engine = self.session.engine
         if self._shrink is not None and self._shrink.ctx is not engine.ctx:
             self._shrink, self._cached = None, {}  # they went with a context that was lost
-        with engine.internal.borrowed():
+        with engine.borrowed():
             if self._shrink is None:
                 self._shrink = TexelShader(engine.ctx, own_shader("thumbnail.frag"), (SIDE, SIDE))
             values = self._shrink.compute({"shown": texture}, side=float(SIDE))

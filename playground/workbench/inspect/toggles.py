@@ -95,13 +95,13 @@ class Inspection:
         """Record the costs of the last picture; passes are timed only while their times are shown."""
         session = self.session
         engine, before = session.engine, self._recorded
-        if self.costs_shown and engine.internal.profiling and session.draws != before and before >= 0:
-            self.record.add(engine.internal.times, engine.internal.texels, engine.internal.triangles)
+        if self.costs_shown and engine.options.profiling and session.draws != before and before >= 0:
+            self.record.add(engine.record.times, engine.record.texels, engine.record.triangles)
         self._recorded = session.draws
-        if engine.internal.profiling and not self.costs_shown:
+        if engine.options.profiling and not self.costs_shown:
             self.record.clear()
             session.times.clear()
-        engine.internal.profiling = self.costs_shown
+        engine.options.profiling = self.costs_shown
         if self.spread_shown:
             self.counter.go_on()
         else:
@@ -110,7 +110,7 @@ class Inspection:
     def colours(self, ramp: int) -> tuple[Colour, ...]:
         """Return the colours of a map's ramp, read from the graphics card once."""
         if ramp not in self._colours:
-            with self.session.engine.internal.borrowed():
+            with self.session.engine.borrowed():
                 self._colours[ramp] = colours_of(self.session.engine.ctx, ramp)
         return self._colours[ramp]
 

@@ -1,8 +1,8 @@
-"""Run a sketch on a context, and only what is stale: what is inside an ``Engine``.
+"""Run plans of sketches on a context, and only what is stale: what an ``Engine`` is made on.
 
 A pass runs again when its key changes (see ``cache_keys``): so moving the sun lights the terrain
 anew and leaves the terrain alone. ``execution`` runs the passes in order, ``runner`` each of
-them. Programs call ``engine``; the playground's own tools use this as well.
+them. Programs call ``engine``; the window and other tools also use what is here.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import weakref
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
 from functools import partial
-from hashlib import blake2b
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,14 +32,14 @@ from playground.engine.disk_cache_choice import choose
 from playground.engine.disk_caching import DiskCaching
 from playground.engine.execution import Execution, would_run
 from playground.engine.eye_height import EyeHeight
-from playground.engine.frame_record import FrameRecord, Recorded
+from playground.engine.frame_record import FrameRecord
 from playground.engine.gl_calls import Timer
 from playground.engine.last_use import last_uses
 from playground.engine.non_finite import FiniteCheck, NotFinite
 from playground.engine.painted_images import PaintedFiles
 from playground.engine.picture_hash import PictureHasher
-from playground.engine.plain_forms import PlainForms
-from playground.engine.plan import LoopIteration, Plan, PlanRequest, Step, Window, drawn_size, needed
+from playground.engine.plain_forms import PlainForms, warn
+from playground.engine.plan import LoopIteration, Plan, PlanRequest, Step, Window, needed
 from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.planner import planned
 from playground.engine.results import Pool, Result, Wired
@@ -50,9 +50,8 @@ from playground.errors import ContextError, Diagnostic, OpenGLFault
 from playground.paths import shown
 from playground.shader.wrap import COMPUTE, FRAGMENT
 from playground.sketch.flat import Ref
-from playground.sketch.load import load
+from playground.sketch.load import opened
 from playground.sketch.model import (
-    DEFAULT_PICTURE,
     DRIVERS,
     LARGEST_PICTURE,
     LARGEST_SIDE,
@@ -71,59 +70,60 @@ CACHE_BYTES = 768 * 2**20
 _POOL_SHARE = 8  # spare textures may take an eighth of what the cache may
 
 
-class Internals(Recorded):
-    """Plans, textures, caches and counts of one engine; arguments as ``Engine`` takes them."""
+@dataclass
+class RunOptions:
+    """How frames are run, for what shows them while they come or needs less memory."""
+
+    profiling: bool = False  # the time of each pass is measured
+    # [s] after which loops that follow the time, and sources at work, raise ``Unfinished``
+    patience: float | None = None
+    piece: Callable[[], bool] | None = None  # whether a picture is to stop between passes
+    # Textures stay for later frames; else each is dropped once it was read for the last time.
+    keeps: bool = True
+    looks_early: bool = False  # for numbers that are not finite, where nothing is kept
+
+
+class Renderer:
+    """Draws plans on one context; arguments as ``Engine`` takes them."""
 
     def __init__(
         self,
         ctx: moderngl.Context,
         *,
-        driver: str,
-        cache_bytes: int,
-        owns_context: bool,
-        notice: Callable[[str], None],
+        driver: str = "auto",
+        cache_bytes: int = CACHE_BYTES,
+        owns_context: bool = False,
+        notice: Callable[[str], None] = warn,
     ) -> None:
         if driver not in DRIVERS:
             raise ContextError(f"driver '{driver}': expected one of {', '.join(DRIVERS)}")
-        self.ctx = ctx
-        self.info: ContextInfo = context_info(ctx)
-        _log.debug("opened %s: %s (%s)", self.info.opengl, self.info.renderer, self.info.version)
-        if self.info.software:
+        self._ctx = ctx
+        self._info: ContextInfo = context_info(ctx)
+        _log.debug("opened %s: %s (%s)", self._info.opengl, self._info.renderer, self._info.version)
+        if self._info.software:
             keep_freed_memory()
-        self._computes = self.info.compute  # whether there are compute shaders
-        if driver == COMPUTE and not self._computes:
-            raise ContextError(f"this context is {self.info.opengl}; compute needs 4.3")
-        self.driver = driver
+        if driver == COMPUTE and not self._info.compute:
+            raise ContextError(f"this context is {self._info.opengl}; compute needs 4.3")
+        self._driver = driver
+        self.options = RunOptions()
+        self.record = FrameRecord()  # of the last frame
         self.runs: Counter[str] = Counter()  # how often each pass ran, by path
-        super().__init__()
-        self.profiling = False
-        # [s] after which loops that follow the time, and sources at work, raise ``Unfinished``
-        self.patience: float | None = None
-        self.piece: Callable[[], bool] | None = None  # whether a picture is to stop between passes
-        self.keeps = (
-            True  # textures for later frames; else each is dropped once it was read for the last time
-        )
-        self.looks_early = False  # for numbers that are not finite, where nothing is kept
-        self.pool = Pool(ctx, cache_bytes // _POOL_SHARE)
-        self.cache = Cache(cache_bytes, self.pool)
+        pool = Pool(ctx, cache_bytes // _POOL_SHARE)
+        self.cache = Cache(cache_bytes, pool)
         self.painted = PaintedFiles()  # painted in this process, in place of their files
-        self._piece = Piece(None, ctx.finish)
-        self.runner = Runner(ctx, self.info, self.pool, self.painted)
+        self.runner = Runner(ctx, self._info, pool, self.painted)
         self.warnings = PlanWarnings(lambda: self.runner.inputs)
         self.disk_caching: DiskCaching | None = None  # None: nothing is cached on disk
         self.eye_height = EyeHeight()  # over the terrain, in the last frame
         self.plain_forms = PlainForms(
-            notice, compute=self._computes and driver != FRAGMENT, software=self.info.software
+            notice, compute=self._info.compute and driver != FRAGMENT, software=self._info.software
         )
         self._keys = KeyMaker(content=self.painted.content)
         self._hasher = PictureHasher()
         self._finite = FiniteCheck(self)
+        self._piece = Piece(None, ctx.finish)
         self._timer: Timer | None = None
-        self._owns_context = owns_context
-        self._default = ctx.detect_framebuffer(0)
-        self._leak: weakref.finalize[..., Internals] | None = None  # reports this engine as dropped
-        self._released = False
-        self._thread = threading.current_thread()
+        self._context = _ContextUse(self, owns=owns_context)
 
     @property
     def clock(self) -> str:
@@ -135,22 +135,16 @@ class Internals(Recorded):
 
         A second call does nothing. Once its own context is gone, nothing more can be drawn.
         """
-        if self._released:
+        if self._context.released:
             return
-        self._make_current()
-        if self._leak is not None:
-            self._leak.detach()
-        self._released = self._owns_context
+        self._context.make_current()
         self._log_counts()
         self.record = FrameRecord()
         self.cache.clear()
-        self.pool.clear()
+        self.runner.pool.clear()
         self.runner.release()
         self._timer = None
-        if self._owns_context:
-            release_context(self.ctx)
-        elif (bound := self.ctx.fbo) is None or not _is_alive(bound):
-            self._default.use()  # later calls of others bind again what is bound
+        self._context.release()
 
     def _log_counts(self) -> None:
         """Log what ran since the engine was opened, and what was taken from caches instead."""
@@ -161,7 +155,7 @@ class Internals(Recorded):
         read = self.disk_caching.reads if self.disk_caching is not None else 0
         _log.debug("results taken from the cache in memory: %d, from that on disk: %d", self.cache.hits, read)
 
-    def plan_for(
+    def plan(
         self,
         sketch: Sketch | str | Path,
         size: tuple[int, int],
@@ -177,24 +171,11 @@ class Internals(Recorded):
 
         A picture to be drawn ``in_parts`` has draws in their plain form: windows are cut out of those.
         """
-        self.refuse_misuse()
+        self._context.check()
         found = opened(sketch)
-        samples = 0 if in_parts else min(found.samples, self.info.max_samples)
+        samples = 0 if in_parts else min(found.samples, self._info.max_samples)
         kinds = self.plain_forms.kinds if samples == 1 else self.plain_forms.kinds_without_draws
         return planned(found, PlanRequest(size, time, kinds, steps or {}, wanted, interpolated, largest))
-
-    def draw(
-        self,
-        sketch: Sketch | str | Path,
-        *,
-        size: tuple[int, int],
-        time: float = 0.0,
-        steps: Mapping[str, int] | None = None,
-        interpolated: bool = True,
-    ) -> moderngl.Texture:
-        """Draw the sketch's picture, as ``render``; return its texture, which lives until the next frame."""
-        plan_of = partial(self.plan_for, size=size, time=time, steps=steps, interpolated=interpolated)
-        return self._draw_above_terrain(opened(sketch), plan_of)
 
     def draw_window(
         self,
@@ -210,16 +191,16 @@ class Internals(Recorded):
         Raises ``SketchError`` at a pass that cannot be drawn in parts (see ``window``).
         """
         plan_of = partial(self.plan_for_window, window=window, time=time, steps=steps)
-        return self._draw_above_terrain(opened(sketch), plan_of)
+        return self.draw_above_terrain(opened(sketch), plan_of)
 
-    def _draw_above_terrain(self, sketch: Sketch, plan_of: Callable[[Sketch], Plan]) -> moderngl.Texture:
+    def draw_above_terrain(self, sketch: Sketch, plan_of: Callable[[Sketch], Plan]) -> moderngl.Texture:
         """Draw a sketch; where the eye is under the terrain, warn once, and draw again from just above it."""
         plan, before = plan_of(sketch), None
         camera = self.eye_height.raised_as_before(plan, self.keys_of)
         if camera is None:
             texture = self._texture(plan, plan.picture)
             with self.borrowed():
-                camera = self.eye_height.raised(plan, self.record.keys, self.record.results, self.ctx)
+                camera = self.eye_height.raised(plan, self.record.keys, self.record.results, self._ctx)
             if camera is None:
                 return texture
             before = self.record
@@ -240,9 +221,9 @@ class Internals(Recorded):
     ) -> Plan:
         """Make a sketch concrete for a window of a picture; raise as ``draw_window`` does."""
         found, (width, height) = opened(sketch), window.whole
-        plan = self.plan_for(found, window.whole, time, steps, largest=LARGEST_PICTURE, in_parts=True)
+        plan = self.plan(found, window.whole, time, steps, largest=LARGEST_PICTURE, in_parts=True)
         larger = width + 1, height + 1
-        other = self.plan_for(found, larger, time, steps, largest=LARGEST_PICTURE + 1, in_parts=True)
+        other = self.plan(found, larger, time, steps, largest=LARGEST_PICTURE + 1, in_parts=True)
         return windowed(plan, other, window)
 
     def texture_of(self, plan: Plan, ref: Ref) -> moderngl.Texture:
@@ -254,16 +235,8 @@ class Internals(Recorded):
 
         The same on every machine: see ``engine.picture_hash``.
         """
-        return "" if self.plan is None else self._hash_of(self.plan)
-
-    def not_finite(self) -> NotFinite | None:
-        """Return the first number that is not finite among what the last frame was made from, if any.
-
-        Ask before the next frame is drawn. What it costs, and what it leaves out: see
-        ``engine.non_finite``.
-        """
-        self.refuse_misuse()
-        return self._finite.first()
+        plan = self.record.plan
+        return "" if plan is None else self.picture_hash(plan)
 
     def not_finite_by_pass(self) -> Iterator[NotFinite | None]:
         """Look at the last frame's passes one by one, in the order in which they ran, as ``not_finite`` does.
@@ -281,29 +254,13 @@ class Internals(Recorded):
         self._texture(plan, plan.picture)
         self.record = self.record.counted_as(before)
 
-    def fingerprint(
-        self,
-        sketch: Sketch | str | Path,
-        *,
-        size: tuple[int, int] = DEFAULT_PICTURE,
-        time: float = 0.0,
-        steps: Mapping[str, int] | None = None,
-    ) -> str:
-        """Return a hash of all that a picture depends on, the renderer included, without drawing it."""
-        found = opened(sketch)
-        size = drawn_size(found, size, LARGEST_PICTURE)
-        plan = self.plan_for(found, size, time, steps, largest=LARGEST_PICTURE)
+    def picture_hash(self, plan: Plan) -> str:
+        """Return a hash of what a plan's picture is drawn from, the same on every machine.
+
+        See ``engine.picture_hash``.
+        """
         with self._supposing(plan):
-            made = f"{self._hash_of(plan)} {self.info.renderer} {self.info.opengl}"
-        return blake2b(made.encode(), digest_size=16).hexdigest()
-
-    def _hash_of(self, plan: Plan) -> str:
-        return self._hasher.hash_of(plan, self.driver_for, self.runner.given_for_key)
-
-    def forget_unused(self) -> None:
-        """Drop what is cached but not used for the last frame; without it, a film caches all its frames."""
-        self.refuse_misuse()
-        self.cache.drop_unused()
+            return self._hasher.hash_of(plan, self.driver_for, self.runner.given_for_key)
 
     def stale(
         self,
@@ -315,7 +272,7 @@ class Internals(Recorded):
         interpolated: bool = True,
     ) -> list[str]:
         """Return the paths of the passes that drawing the sketch's picture would run; nothing is run."""
-        plan = self.plan_for(sketch, size, time, steps, interpolated=interpolated)
+        plan = self.plan(sketch, size, time, steps, interpolated=interpolated)
         keys, nodes = self.keys_of(plan), needed(plan.nodes, plan.picture)
         if self.disk_caching is not None:
             nodes = self.disk_caching.would_run(self.cache, plan, keys, plan.picture, self.painted)
@@ -333,8 +290,8 @@ class Internals(Recorded):
         try:
             yield
         finally:
-            if self.plan is not None:
-                self.runner.look_at(self.plan)
+            if self.record.plan is not None:
+                self.runner.look_at(self.record.plan)
 
     # ── running ──────────────────────────────────────────────────────────────
 
@@ -347,13 +304,13 @@ class Internals(Recorded):
         self.runner.programs.frame += 1
         record.keys = self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
         execution = Execution(record.keys, self.cache, self.runner, self._compute, self.driver_for)
-        execution.replayed = None if self.profiling else self._count_replayed
-        execution.deadline = Deadline(self.patience, self.ctx.finish)
-        self._piece = Piece(self.piece, self.ctx.finish)
-        self.runner.works.waits = self.patience is None
+        execution.replayed = None if self.options.profiling else self._count_replayed
+        execution.deadline = Deadline(self.options.patience, self._ctx.finish)
+        self._piece = Piece(self.options.piece, self._ctx.finish)
+        self.runner.works.waits = self.options.patience is None
         self.runner.works.keep(record.keys.computed)
         with self.borrowed():
-            if not self.keeps:
+            if not self.options.keeps:
                 self._run_once(execution, plan, ref)
             elif self.disk_caching is not None:
                 execution.run(self.disk_caching.begin(execution, plan, ref))
@@ -369,7 +326,7 @@ class Internals(Recorded):
         keys, needs = execution.keys, needed(plan.nodes, ref)
         found = choose(keys, needs, ref, self.cache.get, lambda _: False, skips=True)
         self.record.results = execution.results = found.taken
-        if self.looks_early:
+        if self.options.looks_early:
             execution.ended = lambda step, result: self._finite.look_early(
                 step, result, keys.computed(step.path)
             )
@@ -379,14 +336,11 @@ class Internals(Recorded):
     @contextmanager
     def borrowed(self) -> Iterator[None]:
         """Lend the context, made current, and restore its framebuffer and samplers afterwards."""
-        self._make_current()
-        bound = self.ctx.fbo
-        try:
-            yield
-        finally:
-            self.runner.binder.tidy()
-            # What stays bound here is bound again by later calls, so it may not be a released one.
-            (bound if bound is not None and _is_alive(bound) else self._default).use()
+        with self._context.borrowed():
+            try:
+                yield
+            finally:
+                self.runner.binder.tidy()
 
     def _compute(
         self,
@@ -400,8 +354,8 @@ class Internals(Recorded):
             self._piece.check()
         record, runner, first = self.record, self.runner, (start.settled or start.iterations) if start else 0
         continued = record.plan is not None and step.path in record.plan.continued
-        objects, drawn = self.pool.made + runner.programs.compiled, runner.draws.drawn
-        timed = self._timer_of().measure(record.times, step.path) if self.profiling else nullcontext()
+        objects, drawn = runner.pool.made + runner.programs.compiled, runner.draws.drawn
+        timed = self._timer_of().measure(record.times, step.path) if self.options.profiling else nullcontext()
         with timed:
             result = runner.run(
                 step,
@@ -412,9 +366,9 @@ class Internals(Recorded):
                 keeps_surface=continued,
                 key="" if iteration is not None else record.keys.computed(step.path),
             )
-        if objects != self.pool.made + runner.programs.compiled:
+        if objects != runner.pool.made + runner.programs.compiled:
             # What has run without an error before will do so again, and a query waits for the driver.
-            error = self.ctx.error
+            error = self._ctx.error
             if error != "GL_NO_ERROR":
                 raise OpenGLFault(f"pass '{step.path}': OpenGL reports {error}")
         self.runs[step.path] += 1
@@ -441,28 +395,36 @@ class Internals(Recorded):
         """Choose by which driver the kernel of a step runs."""
         kernel = step.kernel
         if isinstance(kernel, ComputeVariant | PlainCompute):
-            if not self._computes:
-                message = f"'{kernel.name}' is a compute shader; this context is {self.info.opengl}"
+            if not self._info.compute:
+                message = f"'{kernel.name}' is a compute shader; this context is {self._info.opengl}"
                 raise ContextError(f"{message}, and compute needs 4.3")
             return COMPUTE
-        if not isinstance(kernel, TexelKernel) or not self._computes or self.driver == FRAGMENT:
+        if not isinstance(kernel, TexelKernel) or not self._info.compute or self._driver == FRAGMENT:
             return FRAGMENT
-        return COMPUTE if self.driver == COMPUTE or kernel.visits else FRAGMENT
+        return COMPUTE if self._driver == COMPUTE or kernel.visits else FRAGMENT
 
-    def _make_current(self) -> None:
-        """Make this engine's context current: there may be others in the process.
+    def _timer_of(self) -> Timer:
+        self._context.check()
+        if self._timer is None:
+            self._timer = Timer(self._ctx, software=self._info.software)
+        return self._timer
 
-        It stays current, since glcontext's way back leaves none.
-        """
-        self.refuse_misuse()
-        make_current(self.ctx)
-        if not self._owns_context and (self._leak is None or not self._leak.alive):
-            self._leak = weakref.finalize(self, report_leak, self.ctx)
-            self._leak.atexit = False
 
-    def refuse_misuse(self) -> None:
+class _ContextUse:
+    """A context that an engine draws on, in its thread: its own, or one that it leaves as it found it."""
+
+    def __init__(self, engine: Renderer, *, owns: bool) -> None:
+        self.released = False
+        self._engine = weakref.ref(engine)
+        self._ctx = engine._ctx
+        self._owns = owns
+        self._default = engine._ctx.detect_framebuffer(0)
+        self._leak: weakref.finalize[..., Renderer] | None = None  # reports the engine as dropped
+        self._thread = threading.current_thread()
+
+    def check(self) -> None:
         """Raise ``ContextError`` where the engine was released, or belongs to another thread."""
-        if self._released:
+        if self.released:
             raise ContextError("this engine was released; open another")
         now = threading.current_thread()
         if now is not self._thread:
@@ -471,16 +433,38 @@ class Internals(Recorded):
                 "an OpenGL context belongs to one thread; open an engine in each"
             )
 
-    def _timer_of(self) -> Timer:
-        self.refuse_misuse()
-        if self._timer is None:
-            self._timer = Timer(self.ctx, software=self.info.software)
-        return self._timer
+    def make_current(self) -> None:
+        """Make the context current: there may be others in the process.
 
+        It stays current, since glcontext's way back leaves none.
+        """
+        self.check()
+        make_current(self._ctx)
+        engine = self._engine()
+        if not self._owns and engine is not None and (self._leak is None or not self._leak.alive):
+            self._leak = weakref.finalize(engine, report_leak, self._ctx)
+            self._leak.atexit = False
 
-def opened(sketch: Sketch | str | Path) -> Sketch:
-    """Return the sketch itself, or the one of that name or path."""
-    return sketch if isinstance(sketch, Sketch) else load(sketch)
+    @contextmanager
+    def borrowed(self) -> Iterator[None]:
+        """Lend the context, made current, and restore its framebuffer afterwards."""
+        self.make_current()
+        bound = self._ctx.fbo
+        try:
+            yield
+        finally:
+            # What stays bound here is bound again by later calls, so it may not be a released one.
+            (bound if bound is not None and _is_alive(bound) else self._default).use()
+
+    def release(self) -> None:
+        """Release the context, if it is the engine's own; else leave it with what can be bound."""
+        if self._leak is not None:
+            self._leak.detach()
+        self.released = self._owns
+        if self._owns:
+            release_context(self._ctx)
+        elif (bound := self._ctx.fbo) is None or not _is_alive(bound):
+            self._default.use()  # later calls of others bind again what is bound
 
 
 def _is_alive(framebuffer: moderngl.Framebuffer) -> bool:
