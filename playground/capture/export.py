@@ -51,8 +51,7 @@ from playground.data.grid import fitted
 from playground.data.image_files import encode_samples, naming
 from playground.data.place import Place
 from playground.engine.engine import Engine
-from playground.engine.plan import Plan
-from playground.engine.view_inputs import view_input
+from playground.engine.plan import Plan, view_input
 from playground.errors import DataError, SketchError
 from playground.sketch.load import opened
 from playground.sketch.model import DEFAULT_PICTURE, Sketch

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from playground.capture.extensions import COLOUR, HEIGHT, NUMBERS
-from playground.engine.plan import Plan
-from playground.engine.view_inputs import view_height
+from playground.engine.plan import Plan, view_height
 from playground.errors import SketchError
 
 

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from playground._version import __version__
 from playground.data.image_files import reason, replacing
-from playground.engine.packed_files import contents, folder_of
+from playground.engine.files import contents, folder_of
 from playground.errors import DataError
 from playground.paths import shown
 from playground.regular_file import read_regular

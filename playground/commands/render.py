@@ -190,7 +190,7 @@ def render(
 
 def write_output(moment: Moment, output: Output, renderer: Renderer) -> None:
     """Render a moment to its file, and print the file's path."""
-    from playground.engine.error_place import located_at
+    from playground.engine.plan import located_at
 
     _note_hidden_defaults(moment.sketch)
     of_shot = moment.shot is not None and moment.steps == dict(moment.shot.steps)

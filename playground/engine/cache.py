@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass
 
 from playground.engine.loops import KeptStates
-from playground.engine.results import Pool, Result
+from playground.engine.results import Cached, Pool, Result
 
 # Results of any size: a driver spends memory on each texture besides its texels, so that thousands
 # of small ones, one for each save of a small sketch, would grow past any bound in bytes.
@@ -15,32 +14,6 @@ MOST = 512
 # them. Their textures are used again: to make one costs as much as to fill it (1025 x 1025: 2 ms).
 VERSIONS = 4
 _SHARE_OF_STATES = 4  # a quarter of the bytes may be earlier states of loops that follow the time
-
-
-@dataclass(eq=False)
-class Cached:
-    """The results of one pass, or of all passes of a loop after some iteration."""
-
-    results: dict[str, Result]  # by the pass's path
-    iterations: int = 0  # done, of a loop
-    # Keys of the versions of its pass, what was used last at the end; of a loop none, which goes on in place.
-    versions: OrderedDict[str, None] | None = None
-
-    @property
-    def result(self) -> Result:
-        """The only result, of a pass."""
-        return next(iter(self.results.values()))
-
-    @property
-    def bytes(self) -> int:
-        """Bytes held."""
-        return sum([result.bytes for result in self.results.values()])
-
-    def release_to(self, pool: Pool) -> None:
-        """Give the textures to a pool."""
-        for result in self.results.values():
-            pool.give(result)
-        self.results = {}
 
 
 class Cache:

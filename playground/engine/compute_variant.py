@@ -91,7 +91,7 @@ class ComputeVariants:
                     program.run(max(groups[0], 1), max(groups[1], 1))
                 iteration += 1
                 if storage.active and iteration == check:
-                    check += 1 + isqrt(iteration)  # as in settling.py: about √n steps too many
+                    check += 1 + isqrt(iteration)  # as in kernels.py: about √n steps too many
                     if not any(named[storage.active].read(active)):
                         iteration = max(iteration, repeat - 1)
             if program is None and repeat > 0:

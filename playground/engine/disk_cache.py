@@ -7,7 +7,7 @@ bound in bytes is reached, the least recently used files go first.
 
 A file is written under a temporary name and then renamed, so that another process sees all of it
 or nothing. One that is damaged, cut short or not ours is dropped, and the terrain is computed.
-``disk_cache_choice`` chooses the passes that are worth it; ``disk_caching`` reads and writes textures.
+``disk_caching`` chooses the passes that are worth it, reads and writes their textures.
 """
 
 from __future__ import annotations

@@ -1,36 +1,55 @@
 """Cache an engine's expensive textures on disk, and take them from there.
 
+The camera, the window's size and the time change a sketch's last passes all the time; what
+they read of the terrain stays. Where that meets is the frontier: of the passes that stay, those
+that are read by one that does not. A reopened sketch takes the frontier from the disk, and
+the passes behind it are not run at all. Of a pass that stays, two times are compared: what it took to
+compute, with what it depends on computed or read, and what it would take to read it. It is read where that
+saves enough.
+
 What passes cost is measured as they run. Once the terrain has not changed for a moment, the textures
 that are worth it are read back a piece at a time, and the disk cache's own thread writes them: no
-frame waits for either. The next time, an engine with this disk cache reads them and does not run
-the passes at all; a pass in between that is needed after all, runs then. On a software renderer
-their mipmaps are cached too: a graphics card makes them faster than a disk is read.
+frame waits for either. A pass in between that is needed after all, runs then. On a software renderer
+mipmaps are cached too: a graphics card makes them faster than a disk is read.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from playground.engine.cache import Cache, Cached
+from playground.engine.cache import Cache
 from playground.engine.cache_keys import Keys
 from playground.engine.disk_cache import CachedTextures, DiskCache
-from playground.engine.disk_cache_choice import choose, passing, worth_caching
 from playground.engine.execution import Execution
+from playground.engine.frame_record import FrameSource
 from playground.engine.gl_calls import read_mipmap, write_mipmaps
-from playground.engine.plan import Plan, PlanNode, Step, needed
+from playground.engine.plan import (
+    LoopStep,
+    Plan,
+    PlanNode,
+    Step,
+    every_node,
+    needed,
+    sources_of,
+    walk,
+)
+from playground.engine.results import Cached, Result
 from playground.engine.textures import bytes_of, levels_of, read_block
-from playground.memo import Memo
+from playground.memo import PLANS, Memo
+from playground.shader.expressions import follows_time
+from playground.shader.reserved_names import OF_THE_TERRAIN
 from playground.sketch.flat import Ref
+from playground.sketch.model import PlainShader
 
 if TYPE_CHECKING:
     import moderngl
 
-    from playground.engine.renderer import Renderer
 
 FLOOR = 20.0  # [ms] that a read must save: less is not visible
 RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum included
@@ -144,7 +163,7 @@ class DiskCaching:
 
     # ── at rest ──────────────────────────────────────────────────────────────
 
-    def look(self, source: Renderer, plan: Plan) -> float | None:
+    def look(self, source: FrameSource, plan: Plan) -> float | None:
         """Do a piece of the work for the frame of a plan; return in how many seconds to call again.
 
         None: not before another frame has run something.
@@ -166,7 +185,7 @@ class DiskCaching:
         self._work = self._write_all(source, plan, source.record.keys)
         return 0.0
 
-    def finish(self, source: Renderer, plan: Plan) -> None:
+    def finish(self, source: FrameSource, plan: Plan) -> None:
         """Do all work for the frame of a plan at once, and wait until it is written."""
         self._costed_at -= self.rest
         while self.look(source, plan) is not None:
@@ -178,7 +197,7 @@ class DiskCaching:
         self._work = None
         self.store.close()
 
-    def _write_all(self, source: Renderer, plan: Plan, keys: Keys) -> Iterator[None]:
+    def _write_all(self, source: FrameSource, plan: Plan, keys: Keys) -> Iterator[None]:
         """Write what is worth it, a piece at a time; ends early where a texture is gone."""
         passes, costs = passing(plan, source.runner.painted), self._costs
         more: dict[str, float] = {}
@@ -225,3 +244,200 @@ def _read_piece(texture: moderngl.Texture, level: int, south: int, north: int) -
     if level:
         return read_mipmap(texture, level, levels_of(texture.size)[level])
     return read_block(texture, (0, south), (texture.size[0], north - south))
+
+
+_PASSING = ("time", "clip_from_world", "world_from_clip", "eye")  # given names that change while one looks
+
+
+def passing(plan: Plan, painted: Collection[Path] = ()) -> frozenset[str]:
+    """Return the paths of the steps and loops of a plan that are never cached on disk.
+
+    What reads the time, the camera or the mouse, has a texel for each pixel of the picture, is
+    stopped before its last iteration or gone on from by a later draw, or reads a file that is
+    ``painted`` in this process, which no other one knows by its version; and each that reads such a one.
+    """
+    return _passing(plan.nodes, plan.frame_size, plan.continued, frozenset(painted))
+
+
+@PLANS.cached(identities=1)
+def _passing(
+    nodes: tuple[PlanNode, ...],
+    frame_size: tuple[int, int],
+    continued: frozenset[str],
+    painted: frozenset[Path],
+) -> frozenset[str]:
+    """Return what ``passing`` does, worked out once for the frames that have the same passes."""
+    found: set[str] = set()
+    for node in nodes:
+        reads = {source.path for source in sources_of(node) if isinstance(source, Ref)}
+        steps = list(walk((node,)))
+        loops = [loop for loop in every_node((node,)) if isinstance(loop, LoopStep)]
+        own = any(_passes(step, frame_size, continued) or _reads_one(step, painted) for step in steps)
+        if own or reads & found or any(_stops(loop) for loop in loops):
+            found |= {node.path, *(step.path for step in steps)}
+    return frozenset(found)
+
+
+def _reads_one(step: Step, files: Collection[Path]) -> bool:
+    named = (step.values[p.name] for p in step.kernel.parameters if p.widget.kind == "file")
+    return bool(files) and any(Path(str(value)) in files for value in named)
+
+
+def _stops(loop: LoopStep) -> bool:
+    return follows_time(loop.spec.repeat) or loop.repeat != loop.whole
+
+
+def _passes(step: Step, frame_size: tuple[int, int], continued: Collection[str]) -> bool:
+    kernel = step.kernel
+    if (
+        isinstance(kernel, PlainShader)
+        or not set(kernel.depends) <= set(OF_THE_TERRAIN)
+        or step.path in continued
+        or step.window is not None
+    ):
+        return True
+    if step.size == frame_size or step.repeat != step.whole:
+        return True
+    if follows_time(kernel.repeat):
+        return True
+    return any(kernel.reads(name) for name in _PASSING)
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """How a frame is made."""
+
+    nodes: list[PlanNode]  # to be run, in order
+    taken: dict[str, Result]  # by the step's path: cached in memory, or read
+    skipped: frozenset[str]  # steps that are neither, since nothing that runs reads them
+
+
+def choose(
+    keys: Keys,
+    nodes: Iterable[PlanNode],
+    ref: Ref,
+    held: Callable[[str], Cached | None],
+    read: Callable[[Step], bool],
+    *,
+    skips: bool,
+) -> Chosen:
+    """Choose how to make a texture; ``nodes`` are what it needs, in order.
+
+    ``held(key)`` is what is cached in memory. ``read(step)`` puts a step's textures there from the disk
+    cache, and says whether it could. ``skips``: what nothing that runs reads is left out.
+    """
+    known = list(nodes)
+    wanted = {ref.path} if skips else {step.path for step in walk(tuple(known))}
+    run: list[PlanNode] = []
+    taken: dict[str, Result] = {}
+    skipped: set[str] = set()
+    for node in reversed(known):
+        here = _in_memory(node, keys, held)
+        if here is None:
+            inside = {step.path: step for step in walk((node,))}
+            # Of a loop that was read, each step that others read is cached by itself.
+            missing = [
+                step for path, step in inside.items() if path in wanted and not held(keys.result(path))
+            ]
+            if all(read(step) for step in missing):
+                here = {path: found for path in inside if (found := _alone(held(keys.result(path))))}
+                skipped |= inside.keys() - here.keys() - {step.path for step in missing}
+        if here is not None:
+            taken |= here
+            continue
+        run.append(node)
+        wanted |= {source.path for source in sources_of(node) if isinstance(source, Ref)}
+    return Chosen(run[::-1], taken, frozenset(skipped))
+
+
+def _in_memory(node: PlanNode, keys: Keys, held: Callable[[str], Cached | None]) -> dict[str, Result] | None:
+    """Return what is cached in memory of a node, by the step's path; None where it has to be run, or read."""
+    if isinstance(node, Step):
+        found = _alone(held(keys.result(node.path)))
+        return None if found is None else {node.path: found}
+    cached = held(keys.loops[node.path])
+    if cached is None or cached.iterations != node.repeat or not cached.results:
+        return None
+    together = dict(cached.results)
+    for inside in every_node(node.body):
+        if not keys.changes[id(inside)]:
+            together |= _in_memory(inside, keys, held) or {}
+    return together
+
+
+def _alone(cached: Cached | None) -> Result | None:
+    return None if cached is None else next(iter(cached.results.values()), None)
+
+
+# ── what is worth caching ────────────────────────────────────────────────────
+
+
+@dataclass(frozen=True)
+class Worth:
+    """A step whose textures are worth caching on disk."""
+
+    path: str
+    key: str
+    cost: float  # [ms] that it took to make, with all that it reads
+
+
+def worth_caching(
+    plan: Plan,
+    keys: Keys,
+    ref: Ref,
+    passes: frozenset[str],
+    costs: Memo[str, float],
+    read_time: Callable[[int], float],
+    floor: float,
+    more: Mapping[str, float] = MappingProxyType({}),
+) -> list[Worth]:
+    """Return the steps of a texture's frame that are worth caching: those of the frontier that cost enough.
+
+    ``passes``: as ``passing`` returns them. ``costs`` [ms] of what ran, by the key of the step or the
+    loop; ``read_time(bytes)`` [ms]. To read must save at least ``floor`` [ms].
+    ``more`` [ms] is what else steps cost that are computed in another process, by path.
+    """
+    nodes = needed(plan.nodes, ref)
+    home = {step.path: number for number, node in enumerate(nodes) for step in walk((node,))}
+    sources = [_sources(node, number, home) for number, node in enumerate(nodes)]
+    others = {ref.path}.union(*sources)
+    steps = {step.path: step for step in walk(tuple(nodes))}
+    to_read = {path: read_time(bytes_in(step)) for path, step in steps.items()}
+    # What must be run or read to have a node by running it, each with its time, by what and which.
+    ways: list[dict[tuple[bool, str], float]] = []
+    wholes: list[dict[str, float]] = []  # what was run for a node, nothing read, each with its time
+    is_read: list[bool] = []
+    for number, node in enumerate(nodes):
+        key = keys.loops[node.path] if isinstance(node, LoopStep) else keys.result(node.path)
+        whole = {key: costs.get(key, 0.0)}
+        way = {(True, key): whole[key] + max(more.get(step.path, 0.0) for step in walk((node,)))}
+        for path in sources[number]:
+            before = home[path]
+            whole |= wholes[before]
+            way |= {(False, path): to_read[path]} if is_read[before] else ways[before]
+        ways.append(way)
+        wholes.append(whole)
+        mine = sum(to_read[step.path] for step in walk((node,)) if step.path in others)
+        stays = not any(step.path in passes for step in walk((node,)))
+        is_read.append(stays and sum(way.values()) - mine >= floor)
+    found: list[Worth] = []
+    wanted = {ref.path}
+    for number in reversed(range(len(nodes))):
+        read_here = [step.path for step in walk((nodes[number],)) if step.path in wanted]
+        if read_here and is_read[number]:
+            cost = sum(wholes[number].values())
+            found += [Worth(path, keys.result(path), cost) for path in read_here]
+        elif read_here:
+            wanted |= sources[number]
+    return found[::-1]
+
+
+def bytes_in(step: Step) -> int:
+    """Return the bytes of a step's textures."""
+    return sum(bytes_of(step.size, output.format) for output in step.kernel.outputs)
+
+
+def _sources(node: PlanNode, number: int, home: Mapping[str, int]) -> set[str]:
+    """Return the steps of other nodes that a node reads."""
+    read = {source.path for source in sources_of(node) if isinstance(source, Ref)}
+    return {path for path in read if home[path] != number}

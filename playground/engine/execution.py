@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 
-from playground.engine.cache import Cache, Cached
+from playground.engine.cache import Cache
 from playground.engine.cache_keys import Keys
 from playground.engine.loops import LoopState, Replay, iteration_of, replay_of
-from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step, walk
-from playground.engine.results import UNWIRED, Result, Wired, started
+from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step, sources_of, walk
+from playground.engine.results import UNWIRED, Cached, Result, Wired, started
 from playground.engine.runner import Runner
 from playground.engine.unfinished import Deadline
 from playground.shader.expressions import follows_time
@@ -319,3 +319,32 @@ def _draws_nothing(step: Step, steps: Mapping[str, Step]) -> bool:
     if not isinstance(step.kernel, Draw) or step.repeat or earlier is None:
         return False
     return isinstance(earlier.kernel, Draw) and earlier.size == step.size
+
+
+def last_uses(plan: Plan, nodes: Sequence[PlanNode], keys: Keys, ref: Ref) -> dict[str, list[Step]]:
+    """Return which steps are read no more once a node has run, by the node's path.
+
+    ``nodes`` are run in order, for the texture ``ref``. Steps of loops are left out, as are draws, which may
+    share textures, and what draws read: the terrain under the eye is looked at after the frame.
+    """
+    draws = [step for step in plan.walk() if isinstance(step.kernel, Draw)]
+    stays = {ref.path}.union(*(_read(draw) for draw in draws))
+    own = {node.path: node for node in nodes if isinstance(node, Step)}
+    # Steps of one key have the same textures.
+    kept = {keys.result(path) for path in stays if path in keys.steps}
+    last: dict[str, tuple[str, Step]] = {}  # by key: the node that reads it last, and a step of it
+    for node in nodes:
+        for path in {*_read(node), *({node.path} & own.keys())}:
+            step = own.get(path)
+            if step is not None and not isinstance(step.kernel, Draw) and keys.result(path) not in kept:
+                last[keys.result(path)] = node.path, step
+    found: dict[str, list[Step]] = {}
+    for path, step in last.values():
+        found.setdefault(path, []).append(step)
+    return found
+
+
+def _read(node: PlanNode) -> set[str]:
+    versions = [inside for body in node.bodies for inside in walk(body)] if isinstance(node, LoopStep) else []
+    every = [node, *versions]
+    return {source.path for one in every for source in sources_of(one) if isinstance(source, Ref)}

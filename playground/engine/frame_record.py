@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 from playground.engine.cache_keys import Keys
 from playground.engine.plan import Plan
 from playground.engine.results import Result
+from playground.engine.runner import Runner
 
 
 @dataclass
@@ -55,3 +58,21 @@ class FrameRecord:
             times=other.times,
             triangles=other.triangles,
         )
+
+
+class FrameSource(Protocol):
+    """What draws frames, as far as those need it that look at the last one."""
+
+    @property
+    def record(self) -> FrameRecord:
+        """The last frame's."""
+
+    @property
+    def runner(self) -> Runner:
+        """What runs the passes, with its context and its pool of textures."""
+
+    def borrowed(self) -> AbstractContextManager[None]:
+        """Lend the context, made current."""
+
+    def recall(self, plan: Plan) -> None:
+        """Make an earlier frame the last one again."""

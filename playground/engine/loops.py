@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from playground.engine.kernels import Kernels
 from playground.engine.plan import LoopIteration, LoopStep, PlanNode, Step
 from playground.engine.programs import Program
-from playground.engine.results import Pool, Result, Wired
+from playground.engine.results import Cached, Pool, Result, Wired
 from playground.shader.expressions import FRAME_RATE
 from playground.sketch.flat import Fed, Ref, Source
 from playground.sketch.model import TexelKernel
@@ -36,7 +36,6 @@ from playground.sketch.model import TexelKernel
 if TYPE_CHECKING:
     import moderngl
 
-    from playground.engine.cache import Cached
 
 MAX_STATES = 48  # of one loop
 _MAX_KEYS = 2  # of one loop's path: two versions that are compared are drawn in turn

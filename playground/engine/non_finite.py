@@ -25,6 +25,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.engine.frame_record import FrameSource
 from playground.engine.plan import LoopStep, Plan, Step, every_node
 from playground.engine.results import Result, Wired
 from playground.engine.textures import read_bands, split_format
@@ -35,7 +36,6 @@ from playground.sketch.model import Draw, Kernel, PlainFragment, TexelKernel
 if TYPE_CHECKING:
     import moderngl
 
-    from playground.engine.renderer import Renderer
 
 # All bits of the exponent are set in NaN and infinity, and in nothing else (IEEE 754).
 _EXPONENTS: dict[np.dtype[Any], tuple[str, int]] = {
@@ -72,7 +72,7 @@ class NotFinite:
 class FiniteCheck:
     """Checks the textures of a source's frames; remembers which it has checked."""
 
-    def __init__(self, source: Renderer) -> None:
+    def __init__(self, source: FrameSource) -> None:
         self.source = source
         self.looked_at = 0  # textures read for the last frame
         # What was found of each result, and after how many iterations: some go on in place.

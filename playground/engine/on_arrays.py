@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.engine.cache import Cached
 from playground.engine.cache_keys import Keys
 from playground.engine.plan import LoopStep, Plan, every_version, sources_of, walk
 from playground.engine.plan_warnings import PlanWarnings
+from playground.engine.results import Cached
 from playground.engine.source_works import SourceWorks
 from playground.engine.standalone import free_name, shown_alone, text_of
 from playground.engine.textures import read_texture, write_texture

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Integral, Real
@@ -13,11 +14,13 @@ from typing import NamedTuple
 from playground.engine.camera import Eye
 from playground.engine.lattice import Between
 from playground.engine.source_kinds import Terrain
-from playground.errors import ParameterError
+from playground.errors import DataError, ParameterError, SketchError
 from playground.memo import PLANS
+from playground.paths import shown
 from playground.shader.expressions import counts_frames
-from playground.sketch.flat import Flat, Ref, Source
-from playground.sketch.model import LARGEST_SIDE, Draw, Kernel, PassSpec, Sketch, TexelKernel, Value
+from playground.sketch.flat import Flat, Ref, Source, leaves_of
+from playground.sketch.model import LARGEST_SIDE, Draw, Kernel, PassSpec, Shot, Sketch, TexelKernel, Value
+from playground.sketch.wiring import input_names
 
 
 @dataclass(frozen=True, slots=True)
@@ -303,3 +306,66 @@ def drawn_size(sketch: Sketch, size: tuple[int, int], largest: int = LARGEST_SID
     times = sketch.supersample
     width, height = checked_pixels(size, largest // times)
     return width * times, height * times
+
+
+def placed(error: DataError, sketch: Sketch, spec: PassSpec) -> DataError:
+    """Return an error of a data file at the pass that names it, the file in the sentence.
+
+    Where an override set the file, or it was opened itself, the sketch's text is right, and the error
+    stays as it is.
+    """
+    overridden = any(
+        path.partition(".")[0] == spec.name and isinstance(value, str) for path, value in sketch.overrides
+    )
+    if overridden or not spec.file or all(d.file == spec.file for d in error.diagnostics):
+        return error
+    found = "; ".join(f"{d.place}: {d.message}" if d.place else d.message for d in error.diagnostics)
+    return DataError(found, file=spec.file, line=spec.line)
+
+
+@contextmanager
+def located_at(sketch: Sketch, shot: Shot) -> Iterator[None]:
+    """Place an error in what a shot sets, as its steps, at the shot's line."""
+    try:
+        yield
+    except ParameterError as error:
+        first = error.diagnostics[0]
+        if first.file or not shot.line:
+            raise
+        message = f"shot '{shot.name}': {first.message}"
+        raise SketchError(message, file=shown(sketch.file), line=shot.line) from None
+
+
+def view_input(plan: Plan, name: str) -> str:
+    """Return the texture that the view takes as its input ``name``; "" if there is none.
+
+    It is what the view is wired to, else what an unwired input of that name would take. A view
+    that has no such input shows none of that name, but a pass that is named so is returned.
+    """
+    flat = plan.flat
+    view = plan.sketch.graph.passes[-1]
+    wired = flat.wires.get("view", {}).get(name)
+    for leaf in leaves_of(flat.nodes):
+        if leaf.path == "view":
+            wired = dict(leaf.inputs).get(name, wired)
+    if isinstance(wired, Ref):
+        named = [
+            f"{path}:{output}"
+            for path, outputs in sorted(flat.outputs.items(), key=lambda item: item[0].count("."))
+            for output, ref in outputs.items()
+            if ref == wired
+        ]
+        return named[0]
+    passes = [spec.name for spec in reversed(plan.sketch.graph.passes) if spec.name != "view"]
+    if name in passes:
+        return f"{name}:{name}" if name in flat.outputs[name] else name
+    if view.name == "view" and name not in input_names(view.technique):
+        return ""
+    return next((f"{path}:{name}" for path in passes if name in flat.outputs[path]), "")
+
+
+def view_height(plan: Plan) -> str:
+    """Return the terrain's heights: those that the view shows, else the latest there are; "" without any."""
+    found = view_input(plan, "height")
+    passes = [spec.name for spec in reversed(plan.sketch.graph.passes) if spec.name != "view"]
+    return found or next((f"{path}:height" for path in passes if "height" in plan.flat.outputs[path]), "")

@@ -16,7 +16,6 @@ from typing import Any
 
 from playground.data.image_files import picture_size
 from playground.engine.camera import Eye, look
-from playground.engine.error_place import placed
 from playground.engine.files import find_file
 from playground.engine.lattice import between_of
 from playground.engine.plan import (
@@ -30,6 +29,7 @@ from playground.engine.plan import (
     checked_seconds,
     checked_steps,
     most_iterations,
+    placed,
 )
 from playground.engine.sizes import MAX_REPEAT, PassSizes, counted
 from playground.engine.source_kinds import Terrain

@@ -28,13 +28,11 @@ from playground.engine.context import (
     release_context,
     report_leak,
 )
-from playground.engine.disk_cache_choice import choose
-from playground.engine.disk_caching import DiskCaching
-from playground.engine.execution import Execution, would_run
+from playground.engine.disk_caching import DiskCaching, choose
+from playground.engine.execution import Execution, last_uses, would_run
 from playground.engine.eye_height import EyeHeight
 from playground.engine.frame_record import FrameRecord
 from playground.engine.gl_calls import Timer
-from playground.engine.last_use import last_uses
 from playground.engine.non_finite import FiniteCheck, NotFinite
 from playground.engine.painted_images import PaintedFiles
 from playground.engine.picture_hash import PictureHasher

@@ -343,3 +343,29 @@ def are_of_own_size(step: Step, inputs: Mapping[str, Wired]) -> bool:
 def has_unwired(kernel: Kernel, inputs: Mapping[str, Wired]) -> bool:
     """Return whether nothing is wired to some input that may stay so."""
     return any([i.fallback and inputs.get(i.name, UNWIRED).texture is None for i in kernel.inputs])
+
+
+@dataclass(eq=False)
+class Cached:
+    """The results of one pass, or of all passes of a loop after some iteration."""
+
+    results: dict[str, Result]  # by the pass's path
+    iterations: int = 0  # done, of a loop
+    # Keys of the versions of its pass, what was used last at the end; of a loop none, which goes on in place.
+    versions: OrderedDict[str, None] | None = None
+
+    @property
+    def result(self) -> Result:
+        """The only result, of a pass."""
+        return next(iter(self.results.values()))
+
+    @property
+    def bytes(self) -> int:
+        """Bytes held."""
+        return sum([result.bytes for result in self.results.values()])
+
+    def release_to(self, pool: Pool) -> None:
+        """Give the textures to a pool."""
+        for result in self.results.values():
+            pool.give(result)
+        self.results = {}

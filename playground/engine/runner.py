@@ -14,17 +14,15 @@ import numpy as np
 from playground.data.live_inputs import LiveInputs, Now
 from playground.data.media import bands_at
 from playground.engine.binder import Binder
+from playground.engine.camera import unit_vector
 from playground.engine.compute_variant import ComputeVariants
 from playground.engine.context import ContextInfo
 from playground.engine.draws import Draws
-from playground.engine.error_place import placed
 from playground.engine.kernels import Job, Kernels, usual_of
 from playground.engine.painted_images import Painted, PaintedFiles, PaintedTextures, channels_of
-from playground.engine.plan import LoopIteration, Plan, Step
+from playground.engine.plan import LoopIteration, Plan, Step, placed
 from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
-from playground.engine.scene import MEANINGS as OF_THE_SCENE
-from playground.engine.scene import scene_of
 from playground.engine.software import Software
 from playground.engine.source_kinds import Material, SourceKind
 from playground.engine.source_works import Arrays, SourceWorks, Task
@@ -37,7 +35,6 @@ from playground.sketch.model import ComputeVariant, CpuSource, Draw, Kernel, Pla
 
 if TYPE_CHECKING:
     import moderngl
-
 
 _NOTHING = nullcontext()
 
@@ -299,3 +296,29 @@ class Runner:
         assert self._plan is not None, "look_at() comes first"
         wanted = any(meaning in OF_THE_SCENE for _, meaning in step.kernel.usual)
         return scene_of(self._plan) if wanted else {}
+
+
+OF_THE_SCENE = frozenset({"camera", "light"})
+"""What ``scene_of`` knows."""
+
+_SUN = "sun"
+
+
+def scene_of(plan: Plan) -> dict[str, tuple[float, ...]]:
+    """Return the camera's place [m] and the unit vector towards the sun, both east, north and up.
+
+    A sketch without a draw has no camera, one without a direction among its parameters no sun; of several
+    that which is called ``sun`` counts. What there is not has a neutral value.
+    """
+    neutral, steps = NEUTRAL["forward"], plan.walk()
+    directions = [
+        (parameter.name != _SUN, step.values[parameter.name])
+        for step in steps
+        for parameter in step.kernel.parameters
+        if parameter.widget.kind == "direction"
+    ]
+    sun = min(directions, key=lambda found: found[0])[1] if directions else None
+    return {
+        "camera": plan.eye.position if any(isinstance(s.kernel, Draw) for s in steps) else neutral,
+        "light": unit_vector(sun) if isinstance(sun, tuple) else neutral,
+    }

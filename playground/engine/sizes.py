@@ -13,8 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from playground.data.image_files import picture_size
-from playground.engine.error_place import placed
-from playground.engine.plan import PlanRequest
+from playground.engine.plan import PlanRequest, placed
 from playground.errors import DataError, PlaygroundError
 from playground.memo import GRAPHS
 from playground.shader import expressions

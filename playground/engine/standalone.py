@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from playground.data.values import write_values
-from playground.engine.instances import counts_instances
+from playground.engine.draws import counts_instances
 from playground.paths import shown
 from playground.shader.own_shaders import own_shader
 from playground.shader.source import Line, SourceText

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
-from playground.engine.error_place import located_at
 from playground.engine.frame import Frame
+from playground.engine.plan import located_at
 from playground.errors import DataError
 from playground.shots.compare import difference_picture
 from playground.shots.fingerprint import fingerprint_of

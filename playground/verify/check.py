@@ -20,8 +20,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from playground.allowed_files import TEXTS, is_elevation, is_variant, named_root, root_of, unsaved_texts
-from playground.engine.error_place import located_at
-from playground.engine.plan import PlanRequest
+from playground.engine.plan import PlanRequest, located_at
 from playground.engine.plan_warnings import kernel_warnings, source_warnings
 from playground.engine.planner import make_plan
 from playground.engine.sandbox import Request, Sandbox, SandboxReport, TryLibrary, TrySketch

@@ -15,7 +15,7 @@ from typing import Any
 
 from playground._version import __version__
 from playground.allowed_files import TEXTS
-from playground.engine.packed_files import contents, folder_of
+from playground.engine.files import contents, folder_of
 from playground.errors import PlaygroundError
 from playground.paths import GLSL, SKETCHES
 from playground.regular_file import read_regular

@@ -18,11 +18,10 @@ from numpy.typing import NDArray
 from playground.allowed_files import is_elevation
 from playground.engine.engine import Engine
 from playground.engine.files import find_file
-from playground.engine.plan import Plan, PlanRequest, Step
+from playground.engine.plan import Plan, PlanRequest, Step, view_height
 from playground.engine.planner import extent_follows_size, make_plan
 from playground.engine.sizes import base_of, counting
 from playground.engine.sources import source_kind
-from playground.engine.view_inputs import view_height
 from playground.paths import GLSL, shown
 from playground.shader.expressions import counts_frames, follows_time
 from playground.shader.source import read_text

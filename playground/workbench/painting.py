@@ -19,10 +19,9 @@ from numpy.typing import NDArray
 
 from playground.engine.camera import Eye, ground_under, seen_from
 from playground.engine.files import find_file
-from playground.engine.plan import Step
+from playground.engine.plan import Step, view_height
 from playground.engine.sources import source_kind
 from playground.engine.textures import split_format
-from playground.engine.view_inputs import view_height
 from playground.errors import DataError, PlaygroundError
 from playground.sketch.assign import resolve, shown_parameters, value_of, values_of
 from playground.sketch.model import CpuSource, Parameter, Sketch

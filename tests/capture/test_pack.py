@@ -14,7 +14,7 @@ from playground import cli
 from playground.capture.pack import pack
 from playground.data.values import write_values
 from playground.engine.engine import Engine
-from playground.engine.packed_files import contents
+from playground.engine.files import contents
 from playground.errors import DataError
 from playground.live.drops import Drops, opened_from
 from playground.paths import GLSL

@@ -9,12 +9,11 @@ import moderngl
 import numpy as np
 import pytest
 
-from playground.engine.cache import Cached
 from playground.engine.engine import Engine
 from playground.engine.loops import MAX_STATES, LoopState
 from playground.engine.plan import LoopStep
 from playground.engine.programs import Program
-from playground.engine.results import Pool
+from playground.engine.results import Cached, Pool
 from playground.sketch.model import Output, PassSpec
 
 from ..loading import load

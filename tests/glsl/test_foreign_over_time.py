@@ -12,7 +12,7 @@ import pytest
 
 from playground.capture.film import film_of, frames
 from playground.data import media
-from playground.engine.disk_cache_choice import passing
+from playground.engine.disk_caching import passing
 from playground.errors import ContextError, DataError, ShaderError
 from playground.extras import install_command
 from playground.sketch.traits import is_animated

@@ -15,10 +15,10 @@ import numpy as np
 from playground.allowed_files import is_absolute, is_file
 from playground.engine.context import ContextInfo, open_context
 from playground.engine.engine import Engine
-from playground.engine.renderer import CACHE_BYTES
 from playground.engine.plain_forms import silent
 from playground.engine.process.pool import Pool
 from playground.engine.process.worker import Parent, Service
+from playground.engine.renderer import CACHE_BYTES
 from playground.paths import GLSL, SKETCHES
 from playground.shader.source import read_text
 from playground.shots.mutants.breaking import broken

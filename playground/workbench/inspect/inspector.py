@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from playground.engine.plan import Plan
+from playground.engine.plan import Plan, view_height
 from playground.engine.textures import read_texels
-from playground.engine.view_inputs import view_height
 from playground.workbench.inspect.results import result_of
 from playground.workbench.inspect.surface_point import Ground
 from playground.workbench.session import Session
