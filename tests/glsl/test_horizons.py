@@ -184,7 +184,7 @@ def test_opposite_courses_have_the_same_lines(on_gpu):
         ahead = on_gpu("lighting/horizons/course.glsl", f"drifted({there}, row)", **arrays)
         behind = on_gpu("lighting/horizons/course.glsl", f"drifted({back}, {back}.rows - 1 - row)", **arrays)
         np.testing.assert_array_equal(ahead, behind)
-        beside = on_gpu("lighting/horizons/course.glsl", f"beside_of({there}, row)", **arrays)
+        beside = on_gpu("lighting/horizons/course.glsl", f"offset_of({there}, row)", **arrays)
         assert np.abs(beside).max() <= 0.5
 
 

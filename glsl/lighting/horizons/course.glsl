@@ -1,14 +1,12 @@
 // lighting/horizons/course.glsl -- how a direction crosses a grid.
 //
-//   gives    Course, course_towards, drifted, beside_of, texel_of, pairs_of, pair_towards
+//   gives    Course, course_towards, drifted, offset_of, texel_of, pairs_of, pair_towards
 //   needs    maths/angle.glsl
 //   units    texels and rows of the grid; drift in 1/65536 of a texel a row; azimuths in degrees,
 //            clockwise from north; tangents are rises over runs
 //   source   the sweep along lines: Timonen and Westerholm 2010, "Scalable Height Field
 //            Self-Shadowing", section 3; the eight directions: Belaiche 2010, section 3.4
 //   tested   tests/glsl/test_horizons.py, against angles in float64
-//
-// It goes row after row, and drifts a part of a texel sideways.
 //
 // A row is a line of texels across the axis that the direction follows more. Rows are counted
 // towards the direction from the terrain's far edge. A line of sight drifts drift / 65536 texels
@@ -35,12 +33,12 @@ Course course_towards(vec2 towards, ivec2 grid, vec2 metres) {
     vec2 texels = towards / metres;
     bool along_x = abs(texels.x) >= abs(texels.y);
     float ahead = along_x ? texels.x : texels.y;
-    float aside = along_x ? texels.y : texels.x;
-    int size_of_drift = int(floor(abs(aside) / max(abs(ahead), 1e-30) * 65536.0 + 0.5));
+    float sideways = along_x ? texels.y : texels.x;
+    int size_of_drift = int(floor(abs(sideways) / max(abs(ahead), 1e-30) * 65536.0 + 0.5));
     Course course;
     course.along_x = along_x;
     course.upwards = ahead >= 0.0;
-    course.drift = aside < 0.0 ? -size_of_drift : size_of_drift;
+    course.drift = sideways < 0.0 ? -size_of_drift : size_of_drift;
     course.rows_a_texel = size_of_drift == 0 ? 1e9 : 65536.0 / float(size_of_drift);
     course.rows = along_x ? grid.x : grid.y;
     course.across = along_x ? grid.y : grid.x;
@@ -54,8 +52,8 @@ int drifted(Course course, int row) {
     return ((row - course.middle) * course.drift + 32768) >> 16;
 }
 
-// How far beside the middle of that texel it is there: -0.5 to 0.5.
-float beside_of(Course course, int row) {
+// Where it is there, from the middle of that texel: -0.5 to 0.5.
+float offset_of(Course course, int row) {
     return float((row - course.middle) * course.drift - (drifted(course, row) << 16))
             * (1.0 / 65536.0);
 }

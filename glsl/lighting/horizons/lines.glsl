@@ -1,7 +1,7 @@
 // lighting/horizons/lines.glsl -- the lines of a sweep, and what it leaves on them for the sums.
 //
-//   gives    Batch, batch_at, first_line, place_of, halves_of, from_halves, land_at, HIGHEST,
-//            UP_TO_4, UP_TO_8, CHUNK; in a compute variant only
+//   gives    Batch, batch_at, first_line, place_of, halves_of, from_halves, land_at, MAX_TANGENT,
+//            CHUNK; in a compute variant only
 //   needs    lighting/horizons/course.glsl, maths/whole.glsl; size, directions, the buffers of
 //            lighting/horizons.comp and its output terrain
 //   units    texels and rows; heights without unit; tangents: rise over run, 0 to 60000
@@ -13,13 +13,8 @@
 #include "lighting/horizons/course.glsl"
 #include "maths/whole.glsl"
 
-const int CHUNK = 64;           // rows of the terrain that a thread sums
-const float HIGHEST = 60000.0;  // a tangent that a half float holds
-
-// What is done for each of several rows is written out: an array whose index is a loop's counter
-// would lie in memory.
-#define UP_TO_4(DO) DO(0) DO(1) DO(2) DO(3)
-#define UP_TO_8(DO) UP_TO_4(DO) DO(4) DO(5) DO(6) DO(7)
+const int CHUNK = 64;               // rows of the terrain that a thread sums
+const float MAX_TANGENT = 60000.0;  // that a half float holds
 
 // How the pairs of directions are shared out over batches. No buffer may be larger than
 // 128 MiB on some drivers.
@@ -27,7 +22,7 @@ struct Batch {
     int pairs;      // in all
     int counted;    // of these, in K
     int from, end;  // those of this one
-    int apart;      // in the buffer, from one direction to the next
+    int stride;     // in the buffer, from one direction to the next
 };
 
 // The batches after those that are needed have no pairs.
@@ -35,8 +30,8 @@ Batch batch_at(int number) {
     Batch batch;
     batch.counted = pairs_of(directions);
     batch.pairs = keep ? max(batch.counted, 4) : batch.counted;
-    batch.apart = (size.x + 32) * (size.y + 32) / 8;
-    int room = lines.length() / (2 * batch.apart);
+    batch.stride = (size.x + 32) * (size.y + 32) / 8;
+    int room = lines.length() / (2 * batch.stride);
     int batches = (batch.pairs + room - 1) / room;
     int pairs_each = (batch.pairs + batches - 1) / batches;
     batch.from = min(number * pairs_each, batch.pairs);

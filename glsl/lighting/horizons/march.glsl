@@ -34,40 +34,10 @@ uniform sampler2D range;                //! input
 #include "lighting/parameters/directions.glsl"
 #include "lighting/parameters/normal.glsl"
 
-// The highest tangent on a march from a place on the grid, in rows and texels of the course.
-float steepest_from(ivec2 grid, vec2 start, vec2 towards, vec2 metres, float foot, float highest) {
-    Course course = course_towards(towards, grid, metres);
-    float aside = float(course.drift) / 65536.0;
-    float ahead_by = course.upwards ? 1.0 : -1.0;
-    vec2 way = course.along_x ? vec2(ahead_by, aside) : vec2(aside, ahead_by);
-    vec2 reach = vec2(grid) - 0.5;
-    vec2 scale = vec2(textureSize(height, 0) - 1) / vec2(max(grid - 1, ivec2(1)));
-    bool on_texels = grid == textureSize(height, 0) && size == grid;
-    ivec2 across = course.along_x ? ivec2(0, 1) : ivec2(1, 0);
-    float most = (highest - foot) * course.steep;
-    float found = 0.0;
-    // anchor: horizon
-    for (int k = 1; k < course.rows; k++) {
-        float rows = float(k);
-        vec2 at = start + rows * way;
-        if (any(lessThan(at, vec2(-0.5))) || any(greaterThan(at, reach)) || most <= found * rows) {
-            break;
-        }
-        float land_there = on_texels ? height_on_line(height, at, across)
-                : height_at(height, at * scale);
-        found = max(found, (land_there - foot) * course.steep / rows);
-    }
-    // end: horizon
-    return found;
-}
-
-float land_at(ivec2 texel) {
-    return height_at(height, place_on(textureSize(height, 0), texel, size));
-}
+float steepest_from(ivec2 grid, vec2 start, vec2 towards, vec2 metres, float foot, float highest);
 
 void kernel(ivec2 texel, out vec4 ahead, out vec4 behind, out float sky, out float land) {
-    ivec2 heights = textureSize(height, 0);
-    ivec2 grid = max(heights, size);
+    ivec2 grid = max(textureSize(height, 0), size);
     vec2 start = place_on(grid, texel, size);
     vec2 metres = spacing_of(grid, extent);
     vec2 slope = slope_here(texel, size, spacing_of(size, extent), relief, normal);
@@ -77,16 +47,46 @@ void kernel(ivec2 texel, out vec4 ahead, out vec4 behind, out float sky, out flo
     int counted = pairs_of(directions);
     float shape = sector_shape(2 * counted);
     vec2 towards = pair_towards(iteration, iterations, first);
-    float there = relief * steepest_from(grid, start, towards, metres, land, highest);
-    float back = relief * steepest_from(grid, start, -towards, metres, land, highest);
-    there = min(there, 60000.0);
-    back = min(back, 60000.0);
-    bvec4 here = equal(ivec4(keep ? iteration : -1), ivec4(0, 1, 2, 3));
-    ahead = mix(previous_ahead(texel), vec4(there), here);
-    behind = mix(previous_behind(texel), vec4(back), here);
-    float both = sky_of_sector(there, slope, towards, shape)
-            + sky_of_sector(back, slope, -towards, shape);
+    float tangent = relief * steepest_from(grid, start, towards, metres, land, highest);
+    float opposite = relief * steepest_from(grid, start, -towards, metres, land, highest);
+    tangent = min(tangent, 60000.0);
+    opposite = min(opposite, 60000.0);
+    bvec4 channel = equal(ivec4(keep ? iteration : -1), ivec4(0, 1, 2, 3));
+    ahead = mix(previous_ahead(texel), vec4(tangent), channel);
+    behind = mix(previous_behind(texel), vec4(opposite), channel);
+    float sectors = sky_of_sector(tangent, slope, towards, shape)
+            + sky_of_sector(opposite, slope, -towards, shape);
     float sum = float(2 * counted) * sqrt(1.0 + dot(slope, slope));
-    sky = previous_sky(texel) + (iteration < counted ? both / sum : 0.0);
+    sky = previous_sky(texel) + (iteration < counted ? sectors / sum : 0.0);
     if (iteration == iterations - 1) sky = max(sky, 0.0);
+}
+
+float land_at(ivec2 texel) {
+    return height_at(height, place_on(textureSize(height, 0), texel, size));
+}
+
+// The highest tangent on a march from a place on the grid, in rows and texels of the course.
+float steepest_from(ivec2 grid, vec2 start, vec2 towards, vec2 metres, float foot, float highest) {
+    Course course = course_towards(towards, grid, metres);
+    float drift = float(course.drift) / 65536.0;
+    float along = course.upwards ? 1.0 : -1.0;
+    vec2 direction = course.along_x ? vec2(along, drift) : vec2(drift, along);
+    vec2 edge = vec2(grid) - 0.5;
+    vec2 scale = vec2(textureSize(height, 0) - 1) / vec2(max(grid - 1, ivec2(1)));
+    bool on_texels = grid == textureSize(height, 0) && size == grid;
+    ivec2 across = course.along_x ? ivec2(0, 1) : ivec2(1, 0);
+    float max_rise = (highest - foot) * course.steep;
+    float steepest = 0.0;
+    // anchor: horizon
+    for (int k = 1; k < course.rows; k++) {
+        float rows = float(k);
+        vec2 at = start + rows * direction;
+        bool outside = any(lessThan(at, vec2(-0.5))) || any(greaterThan(at, edge));
+        if (outside || max_rise <= steepest * rows) break;
+        float height_there = on_texels ? height_on_line(height, at, across)
+                : height_at(height, at * scale);
+        steepest = max(steepest, (height_there - foot) * course.steep / rows);
+    }
+    // end: horizon
+    return steepest;
 }

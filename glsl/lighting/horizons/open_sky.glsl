@@ -25,8 +25,8 @@ vec2 above_horizon(float tangent) {
     return vec2(max(1.57079633 - atan(tangent) - tangent * upright, 0.0), upright);
 }
 
-// A horizon held in the hemisphere over the slope, and in that over level ground: what the slope
-// itself hides is not lit, and below the level there is no sky.
+// A horizon clamped to the hemispheres over the slope and over level ground: what the slope itself
+// hides is not lit, and below the level there is no sky.
 float horizon_over_slope(float tangent, vec2 slope, vec2 towards) {
     return max(max(tangent, dot(slope, towards)), 0.0);
 }
@@ -58,11 +58,11 @@ float sky_of_sector(float tangent, vec2 slope, vec2 towards, float shape) {
 // the difference of their angles.
 float sky_of_sectors(vec2 tangents, vec2 slope, vec2 towards, float shape) {
     float rise = dot(slope, towards);
-    vec2 held = max(max(tangents, vec2(rise, -rise)), 0.0);
-    vec2 lengths = 1.0 + held * held;
+    vec2 clamped = max(max(tangents, vec2(rise, -rise)), 0.0);
+    vec2 lengths = 1.0 + clamped * clamped;
     vec2 upright = lengths.yx / (lengths.x * lengths.y);
-    float turn = atan((held.y - held.x) / (1.0 + held.x * held.y));
-    vec2 level = held * upright;
-    return upright.x + upright.y - rise * shape * (turn + level.y - level.x);
+    float angle = atan((clamped.y - clamped.x) / (1.0 + clamped.x * clamped.y));
+    vec2 level = clamped * upright;
+    return upright.x + upright.y - rise * shape * (angle + level.y - level.x);
 }
 #endif

@@ -13,11 +13,11 @@
 // The height at a texel of the grid, without unit.
 float land_at(ivec2 texel);
 
-vec2 slope_here(ivec2 texel, ivec2 grid, vec2 metres, float metres_of_relief, int way) {
+vec2 slope_here(ivec2 texel, ivec2 grid, vec2 metres, float metres_of_relief, int method) {
     ivec2 low = max(texel - 1, ivec2(0));
     ivec2 high = min(texel + 1, grid - 1);
-    int row = way == ONE_TRIANGLE ? low.y : texel.y;
-    int column = way == ONE_TRIANGLE ? high.x : texel.x;
+    int row = method == ONE_TRIANGLE ? low.y : texel.y;
+    int column = method == ONE_TRIANGLE ? high.x : texel.x;
     float east = land_at(ivec2(high.x, row)) - land_at(ivec2(low.x, row));
     float north = land_at(ivec2(column, high.y)) - land_at(ivec2(column, low.y));
     vec2 run = vec2(max(high - low, ivec2(1))) * metres;

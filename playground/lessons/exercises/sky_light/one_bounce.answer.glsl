@@ -24,8 +24,8 @@ vec2 above_horizon(float tangent) {
     return vec2(max(1.57079633 - atan(tangent) - tangent * upright, 0.0), upright);
 }
 
-// A horizon held in the hemisphere over the slope, and in that over level ground: what the slope
-// itself hides is not lit, and below the level there is no sky.
+// A horizon clamped to the hemispheres over the slope and over level ground: what the slope itself
+// hides is not lit, and below the level there is no sky.
 float horizon_over_slope(float tangent, vec2 slope, vec2 towards) {
     return max(max(tangent, dot(slope, towards)), 0.0);
 }
