@@ -1,7 +1,7 @@
 // scene/near/cliff.glsl -- bare rock: bumps in space, so that they are not drawn out on walls.
 //
-//   gives    Cliff, cliff_at
-//   needs    noise/solid.glsl, scene/near/ladder.glsl, scene/near/strata.glsl
+//   gives    Cliff, cliff_at, add_cliff
+//   needs    noise/solid.glsl, scene/near/ladder.glsl, scene/near/strata.glsl, scene/surface.glsl
 //   units    metres; the push is the gradient of heights along the normal, metres over metres
 //   source   solid noise on any surface: Perlin 1985, "An Image Synthesizer" (SIGGRAPH); creases
 //            where noise is 0: the same, "turbulence"
@@ -14,6 +14,7 @@
 #include "noise/solid.glsl"
 #include "scene/near/ladder.glsl"
 #include "scene/near/strata.glsl"
+#include "scene/surface.glsl"
 
 struct Cliff {
     vec3 push;
@@ -58,5 +59,13 @@ Cliff cliff_at(vec3 place, float share, float strength, float layers, Layer laye
     c.push.z += layers * layer.ledge;
     c.tone += layers * layer.tone;
     return c;
+}
+
+// A share of bare rock, of that colour.
+void add_cliff(inout Surface surface, Cliff cliff, float share, vec3 bare) {
+    surface.push += share * cliff.push;
+    surface.variance += share * share * cliff.variance;
+    vec3 toned = bare * max(1.0 + cliff.tone * LAYER_HUE, 0.1);
+    surface.albedo = mix(surface.albedo, toned, share);
 }
 #endif

@@ -1,15 +1,13 @@
 // scene/near/parameters/near.glsl -- the ground near the eye, finer than the heightmap and colour.
 //
-//   gives    fine_ground, bumpiness, variation, soils, stony, sandy, ripples_from, triplanar,
-//            cliffs, rocky, cliff_colour, coloured_rock, strata, thickness, wet
+//   gives    bumpiness, variation, soils, stony, sandy, ripples_from, cliffs, rocky, cliff_colour,
+//            coloured_rock, strata, thickness, wet
 //   needs    nothing
 //   units    metres; slopes in metres over metres; colours linear; shares 0..1
 //   source   none: parameters
 //   tested   tests/glsl/test_near.py
 #ifndef SCENE_NEAR_PARAMETERS_NEAR
 #define SCENE_NEAR_PARAMETERS_NEAR
-uniform bool fine_ground = false; //! group("Near ground") label("Fine ground")
-                                  //! Bumps and colours finer than the terrain's own
 uniform float bumpiness = 1.0;    //! slider(0, 2) step(0.01) group("Near ground")
                                   //! How strong bumps are, and light and dark with them
 uniform float variation = 0.5;    //! slider(0, 1) step(0.01) group("Near ground")
@@ -22,8 +20,6 @@ uniform float ripples_from = 270.0;  //! angle(0, 360) group("Near ground")
                                   //! Where the wind comes from that ripples sand
 uniform float soils = 0.5;        //! slider(0, 1) step(0.01) group("Near ground")
                                   //! How much stony ground takes the hue of bare soil
-uniform bool triplanar = false;   //! group("Near ground") label("Rock from the sides")
-                                  //! The tile of rock is seen from the sides where it is steep
 uniform bool cliffs = false;      //! group("Rock") label("Cliffs")
                                   //! Bare rock where the ground is steep
 uniform vec2 rocky = vec2(0.6, 1.1);  //! slider(0, 5) step(0.01) group("Rock")
