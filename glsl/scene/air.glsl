@@ -61,8 +61,8 @@ void kernel(ivec2 texel, out vec4 scattered, out vec4 left) {
     ivec2 tile = min(texel / one, 3);
     int slice = tile.y * 4 + tile.x;
     vec2 share = (vec2(texel - tile * one) + 0.5) / vec2(one);
-    vec4 away = world_from_clip * vec4(share * 2.0 - 1.0, 1.0, 1.0);
-    vec3 ahead = normalize(away.xyz / away.w - eye);
+    vec4 far_point = world_from_clip * vec4(share * 2.0 - 1.0, 1.0, 1.0);
+    vec3 ahead = normalize(far_point.xyz / far_point.w - eye);
     Weather now = weather(daylight);
     Sunlight from = sunlight(true, daylight, vec3(0.0), vec2(0.0), vec3(0.0), vec3(0.0));
     vec3 sun = from.direction;

@@ -34,10 +34,10 @@ PixelRay pixel_ray(mat4 back, vec3 from, vec2 pixel, vec2 pixels) {
 // Of a surface seen edge-on a pixel covers no more than this makes of it.
 const float FLATTEST = 0.02;
 
-// Of a point on a plane with that normal, `way` from the eye.
-Footprint footprint_of(PixelRay ray, vec3 way, vec3 normal) {
+// Of a point on a plane with that normal, `offset` from the eye.
+Footprint footprint_of(PixelRay ray, vec3 offset, vec3 normal) {
     float far = length(ray.ahead);
-    float part = length(way) / far;
+    float part = length(offset) / far;
     float facing = -max(abs(dot(normal, ray.ahead)), FLATTEST * far);
     if (dot(normal, ray.ahead) > 0.0) facing = -facing;
     vec2 right = (ray.right - ray.ahead * (dot(normal, ray.right) / facing)).xy;

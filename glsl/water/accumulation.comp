@@ -26,8 +26,8 @@ int down_from(int from) {
     ivec2 texel = texel_of(float(from), size);
     float to = texelFetch(receiver, texel, 0).r;
     ivec2 there = texel_of(to, size);
-    bool beside = all(lessThanEqual(abs(there - texel), ivec2(1)));
-    return beside && number_of(there, size) == to ? int(to) : from;
+    bool adjacent = all(lessThanEqual(abs(there - texel), ivec2(1)));
+    return adjacent && number_of(there, size) == to ? int(to) : from;
 }
 
 void follow(int spring) {

@@ -33,8 +33,8 @@ float shore_cover(float depth, float high, float seconds, float uneven) {
 
 // The part of a pixel of a width that is under the wash of a shore so far from its middle: most at
 // the shore, none from `wide` on, where waves meet a wall as well as where they run out.
-float wash_cover(float away, float wide, float pixel) {
-    vec2 span = clamp(vec2(away - 0.5 * pixel, away + 0.5 * pixel), 0.0, wide);
+float wash_cover(float shore_distance, float wide, float pixel) {
+    vec2 span = clamp(vec2(shore_distance - 0.5 * pixel, shore_distance + 0.5 * pixel), 0.0, wide);
     vec2 within = span * (1.0 - 0.5 * span / max(wide, 1e-6));
     return clamp((within.y - within.x) / max(pixel, 1e-6), 0.0, 1.0);
 }

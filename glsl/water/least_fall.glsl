@@ -15,7 +15,7 @@ float least_fall(vec2 spacing, float relief) {
     return max(1e-4 / max(relief, 1e-3), 1e-6 / min(spacing.x, spacing.y));
 }
 
-// From a texel to its neighbours: along x, along y, aslant.
+// From a texel to its neighbours: along x, along y and diagonally.
 vec3 falls_between(vec2 spacing, float relief) {
     return least_fall(spacing, relief) * vec3(spacing, length(spacing));
 }

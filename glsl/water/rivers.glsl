@@ -46,9 +46,9 @@ vec2 cover_of(vec2 place, vec2 from, vec2 through, vec2 to, vec2 widths, float t
         vec2 along = end - start;
         float share = clamp(dot(place - start, along) / max(dot(along, along), 1e-12), 0.0, 1.0);
         float width = mix(widths.x, widths.y, t + (share - 1.0) / float(PIECES));
-        float away = length(place - start - share * along);
+        float offset = length(place - start - share * along);
         float drawn = max(width, texel_metres);
-        float cover = clamp((0.5 * drawn - away) / texel_metres + 0.5, 0.0, 1.0) * width / drawn;
+        float cover = clamp((0.5 * drawn - offset) / texel_metres + 0.5, 0.0, 1.0) * width / drawn;
         if (cover > best.x) best = vec2(cover, width);
         start = end;
     }

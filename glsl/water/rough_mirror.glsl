@@ -47,9 +47,9 @@ Mirrors mirrors_of(vec3 to_eye, vec2 slope, float variance) {
         // Waves that lie behind others are seen by none: a little is left, so that some is.
         float facing = max(dot(to_eye, normal), 1e-3);
         float weight = NODE_WEIGHTS[k] * facing / normal.z;
-        vec3 away = reflect(-to_eye, normal);
+        vec3 reflected = reflect(-to_eye, normal);
         // What goes on down meets water again, and leaves that upwards.
-        found.to[k] = normalize(vec3(away.xy, max(abs(away.z), 1e-3)));
+        found.to[k] = normalize(vec3(reflected.xy, max(abs(reflected.z), 1e-3)));
         found.share[k] = weight * fresnel_of_water(facing);
         area += weight;
     }
@@ -67,9 +67,9 @@ float sun_glint(vec3 to_eye, vec3 to_sun, vec2 slope, float variance, float area
     vec3 between = to_eye + to_sun;
     if (to_sun.z <= 0.0 || between.z <= 1e-4) return 0.0;
     between = normalize(between);
-    vec2 off = between.xy / between.z + slope;
+    vec2 offset = between.xy / between.z + slope;
     float spread = variance + SUN_SPREAD;
-    float likely = exp(-min(dot(off, off) / spread, 80.0)) / spread;
+    float likely = exp(-min(dot(offset, offset) / spread, 80.0)) / spread;
     float up = between.z * between.z;
     return fresnel_of_water(dot(to_eye, between)) * likely / (4.0 * up * up * area);
 }

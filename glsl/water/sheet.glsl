@@ -96,13 +96,13 @@ vec2 downhill(ivec2 texel, vec2 slope) {
 }
 
 // Whether a texel next to one with no river has some.
-bool beside_river(ivec2 texel) {
-    float most = 0.0;
+bool is_next_to_river(ivec2 texel) {
+    float maximum = 0.0;
     for (int k = 0; k < 9; k++) {
         ivec2 there = clamp(texel + ivec2(k % 3, k / 3) - 1, ivec2(0), size - 1);
-        most = max(most, map_at(river, there, size).r);
+        maximum = max(maximum, map_at(river, there, size).r);
     }
-    return most > 0.0;
+    return maximum > 0.0;
 }
 
 vec4 kernel(ivec2 texel) {
@@ -111,7 +111,7 @@ vec4 kernel(ivec2 texel) {
     float lake = wired_depth ? lake_level(texel) : ground - DRY;
     bool none = lake < ground - 0.9 * DRY;
     float covered = wired_river ? map_at(river, texel, size).r : 0.0;
-    bool near = none && covered <= 0.0 && wired_river && beside_river(texel);
+    bool near = none && covered <= 0.0 && wired_river && is_next_to_river(texel);
     vec4 found = vec4(near ? ground - EDGE : lake, 0.0, 0.0, 0.0);
     if (covered > 0.0) {
         float wide = wired_width ? map_at(width, texel, size).r : 10.0;
@@ -120,12 +120,12 @@ vec4 kernel(ivec2 texel) {
         vec2 slope = relief * slope_at(height, share * grid,
                                        spacing_of(textureSize(height, 0), extent),
                                        CENTRAL_DIFFERENCES);
-        vec2 way = downhill(texel, slope);
-        float fall = max(dot(-slope, way), 1e-4);
+        vec2 direction = downhill(texel, slope);
+        float fall = max(dot(-slope, direction), 1e-4);
         float speed = min(pow(deep, 2.0 / 3.0) * sqrt(fall) / MANNING, 4.0);
         float level = ground + deep * (2.0 * covered - 1.0);
         if (level > found.x) {
-            found = vec4(level, way * speed, smoothstep(WHITE_FROM, WHITE_ALL, fall));
+            found = vec4(level, direction * speed, smoothstep(WHITE_FROM, WHITE_ALL, fall));
         }
     }
     float open = sea_level - base_elevation;

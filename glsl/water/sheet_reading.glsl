@@ -26,10 +26,10 @@ bool is_open(Sheet sheet) { return sheet.white < -0.5; }
 // At a share of the terrain's sides; beyond its edges, as on them.
 Sheet sheet_at(sampler2D water, vec2 share) {
     ivec2 last = textureSize(water, 0) - 1;
-    vec2 held = clamp(share, 0.0, 1.0) * vec2(last);
-    ivec2 low = ivec2(held);
+    vec2 clamped = clamp(share, 0.0, 1.0) * vec2(last);
+    ivec2 low = ivec2(clamped);
     ivec2 high = min(low + 1, last);
-    vec2 part = held - vec2(low);
+    vec2 part = clamped - vec2(low);
     vec4 south_west = texelFetch(water, low, 0);
     vec4 north_west = texelFetch(water, ivec2(low.x, high.y), 0);
     // Between equal levels it is exactly that level: a + (b - a) t.

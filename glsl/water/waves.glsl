@@ -75,10 +75,11 @@ vec4 wave_row(Sea sea, int k, float seconds) {
     float longer = sea.longest * pow(SHORTEST / sea.longest, float(k) / float(WAVES - 1))
             * (0.9 + 0.2 * mixed.x);
     // Directions by the golden ratio: even over any run of waves; long ones keep to the wind.
-    float off = 2.0 * fract(float(k) * 0.6180340 + 0.25) - 1.0;
-    float angle = off * (0.55 + 0.45 * abs(off)) * mix(0.9, 1.7, float(k) / float(WAVES));
+    float deviation = 2.0 * fract(float(k) * 0.6180340 + 0.25) - 1.0;
+    float angle = deviation * (0.55 + 0.45 * abs(deviation))
+            * mix(0.9, 1.7, float(k) / float(WAVES));
     bool blown = dot(sea.towards, sea.towards) > 0.0;
-    if (!blown) angle = 0.5 * TURN * off;
+    if (!blown) angle = 0.5 * TURN * deviation;
     vec2 along = blown ? sea.towards : vec2(1.0, 0.0);
     vec2 ahead = mat2(cos(angle), sin(angle), -sin(angle), cos(angle)) * along;
     float turns = fract(mixed.y - fract(sqrt(GRAVITY / (TURN * longer)) * seconds));
@@ -102,14 +103,14 @@ vec2 bent(Sea sea, vec2 place, float seconds) {
 Waves waves_at(sampler2D table, int row, Sea sea, vec2 place, float seconds, Footprint foot) {
     float one = sea.drawn / float(WAVES);
     // The shorter side of the footprint decides when no shorter wave can be seen.
-    float least = BLURRED * sqrt(min(dot(foot.right, foot.right), dot(foot.up, foot.up)));
+    float min_length = BLURRED * sqrt(min(dot(foot.right, foot.right), dot(foot.up, foot.up)));
     Waves found = Waves(vec2(0.0), sea.variance - sea.drawn);
     vec2 there = bent(sea, place, seconds);
     int k = 0;
     while (k < WAVES) {
         vec4 wave = texelFetch(table, ivec2(k, row), 0);
         // Rows are as long as each other by a fifth or so: the next may still be longer.
-        if (wave.w < 0.8 * least) break;
+        if (wave.w < 0.8 * min_length) break;
         float part = one * ((k & 1) == 0 ? 1.5 : 0.5);
         // anchor: shown
         float passed = max(abs(dot(wave.xy, foot.right)), abs(dot(wave.xy, foot.up)));

@@ -31,8 +31,8 @@ uniform sampler2D seen;      //! input("black")
 const float STARS_FROM = 1000.0;
 
 vec3 direction_of(vec2 pixel) {
-    vec4 away = world_from_clip * vec4(pixel / vec2(size) * 2.0 - 1.0, 1.0, 1.0);
-    return normalize(away.xyz / away.w - eye);
+    vec4 far_point = world_from_clip * vec4(pixel / vec2(size) * 2.0 - 1.0, 1.0, 1.0);
+    return normalize(far_point.xyz / far_point.w - eye);
 }
 
 // The sun's disc in a pixel: how much of it, times what is left of its light.

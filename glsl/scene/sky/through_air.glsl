@@ -39,8 +39,8 @@ vec4 kernel(ivec2 texel) {
     if (wired_seen && sky_hidden(seen, texel, size)) return vec4(0.0, 0.0, 0.0, 1.0);
     if (skips_rest()) return vec4(0.0);
     vec2 share = (vec2(texel) + 0.5) / vec2(size);
-    vec4 away = world_from_clip * vec4(share * 2.0 - 1.0, 1.0, 1.0);
-    vec3 ahead = normalize(away.xyz / away.w - eye);
+    vec4 far_point = world_from_clip * vec4(share * 2.0 - 1.0, 1.0, 1.0);
+    vec3 ahead = normalize(far_point.xyz / far_point.w - eye);
     float height = 0.001 * max(base_elevation + eye.z, 0.0);
     float base = 0.001 * (base_elevation + texelFetch(drift, ivec2(0), 0).z);
     float ground = distance_to_ground(height, ahead.z);

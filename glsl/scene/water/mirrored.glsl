@@ -40,9 +40,9 @@ float meets_terrain(sampler2D field, sampler2D block_maxima, vec3 from, vec3 to,
     woods_at_most = tallest;
     vec2 place = from.xy / metres * last_texel;
     vec2 along = to.xy / metres * last_texel;
-    vec2 way = way_through(place, along, last_texel);
-    float entry = max(way.x, 0.0);
-    if (entry >= way.y) return MISSES;
+    vec2 span = way_through(place, along, last_texel);
+    float entry = max(span.x, 0.0);
+    if (entry >= span.y) return MISSES;
     place = clamp(place + entry * along, vec2(0.0), last_texel);
     March march = march_from(field, place, to, metres, metres_of_relief, 1.0);
     march.foot = from.z + entry * to.z - tallest;

@@ -20,7 +20,7 @@
 
 const int CLOUD_LOOKS = 4;
 const float UP_TO = 0.8;            // of the layer's height, where there is much of them
-const float LONGEST_WAY = 4000.0;  // [m] through the layer that looks are spread over
+const float MAX_RUN = 4000.0;  // [m] through the layer that looks are spread over
 
 // A mirror whose slopes have a variance, of both axes together, turns rays by twice the deviation
 // of one; a level of detail with texels of a width has a deviation of half of it.
@@ -35,16 +35,16 @@ vec3 sky_of(sampler2D heaven, int which, vec3 to) {
 vec4 clouds_towards(sampler2D cloud, sampler2D heaven, vec4 drift, vec3 place, vec3 to,
                     float blur, bool heaped) {
     float rise = max(to.z, 0.03);
-    float way = max(drift.z - place.z, 0.0) / rise;
-    float through = heaped ? min(UP_TO * CLOUD_TALL / rise, LONGEST_WAY) : 0.0;
+    float run = max(drift.z - place.z, 0.0) / rise;
+    float through = heaped ? min(UP_TO * CLOUD_TALL / rise, MAX_RUN) : 0.0;
     float texel = drift.w / float(textureSize(cloud, 0).x);
-    float wide = max(blur * way, 0.3 * through * length(to.xy));
+    float wide = max(blur * run, 0.3 * through * length(to.xy));
     float level = max(log2(max(wide, 1.0) / texel), 0.0);
     float left = 1.0;
     float deep = 0.0;
     for (int k = 0; k < CLOUD_LOOKS; k++) {
         float part = float(k) / float(CLOUD_LOOKS);
-        vec2 there = place.xy + to.xy * (way + part * through);
+        vec2 there = place.xy + to.xy * (run + part * through);
         vec4 tile = textureLod(cloud, tile_of(there, drift), level);
         float hidden = 1.0 - tile.a;
         float thick = tile.r / max(hidden, 0.02);

@@ -37,8 +37,8 @@ bool on_terrain(vec2 place) {
 
 // How far a ray goes until it leaves the square of the terrain, or 0 where it never is in it.
 float leaves_at(vec3 ahead) {
-    vec2 way = way_through(eye.xy, ahead.xy, extent);
-    return way.x < way.y ? max(way.y, 0.0) : 0.0;
+    vec2 span = way_through(eye.xy, ahead.xy, extent);
+    return span.x < span.y ? max(span.y, 0.0) : 0.0;
 }
 
 // The open sea beyond the terrain: `over` metres above it where the ray leaves, and sinking.

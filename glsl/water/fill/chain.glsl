@@ -16,7 +16,7 @@ const float NO_FALL = -1e30;  // where a way ends
 
 vec4 kernel(ivec2 texel) {
     float next = texelFetch(receiver, texel, 0).r;
-    vec2 way = vec2(texel_of(next, size) - texel) * spacing;
-    float fall = way == vec2(0.0) ? NO_FALL : least_fall(spacing, relief) * length(way);
+    vec2 offset = vec2(texel_of(next, size) - texel) * spacing;
+    float fall = offset == vec2(0.0) ? NO_FALL : least_fall(spacing, relief) * length(offset);
     return vec4(texelFetch(height, texel, 0).r, fall, next, 0.0);
 }

@@ -35,12 +35,12 @@ struct Rim {
 
 float texel_in(Line line, int k) { return k < 4 ? line.low[k & 3] : line.high[k & 3]; }
 
-// A line that falls to what the line beside it lets out; `ends` lie before and after that one.
-Line fallen(Line line, Line ground, Line beside, vec2 ends, float straight, float aslant) {
-    vec4 low = min(vec4(ends.x, beside.low.xyz), vec4(beside.low.yzw, beside.high.x));
-    vec4 high = min(vec4(beside.low.w, beside.high.xyz), vec4(beside.high.yzw, ends.y));
-    low = max(ground.low, min(beside.low + straight, low + aslant));
-    high = max(ground.high, min(beside.high + straight, high + aslant));
+// A line that falls to what its neighbour lets out; `ends` lie before and after that one.
+Line fallen(Line line, Line ground, Line neighbour, vec2 ends, float straight, float diagonal) {
+    vec4 low = min(vec4(ends.x, neighbour.low.xyz), vec4(neighbour.low.yzw, neighbour.high.x));
+    vec4 high = min(vec4(neighbour.low.w, neighbour.high.xyz), vec4(neighbour.high.yzw, ends.y));
+    low = max(ground.low, min(neighbour.low + straight, low + diagonal));
+    high = max(ground.high, min(neighbour.high + straight, high + diagonal));
     return Line(min(line.low, low), min(line.high, high));
 }
 
@@ -63,25 +63,25 @@ Line[TILE] turned(Line rows[TILE]) {
 }
 
 #define FALL(K) \
-    lines[K] = fallen(lines[K], ground[K], beside, ends, straight, aslant); \
-    beside = lines[K]; \
+    lines[K] = fallen(lines[K], ground[K], neighbour, ends, straight, diagonal); \
+    neighbour = lines[K]; \
     ends = vec2(texel_in(before, K), texel_in(after, K));
 
 // A sweep up the lines and one down; `sides` are the texels before and after each line, `corners`
 // those of the rim as its fields are named.
 Line[TILE] swept_both_ways(Line lines[TILE], Line ground[TILE], Line first, Line last, Line before,
-                           Line after, vec4 corners, float straight, float aslant) {
-    Line beside = first;
+                           Line after, vec4 corners, float straight, float diagonal) {
+    Line neighbour = first;
     vec2 ends = corners.xy;
     EIGHT(FALL)
-    beside = last;
+    neighbour = last;
     ends = corners.zw;
     EIGHT_BACK(FALL)
     return lines;
 }
 
 // A tile's rows after a sweep each to the north, south, east and west. `falls` are those to a
-// neighbour along x, along y and aslant.
+// neighbour along x, along y and diagonally.
 Line[TILE] swept(Line rows[TILE], Line ground[TILE], Rim rim, vec3 falls) {
     rows = swept_both_ways(rows, ground, rim.south, rim.north, rim.west, rim.east, rim.corners,
                            falls.y, falls.z);

@@ -96,7 +96,7 @@ void kernel(ivec2 texel, out float height, out float receiver) {
     float river = 1e30;
     float lowest = 1e30;
     float lowest_end = 1e30;
-    ivec2 beside = texel;
+    ivec2 lowest_corner = texel;
     ivec2 next = texel;
     // Stretches that may come through here begin at the coarse texels around.
     ivec2 low = max(south_west - 1 + odd, 0);
@@ -111,7 +111,7 @@ void kernel(ivec2 texel, out float height, out float receiver) {
                 float level = texelFetch(coarse_level, from, 0).r;
                 if (level < lowest) {
                     lowest = level;
-                    beside = 2 * from;
+                    lowest_corner = 2 * from;
                 }
             }
             Stretch stretch = stretch_of(from);
@@ -131,5 +131,5 @@ void kernel(ivec2 texel, out float height, out float receiver) {
     float lift = raised * random(texel, seed + SALT + uint(size.x) + 1u);
     bool on_river = river < 1e29;
     height = on_river ? river : sum / corners + lift;
-    receiver = number_of(on_river ? next : beside, size);
+    receiver = number_of(on_river ? next : lowest_corner, size);
 }
