@@ -9,10 +9,10 @@
 //            the row itself; so each row compares what the kernel compares, in the same order
 //
 // Two lines, a texel apart, bound a band, and each texel of a row is in one band: on its first
-// line or between. A thread has four bands beside each other: five lines and six texels a row,
+// line or between. A thread has four adjacent bands: five lines and six texels a row,
 // where four threads would have eight and twelve. It follows the lines from the sun's side, and
 // keeps for each of the four slopes the point that a line of that slope rests on: a fixed amount
-// of work a row. Bands that begin beside the terrain enter it later.
+// of work a row. Bands that begin outside the terrain enter it later.
 #include "lighting/daylight_reading.glsl"
 #include "lighting/sun_sweep/lines.glsl"
 #include "maths/land.glsl"
@@ -59,66 +59,92 @@ int row_after_last(Lines lines, int line) {
     return min(int(clamp(leave, -2.0, float(lines.rows))) + 2, lines.rows);
 }
 
-// What is done for each is written out: an array whose index is a loop's counter would lie in
-// memory.
-#define TEXELS(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5)
-#define LINES(DO) DO(0) DO(1) DO(2) DO(3) DO(4)
-#define EACH_BAND(DO) DO(0) DO(1) DO(2) DO(3)
+// Loops over lines and texels have the length of the array that they index: compilers then unroll
+// them, and the arrays need no memory.
+const int LINES = BANDS + 1;
+const int TEXELS = BANDS + 2;
 
-// Of this row and of one to three rows ago: the heights of the texels from the first line on.
-float texels[BANDS + 2];
-float texels1[BANDS + 2];
-float texels2[BANDS + 2];
-float texels3[BANDS + 2];
-// The heights of the lines on this row, and one to four rows ago: then NOWHERE beside the terrain.
-float feet[BANDS + 1];
-float feet1[BANDS + 1];
-float feet2[BANDS + 1];
-float feet3[BANDS + 1];
-float feet4[BANDS + 1];
-Points points[BANDS + 1];
-float horizons[BANDS + 1];  // that the lines have found
-
-#define BEGIN_TEXEL(n) texels[n] = NOWHERE; texels1[n] = NOWHERE; texels2[n] = NOWHERE;
-#define BEGIN_LINE(n) feet1[n] = NOWHERE; feet2[n] = NOWHERE; feet3[n] = NOWHERE; \
-    feet4[n] = NOWHERE; points[n] = Points(vec4(NOWHERE), vec4(1.0));
-#define READ_TEXEL(n) texels3[n] = texels2[n]; texels2[n] = texels1[n]; texels1[n] = texels[n]; \
-    texels[n] = relief * height_in_middle(texel_on(lines, row, clamp(across + n, 0, lines.last)));
-#define FOLLOW_LINE(n) points[n] = one_row_on(points[n], feet4[n], slopes); \
-    feet[n] = texels[n] + (texels[n + 1] - texels[n]) * part; \
-    horizons[n] = horizon_over(points[n], feet[n], lines.run); \
-    feet4[n] = feet3[n]; feet3[n] = feet2[n]; feet2[n] = feet1[n]; \
-    feet1[n] = is_on_terrain(lines, across + n, part) ? feet[n] : NOWHERE;
-#define FILL_BAND(n) { \
-    int at = across + n + (between ? 1 : 0); \
-    float tangent = horizon_of_texel( \
-        lines, row, at, horizons[n], horizons[n + 1], between ? texels[n + 1] : texels[n], \
-        vec3(texels1[n], texels1[n + 1], texels1[n + 2]), \
-        vec3(texels2[n], texels2[n + 1], texels2[n + 2]), \
-        vec3(texels3[n], texels3[n + 1], texels3[n + 2])); \
-    ivec2 texel = texel_on(lines, row, at); \
-    if (at >= 0 && at <= lines.last) horizon[texel.y * size.x + texel.x] = tangent; }
+// The heights of texels from the first line on, on this row and one to three rows ago.
+float texels[TEXELS];
+float texels1[TEXELS];
+float texels2[TEXELS];
+float texels3[TEXELS];
+// The heights of the lines one to four rows ago: NOWHERE beside the terrain.
+float feet1[LINES];
+float feet2[LINES];
+float feet3[LINES];
+float feet4[LINES];
+Points points[LINES];
+float horizons[LINES];  // that the lines have found
 
 // The height at a texel: the same as texelFetch gives, in half the time on llvmpipe, which looks
-// up the level of texelFetch for each texel anew.
+// up the level of texelFetch for each texel again.
 float height_in_middle(ivec2 texel) {
     return textureLod(height, (vec2(texel) + 0.5) / vec2(size), 0.0).r;
 }
 
-// Bands that lie beside each other, from a line on.
+void begin() {
+    for (int n = 0; n < TEXELS; n++) {
+        texels[n] = NOWHERE;
+        texels1[n] = NOWHERE;
+        texels2[n] = NOWHERE;
+    }
+    for (int n = 0; n < LINES; n++) {
+        feet1[n] = NOWHERE;
+        feet2[n] = NOWHERE;
+        feet3[n] = NOWHERE;
+        feet4[n] = NOWHERE;
+        points[n] = Points(vec4(NOWHERE), vec4(1.0));
+    }
+}
+
+void read_row(Lines lines, int row, int across) {
+    for (int n = 0; n < TEXELS; n++) {
+        texels3[n] = texels2[n];
+        texels2[n] = texels1[n];
+        texels1[n] = texels[n];
+        ivec2 texel = texel_on(lines, row, clamp(across + n, 0, lines.last));
+        texels[n] = relief * height_in_middle(texel);
+    }
+}
+
+void follow_lines(Lines lines, int across, float part, vec4 slopes) {
+    for (int n = 0; n < LINES; n++) {
+        points[n] = one_row_on(points[n], feet4[n], slopes);
+        float foot = texels[n] + (texels[n + 1] - texels[n]) * part;
+        horizons[n] = horizon_over(points[n], foot, lines.run);
+        feet4[n] = feet3[n];
+        feet3[n] = feet2[n];
+        feet2[n] = feet1[n];
+        feet1[n] = is_on_terrain(lines, across + n, part) ? foot : NOWHERE;
+    }
+}
+
+void fill_bands(Lines lines, int row, int across, bool between) {
+    for (int n = 0; n < BANDS; n++) {
+        int at = across + n + (between ? 1 : 0);
+        float tangent = horizon_of_texel(
+            lines, row, at, horizons[n], horizons[n + 1], between ? texels[n + 1] : texels[n],
+            vec3(texels1[n], texels1[n + 1], texels1[n + 2]),
+            vec3(texels2[n], texels2[n + 1], texels2[n + 2]),
+            vec3(texels3[n], texels3[n + 1], texels3[n + 2]));
+        ivec2 texel = texel_on(lines, row, at);
+        if (at >= 0 && at <= lines.last) horizon[texel.y * size.x + texel.x] = tangent;
+    }
+}
+
+// Adjacent bands, from a line on.
 void sweep(Lines lines, int line, vec4 slopes) {
-    int other = line + BANDS - 1;
-    int begin = min(first_row(lines, line), first_row(lines, other));
-    int end = max(row_after_last(lines, line), row_after_last(lines, other));
-    TEXELS(BEGIN_TEXEL)
-    LINES(BEGIN_LINE)
-    for (int row = begin; row < end; row++) {
+    int last_line = line + BANDS - 1;
+    int first = min(first_row(lines, line), first_row(lines, last_line));
+    int end = max(row_after_last(lines, line), row_after_last(lines, last_line));
+    begin();
+    for (int row = first; row < end; row++) {
         int across = across_at(lines, row, line);
         float part = part_at(lines, row);
-        bool between = part > 0.0;
-        TEXELS(READ_TEXEL)
-        LINES(FOLLOW_LINE)
-        EACH_BAND(FILL_BAND)
+        read_row(lines, row, across);
+        follow_lines(lines, across, part, slopes);
+        fill_bands(lines, row, across, part > 0.0);
     }
 }
 
