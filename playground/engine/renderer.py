@@ -100,7 +100,8 @@ class Renderer:
         _log.debug("opened %s: %s (%s)", self._info.opengl, self._info.renderer, self._info.version)
         if self._info.software:
             keep_freed_memory()
-        if driver == COMPUTE and not self._info.compute:
+        self._computes = self._info.compute  # whether there are compute shaders
+        if driver == COMPUTE and not self._computes:
             raise ContextError(f"this context is {self._info.opengl}; compute needs 4.3")
         self._driver = driver
         self.options = RunOptions()
@@ -114,7 +115,7 @@ class Renderer:
         self.disk_caching: DiskCaching | None = None  # None: nothing is cached on disk
         self.eye_height = EyeHeight()  # over the terrain, in the last frame
         self.plain_forms = PlainForms(
-            notice, compute=self._info.compute and driver != FRAGMENT, software=self._info.software
+            notice, compute=self._computes and driver != FRAGMENT, software=self._info.software
         )
         self._keys = KeyMaker(content=self.painted.content)
         self._hasher = PictureHasher()
@@ -393,11 +394,11 @@ class Renderer:
         """Choose by which driver the kernel of a step runs."""
         kernel = step.kernel
         if isinstance(kernel, ComputeVariant | PlainCompute):
-            if not self._info.compute:
+            if not self._computes:
                 message = f"'{kernel.name}' is a compute shader; this context is {self._info.opengl}"
                 raise ContextError(f"{message}, and compute needs 4.3")
             return COMPUTE
-        if not isinstance(kernel, TexelKernel) or not self._info.compute or self._driver == FRAGMENT:
+        if not isinstance(kernel, TexelKernel) or not self._computes or self._driver == FRAGMENT:
             return FRAGMENT
         return COMPUTE if self._driver == COMPUTE or kernel.visits else FRAGMENT
 
