@@ -33,7 +33,7 @@ uniform float at_ground = 0.0; //! slider(0, 200) step(1) group("Cone") unit("m"
                                //! The radius where the ray begins, on the ground
 #include "lighting/parameters/form.glsl"
 #include "lighting/parameters/march.glsl"
-uniform int max_distance = 0;  //! slider(0, 4096) group("March") unit("texels") was("reach")
+uniform int max_distance = 0;  //! slider(0, 4096) group("March") unit("texels")
                                //! In the march, terrain farther than this throws no shadow, and in
                                //! the last quarter less of one; 0: all of it does
 
