@@ -37,7 +37,7 @@ from playground.engine.gl_calls import Calls, surround
 from playground.engine.plan import Step
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Result, Wired, are_of_own_size, has_unwired
-from playground.engine.textures import make_framebuffer
+from playground.engine.textures import make_framebuffer, release_framebuffer
 from playground.memo import GRAPHS, TEXTS
 from playground.shader.outline import Declared, outline
 from playground.shader.own_shaders import own_part, own_shader
@@ -238,7 +238,7 @@ class Software:
             yield
         finally:
             ctx.disable(ctx.DEPTH_TEST)
-            target.release()
+            release_framebuffer(target)
 
     # ── buffers as textures ──────────────────────────────────────────────────
 
