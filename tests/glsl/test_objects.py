@@ -8,7 +8,7 @@ import pytest
 from playground.data.models import read_model
 from playground.paths import GLSL
 
-from ..terrain.test_models import PLACES, with_blob
+from ..data.test_models import PLACES, with_blob
 
 LIST = """
 #pragma kernel(output = "tree:rgba32f, total:r32f")

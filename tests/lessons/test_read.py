@@ -150,15 +150,3 @@ def test_a_formula_with_a_label_is_a_formula(make_lesson):
     found = make_lesson(("A picture first.", "$$\nx = 1\n$$ (one)\n\nA picture first."))
     assert "x = 1" in found.blocks[0].markdown and "(one)" in found.blocks[0].markdown
     assert found.blocks[1].markdown == "A picture first."
-
-
-def test_keys_of_older_lessons_are_read(make_lesson, lesson):
-    """What was ``mend`` and ``turns`` is ``fix`` and ``iterations``, of a block and of a measure."""
-    older = make_lesson(
-        ('fix    = "Four of them."', 'mend   = "Four of them."'),
-        ('passes  = ["height.raw", "phase"]', 'passes  = ["height.raw", "phase"]\nturns = [0, 2]'),
-        ('what    = "spread"', 'what    = "turns"'),
-    )
-    assert older.named["fault"].fix == lesson.named["fault"].fix == "Four of them."
-    assert older.named["turns"].iterations == (0, 2)
-    assert older.named["spread"].what == "iterations"

@@ -53,7 +53,7 @@ Each step halves. There are {{peaks}} peaks.
 ```step halves
 sketch   = "diamond_square_steps"
 passes   = ["height.raw", "phase"]
-turns    = [0, 1, 2, 4]
+iterations    = [0, 1, 2, 4]
 caption  = "Known texels."
 alt      = "A grid that fills"
 captions = ["corners", "one centre", "edges", "all"]

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ..images.test_bounds import npz
+from ..data.test_bounds import npz
 from .screen import HILLS, ON_LINUX, Program, Screen
 
 WIDTH, HEIGHT = 900, 600

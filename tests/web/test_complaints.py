@@ -15,8 +15,8 @@ from playground.shader.driver_log import hint, library, parse_log
 from playground.shader.wrap import ShaderStage, Wrapped
 from playground.web import complaint_words
 
-from ..gpu.test_logs import EXPECTED
-from ..gpu.test_logs import LOGS as OTHERS
+from ..shader.test_logs import EXPECTED
+from ..shader.test_logs import LOGS as OTHERS
 from ..report.browser import MISSING, SWIFTSHADER, Browser
 from .node import Node
 from .planted_errors import PLANTED, in_es
