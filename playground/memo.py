@@ -125,11 +125,14 @@ class Memo(Generic[K, V]):
 
     def _trim(self, newest: K) -> None:
         """Drop entries until the bound holds, the least recently used first."""
-        for key in self:
-            if self.weight <= self.bound:
+        while self.weight > self.bound:
+            oldest = next((key for key in self._entries if key != newest and not self._is_pinned(key)), None)
+            if oldest is None:
                 return
-            if key != newest and not (self._pinned and self._pinned(key, self._entries[key].value)):
-                self.drop(key)
+            self.drop(oldest)
+
+    def _is_pinned(self, key: K) -> bool:
+        return self._pinned is not None and self._pinned(key, self._entries[key].value)
 
     # ── functions ────────────────────────────────────────────────────────────
 

@@ -196,7 +196,7 @@ def _values(text: str, variable: str, limit: int) -> tuple[int, ...]:
     found: list[int] = []
     for n in range(limit + 1):
         try:
-            value = evaluate(text, {variable: n})
+            value = _evaluated(text, {variable: n}.__getitem__, ())  # thousands: none is asked for again
         except ExpressionError:  # not whole for this n, as 2**(n - 1) for 0
             continue
         if value > limit:
