@@ -64,7 +64,7 @@ def sidecars(path: Path) -> tuple[Path, ...]:
     """
     places = sidecar_places(path)
     pairs = zip(places[::2], places[1::2], strict=True)
-    return tuple(found for pair in pairs if (found := next(filter(Path.is_file, pair), None)) is not None)
+    return tuple(sidecar for pair in pairs if (sidecar := next(filter(Path.is_file, pair), None)) is not None)
 
 
 def sidecar_places(path: Path) -> tuple[Path, ...]:
@@ -85,14 +85,14 @@ def _places(path: Path) -> tuple[Path, ...]:
 
 def all_sources(path: Path) -> tuple[Path, ...]:
     """Return the files that a VRT is made of, those of VRTs inside it too; a few thousand at most."""
-    found: dict[Path, None] = {}
+    paths: dict[Path, None] = {}
     waiting = [path]
-    while waiting and len(found) < MAX_SOURCES:
+    while waiting and len(paths) < MAX_SOURCES:
         for text, source in sources_of(waiting.pop()):
-            if source not in found and source != path:
-                found[source] = None
+            if source not in paths and source != path:
+                paths[source] = None
                 waiting += [source] if text.lower().endswith(".vrt") else []
-    return tuple(found)
+    return tuple(paths)
 
 
 def sources_of(path: Path) -> list[tuple[str, Path]]:
@@ -148,7 +148,7 @@ FAST = (".comp", ".fast.toml")
 ROOT = "PLAYGROUND_ROOT"
 """The environment variable that names the folder which sketches in it may read: --root sets it."""
 
-_MOST_FOLDERS = 500
+_MAX_FOLDERS = 500
 _SPELLS_NAMES = os.name == "nt"  # following links there gives names as the disk spells them
 
 T = TypeVar("T")
@@ -192,9 +192,9 @@ def noting_places() -> Iterator[dict[Path, Signature | None]]:
     changes, nor one that takes precedence over another from then on. Meanwhile each file is
     looked at once.
     """
-    found: dict[Path, Signature | None] = {}
-    with _set(_noted, found), _set(_state, _State()):
-        yield found
+    signatures: dict[Path, Signature | None] = {}
+    with _set(_noted, signatures), _set(_state, _State()):
+        yield signatures
 
 
 @contextmanager
@@ -203,7 +203,7 @@ def looking_once() -> Iterator[None]:
 
     A sketch names hundreds of places in a few folders, most of them several times.
     """
-    with _set(_state, _State() if (known := _state.get()) is None else known):
+    with _set(_state, _State() if (state := _state.get()) is None else state):
         yield
 
 
@@ -230,12 +230,12 @@ def texts_of_load() -> dict[tuple[Path, bool], str] | None:
 @contextmanager
 def noting_part() -> Iterator[dict[Path, Signature | None]]:
     """Note the places of a part of a load by itself; they are noted for the whole load, too."""
-    found: dict[Path, Signature | None] = {}
+    signatures: dict[Path, Signature | None] = {}
     try:
-        with _set(_noted, found):
-            yield found
+        with _set(_noted, signatures):
+            yield signatures
     finally:
-        note_again(found)
+        note_again(signatures)
 
 
 @contextmanager
@@ -251,8 +251,8 @@ def note_again(places: Mapping[Path, Signature | None]) -> None:
     """Note places with what is known to be there; what is noted already stays as it is."""
     noted = _noted.get()
     if noted is not None:
-        for path, known in places.items():
-            noted.setdefault(path, known)
+        for path, signature_of in places.items():
+            noted.setdefault(path, signature_of)
 
 
 def note(path: Path) -> None:
@@ -278,10 +278,10 @@ def signature_in_load(path: Path) -> Signature | None:
 def signature(path: Path) -> Signature | None:
     """Return a file's signature; None where there is none."""
     try:
-        found = path.stat()
+        status = path.stat()
     except (OSError, ValueError):
         return None
-    return Signature(found.st_ino, found.st_mtime_ns, found.st_ctime_ns, found.st_size)
+    return Signature(status.st_ino, status.st_mtime_ns, status.st_ctime_ns, status.st_size)
 
 
 def real(path: Path) -> Path | None:
@@ -307,9 +307,9 @@ def _followed_from_folder(path: Path, state: _State) -> Path | None:
         return None
     if stat.S_ISLNK(mode):
         return _followed(path)
-    found = folder / path.name
-    state.files[path] = state.files[found] = stat.S_ISREG(mode)
-    return found
+    file = folder / path.name
+    state.files[path] = state.files[file] = stat.S_ISREG(mode)
+    return file
 
 
 def _followed(path: Path) -> Path | None:
@@ -384,16 +384,16 @@ def root_of(path: Path) -> Path:
 
 def is_inside(path: Path, roots: Iterable[Path]) -> bool:
     """Return whether a path, its links followed, lies in one of some folders."""
-    found = real(path)
-    return found is not None and any(found.is_relative_to(root) for root in map(real, roots) if root)
+    resolved = real(path)
+    return resolved is not None and any(resolved.is_relative_to(root) for root in map(real, roots) if root)
 
 
-def how_to_open(wanted: Path | None, folder: Path, *, marks: bool = True) -> str:
-    """Return the end of a sentence on a file that lies outside a sketch's folder: how a user may open it.
+def how_to_open(path: Path | None, folder: Path, *, marks: bool = True) -> str:
+    """Return the end of a message on a file that lies outside a sketch's folder: how a user may open it.
 
     ``marks``: a ``sketch.toml`` around it marks the folder, as for a shader that is opened alone.
     """
-    around = next((parent for parent in folder.parents if wanted and wanted.is_relative_to(parent)), None)
+    around = next((parent for parent in folder.parents if path and path.is_relative_to(parent)), None)
     if around is None or around == around.parent:
         return ""
     also = f", and so does an empty sketch.toml in {shown(around)}" if marks else ""
@@ -411,7 +411,7 @@ def leads_outside(text: str, folder: Path, declared_in: str = "") -> bool:
         return True
     roots = tuple(root for root in (named_root(folder), folder, GLSL) if root is not None)
     places = [folder, *([Path(declared_in).parent] if declared_in else []), GLSL]
-    candidates = [place / text for place in places]
+    candidates = [root / text for root in places]
     there = [candidate for candidate in candidates if is_file(candidate)]
     return not any(
         is_inside(candidate, roots) and outside_sidecar(candidate, roots) is None
@@ -421,9 +421,9 @@ def leads_outside(text: str, folder: Path, declared_in: str = "") -> bool:
 
 def outside_sidecar(path: Path, roots: Iterable[Path]) -> Path | None:
     """Return a file next to a data file that says how to read it, and leads out of some folders; or None."""
-    places, found = tuple(roots), real(path) or path
+    places, resolved = tuple(roots), real(path) or path
     with looking_once():
-        return next((file for file in sidecars(found) if not is_inside(file, places)), None)
+        return next((file for file in sidecars(resolved) if not is_inside(file, places)), None)
 
 
 def is_absolute(text: str) -> bool:
@@ -437,14 +437,14 @@ def names_below(roots: Sequence[Path], suffixes: tuple[str, ...]) -> list[str]:
 
     Stops after some hundred folders: a sketch may lie in a home folder or in the root.
     """
-    found: list[str] = []
+    names: list[str] = []
     visited = 0
     for root in roots:
         for folder, inner, files in os.walk(root):
             visited += 1
-            if visited > _MOST_FOLDERS:
-                return found
+            if visited > _MAX_FOLDERS:
+                return names
             inner[:] = sorted(name for name in inner if not name.startswith("."))
             here = Path(folder).relative_to(root)
-            found += [(here / name).as_posix() for name in files if name.endswith(suffixes)]
-    return found
+            names += [(here / name).as_posix() for name in files if name.endswith(suffixes)]
+    return names

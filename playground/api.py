@@ -68,10 +68,10 @@ def render(
 
     Raises ``PlaygroundError`` for any mistake in the sketch or its values.
     """
-    found = opened(sketch)
+    opened_sketch = opened(sketch)
     with headless() as engine:
         engine.options.keeps = False
-        return engine.render(found.plainly(plain).with_values(values or {}), size=size, time=time)
+        return engine.render(opened_sketch.plainly(plain).with_values(values or {}), size=size, time=time)
 
 
 def parameters(sketch: Sketch) -> dict[str, tuple[Parameter, Value]]:

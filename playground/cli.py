@@ -50,7 +50,7 @@ from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarni
 from playground.paths import program, quoted
 from playground.signals import ended_by_signals
 from playground.sketch.model import DEFAULT_PICTURE
-from playground.streams import let_go, open_streams
+from playground.streams import flush_or_discard, open_streams
 from playground.terminal import complain, note, with_loudness
 
 # Rooms that bring their own commands; without its folder and its line here, the rest works as before.
@@ -92,12 +92,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 128 + came[-1] if came else status
 
 
-def _status(given: list[str]) -> int:
+def _status(arguments: list[str]) -> int:
     output = sys.stdout
     try:
         with _printing_warnings():
             check_package()
-            status = command_line()(given, prog_name=_NAME, standalone_mode=False)
+            status = command_line()(arguments, prog_name=_NAME, standalone_mode=False)
         sys.stdout.flush()
     except PlaygroundError as error:
         for diagnostic in error.diagnostics:
@@ -123,7 +123,7 @@ def _status(given: list[str]) -> int:
     finally:
         # Their buffers cannot be written either; without this, Python reports an error as it ends.
         for stream in (output, sys.stderr):
-            let_go(stream)
+            flush_or_discard(stream)
     return int(status or 0)
 
 
@@ -146,8 +146,8 @@ def _printing_warnings() -> Iterator[None]:
         yield
 
 
-def _print_version(wanted: bool) -> None:
-    if wanted:
+def _print_version(requested: bool) -> None:
+    if requested:
         print(f"playground {__version__}")
         raise typer.Exit()
 
@@ -182,7 +182,7 @@ def _open_default(renderer: Renderer) -> None:
 
 
 def _usage_message(error: Exception) -> str:
-    """Return a usage mistake as one sentence, with the help to read."""
+    """Return a usage mistake as one message, with the help to read."""
     text: str = error.format_message() if hasattr(error, "format_message") else str(error)
     text = " ".join(text.split())
     ctx: Any = getattr(error, "ctx", None)

@@ -1,6 +1,6 @@
 """Report what this machine offers: an OpenGL context, its limits, a display, the packages.
 
-It opens a context and releases it; what is missing is reported in a sentence, with the advice for it.
+It opens a context and releases it; what is missing is reported in a message, with the advice for it.
 """
 
 from __future__ import annotations
@@ -54,10 +54,10 @@ class Health:
 
     def as_json(self) -> dict[str, object]:
         """Return it as JSON takes it."""
-        found = {"ok": self.ok, **asdict(self), "playground": __version__}
+        values = {"ok": self.ok, **asdict(self), "playground": __version__}
         if self.context is not None:
-            found["context"] |= {"compute": self.context.compute, "software": self.context.software}
-        return found
+            values["context"] |= {"compute": self.context.compute, "software": self.context.software}
+        return values
 
 
 def examine(*, software: bool = False, device: int | None = None) -> Health:
@@ -95,13 +95,13 @@ def where_to_show(environ: Mapping[str, str], system: str) -> str:
 
 def _limits(ctx: moderngl.Context) -> dict[str, int]:
     info = ctx.info
-    found = {}
+    limits = {}
     for name, key in _LIMITS.items():
         value = info.get(key, 0)
         if isinstance(value, int) and value > 0:
-            found[name] = value
-    found["samples"] = ctx.max_samples
-    return found
+            limits[name] = value
+    limits["samples"] = ctx.max_samples
+    return limits
 
 
 def _version(package: str) -> str:

@@ -1,6 +1,6 @@
 """Give every mistake one family of errors, each with the place it was made.
 
-    PlaygroundError                a mistake that a sentence can explain
+    PlaygroundError                a mistake that a message can explain
     ├── SketchError                a sketch or a technique's TOML is wrong
     │   └── ParameterError         a value or a parameter's name is wrong
     ├── ShaderError                a GLSL text is wrong; one diagnostic a mistake
@@ -13,7 +13,7 @@
 
 ``PlaygroundWarning`` is for what can be drawn all the same.
 
-A message is one sentence: what was found, what was expected, the nearest valid
+A message is one message: what was found, what was expected, the nearest valid
 choice. The command line prints it and leaves with status 2; it never shows a
 traceback for one of these.
 """
@@ -52,13 +52,13 @@ class Diagnostic:
         object.__setattr__(self, "file", _cut(self.file, _MAX_PATH))
 
     @property
-    def place(self) -> str:
+    def location(self) -> str:
         """Return "file:line:column", as much of it as is known."""
-        known = takewhile(bool, (self.file, self.line, self.column))
-        return ":".join(map(str, known))
+        parts = takewhile(bool, (self.file, self.line, self.column))
+        return ":".join(map(str, parts))
 
     def __str__(self) -> str:
-        head = f"{self.place}: {self.message}" if self.place else self.message
+        head = f"{self.location}: {self.message}" if self.location else self.message
         lines = [head]
         if self.excerpt.strip():
             excerpt, column = _around(self.excerpt.rstrip(), self.column)
@@ -66,12 +66,12 @@ class Diagnostic:
             if column:
                 indent = "".join("\t" if c == "\t" else " " for c in excerpt[: column - 1])
                 lines.append(f"    {indent}^")
-        lines += [f"    included from {place}" for place in reversed(self.chain)]
+        lines += [f"    included from {position}" for position in reversed(self.chain)]
         return "\n".join(lines)
 
 
 class PlaygroundError(Exception):
-    """A mistake that a sentence can explain.
+    """A mistake that a message can explain.
 
     ``diagnostics`` holds each mistake with its place; ``str(error)`` is all of
     them, one below the other. A ``Path`` given as the file is named as its user would name it.
@@ -94,12 +94,12 @@ class PlaygroundError(Exception):
         excerpt: str = "",
         diagnostics: Iterable[Diagnostic] = (),
     ) -> None:
-        found = tuple(diagnostics)
-        if not found:
+        entries = tuple(diagnostics)
+        if not entries:
             named = shown(file) if isinstance(file, Path) else file
-            found = (Diagnostic(message, named, line, column, excerpt=excerpt),)
-        self.diagnostics: tuple[Diagnostic, ...] = found
-        super().__init__("\n".join(map(str, found)))
+            entries = (Diagnostic(message, named, line, column, excerpt=excerpt),)
+        self.diagnostics: tuple[Diagnostic, ...] = entries
+        super().__init__("\n".join(map(str, entries)))
 
     def __reduce__(self) -> tuple[object, ...]:
         """Cross a process border whole (a worker process sends its errors back)."""
@@ -269,7 +269,7 @@ def counted(number: int, noun: str) -> str:
 
 
 def nearest(name: str, valid: Iterable[str], cutoff: float = 0.55) -> str:
-    """Suggest the valid name that was probably meant, as the end of a sentence.
+    """Suggest the valid name that was probably meant, as the end of a message.
 
     ``cutoff`` is the least likeness of two names, 0 to 1: short ones need more to be near.
 

@@ -59,15 +59,17 @@ def reinstall_command() -> str:
     again = f"{_pip_install()} --force-reinstall --no-deps"
     if CHECKOUT is not None:
         return f"{again} -e {_in_quotes(str(CHECKOUT))}"
-    found = _distribution()
-    source = json.loads(found.read_text("direct_url.json") or "{}") if found else {}
+    distribution = _distribution()
+    source = json.loads(distribution.read_text("direct_url.json") or "{}") if distribution else {}
     return f"{again} {_in_quotes(source.get('url', 'FILE.whl'))}"
 
 
 def requirements(extra: str) -> list[str]:
     """Return the requirements of an extra as pip takes them, with their conditions on the system."""
-    found = _distribution()
-    return list(_of_extra(extra, found.requires or [] if found else [])) or [f"{DISTRIBUTION}[{extra}]"]
+    distribution = _distribution()
+    return list(_of_extra(extra, distribution.requires or [] if distribution else [])) or [
+        f"{DISTRIBUTION}[{extra}]"
+    ]
 
 
 def _distribution() -> Distribution | None:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-DEEPEST = 64
+MAX_DEPTH = 64
 """Levels of lists and objects in each other; nothing of ours has ten."""
 
 MAX_DIGITS = 4_300
@@ -20,29 +20,29 @@ def read_json(text: str | bytes, *, constant: Callable[[str], Any] | None = None
     """Return what a JSON text holds; ``constant`` and ``strict`` as ``json.loads`` takes them.
 
     Raises ``ValueError`` where it is no JSON, where a number is longer than `MAX_DIGITS`, and where it is
-    nested deeper than `DEEPEST`: reading such a text, or printing what was read, would overflow the stack.
+    nested deeper than `MAX_DEPTH`: reading such a text, or printing what was read, would overflow the stack.
     """
     try:
-        found = json.loads(text, parse_constant=constant, strict=strict)
+        value = json.loads(text, parse_constant=constant, strict=strict)
     except RecursionError:
-        raise ValueError(f"it is nested deeper than {DEEPEST} levels") from None
+        raise ValueError(f"it is nested deeper than {MAX_DEPTH} levels") from None
     except (json.JSONDecodeError, UnicodeDecodeError):
         raise
     except ValueError as error:
         whole = text if isinstance(text, str) else text.decode("utf-8", "replace")
         raise json.JSONDecodeError(*long_number(whole, error)) from None
-    inner = [found] if isinstance(found, list | dict) else []
-    for _ in range(DEEPEST):
+    inner = [value] if isinstance(value, list | dict) else []
+    for _ in range(MAX_DEPTH):
         values = (value.values() if isinstance(value, dict) else value for value in inner)
-        inner = [one for some in values for one in some if isinstance(one, list | dict)]
+        inner = [child for some in values for child in some if isinstance(child, list | dict)]
         if not inner:
-            return found
-    raise ValueError(f"it is nested deeper than {DEEPEST} levels")
+            return value
+    raise ValueError(f"it is nested deeper than {MAX_DEPTH} levels")
 
 
 def long_number(text: str, error: ValueError) -> tuple[str, str, int]:
     """Return what to say of a text whose number Python refuses, the text, and the place of the number."""
-    found = _LONG_NUMBER.search(text)
-    if found is None:
+    match = _LONG_NUMBER.search(text)
+    if match is None:
         return str(error), text, 0
-    return f"a number of {len(found[0])} digits; the most is {MAX_DIGITS}", text, found.start()
+    return f"a number of {len(match[0])} digits; the most is {MAX_DIGITS}", text, match.start()

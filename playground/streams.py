@@ -1,7 +1,7 @@
 """Make the standard streams usable: closed ones, and those whose encoding lacks what is printed.
 
 What an encoding lacks is spelled in ASCII, as "->". A stream that was closed before the start
-discards everything, and so does one whose reader has closed the pipe, after ``let_go``.
+discards everything, and so does one whose reader has closed the pipe, after ``flush_or_discard``.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ def open_streams() -> None:
             setattr(sys, name, Nowhere(number))
     codecs.register_error(_SPELLED, spelled)
     for stream in (sys.stdout, sys.stderr):
-        wanted = getattr(stream, "errors", "") in ("strict", "surrogateescape", "backslashreplace")
-        if wanted and isinstance(stream, io.TextIOWrapper):
+        is_strict = getattr(stream, "errors", "") in ("strict", "surrogateescape", "backslashreplace")
+        if is_strict and isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors=_SPELLED)
 
 
@@ -67,7 +67,7 @@ def spelled(error: UnicodeError) -> tuple[str | bytes, int]:
     return _ASCII.get(character) or plain or escaped, after
 
 
-def let_go(stream: TextIO) -> None:
+def flush_or_discard(stream: TextIO) -> None:
     """Write what a stream still holds; where its reader is gone, discard that and what follows."""
     try:
         stream.flush()

@@ -23,7 +23,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, TextIO
 
 from playground.errors import shortened
-from playground.streams import let_go
+from playground.streams import flush_or_discard
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -36,11 +36,11 @@ class Loudness(Enum):
     """How much is printed on standard error."""
 
     QUIET = "errors"
-    USUAL = "errors, warnings, notes and progress"
+    DEFAULT = "errors, warnings, notes and progress"
     VERBOSE = "all that, and what the modules log"
 
 
-_loudness = Loudness.USUAL
+_loudness = Loudness.DEFAULT
 
 
 def loudness() -> Loudness:
@@ -53,7 +53,7 @@ def choose_loudness(chosen: Loudness) -> None:
     global _loudness
     _loudness = chosen
     log = logging.getLogger(_LOG)
-    if chosen is Loudness.VERBOSE and not any(isinstance(one, _Log) for one in log.handlers):
+    if chosen is Loudness.VERBOSE and not any(isinstance(handler, _Log) for handler in log.handlers):
         log.addHandler(_Log())
         log.setLevel(logging.DEBUG)
 
@@ -64,11 +64,11 @@ def with_loudness() -> Iterator[None]:
     global _loudness
     log = logging.getLogger(_LOG)
     level, handlers = log.level, list(log.handlers)
-    _loudness = Loudness.USUAL
+    _loudness = Loudness.DEFAULT
     try:
         yield
     finally:
-        _loudness = Loudness.USUAL
+        _loudness = Loudness.DEFAULT
         log.handlers[:] = handlers
         log.setLevel(level)
 
@@ -113,7 +113,7 @@ def say(text: str) -> None:
     try:
         print(text, file=sys.stderr)
     except OSError:  # its reader is gone
-        let_go(sys.stderr)
+        flush_or_discard(sys.stderr)
 
 
 def console_for(stream: TextIO) -> Console:
@@ -174,12 +174,12 @@ def busy(text: str) -> Iterator[Callable[[str, int, int], None]]:
     Yields a function that adds a bar to it: of what, how many parts are done, and of how many.
     """
     if not has_bars():
-        yield lambda what, done, wanted: None
+        yield lambda what, done, total: None
         return
     with console_for(sys.stderr).status(f"{text} …") as status:
 
-        def show(what: str, done: int, wanted: int) -> None:
-            filled = _BAR * done // max(wanted, 1)
+        def show(what: str, done: int, total: int) -> None:
+            filled = _BAR * done // max(total, 1)
             status.update(f"{text} … {what} {'━' * filled}{'─' * (_BAR - filled)}")
 
         yield show

@@ -33,18 +33,18 @@ def each(
         fixtures = [p for name, p in signature.parameters.items() if name not in arguments]
 
         @functools.wraps(test)
-        def all_cases(**given: Any) -> None:
+        def all_cases(**value: Any) -> None:
             failed = []
-            found = list(cases() if callable(cases) else cases)
-            assert found, "there are no cases"
-            for case in found:
+            result = list(cases() if callable(cases) else cases)
+            assert result, "there are no cases"
+            for case in result:
                 values = (case,) if isinstance(names, str) else case
                 try:
-                    test(**given, **dict(zip(arguments, values, strict=True)))
+                    test(**value, **dict(zip(arguments, values, strict=True)))
                 except (Exception, pytest.fail.Exception) as error:
                     failed.append(f"[{ids(case)}] {_described(error, test)}")
             if failed:
-                pytest.fail(f"{len(failed)} of {len(found)} cases:\n" + "\n".join(failed), pytrace=False)
+                pytest.fail(f"{len(failed)} of {len(result)} cases:\n" + "\n".join(failed), pytrace=False)
 
         all_cases.__signature__ = signature.replace(parameters=fixtures)  # type: ignore[attr-defined]
         return all_cases

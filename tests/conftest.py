@@ -153,9 +153,9 @@ def alive(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
         real = getattr(moderngl.Context, function)
 
         def made(self, *arguments, _real=real, _kind=kind, **named):
-            found = _real(self, *arguments, **named)
+            result = _real(self, *arguments, **named)
             count[_kind] += 1
-            return found
+            return result
 
         monkeypatch.setattr(moderngl.Context, function, made)
     for kind in OBJECTS:

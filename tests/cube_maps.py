@@ -22,7 +22,7 @@ def directions(side: int) -> NDArray[np.float64]:
     Found by trying: those of a fine grid over the sphere whose place is nearest to the middle.
     """
     steps = np.linspace(-1, 1, 2 * side + 1)[1::2]
-    found = np.full((6 * side, side, 3), np.nan)
+    array = np.full((6 * side, side, 3), np.nan)
     for axis in range(3):
         for way in (1.0, -1.0):
             for a in steps:
@@ -30,6 +30,6 @@ def directions(side: int) -> NDArray[np.float64]:
                     direction = np.insert([a, b], axis, way)
                     face, s, t = face_and_place(direction)
                     row, column = face * side + int(t * side), int(s * side)
-                    found[row, column] = direction
-    assert not np.isnan(found).any()
-    return found
+                    array[row, column] = direction
+    assert not np.isnan(array).any()
+    return array

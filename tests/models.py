@@ -65,7 +65,7 @@ def sphere(times: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Return an octahedron whose faces are halved so often: places on the unit sphere, triangles."""
     places = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
     faces = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
-    points = [np.array(place, np.float64) for place in places]
+    points = [np.array(position, np.float64) for position in places]
     for _ in range(times):
         middles: dict[tuple[int, int], int] = {}
         finer = []

@@ -11,11 +11,11 @@ import pytest
 from playground.paths import SKETCHES
 from playground.sketch.find import shipped_sketches
 
-FEW = (
+FEW_SKETCHES = (
     "contours_map",  # a map
     "delaunay",  # a mesh of its own
     "diamond_square",  # sizes that fit a rule, steps
-    "flood",  # a state, and texts written anew
+    "flood",  # a state, and texts written again
     "from_elsewhere",  # passes of other tools
     "geomipmap",  # levels of detail
     "jacksboro",  # a land that was measured
@@ -46,8 +46,8 @@ def of_each_kind() -> tuple[str, ...]:
         name: set(words_of(tomllib.loads((SKETCHES / f"{name}.toml").read_text(encoding="utf-8"))))
         for name in shipped_sketches()
     }
-    chosen = dict.fromkeys(FEW)
-    missing = set().union(*words.values()).difference(*(words[name] for name in FEW))
+    chosen = dict.fromkeys(FEW_SKETCHES)
+    missing = set().union(*words.values()).difference(*(words[name] for name in FEW_SKETCHES))
     while missing:
         most = max(words, key=lambda name: len(words[name] & missing))
         chosen[most] = None
@@ -57,7 +57,9 @@ def of_each_kind() -> tuple[str, ...]:
 
 def slow_but(names: Iterable[str]) -> list[Any]:
     """Return parameters for tests, slow ones but for the few."""
-    return [pytest.param(name, id=name, marks=() if name in FEW else pytest.mark.slow) for name in names]
+    return [
+        pytest.param(name, id=name, marks=() if name in FEW_SKETCHES else pytest.mark.slow) for name in names
+    ]
 
 
 SHIPPED = slow_but(shipped_sketches())

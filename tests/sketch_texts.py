@@ -12,8 +12,8 @@ set = { grid = 9 }
 def passes(**uses: str | tuple[str, ...]) -> str:
     """Return passes by their names, each with the technique that it uses and what other lines it has."""
     text = ""
-    for name, given in uses.items():
-        use, *lines = (given,) if isinstance(given, str) else given
+    for name, value in uses.items():
+        use, *lines = (value,) if isinstance(value, str) else value
         text += f'[[pass]]\nname = "{name}"\nuse = "{use}"\n' + "".join(f"{line}\n" for line in lines)
     return text
 

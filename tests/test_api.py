@@ -46,8 +46,8 @@ def test_textures_come_as_documented(sketch: playground.Sketch):
 
 
 def test_parameters_are_listed_and_set_without_changing_the_sketch(sketch: playground.Sketch):
-    found = playground.parameters(sketch)
-    parameter, value = found["height.smoothing"]
+    parameters = playground.parameters(sketch)
+    parameter, value = parameters["height.smoothing"]
     assert (parameter.type, value) == ("float", pytest.approx(0.2))
     changed = sketch.with_values({"height.smoothing": 0.7})
     assert playground.parameters(changed)["height.smoothing"][1] == pytest.approx(0.7)
@@ -87,7 +87,7 @@ def test_one_call_renders_a_shipped_sketch():
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("value", "sentence"),
     [
         ({"size": (64.5, 36)}, r"size \(64.5, 36\): expected two whole numbers"),
         ({"size": 64}, "size 64: expected two whole numbers"),
@@ -105,9 +105,9 @@ def test_one_call_renders_a_shipped_sketch():
         ({"steps": {"height.raw": -1}}, "'height.raw' stops after -1 steps; expected a whole number from 0"),
     ],
 )
-def test_a_wrong_argument_is_refused_in_a_sentence(engine, sketch, given, sentence):
+def test_a_wrong_argument_is_refused_in_a_sentence(engine, sketch, value, sentence):
     with pytest.raises(playground.PlaygroundError, match=sentence):
-        engine.render(sketch, **{"size": (64, 36), **given})
+        engine.render(sketch, **{"size": (64, 36), **value})
 
 
 def test_numbers_of_numpy_will_do(any_engine, sketch):
@@ -149,8 +149,8 @@ def test_a_technique_in_which_one_pass_repeats_is_run_by_its_own_name(engine, sk
     by_name = list(engine.steps(small, "height"))
     by_path = list(engine.steps(small, "height.raw"))
     assert [step for step, _ in by_name] == [0, 1, 2, 3, 4, 5]
-    for (_, one), (_, other) in zip(by_name, by_path, strict=True):
-        np.testing.assert_array_equal(one, other)
+    for (_, first), (_, other) in zip(by_name, by_path, strict=True):
+        np.testing.assert_array_equal(first, other)
     stopped = engine.read(small, "height.raw", steps={"height": 2})
     np.testing.assert_array_equal(stopped, by_path[2][1])
 

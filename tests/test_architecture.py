@@ -142,18 +142,18 @@ def test_imports_point_down():
 
 def files_named(tree: ast.Module, path: Path, there: dict[str, Path]) -> set[Path]:
     """Return the files of our own that a module takes names from, wherever its imports are."""
-    found = set()
+    result = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            found |= {there[alias.name] for alias in node.names if alias.name in there}
+            result |= {there[alias.name] for alias in node.names if alias.name in there}
         elif isinstance(node, ast.ImportFrom):
             package = ("playground", *path.relative_to(PACKAGE).parts[:-1])
             base = ".".join(package[: len(package) - node.level + 1]) if node.level else ""
             module = ".".join(filter(None, (base, node.module)))
             for alias in node.names:
                 file = there.get(f"{module}.{alias.name}") or there.get(module)
-                found |= {file} if file else set()
-    return found - {path}
+                result |= {file} if file else set()
+    return result - {path}
 
 
 def circles_of(takes: dict[Path, set[Path]]) -> list[set[Path]]:
@@ -174,8 +174,8 @@ def test_no_files_import_each_other_in_a_circle():
     for path in modules():
         name = path.relative_to(PACKAGE.parent).with_suffix("").as_posix().replace("/", ".")
         there[name.removesuffix(".__init__")] = path
-    found = circles_of({path: files_named(tree_of(path), path, there) for path in modules()})
-    named = [{path.relative_to(PACKAGE).as_posix() for path in circle} for circle in found]
+    circles = circles_of({path: files_named(tree_of(path), path, there) for path in modules()})
+    named = [{path.relative_to(PACKAGE).as_posix() for path in circle} for circle in circles]
     new = [" ↔ ".join(sorted(circle)) for circle in named if circle not in CIRCLES]
     assert not new, "import each other in a circle:\n" + "\n".join(new)
     gone = [" ↔ ".join(sorted(circle)) for circle in CIRCLES if circle not in named]
@@ -187,8 +187,8 @@ def test_the_lowest_layers_import_no_opengl():
     barred = {"moderngl", "glfw", "imgui_bundle", "glcontext"}
     for path in modules():
         if layer_of(path) in ("shader", "sketch", "data", "errors", "paths", "__init__"):
-            found = {name.split(".")[0] for _, name in imported(tree_of(path), path)} & barred
-            assert not found, f"{path.relative_to(ROOT)} imports {found}"
+            result = {name.split(".")[0] for _, name in imported(tree_of(path), path)} & barred
+            assert not result, f"{path.relative_to(ROOT)} imports {result}"
 
 
 @pytest.mark.slow
@@ -274,29 +274,29 @@ def test_every_public_name_comes_from_the_module_that_the_list_gives():
     assert sorted(typed) == sorted((name, name, home) for name, home in playground._HOMES.items())
     assert set(playground.__all__) == {*playground._HOMES, "__version__"} == set(dir(playground))
     for name, home in playground._HOMES.items():
-        found = getattr(playground, name)
-        assert (found.__module__, found.__name__) == (home, name)
+        result = getattr(playground, name)
+        assert (result.__module__, result.__name__) == (home, name)
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         _ = playground.nothing
 
 
 def techniques() -> set[str]:
     """Return the names that techniques go by: their files' stems, long enough to be no accident."""
-    found: set[str] = set()
+    names: set[str] = set()
     for folder in ("generation", "simulation", "texturing", "lighting", "view"):
-        found |= {
+        names |= {
             p.stem for p in (ROOT / "glsl" / folder).glob("*") if p.suffix in (".glsl", ".toml", ".comp")
         }
-    return found
+    return names
 
 
 def documented(tree: ast.Module) -> set[int]:
     """Return the identities of the strings that are docstrings: prose may name what it likes."""
-    found = set()
+    numbers = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
-            found.add(id(node.value))
-    return found
+            numbers.add(id(node.value))
+    return numbers
 
 
 def test_the_engine_names_no_technique():
@@ -328,19 +328,19 @@ def test_a_module_introduces_itself():
 
 def test_a_module_is_named_by_what_it_does():
     """These words say nothing to who has not read the file."""
-    found = {p.relative_to(PACKAGE).as_posix() for p in modules() if p.stem in UNCLEAR}
-    found |= {
+    paths = {p.relative_to(PACKAGE).as_posix() for p in modules() if p.stem in UNCLEAR}
+    paths |= {
         p.relative_to(PACKAGE).as_posix() + "/"
         for p in PACKAGE.rglob("*")
         if p.is_dir() and p.name in UNCLEAR and "node_modules" not in p.parts
     }
-    shrinks("UNCLEAR_MODULES", found, UNCLEAR_MODULES, "has a name that says nothing")
+    shrinks("UNCLEAR_MODULES", paths, UNCLEAR_MODULES, "has a name that says nothing")
 
 
-def shrinks(name: str, found: set[str], allowed: set[str], what: str) -> None:
+def shrinks(name: str, names: set[str], allowed: set[str], what: str) -> None:
     """Fail for what is new, and for what is allowed and no longer there."""
-    assert not found - allowed, "\n".join(f"{file} {what}" for file in sorted(found - allowed))
-    assert not allowed - found, f"take out of {name}: {', '.join(sorted(allowed - found))}"
+    assert not names - allowed, "\n".join(f"{file} {what}" for file in sorted(names - allowed))
+    assert not allowed - names, f"take out of {name}: {', '.join(sorted(allowed - names))}"
 
 
 # A whole shader, or a part of one: lines of GLSL. What is put together from names (a wrapper's
@@ -363,8 +363,8 @@ def shaders_in(tree: ast.Module) -> Iterator[int]:
 
 def test_shaders_stand_in_files():
     """In a file every tool of GLSL reads it, the line table knows it, and it can be edited live."""
-    found = {p.relative_to(PACKAGE).as_posix() for p in modules() if any(shaders_in(tree_of(p)))}
-    shrinks("GLSL_IN_PYTHON", found, GLSL_IN_PYTHON, "has a shader in a string")
+    paths = {p.relative_to(PACKAGE).as_posix() for p in modules() if any(shaders_in(tree_of(p)))}
+    shrinks("GLSL_IN_PYTHON", paths, GLSL_IN_PYTHON, "has a shader in a string")
 
 
 def test_nothing_must_be_edited_in_two_places():

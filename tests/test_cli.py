@@ -343,8 +343,8 @@ def test_a_picture_is_drawn_larger_and_reduced(run: Run, slope: Path, tmp_path: 
     done = run("render", "slope", "--supersample", "9")
     assert (done.returncode, done.stderr) == (2, "error: --supersample 9: expected a whole number, 1 to 8\n")
     done = run("render", "slope", "--texture", "height", "-o", "h.npy", "--supersample", "2")
-    wanted = "error: --supersample is for pictures; --texture writes the values of one pass as they are\n"
-    assert (done.returncode, done.stderr) == (2, wanted)
+    total = "error: --supersample is for pictures; --texture writes the values of one pass as they are\n"
+    assert (done.returncode, done.stderr) == (2, total)
 
 
 def test_settings_presets_and_shots_are_seen_in_the_picture(run: Run, slope: Path, tmp_path: Path):
@@ -365,13 +365,13 @@ def test_texture_writes_the_pass_s_own_values(ending: str, run: Run, slope: Path
     well(run("render", "slope", "--texture", "height", "-o", path.name))
     expected = np.broadcast_to(np.arange(33, dtype=np.float32) / 32, (33, 33))
     if ending == "png":
-        found = read_samples(path)
-        assert found.dtype == np.uint16
-        np.testing.assert_array_equal(found[..., 0], np.rint(expected * 65535))
+        samples = read_samples(path)
+        assert samples.dtype == np.uint16
+        np.testing.assert_array_equal(samples[..., 0], np.rint(expected * 65535))
     else:
-        found = np.load(path) if ending == "npy" else tifffile.imread(path)
-        assert found.dtype == np.float32
-        np.testing.assert_array_equal(found, expected)
+        samples = np.load(path) if ending == "npy" else tifffile.imread(path)
+        assert samples.dtype == np.float32
+        np.testing.assert_array_equal(samples, expected)
 
 
 def test_clamped_values_are_noted_and_still_written(run: Run, slope: Path, tmp_path: Path):
@@ -558,8 +558,8 @@ def test_what_ships_passes(run: Run):
 
 def test_a_file_is_checked_once_however_often_it_is_named(slope: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.chdir(slope)
-    found = find_files(["slope.glsl", slope, "./slope.glsl"])
-    assert sorted(path.name for path, _ in found) == ["sketch.toml", "slope.glsl"]
+    files = find_files(["slope.glsl", slope, "./slope.glsl"])
+    assert sorted(path.name for path, _ in files) == ["sketch.toml", "slope.glsl"]
     with pytest.raises(
         DataError, match=r"slop\.glsl: there is no such file or folder; did you mean 'slope\.glsl'"
     ):
@@ -572,14 +572,14 @@ def test_a_file_is_checked_once_however_often_it_is_named(slope: Path, monkeypat
 @pytest.mark.slow
 def test_list_as_json_holds_every_sketch_and_technique(capsys: pytest.CaptureFixture[str]):
     assert cli.main(["list", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert [s["name"] for s in found["sketches"]] == shipped_sketches()
-    names = {t["name"]: t for t in found["techniques"]}
+    result = json.loads(capsys.readouterr().out)
+    assert [s["name"] for s in result["sketches"]] == shipped_sketches()
+    names = {t["name"]: t for t in result["techniques"]}
     assert "noise/hash" not in names  # a library file
     sun = {p["path"]: p for p in names["lighting/l_dot_n"]["parameters"]}["sun"]
     assert (sun["type"], sun["widget"], sun["default"]) == ("vec2", "direction", [135.0, 25.0])
     assert names["lighting/l_dot_n"]["outputs"] == ["light"]
-    assert not [e for group in found.values() for e in group if e["error"]]
+    assert not [e for group in result.values() for e in group if e["error"]]
 
 
 def test_list_of_one_sketch_prints_its_parameters(

@@ -41,16 +41,16 @@ def texts() -> Iterator[tuple[str, str]]:
 
 def named() -> list[tuple[str, str, str]]:
     """Return every extra that is named: the file, the extra, and the letter before what pip is to install."""
-    found = []
+    result = []
     for path, text in texts():
         for match in QUOTED.finditer(text):
             if re.search(r"pip install [^\n]{0,12}$", text[: match.start() + 1]) or match["before"] in "\"'":
-                found += [(path, extra, match["before"]) for extra in match["extras"].split(",")]
+                result += [(path, extra, match["before"]) for extra in match["extras"].split(",")]
         for match in OFFERED.finditer(text):
-            found += [(path, extra, "") for extra in match[1].split()]
+            result += [(path, extra, "") for extra in match[1].split()]
         for pattern in (NAMED, MADE):
-            found += [(path, next(filter(None, m.groups())), "") for m in pattern.finditer(text)]
-    return found
+            result += [(path, next(filter(None, m.groups())), "") for m in pattern.finditer(text)]
+    return result
 
 
 ALL = named()

@@ -6,25 +6,25 @@ import json
 
 import pytest
 
-from playground.json_text import DEEPEST, MAX_DIGITS, read_json
+from playground.json_text import MAX_DEPTH, MAX_DIGITS, read_json
 
 
 @pytest.mark.always
 @pytest.mark.parametrize("opening", ["[", '{"a":', '[{"a":'])
-@pytest.mark.parametrize("times", [DEEPEST, 400, 3000, 100_000])
+@pytest.mark.parametrize("times", [MAX_DEPTH, 400, 3000, 100_000])
 def test_what_is_nested_too_deeply_is_refused(opening: str, times: int):
     closing = "".join({"[": "]", "{": "}"}[c] for c in reversed(opening) if c in "[{")
-    for text in (opening * times + "[]" + closing * times, opening * (DEEPEST + 1)):
+    for text in (opening * times + "[]" + closing * times, opening * (MAX_DEPTH + 1)):
         with pytest.raises(ValueError):
             read_json(text)
 
 
 def test_what_is_nested_as_deep_as_allowed_is_read():
-    text = "[" * DEEPEST + "]" * DEEPEST
-    found = read_json(text)
-    for _ in range(DEEPEST - 1):
-        (found,) = found
-    assert found == []
+    text = "[" * MAX_DEPTH + "]" * MAX_DEPTH
+    value = read_json(text)
+    for _ in range(MAX_DEPTH - 1):
+        (value,) = value
+    assert value == []
     assert read_json(b'{"a": [1, {"b": null}]}') == {"a": [1, {"b": None}]}
 
 

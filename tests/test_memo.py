@@ -28,18 +28,18 @@ class Thing:
 def test_the_least_recently_used_goes_above_the_bound(seed):
     rng = np.random.default_rng(seed)
     puts, bound = rng.integers((0, 1), (10, 8), (60, 2)).tolist(), int(rng.integers(1, 21))
-    found, order = Memo("test", bound), list[tuple[int, int]]()  # by the age of their use
+    result, order = Memo("test", bound), list[tuple[int, int]]()  # by the age of their use
     for key, weight in puts:
-        if key in [known for known, _ in order]:
-            assert found.get(key) == key
-            order.append(order.pop([known for known, _ in order].index(key)))
+        if key in [existing for existing, _ in order]:
+            assert result.get(key) == key
+            order.append(order.pop([existing for existing, _ in order].index(key)))
             continue
-        found.put(key, key, weight)
+        result.put(key, key, weight)
         order.append((key, weight))
         while sum(w for _, w in order) > bound and len(order) > 1:
             order.pop(0)
-        assert list(found) == [known for known, _ in order]
-        assert found.weight == sum(w for _, w in order)
+        assert list(result) == [existing for existing, _ in order]
+        assert result.weight == sum(w for _, w in order)
 
 
 def test_a_function_is_computed_once_for_equal_arguments():
@@ -71,15 +71,15 @@ def test_what_a_function_raises_is_not_remembered():
 
 
 def test_arguments_by_identity_live_as_long_as_the_entry():
-    kept, one, other = Memo("test", 8), Thing(), Thing()
+    kept, first, other = Memo("test", 8), Thing(), Thing()
 
     @kept.cached(identities=1)
     def same(thing: Thing, name: str) -> int:
         return id(thing)
 
-    assert same(one, "a") == id(one) != same(other, "a") == id(other)
-    alive = weakref.ref(one)
-    del one
+    assert same(first, "a") == id(first) != same(other, "a") == id(other)
+    alive = weakref.ref(first)
+    del first
     gc.collect()
     assert alive() is not None
     kept.clear()

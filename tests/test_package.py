@@ -17,7 +17,7 @@ from playground.data.image_files import read_png
 
 ROOT = Path(__file__).resolve().parent.parent
 
-MOST_BYTES = 12_000_000  # of a wheel or a source distribution; the library's measured land is 1.5 MB of it
+MAX_BYTES = 12_000_000  # of a wheel or a source distribution; the library's measured land is 1.5 MB of it
 
 pytestmark = pytest.mark.slow
 
@@ -71,7 +71,7 @@ def test_the_wheel_carries_every_file_of_the_library(wheel: Path):
 )
 def test_what_is_published_passes_the_checks_of_those_who_publish(wheel: Path, check: tuple[str, ...]):
     files = [wheel, next(wheel.parent.glob("*.tar.gz"))] if check[0] == "twine" else [wheel]
-    assert max(file.stat().st_size for file in files) < MOST_BYTES
+    assert max(file.stat().st_size for file in files) < MAX_BYTES
     done = subprocess.run(
         [sys.executable, "-m", *check, *map(str, files)], capture_output=True, text=True, timeout=120
     )
@@ -137,7 +137,7 @@ def readme_blocks(language: str) -> list[str]:
 def readme_commands() -> list[str]:
     """Return the commands of README.md that are the playground's, as one types them without a checkout."""
     lines = [line.partition("  #")[0].strip() for block in readme_blocks("sh") for line in block.splitlines()]
-    found = [re.sub(r"^\./play\b", "playground", line) for line in lines]
-    found = [line for line in found if re.match(r"playground(?! (?:test|add)\b)", line)]
-    assert {"playground new hills", "playground render hills -o hills.png"} <= set(found)
-    return found
+    names = [re.sub(r"^\./play\b", "playground", line) for line in lines]
+    names = [line for line in names if re.match(r"playground(?! (?:test|add)\b)", line)]
+    assert {"playground new hills", "playground render hills -o hills.png"} <= set(names)
+    return names

@@ -62,9 +62,9 @@ class Checkout:
     def asked(self) -> list[str]:
         """Return the extras that pip was asked for since the last call, "" for none."""
         file = self.root / "asked"
-        found = file.read_text().splitlines() if file.exists() else []
+        result = file.read_text().splitlines() if file.exists() else []
         file.unlink(missing_ok=True)
-        return [line.removeprefix(str(self.root)).strip("[]") for line in found]
+        return [line.removeprefix(str(self.root)).strip("[]") for line in result]
 
     def edit(self) -> None:
         """Change what .venv was made from."""

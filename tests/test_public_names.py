@@ -36,10 +36,10 @@ TOOLS = {
 def public() -> Iterator[tuple[str, Any]]:
     """Yield every public name with what it means, and the methods and properties of the classes."""
     for name in sorted(set(playground.__all__) - {"__version__"}):
-        found = getattr(playground, name)
-        yield name, found
-        if isinstance(found, type) and not issubclass(found, Exception):
-            for inner, member in vars(found).items():
+        result = getattr(playground, name)
+        yield name, result
+        if isinstance(result, type) and not issubclass(result, Exception):
+            for inner, member in vars(result).items():
                 if not inner.startswith("_") and (inspect.isfunction(member) or isinstance(member, property)):
                     yield f"{name}.{inner}", member
 
@@ -97,14 +97,14 @@ def test_it_is_typed_and_says_what_its_arguments_are_and_what_goes_wrong(name):
         return
     function = thing.fget if isinstance(thing, property) else thing
     signature = inspect.signature(function)
-    given = [p for n, p in signature.parameters.items() if n != "self"]
-    untyped = [p.name for p in given if p.annotation is inspect.Parameter.empty]
+    value = [p for n, p in signature.parameters.items() if n != "self"]
+    untyped = [p.name for p in value if p.annotation is inspect.Parameter.empty]
     assert not untyped and signature.return_annotation is not inspect.Signature.empty
     if "." in name:  # methods have the same names for the same, which the first of them explains
         documentation += inspect.getdoc(playground.Engine.render) or ""
-    missing = [p.name for p in given if not re.search(rf"\b{p.name}\b", documentation)]
+    missing = [p.name for p in value if not re.search(rf"\b{p.name}\b", documentation)]
     assert not missing, f"{name} says nothing of {', '.join(missing)}"
-    if "." not in name and given:
+    if "." not in name and value:
         assert "Raises" in documentation or name == "parameters"
 
 
@@ -122,9 +122,9 @@ def test_an_engine_shows_what_a_program_calls(engine):
 def test_metres_are_heights_times_relief_above_the_base(any_engine):
     sketch = playground.load("jacksboro").with_values({"relief": 400.0, "base_elevation": -25.0})
     shares = any_engine.read(sketch, "height").astype(np.float64)
-    found = any_engine.metres(sketch, "height")
-    assert found.dtype == np.float32 and found.shape == shares.shape
-    np.testing.assert_allclose(found, 400.0 * shares - 25.0, atol=1e-4)
+    metres = any_engine.metres(sketch, "height")
+    assert metres.dtype == np.float32 and metres.shape == shares.shape
+    np.testing.assert_allclose(metres, 400.0 * shares - 25.0, atol=1e-4)
     with pytest.raises(playground.SketchError, match=r"texture 'light' has \d channels; heights have one"):
         any_engine.metres(sketch, "light")
 
@@ -163,24 +163,24 @@ def test_another_name_is_refused_with_the_list(tmp_path, name):
 
 def in_thread(work: Any) -> Any:
     """Return what some work gives in a thread of its own, or the error that it raises."""
-    found: list[Any] = []
+    values: list[Any] = []
 
     def run() -> None:
         try:
-            found.append(work())
+            values.append(work())
         except Exception as error:
-            found.append(error)
+            values.append(error)
 
     thread = threading.Thread(target=run, name="other")
     thread.start()
     thread.join()
-    return found[0]
+    return values[0]
 
 
 @pytest.mark.slow
 def test_a_call_from_another_thread_is_refused_in_a_sentence(any_engine):
     sketch = playground.load("diamond_square").with_values({"size": 33})
-    wanted = any_engine.render(sketch, size=(32, 18)).array
+    expected = any_engine.render(sketch, size=(32, 18)).array
     calls = [
         lambda: any_engine.render(sketch, size=(32, 18)),
         lambda: any_engine.read(sketch, "height"),
@@ -196,7 +196,7 @@ def test_a_call_from_another_thread_is_refused_in_a_sentence(any_engine):
         assert "opened in thread 'MainThread' and is called from 'other'" in str(error)
         assert "open an engine in each" in str(error)
     any_engine.cache.clear()
-    np.testing.assert_array_equal(any_engine.render(sketch, size=(32, 18)).array, wanted)
+    np.testing.assert_array_equal(any_engine.render(sketch, size=(32, 18)).array, expected)
 
 
 @pytest.mark.slow
@@ -206,24 +206,24 @@ def test_one_engine_draws_many_sketches_and_each_thread_has_its_own(any_engine):
     sketches = {side: square.with_values({"size": side}) for side in names}
 
     def drawn() -> dict[int, np.ndarray]:
-        found = {}
+        arrays = {}
         with playground.headless() as engine:
             for _ in range(2):  # the second time, each after another
                 for name, sketch in sketches.items():
-                    found[name] = engine.render(sketch, size=(48, 27)).array
-        return found
+                    arrays[name] = engine.render(sketch, size=(48, 27)).array
+        return arrays
 
-    wanted = {name: any_engine.render(sketch, size=(48, 27)).array for name, sketch in sketches.items()}
+    expected = {name: any_engine.render(sketch, size=(48, 27)).array for name, sketch in sketches.items()}
     results: list[Any] = [None, None]
 
-    def run(place: int) -> None:
-        results[place] = drawn()
+    def run(index: int) -> None:
+        results[index] = drawn()
 
-    threads = [threading.Thread(target=run, args=(place,)) for place in range(2)]
+    threads = [threading.Thread(target=run, args=(index,)) for index in range(2)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
-    for found in results:
+    for result in results:
         for name in names:
-            np.testing.assert_array_equal(found[name], wanted[name])
+            np.testing.assert_array_equal(result[name], expected[name])

@@ -1,4 +1,4 @@
-"""What is no regular file is never opened, and is refused in a sentence wherever a file may be named."""
+"""What is no regular file is never opened, and is refused in a message wherever a file may be named."""
 
 from __future__ import annotations
 
@@ -77,8 +77,8 @@ def put(kind: str, path: Path) -> None:
     elif kind == "device":
         path.symlink_to("/dev/zero")
     else:
-        with socket.socket(socket.AF_UNIX) as one:
-            one.bind(str(path))
+        with socket.socket(socket.AF_UNIX) as item:
+            item.bind(str(path))
 
 
 @pytest.mark.parametrize("kind", ["FIFO", "device", "socket"])

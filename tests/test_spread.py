@@ -12,7 +12,7 @@ import pytest
 from . import spread
 from .spread import FULL_INTERVAL, MAX_UNSAMPLED, TESTS, Spread
 
-FEW = [str(i) for i in range(MAX_UNSAMPLED)]
+UNSAMPLED_CASES = [str(i) for i in range(MAX_UNSAMPLED)]
 MANY = ["-".join(case) for case in product("abcdefgh", "1234", "xyz")]
 
 
@@ -44,8 +44,8 @@ def runs(names: list[str], spread: Spread, *marks: str, folder: Path = TESTS) ->
 
 
 def test_few_cases_and_those_of_other_folders_all_run():
-    assert runs(FEW, Spread("1")) == (FEW, [])
-    assert runs(FEW, Spread("1"), "slow") == ([], FEW)
+    assert runs(UNSAMPLED_CASES, Spread("1")) == (UNSAMPLED_CASES, [])
+    assert runs(UNSAMPLED_CASES, Spread("1"), "slow") == ([], UNSAMPLED_CASES)
     assert runs(MANY, Spread("1"), folder=TESTS.parent) == (MANY, [])
 
 

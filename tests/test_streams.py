@@ -61,8 +61,8 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
 def test_what_an_encoding_lacks_is_spelled(run, encoding: str):
     done = run(encoding, "list", "jacksboro")
     assert (done.returncode, done.stderr) == (0, b"")
-    found = done.stdout.decode(encoding)
-    assert "height.elevation" in found and "\\x" not in found and "\\u" not in found
+    value = done.stdout.decode(encoding)
+    assert "height.elevation" in value and "\\x" not in value and "\\u" not in value
     written = run(encoding, "render", "läñd.frag", "--size", "4x4")
     assert written.returncode == 0 and b"Traceback" not in written.stderr
     assert written.stdout.decode(encoding) == ("land.png\n" if encoding == "ascii" else "läñd.png\n")

@@ -27,9 +27,9 @@ def commands() -> Iterator[tuple[str, Any]]:
 
 def _walk(name: str, command: Any) -> Iterator[tuple[str, Any]]:
     yield name, command
-    for child, found in getattr(command, "commands", {}).items():
-        if not found.hidden:
-            yield from _walk(f"{name} {child}", found)
+    for child, result in getattr(command, "commands", {}).items():
+        if not result.hidden:
+            yield from _walk(f"{name} {child}", result)
 
 
 def page() -> str:
@@ -40,9 +40,9 @@ def page() -> str:
 def _section(name: str, command: Any) -> str:
     level = 2 if name.count(" ") < 2 else 3
     about, _, examples = (command.help or "").partition("\b\nExamples:\n")
-    given = [p for p in command.params if not getattr(p, "hidden", False)]
-    arguments = [p for p in given if p.param_type_name == "argument"]
-    options = [p for p in given if p.param_type_name == "option"]
+    params = [p for p in command.params if not getattr(p, "hidden", False)]
+    arguments = [p for p in params if p.param_type_name == "argument"]
+    options = [p for p in params if p.param_type_name == "option"]
     parts = [f"{'#' * level} {name}\n\n"]
     parts += [escaped(paragraph) + "\n\n" for paragraph in about.split("\n\n") if paragraph.strip()]
     parts.append(fenced(_usage(name, command, arguments), "text"))

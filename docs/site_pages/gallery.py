@@ -17,12 +17,12 @@ def page() -> str:
     """Return the page of all pictures, by sketch."""
     parts = [_HEAD]
     for sketch in sketches():
-        found = pictures(sketch)
-        if not found:
+        result = pictures(sketch)
+        if not result:
             continue
         parts.append(f"## {escaped(sketch.title)} {{ #{sketch.name} }}\n\n")
         parts.append(f"{code(f'playground live {sketch.name}')}\n\n" + '<div class="catalogue" markdown>\n\n')
-        for picture in found:
+        for picture in result:
             alt = f"{sketch.title}, {picture.shot}"
             image = f"![{escaped(alt)}](../{picture.thumbnail}){{ loading=lazy }}"
             parts.append(f"{image} {code(picture.shot)}\n{{ .card }}\n\n")

@@ -27,12 +27,12 @@ def _entities(text: str) -> str:
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a table without the columns in which every row is empty; "" without rows."""
-    found = [tuple(row) for row in rows]
-    if not found:
+    result = [tuple(row) for row in rows]
+    if not result:
         return ""
-    used = [at for at in range(len(head)) if any(row[at] for row in found)]
+    used = [at for at in range(len(head)) if any(row[at] for row in result)]
     lines = [[head[at] for at in used], ["---"] * len(used)]
-    lines += [[row[at] for at in used] for row in found]
+    lines += [[row[at] for at in used] for row in result]
     return "".join("| " + " | ".join(line) + " |\n" for line in lines) + "\n"
 
 

@@ -49,18 +49,18 @@ def generated_paths() -> list[str]:
 
 def generated() -> dict[str, str | bytes]:
     """Return every page and picture that no file of this folder holds, by its path in the site."""
-    found: dict[str, str | bytes] = {path: write() for path, write in _PAGES.items()}
-    found[f"{TECHNIQUES}index.md"] = techniques.index()
+    result: dict[str, str | bytes] = {path: write() for path, write in _PAGES.items()}
+    result[f"{TECHNIQUES}index.md"] = techniques.index()
     for names in techniques.entries().values():
-        found |= {techniques.path_of(entry): techniques.page(entry) for entry in names}
+        result |= {techniques.path_of(entry): techniques.page(entry) for entry in names}
     for page, source in ELSEWHERE.items():
-        found[page] = moved((ROOT / source).read_text("utf-8"), source, page)
+        result[page] = moved((ROOT / source).read_text("utf-8"), source, page)
     for sketch in shots.sketches():
         for picture in shots.pictures(sketch):
-            found[picture.thumbnail] = shots.thumbnail(picture.file)
+            result[picture.thumbnail] = shots.thumbnail(picture.file)
     for path, source in PICTURES.items():
-        found[path] = shots.thumbnail(ROOT / source, 1280)
-    return found
+        result[path] = shots.thumbnail(ROOT / source, 1280)
+    return result
 
 
 def missing_pictures() -> list[str]:
@@ -75,14 +75,14 @@ def moved(text: str, source: str, page: str) -> str:
 
     What is no page of the site is named in place of a link.
     """
-    homes = {home: place for place, home in ELSEWHERE.items()}
+    homes = {home: key for key, home in ELSEWHERE.items()}
     homes[GLOSSARY.relative_to(ROOT).as_posix()] = "reference/glossary.md"
     up = "../" * page.count("/")
 
     def lead(match: re.Match[str]) -> str:
         target = (ROOT / source).parent.joinpath(match[3]).resolve().relative_to(ROOT).as_posix()
-        place = homes.get(target, target.removeprefix("docs/") if target.startswith("docs/") else "")
-        return f"{match[1]}[{match[2]}]({up}{place}{match[4] or ''})" if place else match[2]
+        home = homes.get(target, target.removeprefix("docs/") if target.startswith("docs/") else "")
+        return f"{match[1]}[{match[2]}]({up}{home}{match[4] or ''})" if home else match[2]
 
     return _LINK.sub(lead, text)
 
@@ -95,8 +95,8 @@ def expanded(entry: Any) -> Any:
         return [expanded(below) for below in entry]
     if entry != TECHNIQUES:
         return entry
-    found: list[Any] = [f"{TECHNIQUES}index.md"]
+    values: list[Any] = [f"{TECHNIQUES}index.md"]
     for folder, names in techniques.entries().items():
         title = techniques.FOLDERS.get(folder, folder).partition(":")[0]
-        found.append({title: [{e.name.partition("/")[2]: techniques.path_of(e)} for e in names]})
-    return found
+        values.append({title: [{e.name.partition("/")[2]: techniques.path_of(e)} for e in names]})
+    return values

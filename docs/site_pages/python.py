@@ -22,12 +22,12 @@ A sketch is a frozen value; to set a parameter gives a new one. Arrays have row 
 def groups() -> dict[str, list[str]]:
     """Return every public name of the package by group; errors and warnings are a group of their own."""
     named = {name for names in _GROUPS.values() for name in names}
-    found = {title: list(names) for title, names in _GROUPS.items()}
+    names = {title: list(names) for title, names in _GROUPS.items()}
     rest = [name for name in playground.__all__ if name not in named and name != "__version__"]
     kinds = [n for n in rest if isinstance(getattr(playground, n), type)]
-    found["Errors and warnings"] = [n for n in kinds if issubclass(getattr(playground, n), Exception)]
-    found["More"] = [n for n in rest if n not in found["Errors and warnings"]]
-    return {title: names for title, names in found.items() if names}
+    names["Errors and warnings"] = [n for n in kinds if issubclass(getattr(playground, n), Exception)]
+    names["More"] = [n for n in rest if n not in names["Errors and warnings"]]
+    return {title: names for title, names in names.items() if names}
 
 
 def page() -> str:

@@ -62,22 +62,22 @@ def picture_of(technique: str) -> Picture | None:
     ranked = []
     for number, sketch in enumerate(sketches()):
         depth = _depth(sketch.graph, technique)
-        if depth and (found := pictures(sketch)):
-            ranked.append((sketch.name != title, depth, number, found[0]))
+        if depth and (result := pictures(sketch)):
+            ranked.append((sketch.name != title, depth, number, result[0]))
     return min(ranked, key=lambda row: row[:3])[3] if ranked else None
 
 
-def _depth(technique: Technique, wanted: str, depth: int = 0) -> int:
+def _depth(technique: Technique, text: str, depth: int = 0) -> int:
     """Return how deep a technique lies inside another, from 1; 0 where it does not."""
     if isinstance(technique, Kernel):
         return 0
-    found = []
+    result = []
     for spec in technique.passes:
-        if spec.technique.name == wanted:
+        if spec.technique.name == text:
             return depth + 1
         if isinstance(spec.technique, Graph):
-            found.append(_depth(spec.technique, wanted, depth + 1))
-    return min(filter(None, found), default=0)
+            result.append(_depth(spec.technique, text, depth + 1))
+    return min(filter(None, result), default=0)
 
 
 def thumbnail(file: Path, width: int = WIDTH) -> bytes:

@@ -54,12 +54,12 @@ class Header:
 @cache
 def entries() -> dict[str, list[Entry]]:
     """Return the techniques by folder; raise ``ValueError`` for one that cannot be read."""
-    found: dict[str, list[Entry]] = {folder: [] for folder in FOLDERS}
+    result: dict[str, list[Entry]] = {folder: [] for folder in FOLDERS}
     for entry in listed():
         if entry.error:
             raise ValueError(f"{entry.name}: {entry.error}")
-        found.setdefault(entry.name.partition("/")[0], []).append(entry)
-    return {folder: names for folder, names in found.items() if names}
+        result.setdefault(entry.name.partition("/")[0], []).append(entry)
+    return {folder: names for folder, names in result.items() if names}
 
 
 @cache
@@ -108,8 +108,8 @@ def _keys(lines: list[str]) -> tuple[dict[str, str], list[str]]:
 
 def description(entry: Entry) -> str:
     """Return what a technique's file says of it, as Markdown; raise ``ValueError`` where it says nothing."""
-    found = header(Path(entry.file))
-    text = "".join(_paragraph(p) for p in ((found.sentence,) if found.sentence else ()) + found.prose)
+    result = header(Path(entry.file))
+    text = "".join(_paragraph(p) for p in ((result.sentence,) if result.sentence else ()) + result.prose)
     if not text.strip():
         raise ValueError(f"{entry.name}: {entry.file} begins with no comment that says what it does")
     return text
@@ -125,10 +125,10 @@ def _paragraph(text: str) -> str:
 def index() -> str:
     """Return the page that shows all techniques by folder."""
     parts = [_HEAD]
-    for folder, found in entries().items():
+    for folder, entry in entries().items():
         parts.append(f"## {FOLDERS.get(folder, folder)} {{ #{folder} }}\n\n")
         parts.append('<div class="catalogue" markdown>\n\n')
-        parts += [_card(entry) for entry in found]
+        parts += [_card(entry) for entry in entry]
         parts.append("</div>\n\n")
     return "".join(parts)
 
@@ -174,7 +174,7 @@ def _wiring(entry: Entry, technique: Technique) -> str:
     fallbacks = {}
     if isinstance(technique, Kernel):
         formats = {output.name: output.format for output in technique.outputs}
-        fallbacks = {found.name: found.fallback for found in technique.inputs}
+        fallbacks = {result.name: result.fallback for result in technique.inputs}
     rows = []
     for name in entry.inputs:
         notes = f"may stay unwired; it then reads {fallbacks[name]}" if fallbacks.get(name) else ""
@@ -190,7 +190,7 @@ def _deciding(graph: Graph, name: str) -> str:
     every = set(input_names(graph))
     present, without = ([spec.name for spec in form_of(graph, w).passes] for w in (every, every - {name}))
     parts = [
-        (text, [code(one) for one in some if one not in others])
+        (text, [code(item) for item in some if item not in others])
         for text, some, others in (
             ("only where it is wired", present, without),
             ("only where it is not", without, present),
@@ -254,7 +254,7 @@ def _variants(technique: Technique) -> str:
 
 def _all_variants(technique: Technique) -> list[Variant]:
     """List the fast variants of a technique and of its own kernels."""
-    found = {variant.path: variant for variant in technique.variants}
+    variants = {variant.path: variant for variant in technique.variants}
     for kernel in _own(technique):
-        found |= {variant.path: variant for variant in kernel.variants}
-    return list(found.values())
+        variants |= {variant.path: variant for variant in kernel.variants}
+    return list(variants.values())

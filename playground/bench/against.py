@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from playground.bench.results import Figure, Results
 
-ENOUGH = 1.1  # times as slow, or as fast, from which on a change is one
+MIN_RATIO = 1.1  # times as slow, or as fast, from which on a change is one
 
 
 @dataclass(frozen=True)
@@ -28,18 +28,18 @@ class Change:
     @property
     def word(self) -> str:
         """Return "slower", "faster" or "alike"."""
-        if not self.clear or 1 / ENOUGH < self.times < ENOUGH:
+        if not self.clear or 1 / MIN_RATIO < self.times < MIN_RATIO:
             return "alike"
         return "slower" if self.times > 1 else "faster"
 
 
 def changes(now: Results, before: Results, clock: str = "wall") -> list[Change]:
     """Return the change of each figure that both runs have."""
-    known = before.by_key()
+    figures = before.by_key()
     return [
         change
         for figure in now.figures
-        if (old := known.get(figure.key)) is not None and (change := _change(figure, old, clock))
+        if (old := figures.get(figure.key)) is not None and (change := _change(figure, old, clock))
     ]
 
 

@@ -46,10 +46,10 @@ def counted() -> Iterator[dict[str, int]]:
     def count(kind: str, owner: type, name: str, amount: Callable[[Any, Any], int]) -> None:
         own = getattr(owner, name)
 
-        def call(*given: Any, **named: Any) -> Any:
-            found = own(*given, **named)
-            counts[kind] += amount(given, found)
-            return found
+        def call(*arguments: Any, **named: Any) -> Any:
+            result = own(*arguments, **named)
+            counts[kind] += amount(arguments, result)
+            return result
 
         changed.append((owner, name, own))
         setattr(owner, name, call)
@@ -57,7 +57,7 @@ def counted() -> Iterator[dict[str, int]]:
     try:
         for kind, calls in _CALLS.items():
             for owner, name in calls:
-                count(kind, owner, name, lambda given, found: 1)
+                count(kind, owner, name, lambda arguments, result: 1)
         for owner, name in _MOVED:
             count(BYTES, owner, name, _size_of)
         yield counts
@@ -83,10 +83,10 @@ def timed_calls() -> Iterator[Spent]:
         for owner, name in (*chain(*_CALLS.values()), *_MOVED, *_OTHERS):
             own = getattr(owner, name)
 
-            def call(*given: Any, own: Any = own, **named: Any) -> Any:
+            def call(*arguments: Any, own: Any = own, **named: Any) -> Any:
                 start = clock()
                 try:
-                    return own(*given, **named)
+                    return own(*arguments, **named)
                 finally:
                     spent.milliseconds += (clock() - start) * 1e3
 
@@ -98,7 +98,7 @@ def timed_calls() -> Iterator[Spent]:
             setattr(owner, name, own)
 
 
-def _size_of(given: tuple[Any, ...], found: Any) -> int:
+def _size_of(arguments: tuple[Any, ...], result: Any) -> int:
     """Return the bytes that a call gave or was given."""
-    moved = found if isinstance(found, bytes) else given[1] if len(given) > 1 else b""
+    moved = result if isinstance(result, bytes) else arguments[1] if len(arguments) > 1 else b""
     return moved.size if isinstance(moved, moderngl.Buffer) else memoryview(moved).nbytes

@@ -69,10 +69,10 @@ def _sweep(heights: Any, drift: int, upwards: bool, steep: Any, total: Any) -> N
                 continue
             along = row if upwards else rows - 1 - row
             here = heights[at, along]
-            place = np.float32(row)
+            position = np.float32(row)
             best = np.float32(-1e30)
             while last >= 0:
-                slope = (tall[last] - here) / (far[last] - place)
+                slope = (tall[last] - here) / (far[last] - position)
                 if slope < best:
                     break
                 best = slope
@@ -81,7 +81,7 @@ def _sweep(heights: Any, drift: int, upwards: bool, steep: Any, total: Any) -> N
                 last += 1
             last += 1
             tall[last] = here
-            far[last] = place
+            far[last] = position
             tangent = max(best, np.float32(0)) * steep
             total[at, along] += np.float32(1) / (np.float32(1) + tangent * tangent)
 

@@ -76,13 +76,13 @@ def _changes(results: Results, earlier: Sequence[Results], clock: str) -> Markup
     if not earlier:
         return Markup("")
     before = max(earlier, key=lambda run: run.date)
-    found = [change for change in changes(results, before, clock) if change.word != "alike"]
+    changed = [change for change in changes(results, before, clock) if change.word != "alike"]
     title = tag("h2", f"Changes since {_moment(before.date)}")
-    if not found:
+    if not changed:
         return joined(title, tag("p", "None that is more than the spread of the runs."))
     rows = [
         (c.figure.key, f"{c.times:.2f} × the time", tag("span", c.word, class_=c.word), c.by_peer)
-        for c in found
+        for c in changed
     ]
     return joined(title, _table(("row", "", "", "by its ratio to"), rows))
 
@@ -133,15 +133,15 @@ def _bars_of(figure: Figure, clock: str) -> Iterator[tuple[str, float, float, fl
 
 def _over_time(figure: Figure, runs: Sequence[Results], clock: str) -> Markup | None:
     """Draw a figure of every run that has it: ours and its peers, with their quartiles."""
-    found = [(run, run.by_key()[figure.key]) for run in runs if figure.key in run.by_key()]
-    if len(found) < 2:
+    history = [(run, run.by_key()[figure.key]) for run in runs if figure.key in run.by_key()]
+    if len(history) < 2:
         return None
     drawing, axes = _drawing(2.6)
     for name in dict.fromkeys((*figure.ours, *figure.theirs)):
         points = [
-            (run, (each.ours | each.theirs)[name]) for run, each in found if name in each.ours | each.theirs
+            (run, (each.ours | each.theirs)[name]) for run, each in history if name in each.ours | each.theirs
         ]
-        places = [number for number, (run, _) in enumerate(found) if any(run is p for p, _ in points)]
+        places = [number for number, (run, _) in enumerate(history) if any(run is p for p, _ in points)]
         used = [clock if samples.of(clock) else "wall" for _, samples in points]
         medians = [samples.median(own) for (_, samples), own in zip(points, used, strict=True)]
         spread = [samples.quartiles(own) for (_, samples), own in zip(points, used, strict=True)]
@@ -149,7 +149,7 @@ def _over_time(figure: Figure, runs: Sequence[Results], clock: str) -> Markup | 
         axes.plot(places, medians, marker="o", label=name, lw=2 if ours else 1, ls="-" if ours else "--")
         axes.fill_between(places, [low for low, _ in spread], [high for _, high in spread], alpha=0.15)
     axes.set_xticks(
-        range(len(found)), [f"{_moment(run.date)}\n{run.version}" for run, _ in found], fontsize=7
+        range(len(history)), [f"{_moment(run.date)}\n{run.version}" for run, _ in history], fontsize=7
     )
     axes.set_ylim(bottom=0)
     axes.set_ylabel(figure.unit or "count")

@@ -30,7 +30,7 @@ class Peer:
 
 
 @dataclass
-class Setting:
+class PeerSetup:
     """What a peer is made for."""
 
     room: Room
@@ -52,7 +52,7 @@ class Setting:
         return self.room.engine().metres(sketch, ref)
 
 
-def _fast_noise_lite(to: Setting, noise: str, octaves: int, lacunarity: float, gain: float) -> Peer | None:
+def _fast_noise_lite(to: PeerSetup, noise: str, octaves: int, lacunarity: float, gain: float) -> Peer | None:
     library = to.library("pyfastnoiselite.pyfastnoiselite")
     if library is None:
         return None
@@ -66,7 +66,7 @@ def _fast_noise_lite(to: Setting, noise: str, octaves: int, lacunarity: float, g
     return Peer(f"pyfastnoiselite {noise}", lambda: made.gen_from_coords(places))
 
 
-def _opensimplex(to: Setting, octaves: int, lacunarity: float, gain: float) -> Peer | None:
+def _opensimplex(to: PeerSetup, octaves: int, lacunarity: float, gain: float) -> Peer | None:
     library = to.library("opensimplex")
     if library is None:
         return None
@@ -79,7 +79,7 @@ def _opensimplex(to: Setting, octaves: int, lacunarity: float, gain: float) -> P
     return Peer("opensimplex", run)
 
 
-def _scipy_fourier(to: Setting, roughness: float) -> Peer | None:
+def _scipy_fourier(to: PeerSetup, roughness: float) -> Peer | None:
     """Return SciPy's whole pipeline: random grid, transform, filter, inverse, brought to 0..1."""
     fft = to.library("scipy.fft")
     if fft is None:
@@ -99,7 +99,7 @@ def _scipy_fourier(to: Setting, roughness: float) -> Peer | None:
     return Peer("scipy.fft", run)
 
 
-def _numpy_diamond_square(to: Setting, smoothing: float) -> Peer:
+def _numpy_diamond_square(to: PeerSetup, smoothing: float) -> Peer:
     """Return diamond-square in NumPy, whole slices at a time, brought to 0..1."""
     size = to.size
 
@@ -128,7 +128,7 @@ def _numpy_diamond_square(to: Setting, smoothing: float) -> Peer:
     return Peer("NumPy", run, alone=True)
 
 
-def _numpy_faults(to: Setting, faults: int) -> Peer:
+def _numpy_faults(to: PeerSetup, faults: int) -> Peer:
     """Return fault formation in NumPy: a comparison over the terrain for each fault."""
     size = to.size
 
@@ -151,7 +151,7 @@ def _stretched(terrain: NDArray[np.float32]) -> NDArray[np.float32]:
     return stretched
 
 
-def _thesis_terrain(to: Setting, function: str, arguments: list[float | int]) -> Peer | None:
+def _thesis_terrain(to: PeerSetup, function: str, arguments: list[float | int]) -> Peer | None:
     thesis = to.room.thesis
     if thesis is None:
         return None
@@ -159,7 +159,7 @@ def _thesis_terrain(to: Setting, function: str, arguments: list[float | int]) ->
 
 
 def _thesis_light(
-    to: Setting, function: str, more: tuple[float, ...] = (), down: bool = False
+    to: PeerSetup, function: str, more: tuple[float, ...] = (), down: bool = False
 ) -> Peer | None:
     thesis = to.room.thesis
     if thesis is None:
@@ -169,7 +169,7 @@ def _thesis_light(
     return Peer("the thesis's C", run, alone=True)
 
 
-def _numba_horizons(to: Setting, directions: int) -> Peer | None:
+def _numba_horizons(to: PeerSetup, directions: int) -> Peer | None:
     if horizon_peers.numba is None:
         to.missing.append("numba")
         return None
@@ -177,7 +177,7 @@ def _numba_horizons(to: Setting, directions: int) -> Peer | None:
     return Peer("Numba sweep", lambda: horizon_peers.numba_sweep(heights, texel, directions))
 
 
-def _topocalc_horizons(to: Setting, directions: int) -> Peer | None:
+def _topocalc_horizons(to: PeerSetup, directions: int) -> Peer | None:
     if horizon_peers.viewf is None or to.size > 2000:
         return None
     heights, texel = to.heights(), float(to.row["texel"])
@@ -185,14 +185,14 @@ def _topocalc_horizons(to: Setting, directions: int) -> Peer | None:
     return Peer("topocalc", run, once=True, alone=True)
 
 
-def _ours(to: Setting, name: str, **changed: Any) -> Peer:
+def _ours(to: PeerSetup, name: str, **changed: Any) -> Peer:
     """Return another texture of our own: the row with some of its keys changed."""
     row = {**to.row, **changed}
     room, engine = to.room, to.room.engine()
-    sketch, change, wanted = room.sketch(row, to.size), changing(room, row), str(row["texture"])
+    sketch, change, texture = room.sketch(row, to.size), changing(room, row), str(row["texture"])
 
     def run() -> None:
-        engine.texture(change(sketch), wanted)
+        engine.texture(change(sketch), texture)
         engine.ctx.finish()
 
     return Peer(name, run)
@@ -213,7 +213,7 @@ PEERS: dict[str, Callable[..., Peer | None]] = {
 """What makes each peer, by the name that rows give it."""
 
 
-def made(setting: Setting, wanted: Mapping[str, Any]) -> Peer | None:
+def made(setting: PeerSetup, row: Mapping[str, Any]) -> Peer | None:
     """Make a peer of a row; None where what it needs is not here."""
-    given = dict(wanted)
-    return PEERS[given.pop("peer")](setting, **given)
+    options = dict(row)
+    return PEERS[options.pop("peer")](setting, **options)

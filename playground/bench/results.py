@@ -76,10 +76,10 @@ class Results:
 
 def as_json(results: Results) -> dict[str, Any]:
     """Return all of a run as what JSON can hold."""
-    found = {"kind": KIND, "format": FORMAT, **asdict(results)}
-    for figure in found["figures"]:
+    record = {"kind": KIND, "format": FORMAT, **asdict(results)}
+    for figure in record["figures"]:
         figure["alone"] = sorted(figure["alone"])
-    return found
+    return record
 
 
 def write(results: Results, path: Path) -> None:
@@ -91,19 +91,19 @@ def write(results: Results, path: Path) -> None:
 def read(path: Path) -> Results:
     """Read what ``write`` wrote; raise ``DataError`` for any other file."""
     try:
-        found = read_json(read_regular(path).decode())
+        document = read_json(read_regular(path).decode())
     except FileNotFoundError:
         raise DataError("no such file; expected results of playground bench", file=shown(path)) from None
     except (ValueError, OSError) as error:
         raise DataError(f"cannot be read as JSON: {error}", file=shown(path)) from None
-    if not isinstance(found, dict) or found.get("kind") != KIND:
+    if not isinstance(document, dict) or document.get("kind") != KIND:
         raise DataError("this JSON is no result of playground bench", file=shown(path))
-    if found.get("format") != FORMAT:
-        message = f"results of format {found.get('format')}; this version reads format {FORMAT}"
+    if document.get("format") != FORMAT:
+        message = f"results of format {document.get('format')}; this version reads format {FORMAT}"
         raise DataError(message, file=shown(path))
     try:
-        figures = [_figure(each) for each in found["figures"]]
-        kept = {key: found[key] for key in ("date", "version", "machine", "rounds", "notes")}
+        figures = [_figure(each) for each in document["figures"]]
+        kept = {key: document[key] for key in ("date", "version", "machine", "rounds", "notes")}
         return Results(**kept, figures=figures)
     except (KeyError, TypeError) as error:
         raise DataError(f"damaged results: {error}", file=shown(path)) from None

@@ -65,10 +65,10 @@ class Room:
     @cached_property
     def thesis(self) -> Thesis | None:
         """The thesis's own methods, compiled from C; None where there is no compiler, which is said."""
-        found = Thesis.compiled(self.folder)
-        if found is None:
+        thesis = Thesis.compiled(self.folder)
+        if thesis is None:
             self.options.say("no C compiler (cc, gcc, clang) on PATH: the thesis's own methods are left out")
-        return found
+        return thesis
 
     def seed(self) -> int:
         """Return a seed that no run had before."""
@@ -80,49 +80,49 @@ class Room:
         path.write_text(text, encoding="utf-8")
         return path
 
-    def sketch(self, given: Mapping[str, Any], size: int) -> Sketch:
+    def sketch(self, options: Mapping[str, Any], size: int) -> Sketch:
         """Return a row's sketch: one of the library by ``sketch``, or of the text of its ``passes``.
 
         ``first`` is the text of passes before those, which rows may share.
         ``texel`` is the metres between two texels; ``relief`` is in metres; ``even`` takes the
         even number below an odd size; ``set`` are values by path.
         """
-        side = size - size % 2 if given.get("even") else size
-        if "passes" not in given:
-            found = load(str(given["sketch"]))
+        side = size - size % 2 if options.get("even") else size
+        if "passes" not in options:
+            loaded = load(str(options["sketch"]))
             values: dict[str, Any] = {"size": side} if size else {}
         else:
             head = f"format = 1\nsize = {side}\n" if size else "format = 1\n"
-            if "texel" in given:
-                head += f"extent = {(side - 1) * float(given['texel'])}\n"
-            if "relief" in given:
-                head += f"relief = {float(given['relief'])}\n"
-            text = head + str(given.get("first", "")) + str(given["passes"])
-            found = load(self.written(f"{next(self.numbers)}.toml", text))
+            if "texel" in options:
+                head += f"extent = {(side - 1) * float(options['texel'])}\n"
+            if "relief" in options:
+                head += f"relief = {float(options['relief'])}\n"
+            text = head + str(options.get("first", "")) + str(options["passes"])
+            loaded = load(self.written(f"{next(self.numbers)}.toml", text))
             values = {}
-        values |= given.get("set", {})
-        return found.with_values(values) if values else found
+        values |= options.get("set", {})
+        return loaded.with_values(values) if values else loaded
 
 
-def changing(room: Room, given: Mapping[str, Any]) -> Callable[[Sketch], Sketch]:
+def changing(room: Room, options: Mapping[str, Any]) -> Callable[[Sketch], Sketch]:
     """Return what gives a sketch new values for each run, of the paths in ``seeds`` and ``suns``.
 
     A seed is a whole number. A sun stands at ``elevation`` degrees, and elsewhere each time, or ``turn``
     degrees further; its height differs a little from row to row, else the engine would know a part of one
     from another. ``nudged`` are paths of numbers that grow a little each time, from ``around``, else 0.
     """
-    seeds, suns = given.get("seeds", ()), given.get("suns", ())
-    nudged = given.get("nudged", ())
+    seeds, suns = options.get("seeds", ()), options.get("suns", ())
+    nudged = options.get("nudged", ())
     own = next(room.numbers) * 1e-5
     turns, steps = itertools.count(), itertools.count(1)
 
     def changed(sketch: Sketch) -> Sketch:
         values: dict[str, Any] = {path: room.seed() for path in seeds}
         if suns:
-            azimuth = (20.0 + given.get("turn", SUN_TURNS) * next(turns)) % 360.0
-            values |= dict.fromkeys(suns, (azimuth, float(given["elevation"]) + own))
+            azimuth = (20.0 + options.get("turn", SUN_TURNS) * next(turns)) % 360.0
+            values |= dict.fromkeys(suns, (azimuth, float(options["elevation"]) + own))
         if nudged:
-            values |= dict.fromkeys(nudged, given.get("around", 0.0) + next(steps) * 1e-4)
+            values |= dict.fromkeys(nudged, options.get("around", 0.0) + next(steps) * 1e-4)
         return sketch.with_values(values) if values else sketch
 
     return changed

@@ -1,6 +1,6 @@
 """What ``playground bench`` measures: the rows of the TOML files in ``rows/``, one file a suite.
 
-A row has a ``name``, a sentence in ``what``, and how it is measured in ``measure``: a module of
+A row has a ``name``, a message in ``what``, and how it is measured in ``measure``: a module of
 ``measures`` by that name. ``goal`` is what it should reach; ``peers`` are what it is compared with. Its other
 keys are its measure's.
 """
@@ -91,8 +91,8 @@ def chosen(names: Sequence[str]) -> list[Row]:
         return every
     for name in names:
         if not any(_named(row, name) for row in every):
-            known = [*suites(), *(row.name for row in every)]
-            raise ParameterError(f"no suite or row '{name}'{nearest(name, known)}")
+            known_names = [*suites(), *(row.name for row in every)]
+            raise ParameterError(f"no suite or row '{name}'{nearest(name, known_names)}")
     return [row for row in every if any(_named(row, name) for name in names)]
 
 

@@ -39,11 +39,11 @@ class Thesis:
     def terrain(self, function: str, size: int, arguments: Sequence[float | int], seed: Run) -> Run:
         """Return a run of a method that makes terrain; ``seed`` gives each its seed."""
         out = np.empty((size, size), np.float32)
-        given = [ctypes.c_float(a) if isinstance(a, float) else ctypes.c_int(a) for a in arguments]
+        value = [ctypes.c_float(a) if isinstance(a, float) else ctypes.c_int(a) for a in arguments]
         called = getattr(self._library, function)
 
         def run() -> None:
-            called(out.ctypes.data_as(ctypes.c_void_p), size, *given, ctypes.c_uint(seed()))  # type: ignore[arg-type]
+            called(out.ctypes.data_as(ctypes.c_void_p), size, *value, ctypes.c_uint(seed()))  # type: ignore[arg-type]
 
         return run
 

@@ -31,10 +31,10 @@ class Samples:
 
     def quartiles(self, clock: str = "wall") -> tuple[float, float]:
         """Return the first and the third quartile; of fewer than three samples, the least and the most."""
-        found = sorted(self.of(clock))
-        if len(found) < 3:
-            return found[0], found[-1]
-        low, _, high = statistics.quantiles(found, n=4, method="inclusive")
+        times = sorted(self.of(clock))
+        if len(times) < 3:
+            return times[0], times[-1]
+        low, _, high = statistics.quantiles(times, n=4, method="inclusive")
         return low, high
 
 
@@ -46,23 +46,23 @@ def alternate(
     The first ``unmeasured`` rounds compile and fill caches, and do not count. Those in ``once`` take too
     long to run more than once.
     """
-    found = {name: Samples() for name in runs}
+    samples = {name: Samples() for name in runs}
     for number in range(-unmeasured, rounds):
         for name, run in runs.items():
             if name in once and number != 0:
                 continue
             wall, processor = timed(run)
             if number >= 0:
-                found[name].wall.append(wall)
-                found[name].processor.append(processor)
-    return found
+                samples[name].wall.append(wall)
+                samples[name].processor.append(processor)
+    return samples
 
 
 def beyond(whole: Samples, part: Samples) -> Samples:
     """Return what each run took beyond that of a part of it in the same round."""
     return Samples(
-        [one - other for one, other in zip(whole.wall, part.wall, strict=True)],
-        [one - other for one, other in zip(whole.processor, part.processor, strict=True)],
+        [whole_time - other for whole_time, other in zip(whole.wall, part.wall, strict=True)],
+        [whole_time - other for whole_time, other in zip(whole.processor, part.processor, strict=True)],
     )
 
 

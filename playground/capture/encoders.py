@@ -84,22 +84,22 @@ def _pyav() -> Any:
 
 
 def _program(name: str) -> str:
-    found = shutil.which(name)
-    if found is None:
+    path = shutil.which(name)
+    if path is None:
         ways = needs("a video", f"PyAV, or the program {name} on PATH", "video")
         raise ContextError(f"{ways}; --frames writes PNG files without either")
-    return found
+    return path
 
 
 def _indexed(picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
     """Return a picture's indices and its 256 colours: alpha, red, green, blue."""
     import PIL.Image
 
-    found = PIL.Image.fromarray(np.ascontiguousarray(picture[..., :3])).quantize(256)
+    indexed = PIL.Image.fromarray(np.ascontiguousarray(picture[..., :3])).quantize(256)
     colours = np.zeros((256, 4), np.uint8)
-    given = np.array(found.getpalette() or [], np.uint8).reshape(-1, 3)[:256]
-    colours[: len(given), 1:], colours[:, 0] = given, 255
-    return np.array(found, np.uint8), colours
+    palette = np.array(indexed.getpalette() or [], np.uint8).reshape(-1, 3)[:256]
+    colours[: len(palette), 1:], colours[:, 0] = palette, 255
+    return np.array(indexed, np.uint8), colours
 
 
 class _Pyav:
@@ -228,10 +228,10 @@ def _packets_of_ffprobe(path: Path) -> tuple[Fraction, list[Fraction | None]]:
     done = subprocess.run(command, capture_output=True, stdin=subprocess.DEVNULL, start_new_session=True)
     if done.returncode:
         raise ValueError(done.stderr.decode(errors="replace"))
-    found = json.loads(done.stdout)
-    stream = found["streams"][0]
+    report = json.loads(done.stdout)
+    stream = report["streams"][0]
     base = Fraction(stream["time_base"])
-    packets = [packet for packet in found["packets"] if int(packet["size"])]
+    packets = [packet for packet in report["packets"] if int(packet["size"])]
     times = [packet["pts"] * base if "pts" in packet else None for packet in packets]
     rates = (stream["avg_frame_rate"], stream["r_frame_rate"])  # a GIF of one picture has no average
     return next((Fraction(rate) for rate in rates if not rate.endswith("/0")), Fraction(0)), times

@@ -22,6 +22,7 @@ from playground.capture.export_options import Form, bits_for, check, sidecar_pat
 from playground.capture.export_textures import height_of, is_light, kind_of
 from playground.capture.extensions import (
     COLOUR,
+    DEFAULT_GRID,
     HEIGHT,
     MESHES,
     NUMBERS,
@@ -29,7 +30,6 @@ from playground.capture.extensions import (
     PICTURES,
     RAW,
     SHADERS,
-    USUAL_GRID,
     whole_numbers,
 )
 from playground.capture.gltf import encode_glb
@@ -49,7 +49,7 @@ from playground.capture.values import (
 from playground.capture.web_page import WebPage, page_bytes, prepare_page
 from playground.data.grid import fitted
 from playground.data.image_files import encode_samples, naming
-from playground.data.place import Place
+from playground.data.place import Georeference
 from playground.engine.engine import Engine
 from playground.engine.plan import Plan, view_input
 from playground.errors import DataError, SketchError
@@ -134,10 +134,10 @@ def export(
         techniques=techniques or {},
         language=language,
     )
-    found = opened(sketch)
+    opened_sketch = opened(sketch)
     check(Path(path), form)
     with nullcontext(engine) if engine is not None else headless() as used:
-        return run(used, prepare(used, found, Path(path), form, time=time, steps=steps))
+        return run(used, prepare(used, opened_sketch, Path(path), form, time=time, steps=steps))
 
 
 def prepare(
@@ -268,9 +268,9 @@ def _write_values(engine: Engine, job: ExportJob) -> Exported:
     files |= dict.fromkeys(sidecars, made.sidecar)
     write_together(files)
     parts = [f"{cols} x {rows}", *made.details, f"{spacing[0]:.5g} x {spacing[1]:.5g} m a texel"]
-    place = _place(job)
-    if place is not None and place.crs.facts.kind and job.ending in (".tif", ".tiff"):
-        parts.append(f"in its place, in {place.crs.name or 'the reference system of its file'}")
+    georeference = _place(job)
+    if georeference is not None and georeference.crs.facts.kind and job.ending in (".tif", ".tiff"):
+        parts.append(f"in its place, in {georeference.crs.name or 'the reference system of its file'}")
     return Exported(job.path, "; ".join(parts), sidecars, (made.warning,) if made.warning else ())
 
 
@@ -280,15 +280,15 @@ def _spacing(job: ExportJob, size: tuple[int, int]) -> tuple[float, float]:
     return extent[0] / max(size[0] - 1, 1), extent[1] / max(size[1] - 1, 1)
 
 
-def _place(job: ExportJob) -> Place | None:
+def _place(job: ExportJob) -> Georeference | None:
     """Return where a texture lies on the Earth; None for the picture, and where nothing says it."""
     return None if job.texture.partition(":")[0].partition(".")[0] == "view" else job.plan.terrain.place
 
 
 def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
     heights = _read(engine, job, job.height, HEIGHT)
-    wanted = job.form.grid or min(USUAL_GRID, MESHES[job.ending])
-    size = fitted((heights.shape[1], heights.shape[0]), wanted)
+    grid = job.form.grid or min(DEFAULT_GRID, MESHES[job.ending])
+    size = fitted((heights.shape[1], heights.shape[0]), grid)
     baked, texels, warning = _texture(engine, job)
     extent = job.plan.terrain.extent
     assert extent is not None  # a plan's terrain is known
@@ -322,7 +322,7 @@ def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
 
 
 def _texture(engine: Engine, job: ExportJob) -> tuple[bytes, tuple[int, int] | None, str]:
-    """Return the PNG that is draped over the mesh, its size, and a sentence on what was clamped."""
+    """Return the PNG that is draped over the mesh, its size, and a message on what was clamped."""
     layers = []
     if job.texture:
         layers.append(_three(_read(engine, job, job.texture, job.kind)))

@@ -120,11 +120,11 @@ def _check_page(path: Path, form: Form) -> None:
 
 def _check_shader(path: Path, form: Form) -> None:
     if form.grid or form.light or form.bits or form.span:
-        given = {"a grid": form.grid, "light baked in": form.light, "bits": form.bits, "a range": form.span}
-        what = next(name for name, value in given.items() if value)
+        options = {"a grid": form.grid, "light baked in": form.light, "bits": form.bits, "a range": form.span}
+        what = next(name for name, value in options.items() if value)
         raise DataError(f"{what} is nothing that a shader's text has", file=path)
     if form.kind and not form.texture:
-        raise DataError("what a texture holds is told with --texture; a picture is shown as it is", file=path)
+        raise DataError("the kind of data is an option of --texture; a picture is shown as it is", file=path)
 
 
 def _check_values(path: Path, form: Form) -> None:

@@ -9,12 +9,12 @@ from playground.errors import SketchError
 
 def height_of(plan: Plan) -> str:
     """Return the heights that the picture shows; raise ``SketchError`` where there are none."""
-    found = view_height(plan)
-    if not found:
+    height = view_height(plan)
+    if not height:
         there = ", ".join(spec.name for spec in plan.sketch.graph.passes if spec.name != "view")
         hint = f"; its textures are {there}" if there else ""
         raise SketchError(f"sketch {plan.sketch.name} has no height to export{hint}")
-    return found
+    return height
 
 
 def kind_of(plan: Plan, texture: str) -> str:

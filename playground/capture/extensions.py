@@ -31,7 +31,7 @@ PICTURES = (".webp", ".jpg", ".jpeg")
 MESHES: dict[str, int] = {".glb": 2049, ".obj": 1025}
 """Ending → vertices that the longer side of a mesh may have; OBJ is text, six times as long."""
 
-USUAL_GRID = 513
+DEFAULT_GRID = 513
 """Vertices of the longer side unless another number is given."""
 
 ISF, SHADERTOY_TEXT, SHADERTOY_EXPORT, STANDALONE = SHADERS = (".fs", ".frag", ".json", ".glsl")

@@ -27,8 +27,8 @@ from playground.sketch.model import Sketch
 from playground.sketch.traits import traits_of
 
 FPS = 30
-USUAL_SIZE = (1280, 720)
-MOST_FRAMES = 1_000_000
+DEFAULT_SIZE = (1280, 720)
+MAX_FRAMES = 1_000_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +48,7 @@ class Film:
 
     @property
     def still(self) -> str:
-        """Return a sentence where all pictures are the same, since nothing depends on the time; else ""."""
+        """Return a message where all pictures are the same, since nothing depends on the time; else ""."""
         traits, first, last = traits_of(self.sketch), self.time(0), self.time(self.count - 1)
         if self.count == 1 or traits.moves or traits.devices:
             return ""
@@ -67,7 +67,7 @@ def film_of(
     *,
     seconds: float | None = None,
     fps: float | Fraction = FPS,
-    size: tuple[int, int] = USUAL_SIZE,
+    size: tuple[int, int] = DEFAULT_SIZE,
     start: float = 0.0,
     steps: Mapping[str, int] | None = None,
 ) -> Film:
@@ -75,22 +75,22 @@ def film_of(
 
     Raises ``ParameterError`` for a film of no picture, or of more than a million.
     """
-    found = opened(sketch)
+    loaded = opened(sketch)
     rate = fps if isinstance(fps, Fraction) else Fraction(fps).limit_denominator(1001)
     if not Fraction(1, 60) <= rate <= 1000:
         raise ParameterError(f"{float(fps):g} pictures a second: expected 1/60 to 1000")
     if seconds is None:
-        seconds = found.duration - start
+        seconds = loaded.duration - start
         if seconds <= 0.0:
             raise ParameterError(
-                f"how long? sketch {found.name} has no keyframe after {start:g} s; say how many seconds"
+                f"how long? sketch {loaded.name} has no keyframe after {start:g} s; say how many seconds"
             )
     count = round(Fraction(seconds) * rate) if abs(seconds) < 1e7 else 0
-    if not 1 <= count <= MOST_FRAMES:
+    if not 1 <= count <= MAX_FRAMES:
         raise ParameterError(
-            f"{seconds:g} s at {float(rate):g} pictures a second: expected 1 to {MOST_FRAMES} pictures"
+            f"{seconds:g} s at {float(rate):g} pictures a second: expected 1 to {MAX_FRAMES} pictures"
         )
-    return Film(sketch=found, count=count, fps=rate, size=size, start=start, steps=steps)
+    return Film(sketch=loaded, count=count, fps=rate, size=size, start=start, steps=steps)
 
 
 @contextmanager
@@ -147,7 +147,7 @@ def render_video(
     *,
     seconds: float | None = None,
     fps: float | Fraction = FPS,
-    size: tuple[int, int] = USUAL_SIZE,
+    size: tuple[int, int] = DEFAULT_SIZE,
     start: float = 0.0,
     quality: str = QUALITY,
     engine: Engine | None = None,
@@ -163,7 +163,7 @@ def render_video(
 
         playground.render_video("l_dot_n", "land.mp4", seconds=0.2, fps=10, size=(64, 36))
 
-    Raises ``PlaygroundError`` in a sentence.
+    Raises ``PlaygroundError`` in a message.
     """
     film = film_of(sketch, seconds=seconds, fps=fps, size=size, start=start)
     with nullcontext(engine) if engine is not None else headless() as used:

@@ -20,8 +20,8 @@ _MAGIC, _VERSION, _JSON, _BIN = 0x46546C67, 2, 0x4E4F534A, 0x004E4942
 _VERTICES, _INDICES = 34962, 34963  # what a buffer view is for
 _USHORT, _UINT, _FLOAT = 5123, 5125, 5126
 _LINEAR, _LINEAR_MIPMAP_LINEAR, _CLAMP = 9729, 9987, 33071
-_SHORTEST = 65535  # vertices: index 65535 itself begins a new strip
-_LARGEST = 2**32 - 1  # bytes of a file, whose length is 32 bits
+_PRIMITIVE_RESTART = 65535  # vertices: index 65535 itself begins a new strip
+_MAX_BYTES = 2**32 - 1  # bytes of a file, whose length is 32 bits
 
 
 def encode_glb(
@@ -35,7 +35,7 @@ def encode_glb(
     Raises:
         DataError: more bytes than the format can count.
     """
-    narrow = len(mesh.positions) <= _SHORTEST
+    narrow = len(mesh.positions) <= _PRIMITIVE_RESTART
     indices = mesh.triangles.ravel().astype("<u2" if narrow else "<u4")
     parts: list[tuple[bytes, int]] = [
         (_bytes(mesh.positions), _VERTICES),
@@ -106,7 +106,7 @@ def _packed(document: dict[str, Any], parts: list[tuple[bytes, int]]) -> bytes:
     document["buffers"] = [{"byteLength": start}]
     text = _padded(json.dumps(document, separators=(",", ":"), ensure_ascii=False).encode(), b" ")
     length = 12 + 8 + len(text) + 8 + start
-    if length > _LARGEST:
+    if length > _MAX_BYTES:
         raise DataError(f"{length} bytes are more than a .glb can count; choose a smaller texture or grid")
     head = struct.pack("<III", _MAGIC, _VERSION, length)
     return b"".join(

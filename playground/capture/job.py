@@ -21,7 +21,7 @@ from playground.capture.film import Film, film_of, write_film
 from playground.capture.large import count_tiles, is_large, write_large
 from playground.capture.sequence import write_sequence
 from playground.capture.sheet import write_sheet
-from playground.capture.sweep import USUAL_STEPS, read_sweep, swept
+from playground.capture.sweep import DEFAULT_STEPS, read_sweep, swept
 from playground.capture.video import QUALITY
 from playground.data.image_files import new_name, reason
 from playground.engine.engine import Engine
@@ -62,7 +62,7 @@ Notice = Callable[[str], None]
 def do(job: CaptureJob, engine: Engine, progress: Progress, notice: Notice) -> Path:
     """Do a job and return the new file, or of numbered pictures their folder.
 
-    Raises ``PlaygroundError`` in a sentence.
+    Raises ``PlaygroundError`` in a message.
     """
     work = _Work(job, engine, progress, notice)
     kinds = {PICTURE: work.picture, PICTURES: work.pictures, FILM: work.film, SHEET: work.sheet}
@@ -124,7 +124,7 @@ class _Work:
 
     def sheet(self) -> Path:
         job, sketch = self.job, self.job.sketch.at(self.job.time)
-        rows = swept(sketch, [read_sweep(sketch, text, USUAL_STEPS) for text in job.sweeps])
+        rows = swept(sketch, [read_sweep(sketch, text, DEFAULT_STEPS) for text in job.sweeps])
         with new_name(f"{self._path}-sweep.png") as path:
             self._begin(sum(map(len, rows)))
             at: dict[str, Any] = {"size": job.size, "time": job.time}
@@ -132,16 +132,16 @@ class _Work:
 
 
 @contextmanager
-def _new_folder(wanted: Path) -> Iterator[Path]:
+def _new_folder(path: Path) -> Iterator[Path]:
     """Make a folder of a new name; one that is still empty goes when the block fails."""
     for number in range(1, 10_000):
-        folder = wanted if number == 1 else wanted.with_name(f"{wanted.name}-{number}")
+        folder = path if number == 1 else path.with_name(f"{path.name}-{number}")
         try:
             folder.mkdir()
         except FileExistsError:
             continue
         except OSError as error:
-            raise DataError(f"nothing can be written here: {reason(error)}", file=wanted.parent) from None
+            raise DataError(f"nothing can be written here: {reason(error)}", file=path.parent) from None
         try:
             yield folder
         except BaseException:
@@ -149,7 +149,7 @@ def _new_folder(wanted: Path) -> Iterator[Path]:
                 folder.rmdir()
             raise
         return
-    raise DataError("has ten thousand folders of pictures of this sketch", file=wanted.parent)
+    raise DataError("has ten thousand folders of pictures of this sketch", file=path.parent)
 
 
 # ── in a worker process ──────────────────────────────────────────────────────
@@ -160,7 +160,7 @@ class Finished:
     """How a job ended."""
 
     path: Path | None  # what was made
-    error: str = ""  # in a sentence
+    error: str = ""  # in a message
     stopped: bool = False
     notes: tuple[str, ...] = ()
 

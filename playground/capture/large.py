@@ -2,7 +2,7 @@
 
 What is drawn at a time is a tile, what is held a row of tiles; ``playground.engine.window``
 says what makes the tiles one picture. Kernels and plain shaders give the same bytes however
-they are parted. A mesh is rasterised anew for each tile, and the driver rounds places and
+they are parted. A mesh is rasterised again for each tile, and the driver rounds places and
 what is interpolated between vertices to single precision, from another corner: on llvmpipe
 one pixel in a thousand differs from the picture drawn whole, and by a few levels of 255.
 """
@@ -24,12 +24,12 @@ from playground.engine.plan import Window, drawn_size
 from playground.engine.textures import read_picture
 from playground.errors import DataError, ParameterError, SketchError
 from playground.sketch.load import opened
-from playground.sketch.model import LARGEST_PICTURE, Sketch
+from playground.sketch.model import MAX_PICTURE_SIDE, Sketch
 
 TILE = (2048, 512)
 """Width and height of a tile in pixels."""
 
-MOST_WHOLE = 2**23
+MAX_UNTILED_PIXELS = 2**23
 """Pixels of a picture that is drawn whole: its samples and their depths take 12 bytes each."""
 
 
@@ -39,11 +39,11 @@ def is_large(engine: Engine, sketch: Sketch, size: tuple[int, int]) -> bool:
     More than the driver's textures hold must be; more than 3840 x 2160 is, where the sketch's
     passes allow it.
     """
-    size = drawn_size(sketch, size, LARGEST_PICTURE)
+    size = drawn_size(sketch, size, MAX_PICTURE_SIDE)
     limits = ("GL_MAX_TEXTURE_SIZE", "GL_MAX_RENDERBUFFER_SIZE")
     if max(size) > min(int(engine.ctx.info[name]) for name in limits):
         return True
-    if size[0] * size[1] <= MOST_WHOLE:
+    if size[0] * size[1] <= MAX_UNTILED_PIXELS:
         return False
     try:
         engine.plan_for_window(sketch, tiles_of(size)[0][0])
@@ -95,14 +95,14 @@ def strips(
     ``done`` is called after each tile. Raises ``SketchError`` at a pass that cannot be drawn
     in parts, before anything of it is drawn.
     """
-    found = opened(sketch)
-    times = found.supersample
-    whole = drawn_size(found, size, LARGEST_PICTURE)
+    opened_sketch = opened(sketch)
+    times = opened_sketch.supersample
+    whole = drawn_size(opened_sketch, size, MAX_PICTURE_SIDE)
     for row in tiles_of(whole, uncut(tile, times)):
         strip = np.empty((row[0].size[1], whole[0], 4), np.uint8)
         for window in row:
             left = window.origin[0]
-            texture = engine.draw_window(found, window, time=time, steps=steps)
+            texture = engine.draw_window(opened_sketch, window, time=time, steps=steps)
             strip[:, left : left + window.size[0]] = read_picture(texture)
             engine.forget_unused()
             done()

@@ -23,7 +23,7 @@ from playground.errors import DataError
 from playground.paths import shown
 from playground.regular_file import read_regular
 from playground.shader.libraries import libraries_of
-from playground.sketch.find import FORMAT, MANIFEST, MOST_BYTES, MOST_FILES
+from playground.sketch.find import FORMAT, MANIFEST, MAX_BYTES, MAX_FILES
 from playground.sketch.model import Sketch
 
 _DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can say
@@ -35,7 +35,7 @@ def pack(sketch: Sketch, path: str | Path, further: Iterable[tuple[Path, str]] =
     """Write a sketch and its files as a zip, whole or not at all, and return its path.
 
     ``further`` are files with their names in the sketch's folder, as its references. Raises
-    ``DataError`` in a sentence for a file that is missing, that lies outside the sketch's
+    ``DataError`` in a message for a file that is missing, that lies outside the sketch's
     folder, and for more than can be unpacked again.
     """
     files, main, shipped = contents(sketch)
@@ -44,13 +44,13 @@ def pack(sketch: Sketch, path: str | Path, further: Iterable[tuple[Path, str]] =
     manifest = {"format": FORMAT, "sketch": main, "version": __version__, "shipped": shipped}
     if left_out := sorted(libraries_of(sketch.files)):
         manifest["libraries"] = left_out
-    if len(files) >= MOST_FILES:
-        raise DataError(f"has {len(files)} files; a pack holds at most {MOST_FILES}", file=shown(sketch.file))
+    if len(files) >= MAX_FILES:
+        raise DataError(f"has {len(files)} files; a pack holds at most {MAX_FILES}", file=shown(sketch.file))
     try:
         size = sum(file.stat().st_size for file in files.values())
-        if size > MOST_BYTES - 2**20:
+        if size > MAX_BYTES - 2**20:
             raise DataError(
-                f"its files take {size / 2**20:.0f} MiB; a pack holds at most {MOST_BYTES // 2**20}",
+                f"its files take {size / 2**20:.0f} MiB; a pack holds at most {MAX_BYTES // 2**20}",
                 file=shown(sketch.file),
             )
         with replacing(path) as handle, zipfile.ZipFile(handle, "w") as archive:

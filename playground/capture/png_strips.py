@@ -21,7 +21,7 @@ from playground.data.image_files import PNG_START, chunk, text_chunks
 from playground.errors import DataError
 
 _LEVEL = 6
-_MOST = 2**31 - 1  # of a side, and of a chunk
+_MAX_INT32 = 2**31 - 1  # of a side, and of a chunk
 
 
 class PngStrips:
@@ -38,7 +38,7 @@ class PngStrips:
         text: Mapping[str, str] | None = None,
     ) -> None:
         width, height = size
-        if not (1 <= width <= _MOST and 1 <= height <= _MOST) or channels not in (3, 4):
+        if not (1 <= width <= _MAX_INT32 and 1 <= height <= _MAX_INT32) or channels not in (3, 4):
             raise DataError(f"a PNG of {width} x {height} pixels and {channels} channels cannot be written")
         self._handle = handle
         self._shape = (width, channels)
@@ -77,7 +77,7 @@ class PngStrips:
 def _filtered(rows: NDArray[np.uint8], above: NDArray[np.uint8], channels: int) -> NDArray[np.uint8]:
     """Return rows with the filter's number before each: that of 0, 1 (left) and 2 (above) that suits it."""
     count, length = rows.shape
-    found = np.empty((count, length + 1), np.uint8)
+    result = np.empty((count, length + 1), np.uint8)
     best = np.full(count, np.iinfo(np.int64).max)
     left = np.concatenate([np.zeros((count, channels), np.uint8), rows[:, :-channels]], axis=1)
     upper = np.concatenate([above[None], rows[:-1]])
@@ -86,6 +86,6 @@ def _filtered(rows: NDArray[np.uint8], above: NDArray[np.uint8], channels: int) 
             rest = rows - guess
             cost = np.minimum(rest, 0 - rest).sum(axis=1, dtype=np.int64)
             better = cost < best
-            found[better, 0], best[better] = number, cost[better]
-            found[better, 1:] = rest[better]
-    return found
+            result[better, 0], best[better] = number, cost[better]
+            result[better, 1:] = rest[better]
+    return result

@@ -15,7 +15,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from playground.api import headless
-from playground.capture.film import FPS, MOST_FRAMES, USUAL_SIZE, Film, frame_uniforms
+from playground.capture.film import DEFAULT_SIZE, FPS, MAX_FRAMES, Film, frame_uniforms
 from playground.capture.large import is_large, write_large
 from playground.data.image_files import make_folder, read_png
 from playground.engine.engine import Engine
@@ -40,7 +40,7 @@ class Written:
 def numbered(pattern: str | Path, number: int) -> Path:
     """Return the file of a picture: ``frames/%05d.png`` with its number in it."""
     path = Path(pattern).expanduser()
-    return path.with_name(_NUMBER.sub(lambda found: f"{number:{found.group(1) or ''}d}", path.name))
+    return path.with_name(_NUMBER.sub(lambda match: f"{number:{match.group(1) or ''}d}", path.name))
 
 
 def check_pattern(pattern: str | Path) -> None:
@@ -63,13 +63,13 @@ def write_sequence(
 
     ``numbers`` are those of the pictures, all of the film's unless given; ``pattern`` names the
     files, as ``frames/%05d.png``; its folder is made. With ``resume`` a file that is there
-    and good stays. ``done`` is called after each. Raises ``DataError`` in a sentence.
+    and good stays. ``done`` is called after each. Raises ``DataError`` in a message.
     """
     check_pattern(pattern)
-    wanted = range(film.count) if numbers is None else list(numbers)
+    total = range(film.count) if numbers is None else list(numbers)
     make_folder(Path(pattern).expanduser().parent)
     drawn, kept = [], []
-    for number in wanted:
+    for number in total:
         path = numbered(pattern, number)
         made_of = engine.fingerprint(
             film.sketch, size=film.size, time=film.time(number), steps=film.steps
@@ -111,7 +111,7 @@ def render_sequence(
     numbers: Iterable[int],
     *,
     fps: float | Fraction = FPS,
-    size: tuple[int, int] = USUAL_SIZE,
+    size: tuple[int, int] = DEFAULT_SIZE,
     resume: bool = False,
     engine: Engine | None = None,
 ) -> Written:
@@ -124,12 +124,12 @@ def render_sequence(
 
         written = playground.render_sequence("l_dot_n", "frames/%05d.png", range(2), fps=10, size=(64, 36))
 
-    Raises ``PlaygroundError`` in a sentence.
+    Raises ``PlaygroundError`` in a message.
     """
-    wanted = list(numbers)
-    if not wanted or min(wanted) < 0 or max(wanted) >= MOST_FRAMES:
-        raise ParameterError(f"pictures are numbered from 0 to {MOST_FRAMES - 1}; at least one was expected")
+    requested = list(numbers)
+    if not requested or min(requested) < 0 or max(requested) >= MAX_FRAMES:
+        raise ParameterError(f"pictures are numbered from 0 to {MAX_FRAMES - 1}; at least one was expected")
     rate = fps if isinstance(fps, Fraction) else Fraction(fps).limit_denominator(1001)
-    film = Film(sketch=opened(sketch), count=max(wanted) + 1, fps=rate, size=size)
+    film = Film(sketch=opened(sketch), count=max(requested) + 1, fps=rate, size=size)
     with nullcontext(engine) if engine is not None else headless() as used:
-        return write_sequence(used, film, pattern, numbers=wanted, resume=resume)
+        return write_sequence(used, film, pattern, numbers=requested, resume=resume)

@@ -15,23 +15,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.api import headless
-from playground.capture.sweep import USUAL_STEPS, Swept, read_sweep, swept
+from playground.capture.sweep import DEFAULT_STEPS, Swept, read_sweep, swept
 from playground.capture.video import QUALITY, Video, alpha_note, has_alpha
 from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.errors import ParameterError
 from playground.sketch.load import opened
-from playground.sketch.model import LARGEST_SIDE, Sketch
+from playground.sketch.model import MAX_SIDE, Sketch
 
 if TYPE_CHECKING:
     import PIL.ImageFont
 
-USUAL_SIZE = (320, 180)
+DEFAULT_SIZE = (320, 180)
 """Width and height in pixels of a picture of a sheet."""
 
 _PAPER, _INK = (24, 25, 28), (232, 232, 228)
 _MARGIN = 8  # [pixels] around a picture
-_SMALLEST_TEXT = 9  # [pixels]
+_MIN_TEXT_HEIGHT = 9  # [pixels]
 
 
 def pictures(
@@ -39,25 +39,25 @@ def pictures(
 ) -> Iterator[NDArray[np.uint8]]:
     """Yield the picture of each sketch, row by row, (height, width, 4) bytes, top row first."""
     for row in rows:
-        for one in row:
-            yield engine.render(one.sketch, size=size, time=time).array
+        for cell in row:
+            yield engine.render(cell.sketch, size=size, time=time).array
             engine.forget_unused()
 
 
-def sheet(rows: Sequence[Sequence[Swept]], found: Iterator[NDArray[np.uint8]]) -> NDArray[np.uint8]:
+def sheet(rows: Sequence[Sequence[Swept]], arrays: Iterator[NDArray[np.uint8]]) -> NDArray[np.uint8]:
     """Return pictures on one sheet with their captions, (height, width, 3) bytes, top row first.
 
-    ``found`` gives the picture of each of ``rows``. A caption is as large as fits its picture's width.
+    ``arrays`` gives the picture of each of ``rows``. A caption is as large as fits its picture's width.
     """
     import PIL.Image
     import PIL.ImageDraw
 
     paper, drawn, font, line, whole = None, None, None, 0, (0, 0)
     for down, row in enumerate(rows):
-        for along, one in enumerate(row):
-            picture = PIL.Image.fromarray(np.ascontiguousarray(next(found)[..., :3]))
+        for along, cell in enumerate(row):
+            picture = PIL.Image.fromarray(np.ascontiguousarray(next(arrays)[..., :3]))
             if paper is None:
-                lines = len(one.caption)
+                lines = len(cell.caption)
                 captions = [text for each in rows for other in each for text in other.caption]
                 font, line = _font(captions, picture.width)
                 whole = (picture.width + _MARGIN, picture.height + lines * line + _MARGIN + 4)
@@ -67,18 +67,18 @@ def sheet(rows: Sequence[Sequence[Swept]], found: Iterator[NDArray[np.uint8]]) -
             assert drawn is not None and font is not None
             x, y = _MARGIN + along * whole[0], _MARGIN + down * whole[1]
             paper.paste(picture, (x, y))
-            for number, text in enumerate(one.caption):
-                place = (x + picture.width / 2, y + picture.height + 2 + (number + 0.5) * line)
-                drawn.text(place, text, _INK, font=font, anchor="mm")
+            for number, text in enumerate(cell.caption):
+                centre = (x + picture.width / 2, y + picture.height + 2 + (number + 0.5) * line)
+                drawn.text(centre, text, _INK, font=font, anchor="mm")
     assert paper is not None, "a sweep has a value"
     return np.array(paper, np.uint8)
 
 
 def _sheet_size(rows: Sequence[Sequence[Swept]], each: tuple[int, int]) -> tuple[int, int]:
     size = max(map(len, rows)) * each[0] + _MARGIN, len(rows) * each[1] + _MARGIN
-    if max(size) > LARGEST_SIDE:
+    if max(size) > MAX_SIDE:
         raise ParameterError(
-            f"a sheet of {size[0]} x {size[1]} pixels; at most {LARGEST_SIDE} a side: "
+            f"a sheet of {size[0]} x {size[1]} pixels; at most {MAX_SIDE} a side: "
             "choose smaller pictures, or fewer"
         )
     return size
@@ -88,11 +88,11 @@ def _font(captions: Sequence[str], width: int) -> tuple[PIL.ImageFont.FreeTypeFo
     """Return letters with which every caption is narrower than the picture, and the height of a line."""
     import PIL.ImageFont
 
-    size = max(min(width // 16, 18), _SMALLEST_TEXT)
+    size = max(min(width // 16, 18), _MIN_TEXT_HEIGHT)
     while True:
         font = PIL.ImageFont.load_default(size)
         assert isinstance(font, PIL.ImageFont.FreeTypeFont)
-        if size <= _SMALLEST_TEXT or max(font.getlength(text) for text in captions) <= width:
+        if size <= _MIN_TEXT_HEIGHT or max(font.getlength(text) for text in captions) <= width:
             return font, round(1.4 * size)
         size -= 1
 
@@ -102,14 +102,14 @@ def write_sheet(
     rows: Sequence[Sequence[Swept]],
     path: str | Path,
     *,
-    size: tuple[int, int] = USUAL_SIZE,
+    size: tuple[int, int] = DEFAULT_SIZE,
     time: float = 0.0,
     done: Callable[[], None] = lambda: None,
     notice: Callable[[str], None] = lambda _: None,
 ) -> Path:
     """Write a contact sheet as a PNG, whole or not at all, and return its path.
 
-    ``done`` is called after each picture, ``notice`` with a sentence where alpha was dropped.
+    ``done`` is called after each picture, ``notice`` with a message where alpha was dropped.
     """
     dropped = 0
 
@@ -150,8 +150,8 @@ def write_sweep_film(
     return Path(path)
 
 
-def _counted(found: Iterator[NDArray[np.uint8]], done: Callable[[], None]) -> Iterator[NDArray[np.uint8]]:
-    for picture in found:
+def _counted(arrays: Iterator[NDArray[np.uint8]], done: Callable[[], None]) -> Iterator[NDArray[np.uint8]]:
+    for picture in arrays:
         done()  # before it is handed on: the generator is not resumed after the last one
         yield picture
 
@@ -160,8 +160,8 @@ def render_sweep(
     sketch: Sketch | str | Path,
     path: str | Path,
     *sweeps: str,
-    steps: int = USUAL_STEPS,
-    size: tuple[int, int] = USUAL_SIZE,
+    steps: int = DEFAULT_STEPS,
+    size: tuple[int, int] = DEFAULT_SIZE,
     time: float = 0.0,
     engine: Engine | None = None,
 ) -> Path:
@@ -174,9 +174,9 @@ def render_sweep(
 
         playground.render_sweep("l_dot_n", "sheet.png", "product.sun.elevation=10,40,80", size=(64, 36))
 
-    Raises ``ParameterError`` in a sentence for what ``sweeps`` do not say right.
+    Raises ``ParameterError`` in a message for what ``sweeps`` do not say right.
     """
-    found = opened(sketch)
-    rows = swept(found, [read_sweep(found, text, steps) for text in sweeps])
+    opened_sketch = opened(sketch)
+    rows = swept(opened_sketch, [read_sweep(opened_sketch, text, steps) for text in sweeps])
     with nullcontext(engine) if engine is not None else headless() as used:
         return write_sheet(used, rows, path, size=size, time=time)

@@ -17,8 +17,8 @@ from playground.shader.parameter import coerce, expected, is_whole, length_of, r
 from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve, value_of, values_of
 from playground.sketch.model import Parameter, Sketch, Value
 
-USUAL_STEPS = 9
-MOST_PICTURES = 400
+DEFAULT_STEPS = 9
+MAX_PICTURES = 400
 _PARTS = {"direction": ("azimuth", "elevation"), "colour": tuple("rgba")}
 
 
@@ -49,23 +49,23 @@ class Swept:
     caption: tuple[str, ...]  # "light.sun.elevation = 5", a line for each sweep
 
 
-def read_sweep(sketch: Sketch, text: str, steps: int = USUAL_STEPS) -> Sweep:
+def read_sweep(sketch: Sketch, text: str, steps: int = DEFAULT_STEPS) -> Sweep:
     """Return what ``path=a..b``, ``path=a..b,steps`` or ``path=1,2,4`` says; raise ``ParameterError``.
 
     ``steps`` is how many values a range has that does not say. Values of a whole vector are
     separated by semicolons, as ``light.sun=135,25;250,12``.
     """
-    path, equals, given = (each.strip() for each in text.partition("="))
-    if not equals or not path or not given:
+    path, equals, text_range = (each.strip() for each in text.partition("="))
+    if not equals or not path or not text_range:
         raise ParameterError(f"sweep {text}: expected PATH=FROM..TO, as light.gain=0.5..3, or PATH=1,2,4")
     whole_path, part, parameter = _target(sketch, path)
     try:
         raw: list[object]
-        if ".." in given:
-            raw = _range(given, steps, parameter, part)
+        if ".." in text_range:
+            raw = _range(text_range, steps, parameter, part)
         else:
             vector = parameter is not None and part is None and length_of(parameter.type) > 1
-            raw = [each.strip() for each in given.split(";" if vector or ";" in given else ",")]
+            raw = [each.strip() for each in text_range.split(";" if vector or ";" in text_range else ",")]
         values, labels = [], []
         for each in raw:
             value = _value(sketch, whole_path, part, parameter, each)
@@ -77,18 +77,18 @@ def read_sweep(sketch: Sketch, text: str, steps: int = USUAL_STEPS) -> Sweep:
     return Sweep(path, whole_path, part, tuple(values), tuple(labels))
 
 
-def sweep_of(sketch: Sketch, path: str, given: object) -> Sweep:
+def sweep_of(sketch: Sketch, path: str, arguments: object) -> Sweep:
     """Return a sweep of values that Python has, or that a text says; raise ``ParameterError``."""
-    if isinstance(given, str):
-        found = read_sweep(sketch, f"{path}={given}")
+    if isinstance(arguments, str):
+        sweep = read_sweep(sketch, f"{path}={arguments}")
         whole_path, part, parameter = _target(sketch, path)
-        values, labels = list(found.values), list(found.labels)
+        values, labels = list(sweep.values), list(sweep.labels)
     else:
         whole_path, part, parameter = _target(sketch, path)
-        if not isinstance(given, Iterable) or isinstance(given, Mapping):
-            raise ParameterError(f"sweep {path}: expected its values, as [1, 2, 4]; found {given!r}")
+        if not isinstance(arguments, Iterable) or isinstance(arguments, Mapping):
+            raise ParameterError(f"sweep {path}: expected its values, as [1, 2, 4]; found {arguments!r}")
         values, labels = [], []
-        for each in given:
+        for each in arguments:
             value = _value(sketch, whole_path, part, parameter, each)
             if value in values:
                 raise ParameterError(f"sweep {path}: {_label(parameter, part, value)} is there twice")
@@ -130,16 +130,16 @@ def _target(sketch: Sketch, path: str) -> tuple[str, int | None, Parameter | Non
     raise ParameterError(f"sweep {path}: no such parameter")
 
 
-def _range(given: str, steps: int, parameter: Parameter | None, part: int | None) -> list[object]:
+def _range(text: str, steps: int, parameter: Parameter | None, part: int | None) -> list[object]:
     """Return the numbers of ``a..b`` or ``a..b,steps``, ends included."""
-    ends, _, count = given.partition(",")
+    ends, _, count = text.partition(",")
     low, _, high = ends.partition("..")
     if count.strip():
         if (whole := read_whole(count)) is None:
             raise ParameterError(f"'{count.strip()}' steps: expected a whole number from 2")
         steps = whole
-    if not 2 <= steps <= MOST_PICTURES:
-        raise ParameterError(f"{steps} steps: expected 2 to {MOST_PICTURES}")
+    if not 2 <= steps <= MAX_PICTURES:
+        raise ParameterError(f"{steps} steps: expected 2 to {MAX_PICTURES}")
     if parameter is not None and (
         (part is None and length_of(parameter.type) > 1) or parameter.type in ("bool", "sampler2D")
     ):
@@ -155,17 +155,17 @@ def _range(given: str, steps: int, parameter: Parameter | None, part: int | None
     return [round(number) if whole else float(f"{number:.9g}") for number in numbers]
 
 
-def _value(sketch: Sketch, path: str, part: int | None, parameter: Parameter | None, given: object) -> Value:
+def _value(sketch: Sketch, path: str, part: int | None, parameter: Parameter | None, number: object) -> Value:
     if part is None or parameter is None:
-        return check_value(sketch, path, given)
+        return check_value(sketch, path, number)
     now: list[object] = list(_now(sketch, path))
     try:
-        now[part] = float(str(given))
+        now[part] = float(str(number))
     except ValueError:
-        raise ParameterError(f"{path} = '{given}': expected a number") from None
-    found = coerce(parameter, now, path)
-    assert isinstance(found, tuple)
-    return found[part]
+        raise ParameterError(f"{path} = '{number}': expected a number") from None
+    value = coerce(parameter, now, path)
+    assert isinstance(value, tuple)
+    return value[part]
 
 
 def _label(parameter: Parameter | None, part: int | None, value: Value) -> str:
@@ -186,13 +186,13 @@ def swept(sketch: Sketch, sweeps: Sequence[Sweep]) -> list[list[Swept]]:
     if len({sweep.path for sweep in sweeps}) < len(sweeps):
         raise ParameterError(f"two sweeps of {sweeps[0].path}: expected two parameters")
     count = math.prod(len(sweep.values) for sweep in sweeps)
-    if count > MOST_PICTURES:
-        raise ParameterError(f"{count} pictures are more than the {MOST_PICTURES} that a sheet may have")
+    if count > MAX_PICTURES:
+        raise ParameterError(f"{count} pictures are more than the {MAX_PICTURES} that a sheet may have")
     along, *down = ([(sweep, index) for index in range(len(sweep.values))] for sweep in sweeps)
     if down:
-        return [[_set(sketch, [one, other]) for one in along] for other in down[0]]
+        return [[_set(sketch, [value, other]) for value in along] for other in down[0]]
     columns = columns_of(len(along))
-    alone = [_set(sketch, [one]) for one in along]
+    alone = [_set(sketch, [value]) for value in along]
     return [alone[first : first + columns] for first in range(0, len(alone), columns)]
 
 

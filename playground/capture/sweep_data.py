@@ -33,19 +33,19 @@ from playground.engine.process.worker import Parent, Service
 from playground.errors import ParameterError, PlaygroundError
 from playground.extras import needs
 from playground.sketch.load import opened
-from playground.sketch.model import LARGEST_SIDE, Sketch
+from playground.sketch.model import MAX_SIDE, Sketch
 
 if TYPE_CHECKING:
     import xarray
 
 
-USUAL_SIZE = (320, 180)
+DEFAULT_SIZE = (320, 180)
 """Width and height in pixels of a picture."""
 
-MOST_BYTES = 2**32
+MAX_BYTES = 2**32
 """Bytes that the pictures of a sweep may take."""
 
-_MOST_WORKERS = 64
+_MAX_WORKERS = 64
 
 
 def sweep(
@@ -54,7 +54,7 @@ def sweep(
     *,
     textures: Sequence[str] | None = None,
     pictures: bool = True,
-    size: tuple[int, int] = USUAL_SIZE,
+    size: tuple[int, int] = DEFAULT_SIZE,
     time: float = 0.0,
     workers: int | None = None,
     software: bool = False,
@@ -89,8 +89,8 @@ def sweep(
     process dies.
     """
     made = _xarray()
-    base, pixels = opened(sketch), checked_pixels(size, LARGEST_SIDE)
-    sweeps = [sweep_of(base, path, given) for path, given in values.items()]
+    base, pixels = opened(sketch), checked_pixels(size, MAX_SIDE)
+    sweeps = [sweep_of(base, path, value) for path, value in values.items()]
     _check(sweeps, pixels if pictures else (0, 0), workers)
     picks = list(product(*(range(len(each.values)) for each in sweeps)))
     cases = [
@@ -104,10 +104,10 @@ def sweep(
         for pick in picks
     ]
     count = min(len(cases), workers or min(os.cpu_count() or 1, 4))
-    results: list[Found] = []
+    results: list[SweepResult] = []
     with _bar(f"sweep of {base.name}", len(cases), shown=progress) as advance:
-        for found in _drawn(cases, count, software):
-            results.append(found)
+        for result in _drawn(cases, count, software):
+            results.append(result)
             advance()
     return _dataset(made, base, sweeps, results, (pixels, time))
 
@@ -128,12 +128,12 @@ def _check(sweeps: Sequence[Sweep], size: tuple[int, int], workers: int | None) 
         other = whole.setdefault(each.parameter, each)
         if other is not each and None in (other.part, each.part):
             raise ParameterError(f"sweeps of {other.path} and of {each.path}: expected one of them")
-    if workers is not None and not (isinstance(workers, int) and 1 <= workers <= _MOST_WORKERS):
-        raise ParameterError(f"workers = {workers}: expected a whole number from 1 to {_MOST_WORKERS}")
+    if workers is not None and not (isinstance(workers, int) and 1 <= workers <= _MAX_WORKERS):
+        raise ParameterError(f"workers = {workers}: expected a whole number from 1 to {_MAX_WORKERS}")
     need = math.prod(len(each.values) for each in sweeps) * size[0] * size[1] * 4
-    if need > MOST_BYTES:
+    if need > MAX_BYTES:
         raise ParameterError(
-            f"the pictures would take {need / 2**30:.1f} GiB; {MOST_BYTES // 2**30} are the most: choose "
+            f"the pictures would take {need / 2**30:.1f} GiB; {MAX_BYTES // 2**30} are the most: choose "
             "smaller ones, fewer values, or pictures=False"
         )
 
@@ -141,13 +141,13 @@ def _check(sweeps: Sequence[Sweep], size: tuple[int, int], workers: int | None) 
 # ── drawing ────────────────────────────────────────────────────────────────
 
 
-def _drawn(cases: Sequence[Case], count: int, software: bool) -> Iterator[Found]:
+def _drawn(cases: Sequence[Case], count: int, software: bool) -> Iterator[SweepResult]:
     """Yield what is found of each case, in their order."""
     with Pool(__name__, options=software, workers=count) as pool:
         for number, outcome in enumerate(pool.map(cases)):
-            found = outcome.get(f"case {number} of the sweep")
-            assert isinstance(found, Found)
-            yield found
+            result = outcome.get(f"case {number} of the sweep")
+            assert isinstance(result, SweepResult)
+            yield result
 
 
 @contextmanager
@@ -178,17 +178,17 @@ def _dataset(
     made: Any,
     base: Sketch,
     sweeps: Sequence[Sweep],
-    found: Sequence[Found],
+    results: Sequence[SweepResult],
     at: tuple[tuple[int, int], float],
 ) -> xarray.Dataset:
     dims = [each.path for each in sweeps]
     shape = tuple(len(each.values) for each in sweeps)
     variables: dict[str, Any] = {}
-    for name, unit in found[0].units.items():
-        numbers = np.array([one.measures[name] for one in found], np.float64).reshape(shape)
+    for name, unit in results[0].units.items():
+        numbers = np.array([result.measures[name] for result in results], np.float64).reshape(shape)
         variables[name] = (dims, numbers, {"units": unit})
-    if found[0].picture is not None:
-        stacked = np.stack([one.picture for one in found if one.picture is not None])
+    if results[0].picture is not None:
+        stacked = np.stack([result.picture for result in results if result.picture is not None])
         pictures = stacked.reshape(*shape, *stacked.shape[1:])
         variables["picture"] = ([*dims, "row", "column", "channel"], pictures, {"encoding": "sRGB, alpha"})
     coordinates: dict[str, Any] = {}
@@ -200,7 +200,7 @@ def _dataset(
         "sketch": base.name,
         "size": list(at[0]),
         "time": at[1],
-        "renderer": found[0].renderer,
+        "renderer": results[0].renderer,
         "playground": __version__,
     }
     dataset: xarray.Dataset = made.Dataset(variables, coordinates, attributes)
@@ -211,12 +211,12 @@ def _coordinates(each: Sweep) -> dict[str, Any]:
     """Return the coordinates of a sweep: its values, and of vectors each number as well."""
     if each.is_plain:
         return {each.path: (each.path, np.array(each.values), {"units": each.unit} if each.unit else {})}
-    found: dict[str, Any] = {each.path: (each.path, np.array(each.labels, dtype=str))}
+    coordinates: dict[str, Any] = {each.path: (each.path, np.array(each.labels, dtype=str))}
     numbers: NDArray[Any] = np.array(each.values)
     if numbers.ndim == 2:
-        for place, part in enumerate(each.parts):
-            found[f"{each.path}.{part}"] = (each.path, numbers[:, place])
-    return found
+        for index, part in enumerate(each.parts):
+            coordinates[f"{each.path}.{part}"] = (each.path, numbers[:, index])
+    return coordinates
 
 
 # ── in the worker ────────────────────────────────────────────────────────────
@@ -244,7 +244,7 @@ class Case:
 
 
 @dataclass(frozen=True)
-class Found:
+class SweepResult:
     """What a case gives."""
 
     picture: NDArray[np.uint8] | None  # (height, width, 4), top row first
@@ -257,15 +257,15 @@ def open_service(parent: Parent, software: bool) -> Service:
     """Return the service that draws cases, all of them by one engine."""
     engine = headless(software=software, notice=silent)
 
-    def answer(case: Case) -> Found:
-        found = draw(engine, case)
+    def answer(case: Case) -> SweepResult:
+        drawn = draw(engine, case)
         engine.forget_unused()
-        return found
+        return drawn
 
     return Service(answer)
 
 
-def draw(engine: Engine, case: Case) -> Found:
+def draw(engine: Engine, case: Case) -> SweepResult:
     """Draw a case; raise as ``Engine.render`` does."""
     measures: dict[str, float] = {}
     units: dict[str, str] = {}
@@ -282,7 +282,7 @@ def draw(engine: Engine, case: Case) -> Found:
             measures[f"{ref}.{name}"] = float(measure(numbers))
             units[f"{ref}.{name}"] = "m" if is_height else "1"
     picture = engine.render(case.sketch, **at).array if case.pictures else None  # type: ignore[arg-type]
-    return Found(picture, measures, units, engine.info.renderer)
+    return SweepResult(picture, measures, units, engine.info.renderer)
 
 
 def _shown(plan: Plan) -> list[str]:

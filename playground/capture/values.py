@@ -20,7 +20,7 @@ from playground._version import __version__
 from playground.capture.exr import encode_exr
 from playground.capture.extensions import COLOUR, HEIGHT, whole_numbers
 from playground.data.image_files import JPEG_QUALITY, encode_as, encode_samples
-from playground.data.place import Crs, Place, gdal, gdal_crs, horizontal
+from playground.data.place import Crs, Georeference, gdal, gdal_crs, horizontal
 from playground.data.values import clamped_note
 from playground.errors import DataError
 from playground.shader.parameter import linear_to_srgb
@@ -40,7 +40,7 @@ class Layer:
     spacing: tuple[float, float]  # [m] a texel, east and north
     bits: int
     span: tuple[float, float] | None = None  # what 0 and the largest whole number mean
-    place: Place | None = None  # where it lies on the Earth
+    place: Georeference | None = None  # where it lies on the Earth
 
     @property
     def unit(self) -> str:
@@ -53,7 +53,7 @@ class Encoded:
     """The bytes of a file, and what there is to say of them."""
 
     data: bytes
-    details: tuple[str, ...] = ()  # parts of a sentence: bits, what the numbers mean
+    details: tuple[str, ...] = ()  # parts of a message: bits, what the numbers mean
     warning: str = ""  # what was lost
     sidecar: bytes = b""  # of a JSON file that describes it
 
@@ -106,7 +106,7 @@ def scale_of(span: tuple[float, float], bits: int) -> float:
 def colour_samples(
     values: NDArray[np.float32], bits: int = 8, span: tuple[float, float] = (0.0, 1.0)
 ) -> tuple[NDArray[np.uint8] | NDArray[np.uint16], str]:
-    """Return linear colours encoded as sRGB, in whole numbers, and a sentence on what was clamped.
+    """Return linear colours encoded as sRGB, in whole numbers, and a message on what was clamped.
 
     ``span`` is what black and white mean.
     """
@@ -251,10 +251,12 @@ def _tiff(samples: NDArray[Any], layer: Layer, span: tuple[float, float] | None 
 
     rows, cols = samples.shape[:2]
     bands = np.moveaxis(samples.reshape(rows, cols, -1), -1, 0)
-    own = Place(0.0, (rows - 1) * layer.spacing[1], layer.spacing, (cols, rows), _OWN_CRS, is_point=True)
-    place = layer.place or own
-    dx, dy = place.step_at((cols, rows))
-    facts: dict[str, Any] = {"count": len(bands), "dtype": samples.dtype, "crs": _crs(layer, place.crs)}
+    own = Georeference(
+        0.0, (rows - 1) * layer.spacing[1], layer.spacing, (cols, rows), _OWN_CRS, is_point=True
+    )
+    position = layer.place or own
+    dx, dy = position.step_at((cols, rows))
+    facts: dict[str, Any] = {"count": len(bands), "dtype": samples.dtype, "crs": _crs(layer, position.crs)}
     if samples.dtype.kind == "f" and np.isnan(samples).any():
         facts["nodata"] = np.nan
     colours = layer.kind == COLOUR and samples.ndim == 3
@@ -263,13 +265,15 @@ def _tiff(samples: NDArray[Any], layer: Layer, span: tuple[float, float] | None 
             driver="GTiff",
             width=cols,
             height=rows,
-            transform=Affine(dx, 0.0, place.west - 0.5 * dx, 0.0, -dy, place.north + 0.5 * dy),
+            transform=Affine(dx, 0.0, position.west - 0.5 * dx, 0.0, -dy, position.north + 0.5 * dy),
             photometric="RGB" if colours else "MINISBLACK",
             interleave="pixel",
             BIGTIFF="IF_SAFER",
             **facts,
         ) as raster:
-            raster.update_tags(AREA_OR_POINT="Point" if place.is_point else "Area", TIFFTAG_SOFTWARE=SOFTWARE)
+            raster.update_tags(
+                AREA_OR_POINT="Point" if position.is_point else "Area", TIFFTAG_SOFTWARE=SOFTWARE
+            )
             if span is not None:
                 raster.scales = (scale_of(span, layer.bits),) * len(bands)
                 raster.offsets = (span[0],) * len(bands)

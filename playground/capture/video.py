@@ -34,7 +34,7 @@ _SAME_BYTES = "cpu-independent=1"  # x264's fast motion trees read what no one w
 
 QUALITY = "high"
 _GIF_RATES = "1, 2, 4, 5, 10, 20, 25, 50"  # a picture of a GIF is shown for whole hundredths of a second
-_LONGEST = 16_384  # [pixels] of a side: H.264's and VP9's encoders take no more
+_MAX_SIDE = 16_384  # [pixels] of a side: H.264's and VP9's encoders take no more
 
 
 class Stopped(KeyboardInterrupt):
@@ -56,7 +56,7 @@ class Video:
     before that, nothing is left; when it is interrupted, what is there becomes a shorter
     video, as ``film-first-120.mp4``, and ``Stopped`` has its name.
 
-    Raises ``DataError``, ``ParameterError`` or ``ContextError`` in a sentence for another
+    Raises ``DataError``, ``ParameterError`` or ``ContextError`` in a message for another
     ending, odd sides, a rate that a GIF has not, a missing folder, and where nothing encodes.
     """
 
@@ -67,7 +67,7 @@ class Video:
         self.size, self.fps, self.count = size, fps, count
         self.added = 0
         self.dropped = 0  # pictures so far whose alpha was below one somewhere
-        self.warning = ""  # a sentence where the finished file could not be checked
+        self.warning = ""  # a message where the finished file could not be checked
         self._ending = check_video(self.path, size, fps, quality)
         with ExitStack() as stack:
             with writing(self.path):
@@ -103,7 +103,7 @@ class Video:
             raise DataError(f"no picture was drawn, of {self.count}", file=self.path)
         self._finish_encoder()
         try:
-            found, rate = count_pictures(self._partial.path)
+            count, rate = count_pictures(self._partial.path)
         except KeyboardInterrupt:
             self._name(self._first(self.added))
             raise Stopped(self._first(self.added), self.added) from None
@@ -112,13 +112,13 @@ class Video:
             why = error.diagnostics[0].message if isinstance(error, PlaygroundError) else reason(error)
             self.warning = f"{shown(self.path)} was written, but could not be checked: {why}"
             return
-        if found == self.count and rate == self.fps:
+        if count == self.count and rate == self.fps:
             self._name(self.path)
             return
-        renamed = self._first(found)
+        renamed = self._first(count)
         self._name(renamed)
         raise DataError(
-            f"the encoder wrote {found} pictures at {float(rate):g} a second, not {self.count} at "
+            f"the encoder wrote {count} pictures at {float(rate):g} a second, not {self.count} at "
             f"{float(self.fps):g}; they are kept in {renamed.name}",
             file=self.path,
         )
@@ -155,7 +155,7 @@ def has_alpha(picture: NDArray[np.uint8]) -> bool:
 
 
 def alpha_note(dropped: int, count: int, what: str) -> str:
-    """Return a sentence on pictures whose alpha a film or sheet could not keep; "" for none."""
+    """Return a message on pictures whose alpha a film or sheet could not keep; "" for none."""
     if not dropped:
         return ""
     some = "every picture" if dropped == count else f"{dropped} of {counted(count, 'picture')}"
@@ -175,8 +175,8 @@ def check_video(path: Path, size: tuple[int, int], fps: Fraction, quality: str) 
     if ending != ".gif" and (width % 2 or height % 2):
         near = f"{width + width % 2}x{height + height % 2}"
         raise ParameterError(f"a video of {width} x {height} pixels: both must be even, as {near}")
-    if max(size) > _LONGEST:
-        raise ParameterError(f"a video of {width} x {height} pixels: at most {_LONGEST} a side")
+    if max(size) > _MAX_SIDE:
+        raise ParameterError(f"a video of {width} x {height} pixels: at most {_MAX_SIDE} a side")
     if ending == ".gif" and (100 / fps).denominator != 1:
         raise ParameterError(
             f"a GIF cannot show {float(fps):g} pictures a second: it counts in hundredths of a second; "
@@ -191,13 +191,13 @@ def check_video(path: Path, size: tuple[int, int], fps: Fraction, quality: str) 
 
 def count_pictures(path: str | Path) -> tuple[int, Fraction]:
     """Return how many pictures a video has and how many a second, without decoding them."""
-    rate, found = read_packets(Path(path))
-    times = sorted(time for time in found if time is not None)
+    rate, result = read_packets(Path(path))
+    times = sorted(time for time in result if time is not None)
     if len(times) > 1 and times[-1] > times[0]:  # what is written is times; some formats round to thousandths
         mean = Fraction(len(times) - 1) / (times[-1] - times[0])
         near = rate and abs(mean / rate - 1) < Fraction(1, 100)
         rate = rate if near else mean.limit_denominator(1001)
-    return len(found), rate
+    return len(result), rate
 
 
 def _codec(ending: str, quality: str) -> Codec:

@@ -20,7 +20,7 @@ from playground.web.bundle import read_bundle
 from playground.web.page import Poster, page_html
 from playground.web.page_data import page_data
 
-LARGEST = 32 * 2**20
+MAX_PAGE_BYTES = 32 * 2**20
 """Bytes of a page: a phone opens no larger one in a time that anybody waits."""
 POSTER_WIDTH = 960
 """Pixels of the poster at most."""
@@ -65,8 +65,8 @@ def prepare_page(
     at: dict[str, Any] = {"frame": size, "time": time, "steps": stops}
     data = page_data([sketch], **at, techniques=techniques, packed=True, engine=engine)
     bytes_of_data = bytes_in_page(data["shared"]["blobs"])
-    if bytes_of_data > LARGEST:
-        largest = f"at most {LARGEST // 2**20} MiB; a smaller terrain, image or film would do"
+    if bytes_of_data > MAX_PAGE_BYTES:
+        largest = f"at most {MAX_PAGE_BYTES // 2**20} MiB; a smaller terrain, image or film would do"
         raise DataError(f"its data would be {bytes_of_data / 2**20:.0f} MiB of a page, {largest}", file=path)
     return WebPage(data, page_script(data), style, stops, time, size)
 

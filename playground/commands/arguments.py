@@ -12,7 +12,7 @@ import typer
 
 from playground.errors import DataError, ParameterError, PlaygroundError
 from playground.shader.parameter import read_whole
-from playground.sketch.model import DRIVERS, LARGEST_SIDE, Shot, Sketch
+from playground.sketch.model import DRIVERS, MAX_SIDE, Shot, Sketch
 
 if TYPE_CHECKING:
     from playground.engine.engine import Engine
@@ -74,12 +74,12 @@ def read_option(name: str, text: str, read: Callable[[str], T | None], expected:
     if not text:
         return None
     try:
-        found = read(text)
+        value = read(text)
     except (ValueError, ZeroDivisionError):
-        found = None
-    if found is None:
+        value = None
+    if value is None:
         raise ParameterError(f"{name} {text}: expected {expected}")
-    return found
+    return value
 
 
 def within(low: Number, high: Number) -> Callable[[str], Number | None]:
@@ -88,25 +88,25 @@ def within(low: Number, high: Number) -> Callable[[str], Number | None]:
     def read(text: str) -> Number | None:
         if isinstance(low, int) and not text.isdecimal():
             return None
-        found = type(low)(text)
-        return found if low <= found <= high else None
+        number = type(low)(text)
+        return number if low <= number <= high else None
 
     return read
 
 
 def read_steps(texts: Sequence[str] | None) -> dict[str, int]:
     """Return the iterations of ``--steps`` by pass; raise ``ParameterError``."""
-    found: dict[str, int] = {}
+    numbers: dict[str, int] = {}
     for text in texts or ():
         path, _, count = text.partition("=")
         steps = read_whole(count)
         if not path.strip() or steps is None:
             raise ParameterError(f"--steps {text}: expected a pass and a whole number, as height=9")
-        found[path.strip()] = steps
-    return found
+        numbers[path.strip()] = steps
+    return numbers
 
 
-def read_pixels(text: str | None, most: int = LARGEST_SIDE) -> tuple[int, int] | None:
+def read_pixels(text: str | None, most: int = MAX_SIDE) -> tuple[int, int] | None:
     """Return the width and height of ``--size``, at most so many pixels; raise ``ParameterError``."""
     if text is None:
         return None
@@ -136,15 +136,15 @@ def read_device(text: str) -> int | None:
 
 def read_values(settings: Sequence[str] | None) -> dict[str, object]:
     """Split ``path=value`` settings; the last of a path counts."""
-    found: dict[str, object] = {}
+    values: dict[str, object] = {}
     for setting in settings or ():
         path, equals, value = setting.partition("=")
         path = path.strip()
         if not equals or not path:
             raise ParameterError(f"--set {setting}: expected PATH=VALUE, as light.sun=250,12 or size=513")
-        found.pop(path, None)
-        found[path] = value.strip()
-    return found
+        values.pop(path, None)
+        values[path] = value.strip()
+    return values
 
 
 def with_whole_paths(sketch: Sketch, values: dict[str, object]) -> dict[str, object]:
@@ -155,7 +155,7 @@ def with_whole_paths(sketch: Sketch, values: dict[str, object]) -> dict[str, obj
     from playground.paths import GLSL
     from playground.sketch.assign import resolve
 
-    found = dict(values)
+    absolute = dict(values)
     for path, value in values.items():
         try:
             parameter = resolve(sketch.graph, path)[0].parameter
@@ -167,8 +167,8 @@ def with_whole_paths(sketch: Sketch, values: dict[str, object]) -> dict[str, obj
         here = Path(text).expanduser()
         elsewhere = any((Path(folder) / text).is_file() for folder in (sketch.folder, GLSL))
         if here.exists() or not elsewhere:
-            found[path] = str(Path.cwd() / here)
-    return found
+            absolute[path] = str(Path.cwd() / here)
+    return absolute
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,7 +35,7 @@ HELP = help_text(
     "playground bench lighting --no-peers --size 513 4097",
     "playground bench engine --against results.json --fail",
 )
-LARGEST = 8193
+MAX_SIDE = 8193
 
 
 def bench(
@@ -116,10 +116,10 @@ def bench(
 
 
 def _side(text: str) -> int:
-    found = read_whole(text) or 0
-    if not 17 <= found <= LARGEST:
-        raise ParameterError(f"--size {text}: expected texels a side, 17 to {LARGEST}, as 1025")
-    return found
+    side = read_whole(text) or 0
+    if not 17 <= side <= MAX_SIDE:
+        raise ParameterError(f"--size {text}: expected texels a side, 17 to {MAX_SIDE}, as 1025")
+    return side
 
 
 def _listed(row: Row) -> tuple[str, ...]:
@@ -127,7 +127,7 @@ def _listed(row: Row) -> tuple[str, ...]:
 
 
 def _print(results: Results, compared: Sequence[Change], sides: Sequence[int], clock: str) -> None:
-    from playground.bench.against import ENOUGH
+    from playground.bench.against import MIN_RATIO
     from playground.bench.growth import growth
     from playground.bench.table import HEADINGS, rows_of
 
@@ -145,9 +145,7 @@ def _print(results: Results, compared: Sequence[Change], sides: Sequence[int], c
         if cells:
             print_table("Changes", ("row", "", "", "by its ratio to"), cells)
         alike = len(compared) - len(shown)
-        print(
-            f"{alike} of {len(compared)} figures alike, within {ENOUGH - 1:.0%} or the spread of their runs"
-        )
+        print(f"{alike} of {len(compared)} figures alike, within {MIN_RATIO - 1:.0%} or the runs' spread")
 
 
 def _change_json(change: Change) -> dict[str, object]:

@@ -23,7 +23,7 @@ HELP = help_text(
     "PLAYGROUND_CACHE=4G playground live my-land",
 )
 SHOW_HELP = help_text(
-    "Show where terrain is cached, how much there is, and of which passes; what was used last comes first.",
+    "Show where terrain is cached, how much there is, and of which passes; the last used comes first.",
     "playground cache show",
     "playground cache show --json",
 )
@@ -39,30 +39,30 @@ app = command_group("cache", HELP, "Show or remove the expensive terrain that is
 @app.command("show", help=SHOW_HELP)
 def show(as_json: options.Json = False) -> None:
     """Show where terrain is cached, how much there is, and of which passes."""
-    from playground.engine.disk_cache import limit_in, listed, place
+    from playground.engine.disk_cache import cache_directory, limit_in, listed
 
-    folder, limit = place(), limit_in()
-    found = listed(folder)
+    folder, limit = cache_directory(), limit_in()
+    entries = listed(folder)
     total: dict[str, Any] = {
         "folder": str(folder),
-        "bytes": sum(each.bytes for each in found),
+        "bytes": sum(each.bytes for each in entries),
         "most_bytes": limit,
     }
     if as_json:
-        print_json({**total, "files": [_as_json(each) for each in found]})
+        print_json({**total, "files": [_as_json(each) for each in entries]})
         return
-    print(usage_text(**total, files=len(found)))
-    if found:
+    print(usage_text(**total, files=len(entries)))
+    if entries:
         headings = ("sketch: pass", "texels", "size", "computed in", "used")
-        print_table("Cached terrain, used last first", headings, [_row(each) for each in found])
+        print_table("Cached terrain, used last first", headings, [_row(each) for each in entries])
 
 
 @app.command("clear", help=CLEAR_HELP)
 def clear_() -> None:
     """Remove all cached terrain."""
-    from playground.engine.disk_cache import clear, place
+    from playground.engine.disk_cache import cache_directory, clear
 
-    number, size = clear(place())
+    number, size = clear(cache_directory())
     print(f"{counted(number, 'file')} removed, {in_bytes(size)}")
 
 

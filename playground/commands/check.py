@@ -93,7 +93,7 @@ def _print_report(report: FileReport, printed: set[Diagnostic]) -> None:
     if again:
         files = ", ".join(dict.fromkeys(diagnostic.file for diagnostic in again))
         print(f"        {counted(len(again), 'error')} of {files}, printed above")
-    for diagnostic in (*(one for one in report.errors if one not in again), *report.warnings):
+    for diagnostic in (*(error for error in report.errors if error not in again), *report.warnings):
         text = str(diagnostic) if diagnostic.severity == "error" else f"{diagnostic.severity}: {diagnostic}"
         print("\n".join(f"        {line}" for line in text.split("\n")))
     printed |= set(alike.values())

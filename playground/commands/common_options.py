@@ -44,24 +44,24 @@ def _common() -> list[Any]:
     """Declare the options; typer alone knows how, so they are those of a command that is not called."""
     app = typer.Typer(add_completion=False)
     app.command(add_help_option=False)(_declared)
-    found: list[Any] = get_command(app).params
-    for option in found:
+    parameters: list[Any] = get_command(app).params
+    for option in parameters:
         option.expose_value = False  # a command's function does not take them
-    return found
+    return parameters
 
 
-def _be_verbose(wanted: bool) -> None:
-    _choose(wanted, Loudness.VERBOSE)
+def _be_verbose(requested: bool) -> None:
+    _choose(requested, Loudness.VERBOSE)
 
 
-def _be_quiet(wanted: bool) -> None:
-    _choose(wanted, Loudness.QUIET)
+def _be_quiet(requested: bool) -> None:
+    _choose(requested, Loudness.QUIET)
 
 
-def _choose(wanted: bool, chosen: Loudness) -> None:
-    if not wanted:
+def _choose(requested: bool, chosen: Loudness) -> None:
+    if not requested:
         return
-    if loudness() not in (Loudness.USUAL, chosen):
+    if loudness() not in (Loudness.DEFAULT, chosen):
         raise ParameterError("--verbose and --quiet exclude each other; choose one")
     choose_loudness(chosen)
 
@@ -86,8 +86,8 @@ def with_root() -> Iterator[None]:
         os.environ |= {} if before is None else {ROOT: before}
 
 
-def _print_help(ctx: typer.Context, wanted: bool) -> None:
-    if wanted:
+def _print_help(ctx: typer.Context, requested: bool) -> None:
+    if requested:
         print(ctx.get_help())
         raise typer.Exit()
 
@@ -98,7 +98,7 @@ def _declared(
         typer.Option(
             "--verbose",
             "-v",
-            help="Tell on standard error what is done and when: files, OpenGL, compiling, caches.",
+            help="Log each step with its time on standard error: files, OpenGL, compiling, caches.",
             metavar="",
             callback=_be_verbose,
             is_eager=True,
@@ -109,7 +109,7 @@ def _declared(
         typer.Option(
             "--quiet",
             "-q",
-            help="Print only errors and what is asked for: no notes, warnings or progress.",
+            help="Print only errors and the requested output: no notes, warnings or progress.",
             metavar="",
             callback=_be_quiet,
             is_eager=True,

@@ -82,7 +82,7 @@ def _findings(health: Health) -> Iterator[tuple[str, str]]:
 
 def _cache() -> dict[str, Any]:
     """Return what is cached of expensive terrain, as `usage_text` takes it."""
-    from playground.engine.disk_cache import bytes_in, limit_in, place
+    from playground.engine.disk_cache import bytes_in, cache_directory, limit_in
 
-    files, size = bytes_in(place())
-    return {"folder": str(place()), "files": files, "bytes": size, "most_bytes": limit_in()}
+    files, size = bytes_in(cache_directory())
+    return {"folder": str(cache_directory()), "files": files, "bytes": size, "most_bytes": limit_in()}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from playground.capture.extensions import ENDINGS, KINDS, PIPED, USUAL_GRID
+from playground.capture.extensions import DEFAULT_GRID, ENDINGS, KINDS, PIPED
 from playground.commands import options
 from playground.commands.arguments import (
     Moment,
@@ -119,7 +119,7 @@ def export(
         str,
         value(
             "--grid N",
-            f"Vertices of a mesh's longer side. Without it, one for each texel, up to {USUAL_GRID}.",
+            f"Vertices of a mesh's longer side. Without it, one for each texel, up to {DEFAULT_GRID}.",
         ),
     ] = "",
     light: Annotated[
@@ -266,8 +266,8 @@ def _read_format(text: str) -> str:
     ending = f".{text.lower().removeprefix('.')}" if text else ".glb"
     if ending not in PIPED:
         more = "; it is more than one file" if ending in ENDINGS else ""
-        known = either([e[1:] for e in PIPED])
-        raise ParameterError(f"--format {text} cannot go to standard output{more}; expected {known}")
+        expected = either([e[1:] for e in PIPED])
+        raise ParameterError(f"--format {text} cannot go to standard output{more}; expected {expected}")
     return ending
 
 
@@ -289,19 +289,19 @@ def _read_whole(name: str, text: str) -> int:
 
 def _read_techniques(texts: list[str]) -> dict[str, tuple[str, ...]]:
     """Return techniques by pass; none for a pass: all that fit."""
-    found: dict[str, tuple[str, ...]] = {}
+    techniques: dict[str, tuple[str, ...]] = {}
     for text in texts:
         name, equals, listed = text.partition("=")
         uses = tuple(use.strip() for use in listed.split(",") if use.strip())
         if not name.strip() or (equals and not uses):
             message = f"--technique {text}: expected a pass, as height, or with techniques,"
             raise ParameterError(f"{message} as height=FOLDER/FIRST,FOLDER/SECOND")
-        if name.strip() in found:
+        if name.strip() in techniques:
             raise ParameterError(
                 f"--technique {name.strip()} is given twice; list its techniques with commas"
             )
-        found[name.strip()] = uses
-    return found
+        techniques[name.strip()] = uses
+    return techniques
 
 
 def _read_span(text: str) -> tuple[float, float] | None:

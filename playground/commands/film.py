@@ -96,8 +96,8 @@ def read_fps(text: str) -> Fraction | None:
     """Return the pictures a second of ``--fps``, as 30, 23.976 or 30000/1001; raise ``ParameterError``."""
 
     def read(text: str) -> Fraction | None:
-        found = Fraction(text).limit_denominator(1001)
-        return found if Fraction(1, 60) <= found <= 1000 else None
+        fraction = Fraction(text).limit_denominator(1001)
+        return fraction if Fraction(1, 60) <= fraction <= 1000 else None
 
     return read_option("--fps", text, read, "pictures a second, 1/60 to 1000, as 30 or 30000/1001")
 
@@ -107,8 +107,8 @@ def read_frames(text: str) -> range | None:
 
     def read(text: str) -> range | None:
         match = _FRAMES.fullmatch(text.strip())
-        found = range(int(match[1]), int(match[2] or match[1]) + 1) if match else None
-        return found or None
+        numbers = range(int(match[1]), int(match[2] or match[1]) + 1) if match else None
+        return numbers or None
 
     return read_option("--frames", text, read, "FIRST..LAST, as 0..299")
 
@@ -143,10 +143,10 @@ def _make_frames(job: SeriesJob, numbers: range) -> None:
     if film.still:
         note(film.still)
     with job.drawing("drawing", len(numbers)) as (engine, done):
-        found = write_sequence(engine, film, pattern, numbers=numbers, resume=job.series.resume, done=done)
-    if found.kept:
-        note(f"{counted(len(found.kept), 'picture')} kept, {len(found.drawn)} drawn")
-    for path in sorted(found.drawn + found.kept):
+        sequence = write_sequence(engine, film, pattern, numbers=numbers, resume=job.series.resume, done=done)
+    if sequence.kept:
+        note(f"{counted(len(sequence.kept), 'picture')} kept, {len(sequence.drawn)} drawn")
+    for path in sorted(sequence.drawn + sequence.kept):
         print(path)
 
 
@@ -170,8 +170,8 @@ def _make_sweep(job: SeriesJob) -> None:
     sketch = moment.sketch.at(moment.time)
     if moment.steps:
         raise ParameterError("--steps is for one picture or a film by time, not for a sweep")
-    found = [sweep.read_sweep(sketch, text, series.steps or sweep.USUAL_STEPS) for text in series.sweeps]
-    rows = sweep.swept(sketch, found)
+    sweeps = [sweep.read_sweep(sketch, text, series.steps or sweep.DEFAULT_STEPS) for text in series.sweeps]
+    rows = sweep.swept(sketch, sweeps)
     count = sum(map(len, rows))
     if series.video:
         pixels, fps = job.size or DEFAULT_PICTURE, series.fps or SWEEP_FPS
@@ -194,7 +194,7 @@ def _make_sweep(job: SeriesJob) -> None:
         output_file(job.output, f"{sketch.name}-sweep.png", (".png",), "a sheet is") as path,
         job.drawing("sweeping", count) as (engine, done),
     ):
-        size = job.size or sheet.USUAL_SIZE
+        size = job.size or sheet.DEFAULT_SIZE
         print(sheet.write_sheet(engine, rows, path, size=size, time=moment.time, done=done, notice=note))
 
 

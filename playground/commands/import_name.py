@@ -47,6 +47,6 @@ def explained(others: list[str]) -> str:
 
 
 def _sentence(package: ModuleType, others: list[str]) -> str:
-    place = getattr(package, "__file__", None) or ", ".join(package.__path__)
+    location = getattr(package, "__file__", None) or ", ".join(package.__path__)
     owner = f" but to {' and '.join(others)}" if others else ""
-    return f"'import {NAME}' gives {place}, which belongs not to {DISTRIBUTION}{owner}: {repair(others)}"
+    return f"'import {NAME}' gives {location}, which belongs not to {DISTRIBUTION}{owner}: {repair(others)}"

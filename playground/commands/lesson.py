@@ -101,21 +101,29 @@ def list_(lang: options.Language = "", as_json: options.Json = False) -> None:
     """List the lessons, in their order."""
     from playground.lessons.read import summaries
 
-    found = summaries(read_language(lang))
+    result = summaries(read_language(lang))
     if as_json:
-        print_json([asdict(one) for one in found])
+        print_json([asdict(summary) for summary in result])
         return
     headings = ("", "lesson", "title", "reading", "exercises")
-    rows = [_row(one) for one in found]
+    rows = [_row(summary) for summary in result]
     if not sys.stdout.isatty():
-        print_rows([(*row, one.part) for row, one in zip(rows, found, strict=True)])
+        print_rows([(*row, summary.part) for row, summary in zip(rows, result, strict=True)])
         return
-    for part in dict.fromkeys(one.part for one in found):
-        print_table(part, headings, [row for row, one in zip(rows, found, strict=True) if one.part == part])
+    for part in dict.fromkeys(summary.part for summary in result):
+        print_table(
+            part, headings, [row for row, summary in zip(rows, result, strict=True) if summary.part == part]
+        )
 
 
-def _row(one: Summary) -> tuple[str, ...]:
-    return str(one.number), one.name, one.title, f"{one.minutes} min", f"{one.exercise_minutes} min"
+def _row(summary: Summary) -> tuple[str, ...]:
+    return (
+        str(summary.number),
+        summary.name,
+        summary.title,
+        f"{summary.minutes} min",
+        f"{summary.exercise_minutes} min",
+    )
 
 
 @app.command("open", help=OPEN_HELP)
@@ -152,14 +160,14 @@ def status(as_json: options.Json = False) -> None:
     from playground.lessons.read import summaries
     from playground.lessons.status import status_of
 
-    names = [one.name for one in summaries(SOURCE)]
-    found = [status_of(name, code) for code in LANGUAGES if code != SOURCE for name in names]
+    names = [summary.name for summary in summaries(SOURCE)]
+    statuses = [status_of(name, code) for code in LANGUAGES if code != SOURCE for name in names]
     if as_json:
-        print_json([one.as_json() for one in found])
+        print_json([item.as_json() for item in statuses])
     else:
-        rows = [(one.name, one.language, one.state, "; ".join(one.sentences)) for one in found]
+        rows = [(item.name, item.language, item.state, "; ".join(item.sentences)) for item in statuses]
         print_table("Translations", ("lesson", "language", "state", "what"), rows)
-    if any(one.state != "current" for one in found):
+    if any(item.state != "current" for item in statuses):
         raise typer.Exit(FAILED)
 
 
@@ -184,11 +192,11 @@ def check(ctx: typer.Context, names: NamesArgument = None, software: options.Sof
                     for diagnostic in error.diagnostics:
                         complain(str(diagnostic), diagnostic.severity)
                     continue
-                found = list(broken_rules(lesson))
-                found += wrong_pictures(engine, lesson) if language == "en" else []
-                for line, sentence in found:
+                problems = list(broken_rules(lesson))
+                problems += wrong_pictures(engine, lesson) if language == "en" else []
+                for line, sentence in problems:
                     complain(f"{shown(lesson.file)}:{line}: {language}: {sentence}")
-                wrong += len(found)
+                wrong += len(problems)
             advance()
     if wrong:
         note(f"{counted(wrong, 'thing')} to fix")
@@ -208,10 +216,10 @@ def pictures(
     from playground.lessons.figure_renders import draw, pictures_of
     from playground.lessons.read import read_lesson
 
-    found = pictures_of(read_lesson(name))
+    result = pictures_of(read_lesson(name))
     output.mkdir(parents=True, exist_ok=True)
-    with _engine(ctx, software) as engine, progress("drawing", len(found)) as advance:
-        for picture in found:
+    with _engine(ctx, software) as engine, progress("drawing", len(result)) as advance:
+        for picture in result:
             path = output / f"{name}-{picture.name}.png"
             write_png(path, draw(engine, picture.scene).array)
             print(path)
@@ -246,7 +254,7 @@ def build(
         raise ParameterError(f"--answers {answers}: expected {either(ANSWERS)}{nearest(answers, ANSWERS)}")
     languages = [read_language(lang)] if lang else list(LANGUAGES)
     chosen = _chosen(names)
-    lessons = {code: [one for one in read_lessons(code) if one.name in chosen] for code in languages}
+    lessons = {code: [lesson for lesson in read_lessons(code) if lesson.name in chosen] for code in languages}
     if notebooks:
         with _engine(ctx, software) as engine:
             _write_notebooks(output, lessons, engine)
@@ -298,7 +306,7 @@ def _chosen(names: list[str] | None) -> list[str]:
 
     for name in names or []:
         lesson_file(name)  # raises with the list of lessons
-    return names or [one.name for one in summaries(SOURCE)]
+    return names or [summary.name for summary in summaries(SOURCE)]
 
 
 def _engine(ctx: typer.Context, software: bool) -> Engine:

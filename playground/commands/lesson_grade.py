@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 HELP = help_text(
     "Grade a folder of submissions: one folder or zip for each student, as `playground lesson handout` gave"
     " them out.\n\n"
-    "Writes grades.csv and index.html, a contact sheet with what was handed in next to what was wanted. Each"
+    "Writes grades.csv and index.html, a contact sheet with submissions next to expected pictures. Each"
     " work is judged in a process of its own limits: an endless loop costs its author the points and nobody"
     " else anything. Without --lesson, those lessons are graded of which something was handed in. Exit"
     " status 0 when graded, whatever the grades.",
@@ -54,14 +54,14 @@ def grade(
     from playground.lessons.read import read_lesson
 
     language, folder, output = read_language(lang), folder.expanduser(), output.expanduser()
-    found, others = find_submissions(folder, output)
+    submissions, others = find_submissions(folder, output)
     check_folder(output)
-    names = list(dict.fromkeys(lessons or _lessons_handed_in(found)))
+    names = list(dict.fromkeys(lessons or _lessons_handed_in(submissions)))
     assignments = assignments_of(read_lesson(name, language) for name in names)
     for name in names:
-        if not any(one.lesson.name == name for one in assignments):
+        if not any(submission.lesson.name == name for submission in assignments):
             raise SketchError(f"no exercise of the lesson {name} checks itself, so there is nothing to grade")
-    read = read_all(found, assignments)
+    read = read_all(submissions, assignments)
     renderer: Renderer = ctx.obj.or_else(software)
     with (
         Judges(Options(tuple(names), language, renderer.software, renderer.device)) as judges,
@@ -69,14 +69,14 @@ def grade(
     ):
         graded = grade(read, assignments, judges, language, advance)
         drawn_by = judges.renderer
-    titles = {one.name: one.title for one in assignments}
+    titles = {submission.name: submission.title for submission in assignments}
     page, kept = write_report(output, graded, titles, language, drawn_by)
     for name in others:
         note(f"left out: {name}")
     if kept is not None:
         note(f"grades.csv had been changed since the last report; it is kept as {kept}")
     if as_json:
-        print_json([_as_json(one) for one in graded])
+        print_json([_as_json(submission) for submission in graded])
         return
     _print(graded, assignments)
     note(f"{page} and {page.with_name('grades.csv')}")
@@ -87,18 +87,18 @@ def _lessons_handed_in(submissions: Sequence[Submission]) -> list[str]:
     from playground.lessons.course import lesson_names
     from playground.lessons.grading.handed_in import lessons_in
 
-    known = lesson_names()
-    found = {name for one in submissions for name in lessons_in(one.path, known)}
-    if not found:
+    lessons = lesson_names()
+    names = {name for submission in submissions for name in lessons_in(submission.path, lessons)}
+    if not names:
         raise SketchError("no submission holds a file of an exercise; name the lessons: --lesson NAME")
-    return [name for name in known if name in found]
+    return [name for name in lessons if name in names]
 
 
-def _as_json(one: Graded) -> dict[str, object]:
+def _as_json(graded: Graded) -> dict[str, object]:
     return {
-        "student": one.student,
-        "points": one.points,
-        "of": one.of,
+        "student": graded.student,
+        "points": graded.points,
+        "of": graded.of,
         "exercises": {
             name: {
                 "points": mark.points,
@@ -109,7 +109,7 @@ def _as_json(one: Graded) -> dict[str, object]:
                 "note": mark.note,
                 "same_as": list(mark.same_as),
             }
-            for name, mark in one.marks.items()
+            for name, mark in graded.marks.items()
         },
     }
 
@@ -118,14 +118,14 @@ def _print(graded: Sequence[Graded], assignments: Sequence[Assignment]) -> None:
     from playground.lessons.grading.entries import printable
     from playground.lessons.grading.marks import spelled_points
 
-    headings = ["student", *(one.name for one in assignments), "total", "of"]
+    headings = ["student", *(graded.name for graded in assignments), "total", "of"]
     rows = [
         [
-            printable(one.student),
-            *(mark.spelled for mark in one.marks.values()),
-            spelled_points(one.points),
-            str(one.of),
+            printable(graded.student),
+            *(mark.spelled for mark in graded.marks.values()),
+            spelled_points(graded.points),
+            str(graded.of),
         ]
-        for one in graded
+        for graded in graded
     ]
     print_table(f"Grades of {counted(len(graded), 'submission')}", headings, rows)

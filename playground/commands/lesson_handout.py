@@ -61,9 +61,9 @@ def handout(
             output, lessons, engine, hints=hints, install=install, wheel=wheel, advance=advance
         )
     print(output)
-    exercises = sum(one.points > 0 for one in written)
+    exercises = sum(assignment.points > 0 for assignment in written)
     matches = f", {counted(len(written) - exercises, 'challenge')}" if exercises < len(written) else ""
-    points = counted(sum(one.points for one in written), "point")
+    points = counted(sum(assignment.points for assignment in written), "point")
     if not install and wheel is None:
         note("README.txt leaves it to you how students install the playground: see --wheel and --install")
     note(f"{counted(exercises, 'exercise')} to hand in, {points}{matches}")

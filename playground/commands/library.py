@@ -42,8 +42,8 @@ def add(name: Name, folder: Annotated[str, positional("FOLDER", "The library's o
     """Remember the folder of a library."""
     from playground.shader.libraries import add_library
 
-    place = add_library(name, folder)
-    print(place)
+    path = add_library(name, folder)
+    print(path)
     note(f'#include "{name}/…" is found there from now on')
 
 
@@ -52,11 +52,11 @@ def list_(as_json: options.Json = False) -> None:
     """List the libraries that were named."""
     from playground.shader.libraries import how_to_name, libraries
 
-    known = libraries()
+    paths = libraries()
     if as_json:
-        print_json({name: str(folder) for name, folder in known.items()})
+        print_json({name: str(folder) for name, folder in paths.items()})
         return
-    rows = [(name, str(folder), "" if folder.is_dir() else "is gone") for name, folder in known.items()]
+    rows = [(name, str(folder), "" if folder.is_dir() else "is gone") for name, folder in paths.items()]
     if rows:
         print_table("Libraries", ("name", "folder", ""), rows)
     else:

@@ -35,7 +35,7 @@ def list_(
 
     sketches = catalogue.sketches() if what in ("", "sketches") else []
     techniques = catalogue.techniques() if what in ("", "techniques") else []
-    named = catalogue.one(what) if what not in ("", "sketches", "techniques") else []
+    named = catalogue.entries_named(what) if what not in ("", "sketches", "techniques") else []
     if as_json:
         groups = {"sketches": sketches, "techniques": techniques}
         for entry in named:

@@ -55,13 +55,13 @@ class LiveCommand(TyperCommand):
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Read the arguments; a ``--remote`` without a port gets the usual one."""
-        given = list(args)
-        for at, word in enumerate(given):
+        arguments = list(args)
+        for at, word in enumerate(arguments):
             if word == "--":
                 break
-            if word == "--remote" and not "".join(given[at + 1 : at + 2]).isdecimal():
-                given[at] = f"--remote={REMOTE_PORT}"
-        return super().parse_args(ctx, given)
+            if word == "--remote" and not "".join(arguments[at + 1 : at + 2]).isdecimal():
+                arguments[at] = f"--remote={REMOTE_PORT}"
+        return super().parse_args(ctx, arguments)
 
 
 def live(

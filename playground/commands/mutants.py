@@ -21,7 +21,7 @@ from playground.terminal import note, painted, print_json, print_table, progress
 
 if TYPE_CHECKING:
     from playground.shots.mutants.repeatability import Redrawn
-    from playground.shots.mutants.suite import Result
+    from playground.shots.mutants.suite import MutantResult
     from playground.shots.suite import RenderedShot
 
 HELP = help_text(
@@ -66,7 +66,7 @@ def mutants(
 ) -> None:
     """Break a sketch in every known way, and see whether the comparison of its pictures tells."""
     from playground.shots.mutants.repeatability import redraw
-    from playground.shots.mutants.suite import Bench, named, shot_of
+    from playground.shots.mutants.suite import MutantRunner, named, shot_of
     from playground.sketch.load import load
 
     count = read_option("--again", again, within(0, 10**6), "a whole number, as 20") or 0
@@ -79,10 +79,10 @@ def mutants(
         from playground.data.image_files import make_folder
 
         make_folder(pictures)
-    results: list[Result] = []
+    results: list[MutantResult] = []
     redrawn: list[Redrawn] = []
     with renderer.open_engine() as engine:
-        bench = Bench(engine, loaded, shot, pixels)
+        bench = MutantRunner(engine, loaded, shot, pixels)
         expected = bench.unbroken(first)
         with progress("mutants", len(chosen)) as advance:
             for result in bench.run(chosen):
@@ -106,7 +106,7 @@ def mutants(
         raise typer.Exit(FAILED)
 
 
-def _print(results: Sequence[Result]) -> None:
+def _print(results: Sequence[MutantResult]) -> None:
     from playground.shots.mutants.suite import kill_rate, survivors
     from playground.shots.mutants.tiers import TIERS
 
@@ -121,8 +121,8 @@ def _print(results: Sequence[Result]) -> None:
         print(f"{tier}: {caught} of {of} caught{'; passed: ' if passed else ''}{', '.join(passed)}")
     for result in results:
         if result.mutant.exempt and result.applies:
-            found = "passes, as it should" if result.well else "is refused, and should not be"
-            print(f"{result.mutant.name}: {found} (same build)")
+            verdict = "passes, as it should" if result.well else "is refused, and should not be"
+            print(f"{result.mutant.name}: {verdict} (same build)")
     unseen = [result.mutant.name for result in results if result.unseen]
     if unseen:
         note(f"the shot does not show {', '.join(unseen)}: no level differs by more than one")
@@ -135,10 +135,12 @@ _WIDE = 120  # columns of a terminal that has room for sentences
 _NUMBERS = ("most", "over 1", "FLIP", "FLIP tile")
 
 
-def _row(result: Result) -> tuple[str, ...]:
-    found = result.comparison
-    assert found is not None
-    numbers = ["", ""] if found.verdict in ("blank", "size") else [str(found.most), f"{result.share:.2%}"]
+def _row(result: MutantResult) -> tuple[str, ...]:
+    comparison = result.comparison
+    assert comparison is not None
+    numbers = (
+        ["", ""] if comparison.verdict in ("blank", "size") else [str(comparison.most), f"{result.share:.2%}"]
+    )
     perceived = result.perceived
     numbers += ["", ""] if perceived is None else [f"{perceived.mean:.3f}", f"{perceived.tile:.3f}"]
     verdicts = ("passes" if judgement.ok else judgement.word for judgement in result.tiers)
@@ -159,7 +161,7 @@ def _print_again(redrawn: Sequence[Redrawn]) -> None:
 
 
 def _as_json(
-    sketch: str, renderer: str, results: Sequence[Result], redrawn: Sequence[Redrawn]
+    sketch: str, renderer: str, results: Sequence[MutantResult], redrawn: Sequence[Redrawn]
 ) -> dict[str, object]:
     from playground.shots.mutants.suite import kill_rate, survivors
     from playground.shots.mutants.tiers import TIERS
@@ -179,7 +181,7 @@ def _as_json(
     }
 
 
-def _write(folder: Path, expected: Mapping[str, RenderedShot], results: Sequence[Result]) -> None:
+def _write(folder: Path, expected: Mapping[str, RenderedShot], results: Sequence[MutantResult]) -> None:
     """Write each mutant's picture and its difference ×16, and the unbroken shots."""
     from playground.data.image_files import write_png
     from playground.shots.compare import difference_picture

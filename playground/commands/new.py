@@ -38,5 +38,5 @@ def new(
     note(
         f"next: {program()} live {shell}     opens it; edit {kernel}, save, and look\n"
         f"      {program()} render {shell}   makes a PNG\n"
-        f"      {program()} check {shell}    reports what is wrong with it, if anything"
+        f"      {program()} check {shell}    reports its errors, if any"
     )

@@ -103,7 +103,7 @@ Preset = Annotated[str, value("--preset NAME", "Begin with a preset.")]
 Time = Annotated[str, value("--time T", "Time in seconds.")]
 Steps = Annotated[
     list[str] | None,
-    value("--steps PASS=COUNT", "Stop a repeated pass after so many iterations. May be repeated."),
+    value("--steps PASS=COUNT", "Stop a repeated pass after COUNT iterations. May be repeated."),
 ]
 Driver = Annotated[str, value("--driver NAME", f"What runs the kernels: {either(DRIVERS)}.", complete_driver)]
 Plain = Annotated[bool, flag("--plain", "Run every technique in its plain form, no fast variant.")]

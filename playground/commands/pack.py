@@ -51,7 +51,7 @@ def pack(
         files = len(libraries_of(loaded.files)[name])
         note(
             f"without {counted(files, 'file')} of the library {name}, whose licence may forbid to pass it on:"
-            f" who opens the pack names a folder of it, as {how_to_name(name)}"
+            f" to open the pack, name a folder of it, as {how_to_name(name)}"
         )
 
 

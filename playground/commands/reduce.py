@@ -42,7 +42,7 @@ HELP = help_text(
     "Shrink a sketch that fails to the smallest that still fails in the same way.\n\n"
     "Passes, parameters, sizes, lines and parts of expressions are taken out as long as it fails. What"
     " failing means is chosen by an option; without one, what the compiler refuses, a crash, NaN and"
-    " a difference between the two drivers are looked for, in that order. What is left goes into a folder,"
+    " a difference between the two drivers are looked for, in that order. The result goes into a folder,"
     " with a text for a report to the driver's makers. Ctrl-C keeps the smallest so far.",
     "playground reduce my-land                         # any failure",
     "playground reduce my-land --nan --pass height     # NaN or infinity in one pass",
@@ -102,8 +102,8 @@ def reduce(
             complete_driver,
         ),
     ] = "",
-    limit: Annotated[str, value("--limit SECONDS", "Stop after so many seconds.")] = "",
-    tries: Annotated[str, value("--tries N", "Stop after so many tries; without it, never.")] = "",
+    limit: Annotated[str, value("--limit SECONDS", "Stop after this number of seconds.")] = "",
+    tries: Annotated[str, value("--tries N", "Stop after this number of tries; without it, never.")] = "",
     timeout: Annotated[
         str, value("--timeout SECONDS", "Seconds that one candidate may take; 10 by default.")
     ] = "",
@@ -132,7 +132,7 @@ def reduce(
         "hang": hang,
         "command": bool(command),
     }
-    kind = _kind([name for name, given in kinds.items() if given], shot)
+    kind = _kind([name for name, is_set in kinds.items() if is_set], shot)
     moment = _moment(sketch, kind, shot, settings, steps, time)
     _check_options(kind, anywhere=anywhere, plain=plain, moved=bool(settings or size or time or steps))
     renderer: Renderer = ctx.obj.or_else(software, device)
@@ -197,14 +197,14 @@ def _pattern(text: str) -> str:
     return text
 
 
-def _environment(given: list[str] | None) -> dict[str, str]:
-    found = {}
-    for text in given or ():
+def _environment(settings: list[str] | None) -> dict[str, str]:
+    variables = {}
+    for text in settings or ():
         name, equals, value = text.partition("=")
         if not equals or not name.strip():
             raise ParameterError(f"--against {text}: expected ENV=VALUE, as MESA_GL_VERSION_OVERRIDE=4.1")
-        found[name.strip()] = value
-    return found
+        variables[name.strip()] = value
+    return variables
 
 
 def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: bool) -> None:
@@ -216,10 +216,10 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
     claim(folder)
     with CandidateBench(question) as bench, _shown() as show:
         beginning = bench.begin()
-        probe, found = beginning.probe, beginning.finding
+        probe, result = beginning.probe, beginning.finding
         # The message of a refusal is its kind; of the rest, the details say where and how much.
-        note(found.kind if found.messages else f"{found.kind}: {found.details}")
-        search = Search(beginning.case, found, probe, seconds=limit, tries=tries, progress=show)
+        note(result.kind if result.messages else f"{result.kind}: {result.details}")
+        search = Search(beginning.case, result, probe, seconds=limit, tries=tries, progress=show)
         stopped = False
         try:
             search.run()
@@ -227,7 +227,7 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
             stopped = True
         finding = search.confirmed()
         if finding is None:
-            note("what is left does not fail every time: say so where you report it")
+            note("the reduced sketch does not fail every time: mention it in the report")
             finding = search.finding
         shader = plain_texts(search.best, probe, finding, bench.processes[0]) if plain else {}
         finding = replace(finding, details=finding.details.replace(f"{probe.folder}{os.sep}", ""))

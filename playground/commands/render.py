@@ -33,7 +33,7 @@ from playground.commands.standard_output import check_standard_output
 from playground.data.image_files import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.errors import DataError, ParameterError, counted
 from playground.paths import program
-from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE, MOST_SUPERSAMPLE
+from playground.sketch.model import DEFAULT_PICTURE, MAX_PICTURE_SIDE, MAX_SUPERSAMPLE
 from playground.terminal import busy, console_for, note, progress
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from playground.sketch.model import Sketch
 
 
-_MOST_HIDDEN = 3  # defaults without effect that are listed one by one
+_MAX_LISTED = 3  # defaults without effect that are listed one by one
 
 HELP = help_text(
     "Render a sketch to a PNG, a video, numbered pictures or a sheet of variants, and print the path.\n\n"
@@ -160,10 +160,14 @@ def render(
         steps=read_option("-n", count, within(2, 99_999), "a whole number from 2, as 12"),
     )
     series.check(output, texture, profile)
-    pixels, seconds_in, values = read_pixels(size, LARGEST_PICTURE), read_seconds(time), read_values(settings)
+    pixels, seconds_in, values = (
+        read_pixels(size, MAX_PICTURE_SIDE),
+        read_seconds(time),
+        read_values(settings),
+    )
     runs_by, stops = read_driver(driver), read_steps(steps)
     times = read_option(
-        "--supersample", supersample, within(1, MOST_SUPERSAMPLE), f"a whole number, 1 to {MOST_SUPERSAMPLE}"
+        "--supersample", supersample, within(1, MAX_SUPERSAMPLE), f"a whole number, 1 to {MAX_SUPERSAMPLE}"
     )
     if times is not None and texture:
         raise ParameterError(
@@ -211,10 +215,10 @@ def _note_hidden_defaults(sketch: Sketch) -> None:
     from playground.sketch.warnings import shadowed_by_files
 
     hidden = shadowed_by_files(sketch)
-    for one in hidden[:_MOST_HIDDEN]:
-        note(str(one))
-    if len(hidden) > _MOST_HIDDEN:
-        more = counted(len(hidden) - _MOST_HIDDEN, "more default")
+    for warning in hidden[:_MAX_LISTED]:
+        note(str(warning))
+    if len(hidden) > _MAX_LISTED:
+        more = counted(len(hidden) - _MAX_LISTED, "more default")
         note(f"{more} that a set overrides: {program()} check lists them")
 
 
@@ -262,17 +266,17 @@ def _write_frame(engine: Engine, sketch: Sketch, target: Path, at: dict[str, Any
 
 def _note_not_finite(engine: Engine) -> None:
     """Note which pass made NaN or infinity, if any did: the picture may show nothing of it."""
-    found = [one for one in engine.not_finite_by_pass() if one is not None]
-    if found:
-        more = f" (first of {len(found)} passes)" if len(found) > 1 else ""
-        note(f"{found[0]}{more}")
+    not_finite = [not_finite for not_finite in engine.not_finite_by_pass() if not_finite is not None]
+    if not_finite:
+        more = f" (first of {len(not_finite)} passes)" if len(not_finite) > 1 else ""
+        note(f"{not_finite[0]}{more}")
 
 
 def _draw_large(engine: Engine, moment: Moment, size: tuple[int, int], target: Path) -> None:
     from playground.capture.large import TILE, count_tiles, encode_strips, strips, uncut, write_large
     from playground.engine.plan import drawn_size
 
-    whole = drawn_size(moment.sketch, size, LARGEST_PICTURE)
+    whole = drawn_size(moment.sketch, size, MAX_PICTURE_SIDE)
     tiles = count_tiles(whole, uncut(TILE, moment.sketch.supersample))
     with progress(f"rendering {moment.sketch.name} in parts", tiles) as done:
         at: dict[str, Any] = {"time": moment.time, "steps": moment.steps, "done": done}

@@ -58,10 +58,10 @@ def list_(sketches: SketchesArgument = None, as_json: options.Json = False) -> N
     table = []
     for row in rows:
         width, height = row["size"]
-        found = [
+        summaries = [
             name if len(files) == 1 else f"{name} ({len(files)})" for name, files in row["references"].items()
         ]
-        table.append((row["sketch"], row["shot"], f"{width}x{height}", ", ".join(found) or "missing"))
+        table.append((row["sketch"], row["shot"], f"{width}x{height}", ", ".join(summaries) or "missing"))
     print_table(
         "Shots (playground render SKETCH --shot SHOT)", ("sketch", "shot", "size", "references"), table
     )

@@ -47,11 +47,13 @@ def kept_path(path: Path, command: str) -> Path:
 
 
 def _read() -> str:
-    from playground.workbench.pasted import LARGEST
+    from playground.workbench.pasted import MAX_PASTED_BYTES
 
-    data = sys.stdin.buffer.read(LARGEST + 1)
-    if len(data) > LARGEST:
-        raise DataError(f"standard input is larger than {LARGEST // 2**20} MiB; a shader's text was expected")
+    data = sys.stdin.buffer.read(MAX_PASTED_BYTES + 1)
+    if len(data) > MAX_PASTED_BYTES:
+        raise DataError(
+            f"standard input is larger than {MAX_PASTED_BYTES // 2**20} MiB; a shader's text was expected"
+        )
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:

@@ -109,7 +109,7 @@ def _verdicts(what: str, renderer: Renderer) -> list[Verdict]:
     from playground.paths import shown
     from playground.verify.variants import subjects, verify
 
-    found: list[Verdict] = []
+    verdicts: list[Verdict] = []
     with TemporaryDirectory(prefix="playground-variants-") as folder:
         chosen = subjects(what, Path(folder) / "stand-in.png")
         with (
@@ -120,10 +120,10 @@ def _verdicts(what: str, renderer: Renderer) -> list[Verdict]:
                 verdict = verify(engine, subject.variant, subject.technique, subject.places)
                 mark = "ok" if verdict.ok else "skipped" if verdict.skipped else "FAILED"
                 print(f"{mark:8}{shown(subject.variant.path)}: {verdict.words}", flush=True)
-                found.append(verdict)
+                verdicts.append(verdict)
                 engine.cache.clear()
                 advance()
-    return found
+    return verdicts
 
 
 def _refuse(verdicts: list[Verdict]) -> None:

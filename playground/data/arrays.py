@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.data.bounds import MAX_TEXELS, refuse_bomb
-from playground.data.grid import SIXTEEN_BIT, FileRows, Found, check_grid, in_memory
-from playground.data.place import WGS_84, Crs, Place, spacing_from_degrees
+from playground.data.grid import SIXTEEN_BIT, FileRows, RasterFile, check_grid, in_memory
+from playground.data.place import WGS_84, Crs, Georeference, spacing_from_degrees
 from playground.errors import DataError
 from playground.regular_file import open_regular
 
@@ -28,7 +28,7 @@ class _Header:
     dtype: np.dtype[Any]
 
 
-def read_npy(path: Path) -> Found:
+def read_npy(path: Path) -> RasterFile:
     """Read the one array of an `.npy`; it says nothing of units."""
     with open_regular(path) as handle:
         header = _array_header(handle, path)
@@ -38,7 +38,7 @@ def read_npy(path: Path) -> Found:
             return in_memory(_array_body(handle, header, length, path)).in_unit(Crs())
         _refuse_cut(handle, header, length, path)
         rows = FileRows(path, (header.shape[0], header.shape[1]), header.dtype, handle.tell())
-        return Found(rows).in_unit(Crs())
+        return RasterFile(rows).in_unit(Crs())
 
 
 def _array_header(handle: IO[bytes], path: Path) -> _Header:
@@ -131,7 +131,7 @@ class _Archive:
         return str(self.load(name).reshape(()).astype(str)).strip()
 
 
-def read_npz(path: Path) -> Found:
+def read_npz(path: Path) -> RasterFile:
     """Read the array `elevation` of an `.npz`, or its only grid, and its spacing where it has one."""
     with zipfile.ZipFile(path) as opened:
         archive = _Archive(opened, path)
@@ -142,10 +142,10 @@ def read_npz(path: Path) -> Found:
         of_heights = archive.text("height_units", 256)
     if first not in ("", "north", "south"):
         raise DataError(f"'first_row' is {first!r}; expected 'north' or 'south'", file=path)
-    found = _placed(path, values, (dx, dy), ((x0, x1), (y0, y1)), units, crs)
+    grid = _placed(path, values, (dx, dy), ((x0, x1), (y0, y1)), units, crs)
     if not crs and (dx is not None or dy is not None):
         of_heights = of_heights or "m"  # as of its cells
-    return replace(found.in_unit(Crs(crs), of_heights), south_first=first == "south" if first else None)
+    return replace(grid.in_unit(Crs(crs), of_heights), south_first=first == "south" if first else None)
 
 
 def _placed(
@@ -155,7 +155,7 @@ def _placed(
     bounds: tuple[tuple[float | None, float | None], tuple[float | None, float | None]],
     units: str,
     crs: str,
-) -> Found:
+) -> RasterFile:
     """Return what was found of a grid, with its metres and where it lies, as far as the file says."""
     (dx, dy), ((x0, x1), (y0, y1)) = steps, bounds
     if dx is None and dy is None:
@@ -164,11 +164,11 @@ def _placed(
     if not dx or not dy:
         raise DataError("'dx' and 'dy' are zero; expected the distance between texels", file=path)
     if crs:
-        size, found = (values.shape[1], values.shape[0]), None
+        size, text_placed = (values.shape[1], values.shape[0]), None
         if x0 is not None and x1 is not None and y0 is not None and y1 is not None:
-            found = _bounded((x0, x1), (y0, y1), (dx, dy), size, Crs(crs))
-        spacing, notes = (found or Place(math.nan, math.nan, (dx, dy), size, Crs(crs))).spacing
-        return in_memory(values, spacing, place=found, notes=notes)
+            text_placed = _bounded((x0, x1), (y0, y1), (dx, dy), size, Crs(crs))
+        spacing, notes = (text_placed or Georeference(math.nan, math.nan, (dx, dy), size, Crs(crs))).spacing
+        return in_memory(values, spacing, place=text_placed, notes=notes)
     if x0 is None or x1 is None or y0 is None or y1 is None:
         in_degrees = False
     else:
@@ -186,10 +186,10 @@ def _placed(
         return in_memory(values, (dx, dy))
     assert y0 is not None and y1 is not None
     spacing, notes = spacing_from_degrees(dx, dy, (y0 + y1) / 2)
-    place = None
+    georeference = None
     if x0 is not None and x1 is not None:
-        place = _bounded((x0, x1), (y0, y1), (dx, dy), (values.shape[1], values.shape[0]), WGS_84)
-    return in_memory(values, spacing, place=place, notes=notes)
+        georeference = _bounded((x0, x1), (y0, y1), (dx, dy), (values.shape[1], values.shape[0]), WGS_84)
+    return in_memory(values, spacing, place=georeference, notes=notes)
 
 
 def _bounded(
@@ -198,7 +198,7 @@ def _bounded(
     step: tuple[float, float],
     size: tuple[int, int],
     crs: Crs,
-) -> Place | None:
+) -> Georeference | None:
     """Return where the nodes lie; None where the bounds are neither areas' nor nodes'."""
     inside = []
     for ends, of, count in zip((x, y), step, size, strict=True):
@@ -207,10 +207,10 @@ def _bounded(
             return None
         inside.append(0.5 * of * round(more))
     is_point = crs == WGS_84  # as where nothing but degrees is said
-    return Place(min(x) + inside[0], max(y) - inside[1], step, size, crs, is_point)
+    return Georeference(min(x) + inside[0], max(y) - inside[1], step, size, crs, is_point)
 
 
-def read_raw(path: Path, size: tuple[int, int] | None) -> Found:
+def read_raw(path: Path, size: tuple[int, int] | None) -> RasterFile:
     """Read unsigned little-endian numbers; the grid is square unless ``size`` (nx, ny) says otherwise."""
     dtype = np.dtype("<u2")
     length = path.stat().st_size
@@ -227,7 +227,7 @@ def read_raw(path: Path, size: tuple[int, int] | None) -> Found:
     if 2 * nx * ny != length:
         what = f"holds {length} bytes; {nx} x {ny} heights of 16 bits need {2 * nx * ny}{_fitting(length)}"
         raise DataError(what, file=path)
-    return Found(FileRows(path, (ny, nx), dtype), in_metres=False, code_range=SIXTEEN_BIT)
+    return RasterFile(FileRows(path, (ny, nx), dtype), in_metres=False, code_range=SIXTEEN_BIT)
 
 
 def _not_square(length: int) -> str:

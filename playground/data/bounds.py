@@ -1,7 +1,7 @@
 """Return how large a file may become in memory, judged by its header, before any memory is taken.
 
 A packed file of a megabyte can hold a gigabyte of zeros. Pictures and terrain that people have stay far
-below ``MOST_RATIO``; what is flat, as a mask with nothing painted on it, stays below ``ALWAYS_FINE``.
+below ``MAX_RATIO``; what is flat, as a mask with nothing painted on it, stays below ``ALWAYS_FINE``.
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ from playground.errors import DataError
 
 MAX_TEXELS = 2**28  # 16384 x 16384: what a graphics card takes, and 1 GiB as float32
 ALWAYS_FINE = 2**29  # [bytes] unpacked, at any ratio
-MOST_RATIO = 200  # of what is unpacked to what is on the disk
+MAX_RATIO = 200  # of what is unpacked to what is on the disk
 
 
 def refuse_bomb(path: Path, unpacked: int, packed: int) -> None:
     """Raise ``DataError`` for a file that would become so many bytes from so few."""
-    if unpacked > ALWAYS_FINE and unpacked > MOST_RATIO * packed:
-        found = f"would become {unpacked / 2**20:.0f} MiB from {packed / 2**20:.2g} MiB"
+    if unpacked > ALWAYS_FINE and unpacked > MAX_RATIO * packed:
+        what = f"would become {unpacked / 2**20:.0f} MiB from {packed / 2**20:.2g} MiB"
         bound = (
-            f"above {ALWAYS_FINE // 2**20} MiB a file of more than {MOST_RATIO} times its size is not opened"
+            f"above {ALWAYS_FINE // 2**20} MiB a file of more than {MAX_RATIO} times its size is not opened"
         )
-        raise DataError(f"{found}; {bound}", file=path)
+        raise DataError(f"{what}; {bound}", file=path)
 
 
 def refuse_too_many(path: Path, width: int, height: int) -> None:

@@ -34,7 +34,7 @@ def content_key(path: Path) -> str:
 
 
 def content_hash(path: Path) -> str:
-    """Return a hash of a file's contents, worked out anew when its times, size or identity change.
+    """Return a hash of a file's contents, worked out again when its times, size or identity change.
 
     The files next to it that say how to read it count as its contents.
     Raises ``DataError`` for a file that cannot be read.

@@ -27,9 +27,9 @@ from numpy.typing import NDArray
 from playground.allowed_files import ELEVATIONS
 from playground.data.arrays import read_npy, read_npz, read_raw
 from playground.data.gis import read_raster
-from playground.data.grid import Found, Heights, Packing, check_grid, from_channels
+from playground.data.grid import Heights, Packing, RasterFile, check_grid, from_channels
 from playground.data.image_files import checked_file, read_samples, read_texts, reason
-from playground.data.place import Place
+from playground.data.place import Georeference
 from playground.data.resample import decimate
 from playground.errors import DataError, nearest
 from playground.paths import shown
@@ -56,7 +56,7 @@ class Elevation:
     # None for other metres and for floats
     notes: tuple[str, ...] = ()  # sentences: what was assumed, what was lost
     path: Path | None = None  # where it was read from
-    place: Place | None = None  # where all of the file's texels lie; None: the file is silent
+    place: Georeference | None = None  # where all of the file's texels lie; None: the file is silent
     assumed: str = ""  # of the unit of its heights; "" where the file or its format says it
     range: tuple[float, float] | None = None  # the lowest and the highest of the file; None: of ``heights``
 
@@ -92,28 +92,28 @@ class ElevationFile:
     """An elevation file that was opened: its header is known, its heights can be read."""
 
     path: Path
-    found: Found
+    grid: RasterFile
     south_first: bool
 
     @property
     def size(self) -> tuple[int, int]:
         """Return (nx, ny), in texels."""
-        return self.found.size
+        return self.grid.size
 
     @property
     def extent(self) -> tuple[float, float] | None:
         """Return the width and depth in metres, from first to last node; None if unknown."""
-        return _extent(self.found.spacing, self.size)
+        return _extent(self.grid.spacing, self.size)
 
     def read(self) -> Elevation:
         """Return all heights; raise ``DataError`` for more than fit."""
-        check_grid(self.found.rows.shape, self.found.rows.dtype, self.path)
-        heights = np.empty(self.found.rows.shape, np.float32)
+        check_grid(self.grid.rows.shape, self.grid.rows.dtype, self.path)
+        heights = np.empty(self.grid.rows.shape, np.float32)
         in_order = heights if self.south_first else heights[::-1]
         with _damage_explained(self.path):
-            for start, band in self.found.rows.bands():
+            for start, band in self.grid.rows.bands():
                 in_order[start : start + len(band)] = self._heights(start, band)
-        return self._finished(heights, self.found.spacing)
+        return self._finished(heights, self.grid.spacing)
 
     def read_at(self, size: tuple[int, int]) -> Elevation:
         """Return the heights at another size (nx, ny), corners on corners, a part of the file at a time.
@@ -121,14 +121,14 @@ class ElevationFile:
         Where that is smaller than an overview of the file, the overview is read. The lowest and the highest
         are those of the file, or of an overview of a million texels or more.
         """
-        rows, whole = self.found.rows, self.size
+        rows, whole = self.grid.rows, self.size
         if size == whole:
-            found = self.read()
-            return replace(found, range=self.lowest_and_highest) if self.found.overviews else found
+            elevation = self.read()
+            return replace(elevation, range=self.lowest_and_highest) if self.grid.overviews else elevation
         # Twice as fine as what is wanted: the mean that an overview's texel is counts little then.
         fine = [
             o
-            for o in self.found.overviews
+            for o in self.grid.overviews
             if all(a >= 2 * b for a, b in zip(o.shape, size[::-1], strict=True))
         ]
         with _damage_explained(self.path):
@@ -137,15 +137,15 @@ class ElevationFile:
         spacing = None
         if extent is not None:
             spacing = extent[0] / (size[0] - 1), extent[1] / (size[1] - 1)
-        span = self.lowest_and_highest if self.found.overviews else (made.lowest, made.highest)
+        span = self.lowest_and_highest if self.grid.overviews else (made.lowest, made.highest)
         heights = made.heights if self.south_first else np.ascontiguousarray(made.heights[::-1])
         return replace(self._finished(heights, spacing), range=span)
 
     @cached_property
     def lowest_and_highest(self) -> tuple[float, float]:
         """Return those of an overview of a million texels or more, else of all texels."""
-        large = [rows for rows in self.found.overviews if math.prod(rows.shape) >= _OVERVIEW]
-        rows = large[-1] if large else self.found.rows
+        large = [rows for rows in self.grid.overviews if math.prod(rows.shape) >= _OVERVIEW]
+        rows = large[-1] if large else self.grid.rows
         low, high = math.inf, -math.inf
         with _damage_explained(self.path):
             for start, band in rows.bands():
@@ -157,10 +157,10 @@ class ElevationFile:
         return low, high
 
     def _heights(self, start: int, band: NDArray[Any]) -> NDArray[np.floating[Any]]:
-        heights = self.found.heights(band)
+        heights = self.grid.heights(band)
         if np.isinf(heights).any():
             row, x = (int(n) for n in np.argwhere(np.isinf(heights))[0])
-            y = start + row if self.south_first else self.found.rows.shape[0] - 1 - start - row
+            y = start + row if self.south_first else self.grid.rows.shape[0] - 1 - start - row
             message = f"a height is infinite, at texel ({x}, {y}) from the south-west corner"
             raise DataError(message, file=self.path)
         return heights
@@ -169,10 +169,10 @@ class ElevationFile:
         return DataError("no texel has any data", file=self.path)
 
     def _finished(self, heights: Heights, spacing: tuple[float, float] | None) -> Elevation:
-        found, path = self.found, self.path
+        grid, path = self.grid, self.path
         if np.isnan(heights).all():
             raise self._nothing()
-        notes, dtype = found.notes, found.rows.dtype
+        notes, dtype = grid.notes, grid.rows.dtype
         if dtype.itemsize > 2 and dtype != np.float32:
             low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
             grain = float(np.spacing(np.float32(max(abs(low), abs(high)))))
@@ -183,12 +183,12 @@ class ElevationFile:
             heights,
             path.name,
             spacing,
-            found.in_metres,
-            found.code_range,
+            grid.in_metres,
+            grid.code_range,
             notes,
             path,
-            found.place,
-            found.assumed,
+            grid.place,
+            grid.assumed,
         )
 
 
@@ -265,29 +265,29 @@ def open_elevation(
         )
     with _damage_explained(path):
         if ending == ".png":
-            found = from_channels(read_samples(path), packing, path)
-            found = _scaled(found, read_texts(path)) if packing == "grey" else found
+            raster = from_channels(read_samples(path), packing, path)
+            raster = _scaled(raster, read_texts(path)) if packing == "grey" else raster
         elif ending == ".npy":
-            found = read_npy(path)
+            raster = read_npy(path)
         elif ending == ".npz":
-            found = read_npz(path)
+            raster = read_npz(path)
         elif ending in (".r16", ".raw"):
-            found = read_raw(path, raw_size)
+            raster = read_raw(path, raw_size)
         else:
-            found = read_raster(path, packing)
-    check_grid(found.rows.shape, found.rows.dtype, path, in_turn=True)
-    return ElevationFile(path, found, found.south_first or first_row == "south")
+            raster = read_raster(path, packing)
+    check_grid(raster.rows.shape, raster.rows.dtype, path, in_turn=True)
+    return ElevationFile(path, raster, raster.south_first or first_row == "south")
 
 
-def _scaled(found: Found, text: Mapping[str, str]) -> Found:
+def _scaled(grid: RasterFile, text: Mapping[str, str]) -> RasterFile:
     """Return what was found in metres, where a PNG's texts say what its numbers mean."""
     scale, offset = (_numbers(text.get(name, ""), 1) for name in ("scale_m", "offset_m"))
-    if not scale or not offset or scale[0] <= 0.0 or found.code_range is None:
-        return found
-    low, high = (offset[0] + scale[0] * code for code in found.code_range)
+    if not scale or not offset or scale[0] <= 0.0 or grid.code_range is None:
+        return grid
+    low, high = (offset[0] + scale[0] * code for code in grid.code_range)
     spacing = _numbers(text.get("spacing_m", ""), 2)
     return replace(
-        found,
+        grid,
         in_metres=True,
         scale=scale[0],
         offset=offset[0],
@@ -299,10 +299,10 @@ def _scaled(found: Found, text: Mapping[str, str]) -> Found:
 def _numbers(text: str, count: int) -> list[float]:
     """Return so many finite numbers of a text, or none: a text may be anybody's."""
     try:
-        found = [float(word) for word in text.split()]
+        numbers = [float(word) for word in text.split()]
     except ValueError:
         return []
-    return found if len(found) == count and all(map(math.isfinite, found)) else []
+    return numbers if len(numbers) == count and all(map(math.isfinite, numbers)) else []
 
 
 @contextmanager
@@ -357,20 +357,20 @@ def _filled(heights: Heights) -> Heights:
     # Solve Laplace's equation in the gaps (free at the edges of the terrain), coarse to fine: the
     # pull and push of Gortler et al. 1996, "The Lumigraph", section 3.4, starts each level, a few
     # Gauss-Seidel sweeps finish it: the cascade of Bornemann and Deuflhard 1996.
-    known = ~np.isnan(heights)
+    is_known = ~np.isnan(heights)
     with np.errstate(all="ignore"):
-        level = np.where(known, heights, np.float32(0.0)).astype(np.float64)
-        middle = level.sum() / np.count_nonzero(known)
-        level[known] -= middle
-        levels = [(level, known)]
-        while not known.all():
-            level, known = _halved(level, known)
-            levels.append((level, known))
+        level = np.where(is_known, heights, np.float32(0.0)).astype(np.float64)
+        middle = level.sum() / np.count_nonzero(is_known)
+        level[is_known] -= middle
+        levels = [(level, is_known)]
+        while not is_known.all():
+            level, is_known = _halved(level, is_known)
+            levels.append((level, is_known))
         coarse = levels.pop()[0]
         while levels:
-            level, known = levels.pop()
-            gaps = np.argwhere(~known)
-            level[~known] = _interpolated(coarse, gaps)
+            level, is_known = levels.pop()
+            gaps = np.argwhere(~is_known)
+            level[~is_known] = _interpolated(coarse, gaps)
             _relax(level, gaps)
             coarse = level
         result = heights.copy()
@@ -380,11 +380,11 @@ def _filled(heights: Heights) -> Heights:
 
 
 def _halved(
-    level: NDArray[np.float64], known: NDArray[np.bool_]
+    level: NDArray[np.float64], is_known: NDArray[np.bool_]
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     # Means of the known among each 2 x 2; level is 0 where unknown.
     pad = [(0, n % 2) for n in level.shape]
-    total, count = np.pad(level, pad), np.pad(known, pad).astype(np.uint8)
+    total, count = np.pad(level, pad), np.pad(is_known, pad).astype(np.uint8)
     total = total[::2] + total[1::2]
     total = total[:, ::2] + total[:, 1::2]
     count = count[::2] + count[1::2]

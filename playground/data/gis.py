@@ -37,14 +37,14 @@ from playground.data.grid import (
     PACKED,
     SIXTEEN_BIT,
     Band,
-    Found,
     Packing,
+    RasterFile,
     check_grid,
     require_grey,
     unpacked,
 )
 from playground.data.image_files import reason
-from playground.data.place import WGS_84, Crs, Place, gdal, gdal_crs
+from playground.data.place import WGS_84, Crs, Georeference, gdal, gdal_crs
 from playground.errors import DataError
 from playground.regular_file import irregularity, read_regular
 
@@ -65,8 +65,8 @@ _DRIVERS = {
     ".vrt": "VRT",
 }
 _EXPECTED = {
-    ".tif": "not a TIFF file, although its name says so",
-    ".tiff": "not a TIFF file, although its name says so",
+    ".tif": "not a TIFF file, although its name ends like one",
+    ".tiff": "not a TIFF file, although its name ends like one",
     ".asc": "is no ESRI grid; expected a header of ncols, nrows, xllcorner, yllcorner and cellsize",
     ".gpkg": "holds no raster; vector data go to a pass that lays them on terrain",
     ".hgt": "is no SRTM tile; expected 1201 x 1201 or 3601 x 3601 heights of 16 bits, and a name that says "
@@ -141,7 +141,7 @@ class GdalRows:
         return values
 
 
-def read_raster(path: Path, packing: Packing = "grey") -> Found:
+def read_raster(path: Path, packing: Packing = "grey") -> RasterFile:
     """Read a raster's header: its rows, their meaning and their place.
 
     Raises:
@@ -160,7 +160,7 @@ def read_raster(path: Path, packing: Packing = "grey") -> Found:
         no_data, overviews = raster.nodata, len(raster.overviews(1))
         pictures = len(raster.subdatasets) if driver == "GTiff" else 0
         masked = any(flag.name == "per_dataset" for flag in raster.mask_flag_enums[0])
-        place, south_first, notes = _place(raster, crs, path)
+        position, south_first, notes = _place(raster, crs, path)
         block_rows = raster.block_shapes[0][0]
     if not (math.isfinite(scale) and math.isfinite(offset) and scale):
         raise DataError("says that its numbers have a scale or an offset that is no number", file=path)
@@ -170,7 +170,7 @@ def read_raster(path: Path, packing: Packing = "grey") -> Found:
         raise DataError(what, file=path)
     code_range = {"u1": EIGHT_BIT, "u2": SIXTEEN_BIT}.get(dtype.str[1:])
     coloured = not packed and code_range is not None and bands >= 3
-    has_meaning = place is not None or crs.facts.kind or unit or (scale, offset) != (1.0, 0.0)
+    has_meaning = position is not None or crs.facts.kind or unit or (scale, offset) != (1.0, 0.0)
     in_metres = code_range is None or bool(not packed and has_meaning)
     if masked or packed:
         dtype = np.promote_types(dtype, np.float32)
@@ -181,20 +181,20 @@ def read_raster(path: Path, packing: Packing = "grey") -> Found:
     if no_data is None and path.suffix.lower() in (".asc", ".flt"):
         no_data = _ESRI_NO_DATA
     rows = GdalRows(path, name, driver, shape, dtype, block_rows, packed, coloured, masked)
-    found = Found(
+    result = RasterFile(
         rows,
-        None if place is None else place.spacing[0],
+        None if position is None else position.spacing[0],
         in_metres=in_metres,
         code_range=None if in_metres else PACKED if packed else code_range,
         no_data=no_data,
-        place=place,
+        place=position,
         south_first=south_first,
         overviews=tuple(_overview(rows, number) for number in range(overviews)),
         notes=notes,
     )
     if not in_metres:
-        return found
-    return replace(found, scale=scale, offset=offset).in_unit(place.crs if place else crs, unit)
+        return result
+    return replace(result, scale=scale, offset=offset).in_unit(position.crs if position else crs, unit)
 
 
 def _open(name: str, driver: str, overview: int | None = None) -> rasterio.io.DatasetReader:
@@ -251,7 +251,7 @@ def _grid_in(path: Path) -> str:
 
 def _place(
     raster: rasterio.io.DatasetReader, crs: Crs, path: Path
-) -> tuple[Place | None, bool | None, tuple[str, ...]]:
+) -> tuple[Georeference | None, bool | None, tuple[str, ...]]:
     """Return where the nodes lie, whether the first row is the south's, both None if unknown, and notes."""
     at = raster.transform
     if at.is_identity:
@@ -267,13 +267,13 @@ def _place(
     size, south_first = (raster.width, raster.height), at.e > 0.0
     north = at.f + (size[1] - 0.5 if south_first else 0.5) * at.e
     is_point = raster.tags().get("AREA_OR_POINT") == "Point"
-    place = Place(at.c + 0.5 * at.a, north, (at.a, abs(at.e)), size, crs, is_point)
+    georeference = Georeference(at.c + 0.5 * at.a, north, (at.a, abs(at.e)), size, crs, is_point)
     if raster.driver in ("AAIGrid", "EHdr") and not crs.text:
         prj = path.with_suffix(".prj").name
         more: tuple[str, ...] = (f"there is no {prj} next to it, so its cells may be degrees or metres",)
     else:
-        more = place.spacing[1]
-    return place, south_first, (*more, *notes)
+        more = georeference.spacing[1]
+    return georeference, south_first, (*more, *notes)
 
 
 def turned(path: Path, east: float, north: float) -> DataError:
@@ -315,9 +315,9 @@ def _is_sparse(raster: rasterio.io.DatasetReader) -> bool:
 def _check_neighbours(path: Path) -> None:
     """Raise ``DataError`` where GDAL would be led to what is no file of this raster."""
     ending = path.suffix.lower()
-    for place in sidecar_places(path):
-        if what := irregularity(place):
-            raise DataError(what, file=place)
+    for position in sidecar_places(path):
+        if what := irregularity(position):
+            raise DataError(what, file=position)
     beside = sidecars(path)
     if ending in (".bil", ".flt") and not any(file.suffix.lower() == ".hdr" for file in beside):
         raise DataError(f"needs {path.with_suffix('.hdr').name} next to it, which says its size", file=path)
@@ -346,8 +346,8 @@ def _check_vrt(path: Path) -> None:
     for element in root.iter():
         text, kind = element.text or "", element.get("subClass", "VRTSourcedRasterBand")
         parts = [element.tag, *element.keys(), f"{element.tag} {kind}", element.get("domain", "")]
-        known = (_VRT_TAGS, *[_VRT_KEYS] * len(element.keys()), _VRT_CLASSES, ("", "IMAGE_STRUCTURE"))
-        odd = [part for part, names in zip(parts, known, strict=True) if part not in names]
+        existing = (_VRT_TAGS, *[_VRT_KEYS] * len(element.keys()), _VRT_CLASSES, ("", "IMAGE_STRUCTURE"))
+        odd = [part for part, names in zip(parts, existing, strict=True) if part not in names]
         if element.tag.endswith(("SRS", "CRS")) and not _SYSTEM.match(text):
             odd.append(text)
         if odd:

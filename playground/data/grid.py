@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.data.bounds import MAX_TEXELS
-from playground.data.place import Crs, Place
+from playground.data.place import Crs, Georeference
 from playground.errors import DataError
 from playground.regular_file import open_regular
 
@@ -26,7 +26,7 @@ EIGHT_BIT = (0.0, 255.0)
 SIXTEEN_BIT = (0.0, 65535.0)
 PACKED = (0.0, 16777215.0)
 
-MOST_IN_TURN = 2**34
+MAX_TEXELS_IN_STRIPS = 2**34
 """Texels of a file that is never read as a whole."""
 
 
@@ -111,7 +111,7 @@ class FileRows:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class RasterFile:
     """What a format's reader hands over; rows in the file's order."""
 
     rows: Rows  # of any real dtype
@@ -122,7 +122,7 @@ class Found:
     assumed: str = ""  # of the unit of its heights; "" where the file or its format says it
     scale: float = 1.0  # [m] height of one step of the file's numbers
     offset: float = 0.0  # [m] height of the file's 0
-    place: Place | None = None
+    place: Georeference | None = None
     south_first: bool | None = None  # the file's first row is the south's; None: it does not say
     overviews: tuple[Rows, ...] = ()  # the same terrain in fewer texels, each the mean of several
     notes: tuple[str, ...] = ()
@@ -133,7 +133,7 @@ class Found:
         ny, nx = self.rows.shape
         return nx, ny
 
-    def in_unit(self, crs: Crs, stated: str = "") -> Found:
+    def in_unit(self, crs: Crs, stated: str = "") -> RasterFile:
         """Return the same in metres, of scale and offset in a stated unit, else in that of ``crs``."""
         metres, assumed = crs.height_unit(stated)
         return replace(self, scale=self.scale * metres, offset=self.offset * metres, assumed=assumed)
@@ -154,9 +154,9 @@ class Found:
         return heights
 
 
-def in_memory(values: NDArray[Any], spacing: tuple[float, float] | None = None, **facts: Any) -> Found:
+def in_memory(values: NDArray[Any], spacing: tuple[float, float] | None = None, **facts: Any) -> RasterFile:
     """Return what was found, of an array (rows, cols)."""
-    return Found(ArrayRows(values), spacing, **facts)
+    return RasterFile(ArrayRows(values), spacing, **facts)
 
 
 def void_of(values: NDArray[Any], no_data: float | None) -> NDArray[np.bool_] | None:
@@ -195,12 +195,12 @@ def check_grid(shape: tuple[int, ...], dtype: np.dtype[Any], path: Path, *, in_t
         )
     if min(shape) < 2:
         raise DataError(f"is {size} texels; expected at least 2 x 2", file=path)
-    if math.prod(shape) > (MOST_IN_TURN if in_turn else MAX_TEXELS):
+    if math.prod(shape) > (MAX_TEXELS_IN_STRIPS if in_turn else MAX_TEXELS):
         most = "2**34, as 131072 x 131072" if in_turn else "2**28, as 16384 x 16384"
         raise DataError(f"is {size} texels; the most is {most}", file=path)
 
 
-def from_channels(samples: NDArray[Any], packing: Packing, path: Path) -> Found:
+def from_channels(samples: NDArray[Any], packing: Packing, path: Path) -> RasterFile:
     """Return the heights in a picture's samples (rows, cols, channels): grey, grey + alpha, RGB or RGBA."""
     channels, bits = samples.shape[2], 8 * samples.dtype.itemsize
     values: NDArray[Any] = samples[..., 0]

@@ -556,13 +556,13 @@ def new_name(path: str | Path) -> Iterator[Path]:
     Raises:
         DataError: a missing folder, no permission, a full disk.
     """
-    wanted = Path(path)
-    numbered = (wanted.with_name(f"{wanted.stem}-{n}{wanted.suffix}") for n in count(2))
-    found = next(name for name in chain([wanted], numbered) if _takes(name))
+    requested = Path(path)
+    numbered = (requested.with_name(f"{requested.stem}-{n}{requested.suffix}") for n in count(2))
+    name = next(name for name in chain([requested], numbered) if _takes(name))
     try:
-        yield found
+        yield name
     except BaseException:
-        found.unlink(missing_ok=True)
+        name.unlink(missing_ok=True)
         raise
 
 
@@ -600,7 +600,7 @@ def replacing(path: str | Path) -> Iterator[BinaryIO]:
             partial.rename(path)
 
 
-_LONGEST = {".webp": 16383, ".jpg": 65500, ".jpeg": 65500}  # pixels a side that libwebp and libjpeg take
+_MAX_SIDE = {".webp": 16383, ".jpg": 65500, ".jpeg": 65500}  # pixels a side that libwebp and libjpeg take
 JPEG_QUALITY = 95  # of 100: above it files grow and nothing is seen
 
 
@@ -617,8 +617,8 @@ def picture_ending(path: str | Path) -> str:
     """Return the ending of a picture's name; raise ``DataError`` for one that no picture has."""
     ending = Path(path).suffix.lower()
     if ending not in PICTURE_ENDINGS:
-        known = f"{', '.join(PICTURE_ENDINGS[:-1])} or {PICTURE_ENDINGS[-1]}"
-        raise DataError(f"a picture is written to a name ending in {known}", file=str(path))
+        endings = f"{', '.join(PICTURE_ENDINGS[:-1])} or {PICTURE_ENDINGS[-1]}"
+        raise DataError(f"a picture is written to a name ending in {endings}", file=str(path))
     return ending
 
 
@@ -635,7 +635,7 @@ def encode_as(ending: str, array: NDArray[np.uint8], text: Mapping[str, str] = _
     if text:
         raise DataError(f"a picture ending in {ending} holds no text; .png does")
     rows, cols = array.shape[:2]
-    if max(rows, cols) > (limit := _LONGEST.get(ending, 2**31)):
+    if max(rows, cols) > (limit := _MAX_SIDE.get(ending, 2**31)):
         raise DataError(f"{cols} x {rows} pixels are too many for {ending}, which takes {limit} a side")
     stream = io.BytesIO()
     if ending in (".tif", ".tiff"):
@@ -662,7 +662,7 @@ def encode_as(ending: str, array: NDArray[np.uint8], text: Mapping[str, str] = _
 def write_picture(path: str | Path, array: NDArray[np.uint8], *, text: Mapping[str, str] = _NO_TEXT) -> str:
     """Write a picture, whole or not at all; `array` and `text` as in `encode_as`.
 
-    Returns a sentence on the alpha that a JPEG cannot hold, or `""`.
+    Returns a message on the alpha that a JPEG cannot hold, or `""`.
 
     Raises:
         DataError: what `picture_ending` and `encode_as` refuse, a missing folder, no permission, a full disk.

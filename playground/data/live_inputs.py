@@ -152,10 +152,10 @@ class KeysNow(NamedTuple):
 
     def texels(self) -> NDArray[np.uint8]:
         """Return (3, 256) bytes: what is down, what was pressed, what is toggled; 255 or 0."""
-        found = np.zeros((3, KEYS), np.uint8)
+        texels = np.zeros((3, KEYS), np.uint8)
         for row, codes in enumerate(self):
-            found[row, list(codes)] = 255
-        return found
+            texels[row, list(codes)] = 255
+        return texels
 
 
 class Keyboard:

@@ -76,11 +76,13 @@ def open_media(path: Path, what: str, endings: tuple[str, ...]) -> av.container.
     try:
         # Metadata need not be UTF-8; from version 19 on PyAV escapes what is not, and has no such option.
         lenient = {"metadata_errors": "replace"} if int(module.__version__.split(".")[0]) < 19 else {}
-        found: av.container.InputContainer = module.open(str(path), "r", options=dict(_OPTIONS), **lenient)
+        container: av.container.InputContainer = module.open(
+            str(path), "r", options=dict(_OPTIONS), **lenient
+        )
     except (module.FFmpegError, OSError, ValueError) as error:
         message = f"not {what} that can be read ({_why(error)}); expected {listed}"
         raise DataError(message, file=path) from None
-    return found
+    return container
 
 
 def decodable(streams: Sequence[Stream], what: str, path: Path) -> Stream:
@@ -111,7 +113,7 @@ def _why(error: BaseException) -> str:
 
 
 _VIDEO = "a video file"
-_MOST_FRAMES = 2**22  # 19 hours at 60 frames a second
+_MAX_FRAMES = 2**22  # 19 hours at 60 frames a second
 _HELD_BYTES = 2**26  # of decoded frames, for what is shown again or backwards
 _MARGIN = 1e-6  # [s] a time is meant to be that of the frame that begins so little later
 _UNORDERED = ("avi",)  # their packets have the times at which they are decoded, not shown
@@ -201,30 +203,30 @@ class Film:
         key = keys[max(bisect_right(keys, number) - 1, 0)] if keys else 0
         if self._frames is None or number <= self._last or key > self._last + 1:
             self._restart(key)
-        found = self._read_until(number)
-        if found is None and key:  # the demuxer went too far
+        value = self._read_until(number)
+        if value is None and key:  # the demuxer went too far
             self._restart(0)
-            found = self._read_until(number)
-        if found is None:
+            value = self._read_until(number)
+        if value is None:
             raise DataError(
                 f"frame {number} cannot be decoded: the file is damaged or cut short", file=self.path
             )
-        return found
+        return value
 
     def _read_until(self, number: int) -> Any:
         """Decode on; return the frame, or the one before it that stays where it does not come out."""
-        found = self._latest
+        value = self._latest
         if self._frames is None:
-            return found
+            return value
         with decoding(self.path, f"frame {number} (at {self._index.times[number]:.3g} s)"):
             for at, frame in self._frames:
                 self._judge(frame.width, frame.height)
                 self._last, self._latest = at, frame
                 self._hold(at, frame)
                 if at >= number:
-                    return frame if at == number else found
-                found = frame
-        return found
+                    return frame if at == number else value
+                value = frame
+        return value
 
     def _restart(self, key: int) -> None:
         if self._container is not None:
@@ -280,8 +282,8 @@ def _indexed(container: av.container.InputContainer, stream: av.video.VideoStrea
         ordered = ordered and stamp is not None
         shown.append((len(shown) if stamp is None else stamp, packet.is_keyframe))
         last = max(last, packet.duration or 0)
-        if len(shown) > _MOST_FRAMES:
-            raise DataError(f"more than {_MOST_FRAMES} frames are too many", file=path)
+        if len(shown) > _MAX_FRAMES:
+            raise DataError(f"more than {_MAX_FRAMES} frames are too many", file=path)
     if not shown:
         raise DataError("it has no frames: the file is damaged or cut short", file=path)
     shown.sort()
@@ -320,14 +322,14 @@ def _film(path: str, content: str) -> Film:
 
 
 def film_of(path: Path) -> Film:
-    """Return an open film, anew where its file has changed. Raises ``DataError`` as ``Film`` does."""
+    """Return an open film, again where its file has changed. Raises ``DataError`` as ``Film`` does."""
     return _film(str(path), content_key(path))
 
 
 RATE = 44_100  # [Hz]
 _SOUND = "a sound file"
 _WEIGHT = 2**26  # [bytes] of an open sound, about: it is decoded as far as it was heard
-_MOST_BYTES = ALWAYS_FINE  # of samples: 25 minutes in stereo
+_MAX_BYTES = ALWAYS_FINE  # of samples: 25 minutes in stereo
 
 
 class Sound:
@@ -354,15 +356,15 @@ class Sound:
         """Return the ``count`` samples before sample ``end``, (channels, count), -1..1."""
         first = end - count
         self.decode_until(end)
-        length, found = self._count, np.zeros((self.channels, count), np.float32)
+        length, samples = self._count, np.zeros((self.channels, count), np.float32)
         if not length:
-            return found
+            return samples
         indices = np.arange(max(first, 0), max(end, 0))
         if loop and self._ended:
             indices %= length
         there = indices < length
-        found[:, count - len(indices) :][:, there] = self._samples[:, indices[there]]
-        return found
+        samples[:, count - len(indices) :][:, there] = self._samples[:, indices[there]]
+        return samples
 
     def length(self, end: int) -> int | None:
         """Return the samples that it has, if they are fewer than ``end``; None otherwise."""
@@ -399,8 +401,8 @@ class Sound:
         return container
 
     def _judge(self, count: int) -> None:
-        if count * self.channels * 4 > _MOST_BYTES:
-            most = _MOST_BYTES // (self.channels * 4 * RATE * 60)
+        if count * self.channels * 4 > _MAX_BYTES:
+            most = _MAX_BYTES // (self.channels * 4 * RATE * 60)
             raise DataError(
                 f"{count / RATE / 60:.0f} minutes of sound are too many; the limit is {most}", file=self.path
             )
@@ -412,7 +414,7 @@ def _sound(path: str, content: str) -> Sound:
 
 
 def sound_of(path: Path) -> Sound:
-    """Return an open sound, anew where its file has changed. Raises ``DataError`` as ``Sound`` does."""
+    """Return an open sound, again where its file has changed. Raises ``DataError`` as ``Sound`` does."""
     return _sound(str(path), content_key(path))
 
 
@@ -430,7 +432,7 @@ WINDOW = 2048  # samples
 BINS = WINDOW // 2
 SHOWN = 512  # bins, and samples of the wave, in Shadertoy's texture
 _SMOOTHING = 0.8
-_LOWEST, _HIGHEST = -100.0, -30.0  # [dB]
+_MIN_DECIBELS, _MAX_DECIBELS = -100.0, -30.0  # [dB]
 _HOP = RATE // 60  # samples from one frame to the next
 _FRAMES = 52  # what is older has less than 0.8 ** 52 = 1e-5 of its strength, which is -100 dB
 SPAN = WINDOW + (_FRAMES - 1) * _HOP
@@ -454,7 +456,7 @@ def spectrum(samples: NDArray[np.float32]) -> NDArray[np.uint8]:
     with np.errstate(under="ignore"):
         strengths = np.abs(np.fft.rfft(windows * _BLACKMAN, axis=1)[:, :BINS]) / WINDOW
         decibels = 20.0 * np.log10(np.maximum(_WEIGHTS @ strengths, 1e-30))
-    scaled = 255.0 * (decibels - _LOWEST) / (_HIGHEST - _LOWEST)
+    scaled = 255.0 * (decibels - _MIN_DECIBELS) / (_MAX_DECIBELS - _MIN_DECIBELS)
     return np.floor(np.clip(scaled, 0.0, 255.0)).astype(np.uint8)
 
 

@@ -54,7 +54,7 @@ class Model:
 
 
 class _Wrong(Exception):
-    """What is wrong with a file, in words that follow its name."""
+    """What is wrong with a file, as text that follow its name."""
 
 
 def read_model(path: Path) -> Model:
@@ -157,10 +157,10 @@ def _check(header: Json) -> None:
 
 def _list(owner: Json, key: str, kind: type = dict) -> list[Any]:
     """Return a list of an object, of objects unless another kind is named; none is empty."""
-    found = owner.get(key, [])
-    if not isinstance(found, list) or not all(type(each) is kind for each in found):
-        raise _Wrong(f"has {key} {str(found)[:60]}; a list was expected")
-    return found
+    values = owner.get(key, [])
+    if not isinstance(values, list) or not all(type(each) is kind for each in values):
+        raise _Wrong(f"has {key} {str(values)[:60]}; a list was expected")
+    return values
 
 
 def _whole(owner: Json, key: str) -> int:
@@ -218,15 +218,15 @@ def _part(
 
     def numbers(key: str, name: str) -> NDArray[np.float64]:
         """Return an attribute of each corner, three numbers; whole ones that are normalised become -1..1."""
-        found: NDArray[Any] = geometry[key]
-        if found.ndim != 2 or found.shape[1] < 3 or len(found) != count:
+        array: NDArray[Any] = geometry[key]
+        if array.ndim != 2 or array.shape[1] < 3 or len(array) != count:
             raise _Wrong(f"has {name} of a form that is not read; 3 numbers for each place were expected")
-        found = found[order, :3]  # only what the triangles use: places may be shared by many parts
-        if not np.isfinite(found).all():
+        array = array[order, :3]  # only what the triangles use: places may be shared by many parts
+        if not np.isfinite(array).all():
             raise _Wrong(f"has {name} that are no numbers")
         stated = header["accessors"][primitive["attributes"][name]].get("normalized", False)
-        whole = stated and found.dtype.kind in "iu"
-        return np.maximum(found / np.iinfo(found.dtype).max, -1.0) if whole else found.astype(np.float64)
+        whole = stated and array.dtype.kind in "iu"
+        return np.maximum(array / np.iinfo(array.dtype).max, -1.0) if whole else array.astype(np.float64)
 
     corners = numbers("vertices", "POSITION") @ turn.T + matrix[:3, 3]
     flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

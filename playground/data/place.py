@@ -195,8 +195,8 @@ def _parts(document: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
 
 
 def _axes(part: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    found: list[Mapping[str, Any]] = part.get("coordinate_system", {}).get("axis", [])
-    return found
+    axes: list[Mapping[str, Any]] = part.get("coordinate_system", {}).get("axis", [])
+    return axes
 
 
 def _unit(axis: Mapping[str, Any]) -> tuple[float, str]:
@@ -211,7 +211,7 @@ def _unit(axis: Mapping[str, Any]) -> tuple[float, str]:
 
 
 @dataclass(frozen=True)
-class Place:
+class Georeference:
     """Where a grid of nodes lies, in the units of its reference system; rows go east."""
 
     west: float  # of the westernmost nodes

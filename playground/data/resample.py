@@ -39,20 +39,20 @@ def resample(
     Raises:
         DataError: not a grid of finite numbers, or a size below 2 x 2 or above 2**28.
     """
-    given = np.asarray(heights)
+    array = np.asarray(heights)
     name = Path("heights to resample")
-    check_grid(given.shape, given.dtype, name)
+    check_grid(array.shape, array.dtype, name)
     nx, ny = (int(n) for n in size)
     check_grid((ny, nx), np.dtype(np.float32), Path("resampled heights"))
-    bad = int(np.count_nonzero(~np.isfinite(given)))
+    bad = int(np.count_nonzero(~np.isfinite(array)))
     if bad:
         raise DataError(f"{bad} are not finite; expected gaps to be filled first", file=name)
     with np.errstate(all="ignore"):
-        values = given.astype(np.float32, copy=False)
+        values = array.astype(np.float32, copy=False)
         middle = np.float64(values.min()) / 2 + np.float64(values.max()) / 2
         part = values - middle  # float64, and zero for a constant
         # The axis that shrinks most goes first: less to do for the other.
-        if ny / given.shape[0] <= nx / given.shape[1]:
+        if ny / array.shape[0] <= nx / array.shape[1]:
             part = _resized(_resized(part, ny).T, nx).T
         else:
             part = _resized(_resized(part.T, nx).T, ny)
@@ -99,11 +99,11 @@ def taps(
     # Reflected in the points of its edges, the terrain repeats with period p, raised each time by twice
     # its rise: v[q p + r] = 2 q (v[n-1] - v[0]) + (v[r] if r < n else 2 v[n-1] - v[p - r]).
     period = 2 * (n - 1)
-    periods, place = np.divmod(index, period)
-    inside = place < n
+    periods, offset = np.divmod(index, period)
+    inside = offset < n
     first = -2.0 * (weights * periods).sum(axis=1)
     last = 2.0 * (weights * (periods + ~inside)).sum(axis=1)
-    return np.where(inside, weights, -weights), np.where(inside, place, period - place), first, last
+    return np.where(inside, weights, -weights), np.where(inside, offset, period - offset), first, last
 
 
 def steps_away(n: int, count: int, lead: float = 0.0) -> tuple[float, NDArray[np.float64], NDArray[np.intp]]:
@@ -174,7 +174,7 @@ class _Axis:
 
     def groups(self, start: int, end: int) -> list[tuple[slice, slice, NDArray[np.float64]]]:
         """Return which results take which of the sources from start to end, and their weights."""
-        found = []
+        groups = []
         for first in range(0, len(self.sources), _GROUP):
             results = slice(first, first + _GROUP)
             sources, weights = self.sources[results], self.weights[results]
@@ -184,19 +184,19 @@ class _Axis:
                 inside = (sources >= low) & (sources < high)
                 row = np.broadcast_to(np.arange(len(sources))[:, None], sources.shape)
                 np.add.at(dense, (row[inside], sources[inside] - low), weights[inside])
-                found.append((results, slice(low - start, high - start), dense))
-        return found
+                groups.append((results, slice(low - start, high - start), dense))
+        return groups
 
 
 def _smooth(n: int, count: int, lead: float) -> _Axis:
     weights, sources, first, last = taps(n, count, lead)
     # What the edges count besides is one more tap each; where it is nothing, it stays with the others.
-    place = sources[:, :1]
+    position = sources[:, :1]
     sources = np.hstack(
         [
             sources,
             *(
-                np.where(extra != 0.0, edge, place[:, 0])[:, None]
+                np.where(extra != 0.0, edge, position[:, 0])[:, None]
                 for extra, edge in ((first, 0), (last, n - 1))
             ),
         ]

@@ -24,7 +24,7 @@ def write_values(path: str | Path, array: NDArray[np.float32]) -> str:
       1, 3 or 4 channels (grey, RGB, RGBA), no transfer curve;
     * `.tif`, `.tiff`: float32, uncompressed, exactly these values, north row on top.
 
-    Returns a sentence on what was clamped, or `""`.
+    Returns a message on what was clamped, or `""`.
 
     Raises:
         DataError: another ending or shape, a value that is not finite (PNG only),
@@ -81,7 +81,7 @@ def _values_as_png(image: NDArray[np.float32], path: Path) -> tuple[bytes, str]:
 
 
 def clamped_note(values: NDArray[np.float32], low: float = 0.0, high: float = 1.0, unit: str = "") -> str:
-    """Return a sentence on how many values are clamped to a range; nothing where none are."""
+    """Return a message on how many values are clamped to a range; nothing where none are."""
     outside = int(np.count_nonzero((values < np.float32(low)) | (values > np.float32(high))))
     if not outside:
         return ""

@@ -32,7 +32,7 @@ from playground.regular_file import irregularity, open_regular, read_regular
 Kind = Literal["point", "line", "polygon"]
 Line = NDArray[np.float64]  # (n, 2): x or longitude, y or latitude
 
-MOST_BYTES = 2**28
+MAX_BYTES = 2**28
 """Of a GeoJSON, which becomes some ten times as much in memory while it is read."""
 
 _WGS_84 = "EPSG:4326"
@@ -64,7 +64,7 @@ _KINDS: dict[str, tuple[Kind, int]] = {  # with how deep their coordinates nest
 
 
 @dataclass(frozen=True, eq=False)
-class Shape:
+class VectorShape:
     """A point, a line, or a polygon with the rings of its holes."""
 
     kind: Kind
@@ -75,7 +75,7 @@ class Shape:
 class Vectors:
     """The shapes of a file."""
 
-    shapes: tuple[Shape, ...]
+    shapes: tuple[VectorShape, ...]
     crs: str = _WGS_84  # as GDAL takes it: a code or a text; "" where the file does not say
     notes: tuple[str, ...] = ()
 
@@ -83,20 +83,20 @@ class Vectors:
 def read_vectors(path: Path) -> Vectors:
     """Read all shapes of a file; raise ``DataError`` for what is none, damaged, empty or too big."""
     path = checked_file(path)
-    for place in sidecar_places(path):  # OGR opens them itself
-        if what := irregularity(place):
-            raise DataError(what, file=place)
+    for path_beside in sidecar_places(path):  # OGR opens them itself
+        if what := irregularity(path_beside):
+            raise DataError(what, file=path_beside)
     ending = path.suffix.lower()
     if ending in (".geojson", ".json"):
-        found = _geojson(path)
+        vectors = _geojson(path)
     elif ending in _BEGINS:
-        found = _by_ogr(path, ending)
+        vectors = _by_ogr(path, ending)
     else:
-        known = ", ".join((".geojson", ".json", *_BEGINS))
-        raise DataError(f"{ending!r} is no format of vector data; readable are {known}", file=path)
-    if not found.shapes:
+        endings = ", ".join((".geojson", ".json", *_BEGINS))
+        raise DataError(f"{ending!r} is no format of vector data; readable are {endings}", file=path)
+    if not vectors.shapes:
         raise DataError("holds no point, line or polygon", file=path)
-    return found
+    return vectors
 
 
 # ── GeoJSON ──────────────────────────────────────────────────────────────────
@@ -104,9 +104,9 @@ def read_vectors(path: Path) -> Vectors:
 
 def _geojson(path: Path) -> Vectors:
     size = path.stat().st_size
-    if size > MOST_BYTES:
+    if size > MAX_BYTES:
         raise DataError(
-            f"has {size / 2**20:.0f} MiB; of GeoJSON {MOST_BYTES // 2**20} are read at most, of .gpkg more",
+            f"has {size / 2**20:.0f} MiB; of GeoJSON {MAX_BYTES // 2**20} are read at most, of .gpkg more",
             file=path,
         )
     try:
@@ -119,55 +119,55 @@ def _geojson(path: Path) -> Vectors:
     return Vectors(shapes, _crs_of(document, path))
 
 
-def _geometries(found: Any, path: Path) -> Iterator[dict[str, Any]]:
+def _geometries(value: Any, path: Path) -> Iterator[dict[str, Any]]:
     """Yield the geometries of a document, of a feature, or of several of them."""
-    waiting = [found]
+    waiting = [value]
     while waiting:
-        one = waiting.pop()
-        if not isinstance(one, dict):
+        geometry = waiting.pop()
+        if not isinstance(geometry, dict):
             continue
-        if one.get("type") == "Feature":
-            waiting.append(one.get("geometry"))
-        elif "features" in one or "geometries" in one:
-            parts = [part for name in ("features", "geometries") for part in _listed(one, name, path)]
+        if geometry.get("type") == "Feature":
+            waiting.append(geometry.get("geometry"))
+        elif "features" in geometry or "geometries" in geometry:
+            parts = [part for name in ("features", "geometries") for part in _listed(geometry, name, path)]
             waiting += parts[::-1]
         else:
-            yield one
+            yield geometry
 
 
-def _listed(one: dict[str, Any], name: str, path: Path) -> list[Any]:
-    found = one.get(name)
-    if not isinstance(found, list | None):
-        message = f'is not GeoJSON: expected "{name}" to be a list; found {_shortened(found)}'
+def _listed(table: dict[str, Any], name: str, path: Path) -> list[Any]:
+    items = table.get(name)
+    if not isinstance(items, list | None):
+        message = f'is not GeoJSON: expected "{name}" to be a list; found {_shortened(items)}'
         raise DataError(message, file=path)
-    return found or []
+    return items or []
 
 
-def _shortened(found: object) -> str:
-    text = repr(found)
+def _shortened(value: object) -> str:
+    text = repr(value)
     return text if len(text) <= 40 else f"{text[:39]}…"
 
 
-def _shapes(geometry: dict[str, Any], path: Path) -> Iterator[Shape]:
+def _shapes(geometry: dict[str, Any], path: Path) -> Iterator[VectorShape]:
     word = geometry.get("type")
     if not isinstance(word, str) or word not in _KINDS:
         message = f"is not GeoJSON: it holds a {_shortened(word)}; expected {', '.join(_KINDS)}"
         raise DataError(message, file=path)
     kind, depth = _KINDS[word]
-    wanted = {"point": 0, "line": 1, "polygon": 2}[kind]
+    depth_wanted = {"point": 0, "line": 1, "polygon": 2}[kind]
     several: list[Any] = [geometry.get("coordinates")]
     try:
-        for _ in range(depth - wanted):
-            several = [part for one in several for part in one]
-        for one in several:
-            lines = one if kind == "polygon" else [one] if kind == "line" else [[one]]
+        for _ in range(depth - depth_wanted):
+            several = [part for item in several for part in item]
+        for part in several:
+            lines = part if kind == "polygon" else [part] if kind == "line" else [[part]]
             arrays = tuple(
                 np.array([(x, y) for x, y, *_ in line], np.float64).reshape(-1, 2) for line in lines
             )
             if any(not np.isfinite(line).all() for line in arrays):
                 raise ValueError
             if all(map(len, arrays)) and arrays:
-                yield Shape(kind, arrays)
+                yield VectorShape(kind, arrays)
     except (TypeError, ValueError, IndexError, OverflowError):
         raise DataError(f"holds a {word} whose coordinates are no numbers", file=path) from None
 
@@ -195,11 +195,11 @@ def _by_ogr(path: Path, ending: str) -> Vectors:
     if find_spec("pyogrio") is None:
         raise DataError(needs(f"{ending} is read by OGR, which", "pyogrio", "gis"), file=path)
     if not _is_what_it_says(path, ending):
-        raise DataError(f"is no {ending[1:]} file, although its name says so", file=path)
+        raise DataError(f"is no {ending[1:]} file, although its name ends like one", file=path)
     import pyogrio
     from pyogrio.errors import DataLayerError, DataSourceError
 
-    found: list[Shape] = []
+    result: list[VectorShape] = []
     systems: list[str] = []
     try:
         for name, kind in pyogrio.list_layers(path):
@@ -211,12 +211,12 @@ def _by_ogr(path: Path, ending: str) -> Vectors:
             meta, _, shapes, _ = pyogrio.raw.read(path, layer=str(name), columns=[], force_2d=True)
             own = [shape for blob in shapes if blob is not None for shape in _from_binary(bytes(blob))]
             systems += [meta["crs"] or ""] if own else []
-            found += own if systems[-1:] == systems[:1] else []
+            result += own if systems[-1:] == systems[:1] else []
     except (DataLayerError, DataSourceError, UnicodeDecodeError) as error:
         raise DataError(f"cannot be read by OGR: {reason(error)}", file=path) from None
     same = systems.count(systems[0]) if systems else 0
     notes = (f"{len(systems) - same} layers in another reference system are left out",)
-    return Vectors(tuple(found), systems[0] if systems else "", notes if same < len(systems) else ())
+    return Vectors(tuple(result), systems[0] if systems else "", notes if same < len(systems) else ())
 
 
 def _is_what_it_says(path: Path, ending: str) -> bool:
@@ -239,13 +239,13 @@ def _is_what_it_says(path: Path, ending: str) -> bool:
             return begins.match(text, at) is not None and _LEADS_AWAY.search(text) is None
 
 
-def _from_binary(blob: bytes) -> tuple[Shape, ...]:
-    found: list[Shape] = []
-    _geometry(blob, 0, found)
-    return tuple(found)
+def _from_binary(blob: bytes) -> tuple[VectorShape, ...]:
+    shapes: list[VectorShape] = []
+    _geometry(blob, 0, shapes)
+    return tuple(shapes)
 
 
-def _geometry(blob: bytes, at: int, found: list[Shape]) -> int:
+def _geometry(blob: bytes, at: int, shapes: list[VectorShape]) -> int:
     """Add the shapes of a geometry at a byte, and return the byte after it; what is curved is left out."""
     order = "<" if blob[at] else ">"
     (word,) = struct.unpack_from(f"{order}I", blob, at + 1)
@@ -253,29 +253,29 @@ def _geometry(blob: bytes, at: int, found: list[Shape]) -> int:
     if word == 1:
         line, at = _points(blob, at, order, 1)
         if np.isfinite(line).all():
-            found.append(Shape("point", (line,)))
+            shapes.append(VectorShape("point", (line,)))
     elif word == 2:
         lines, at = _counted(blob, at, order, 1)
-        found += [Shape("line", lines)] if len(lines[0]) else []
+        shapes += [VectorShape("line", lines)] if len(lines[0]) else []
     elif word == 3:
         (count,) = struct.unpack_from(f"{order}I", blob, at)
         lines, at = _counted(blob, at + 4, order, count)
-        found += [Shape("polygon", lines)] if lines and all(map(len, lines)) else []
+        shapes += [VectorShape("polygon", lines)] if lines and all(map(len, lines)) else []
     elif word in (4, 5, 6, 7):
         (count,) = struct.unpack_from(f"{order}I", blob, at)
         at += 4
         for _ in range(count):
-            at = _geometry(blob, at, found)
+            at = _geometry(blob, at, shapes)
     return at
 
 
 def _counted(blob: bytes, at: int, order: str, lines: int) -> tuple[tuple[Line, ...], int]:
-    found = []
+    pictures = []
     for _ in range(lines):
         (count,) = struct.unpack_from(f"{order}I", blob, at)
         line, at = _points(blob, at + 4, order, count)
-        found.append(line)
-    return tuple(found), at
+        pictures.append(line)
+    return tuple(pictures), at
 
 
 def _points(blob: bytes, at: int, order: str, count: int) -> tuple[Line, int]:
@@ -299,7 +299,7 @@ class Grid:
     spacing: tuple[float, float]  # [m] a texel, east and north
 
 
-def draw(shapes: Sequence[Shape], grid: Grid, width: float, *, filled: bool) -> Mask:
+def draw(shapes: Sequence[VectorShape], grid: Grid, width: float, *, filled: bool) -> Mask:
     """Return the shares 0..1 (ny, nx), row 0 in the south, of shapes whose places are in texels.
 
     Lines are ``width`` metres wide and points discs as wide as that; polygons are ``filled``, or lines.
@@ -329,19 +329,19 @@ def _stroke(mask: Mask, grid: Grid, segments: Segments, radius: float) -> None:
         np.maximum.at(flat, texels, (inner - beyond).astype(np.float32))
 
 
-def _fill(mask: Mask, grid: Grid, polygon: Shape) -> None:
+def _fill(mask: Mask, grid: Grid, polygon: VectorShape) -> None:
     rings = [np.concatenate([ring, ring[:1]]) for ring in polygon.lines]
     points = np.concatenate(rings)
     most = np.array(grid.size) - 1
     low = np.clip(np.floor(points.min(axis=0)) - 1.0, 0, most).astype(np.intp)
     high = np.clip(np.ceil(points.max(axis=0)) + 1.0, 0, most).astype(np.intp)
     share = _inside(_segments(rings), low, high).astype(np.float32)
-    # Near the edge it is the share of the texel on the inner side.
-    found = [(texels, away / side) for texels, away, side in _near(grid, _segments(rings), 0.0)]
-    if found:
-        texels, own = np.unique(np.concatenate([each[0] for each in found]), return_inverse=True)
+    # Near the edge it is the fraction of the texel on the inner side.
+    edges = [(texels, away / side) for texels, away, side in _near(grid, _segments(rings), 0.0)]
+    if edges:
+        texels, own = np.unique(np.concatenate([each[0] for each in edges]), return_inverse=True)
         steps = np.full(len(texels), np.inf)
-        np.minimum.at(steps, own, np.concatenate([each[1] for each in found]))
+        np.minimum.at(steps, own, np.concatenate([each[1] for each in edges]))
         y, x = texels // grid.size[0] - low[1], texels % grid.size[0] - low[0]
         share[y, x] = np.clip(0.5 + np.where(share[y, x] > 0.0, steps, -steps), 0.0, 1.0)
     part = mask[low[1] : high[1] + 1, low[0] : high[0] + 1]

@@ -6,7 +6,7 @@ from playground.engine.engine import Engine
 from playground.errors import Diagnostic, PlaygroundError, ShaderError
 from playground.sketch.model import CpuSource, Sketch
 
-MOST = 200  # diagnostics; more help no one
+MAX_DIAGNOSTICS = 200  # diagnostics; more help no one
 
 
 def all_errors(
@@ -23,11 +23,11 @@ def all_errors(
         plan = engine.plan(sketch, size, time)
     except PlaygroundError:
         return error
-    found: dict[tuple[str, int, int, str], Diagnostic] = {}
-    _take(found, error)
+    diagnostics: dict[tuple[str, int, int, str], Diagnostic] = {}
+    _take(diagnostics, error)
     tried: set[tuple[int, str]] = set()
     for step in plan.walk():
-        if isinstance(step.kernel, CpuSource) or len(found) >= MOST:
+        if isinstance(step.kernel, CpuSource) or len(diagnostics) >= MAX_DIAGNOSTICS:
             continue
         try:
             kernel, driver = step.kernel, engine.driver_for(step)
@@ -38,14 +38,14 @@ def all_errors(
                 engine.runner.before_step(step)
             engine.runner.programs.get(kernel, driver)
         except ShaderError as other:
-            _take(found, other)
+            _take(diagnostics, other)
         except PlaygroundError:
             continue  # this machine lacks something, which is no mistake of the text
-    return ShaderError(diagnostics=found.values())
+    return ShaderError(diagnostics=diagnostics.values())
 
 
-def _take(found: dict[tuple[str, int, int, str], Diagnostic], error: ShaderError) -> None:
+def _take(diagnostics: dict[tuple[str, int, int, str], Diagnostic], error: ShaderError) -> None:
     """Add an error's diagnostics; one of a file that several kernels include is added once."""
     for diagnostic in error.diagnostics:
-        place = (diagnostic.file, diagnostic.line, diagnostic.column, diagnostic.message)
-        found.setdefault(place, diagnostic)
+        key = (diagnostic.file, diagnostic.line, diagnostic.column, diagnostic.message)
+        diagnostics.setdefault(key, diagnostic)

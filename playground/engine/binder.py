@@ -48,7 +48,7 @@ class Bound:
     """What a program's uniforms and samplers are set for."""
 
     step: Step
-    given: Mapping[str, Any]
+    uniforms: Mapping[str, Any]
     wires: tuple[int, ...]
     units: tuple[tuple[Input, int, moderngl.Sampler], ...]  # of textures, by input
     unit: int  # the next free one
@@ -94,7 +94,7 @@ class Binder:
         self,
         program: Program,
         step: Step,
-        given: Mapping[str, Any],
+        values: Mapping[str, Any],
         inputs: Mapping[str, Wired],
         wires: tuple[int, ...] | None = None,
     ) -> int:
@@ -107,12 +107,17 @@ class Binder:
         if self._software and program.fixed:
             program.set_all(self._software.values_of(program.fixed, step.kernel, inputs))
         bound = program.bound
-        if isinstance(bound, Bound) and bound.step is step and bound.given is given and bound.wires == wires:
+        if (
+            isinstance(bound, Bound)
+            and bound.step is step
+            and bound.uniforms is values
+            and bound.wires == wires
+        ):
             for declared, unit, sampler in bound.units:
                 self.use(unit, self.wired(declared, inputs), sampler)
             return bound.unit
         program.bound = None
-        kernel, uniforms, unit = step.kernel, {**given, "size": step.whole_size}, 0
+        kernel, uniforms, unit = step.kernel, {**values, "size": step.whole_size}, 0
         if step.window is not None:
             uniforms[WINDOW] = step.window.origin
         for parameter in kernel.parameters:
@@ -120,7 +125,7 @@ class Binder:
             if parameter.widget.kind != "file":
                 uniforms[parameter.name] = value
                 if parameter.widget.kind == "button":
-                    uniforms[parameter.name] = given.get(f"{PRESSED}{parameter.name}", value)
+                    uniforms[parameter.name] = values.get(f"{PRESSED}{parameter.name}", value)
                 if parameter.widget.kind == "direction":
                     uniforms[f"{TOWARDS}{parameter.name}"] = unit_vector(value)  # type: ignore[arg-type]
             elif parameter.name in program.uniforms:
@@ -140,7 +145,7 @@ class Binder:
                 unit += 1
         program.set_all(uniforms)
         if not has_files:
-            program.bound = Bound(step, given, wires, tuple(units), unit)
+            program.bound = Bound(step, values, wires, tuple(units), unit)
         return unit
 
     def wired(self, declared: Input, inputs: Mapping[str, Wired]) -> moderngl.Texture:
@@ -178,14 +183,14 @@ class Binder:
 
     def previous_units(self, program: Program, kernel: Kernel, unit: int) -> list[tuple[str, int]]:
         """Return on which unit the texture of the iteration before goes, by output, where it is read."""
-        found: list[tuple[str, int]] = []
+        units: list[tuple[str, int]] = []
         for output in kernel.outputs:
             name = f"k_previous_{output.name}"
             if name in program.uniforms:
                 program.set(name, unit)
-                found.append((output.name, unit))
+                units.append((output.name, unit))
                 unit += 1
-        return found
+        return units
 
     def previous(self, units: Sequence[tuple[str, int]], state: Mapping[str, moderngl.Texture]) -> None:
         """Bind the textures of the iteration before; zeros where there is none."""
@@ -205,11 +210,11 @@ class Binder:
 
     def sampler(self, sampling: Sampling) -> moderngl.Sampler:
         """Return the sampler that reads textures so: the same for samplings that are equal."""
-        found = self._samplers.get(sampling)
-        if found is None:
-            found = self._samplers[sampling] = self._new_sampler(sampling)
+        sampler = self._samplers.get(sampling)
+        if sampler is None:
+            sampler = self._samplers[sampling] = self._new_sampler(sampling)
             self._put_back()
-        return found
+        return sampler
 
     def sampler_of(self, kernel: Kernel, declared: Input) -> moderngl.Sampler:
         """Return the sampler that reads an input of a kernel."""

@@ -100,7 +100,7 @@ def features_of(heights: Field, width: float) -> Field:
 
 def features_both_ways(orientations: list[Field], side: int) -> list[Field]:
     """Return the features of an upright example and of a turned one, for pieces (side, side)."""
-    return [features_of(one, side / 6) for one in (orientations[0], orientations[4])]
+    return [features_of(orientation, side / 6) for orientation in (orientations[0], orientations[4])]
 
 
 def in_cells(field: NDArray[np.floating[Any]]) -> NDArray[np.floating[Any]]:
@@ -112,7 +112,9 @@ def in_cells(field: NDArray[np.floating[Any]]) -> NDArray[np.floating[Any]]:
     return np.asarray(sums / np.outer(counts, counts)).reshape(*field.shape[:-2], -1)
 
 
-def oriented(example: Field, spacing: tuple[float, float], wanted: tuple[float, float]) -> list[Field]:
+def oriented(
+    example: Field, spacing: tuple[float, float], spacing_wanted: tuple[float, float]
+) -> list[Field]:
     """Return an example in eight orientations, resampled from a spacing to the wanted one [m, m]."""
 
     def at(metres: tuple[float, float]) -> Field:
@@ -122,7 +124,7 @@ def oriented(example: Field, spacing: tuple[float, float], wanted: tuple[float, 
             return example
         return resample(example, (max(size[0], 2), max(size[1], 2))).astype(np.float64)
 
-    upright, turned = at(wanted), at((wanted[1], wanted[0])).T
+    upright, turned = at(spacing_wanted), at((spacing_wanted[1], spacing_wanted[0])).T
     return [each[:: 1 - 2 * y, :: 1 - 2 * x] for each in (upright, turned) for y in (0, 1) for x in (0, 1)]
 
 
@@ -130,7 +132,7 @@ def oriented(example: Field, spacing: tuple[float, float], wanted: tuple[float, 
 class Fit:
     """What is compared of a place in the terrain with every piece."""
 
-    known: NDArray[np.bool_]  # (side, side) texels that have heights already
+    filled: NDArray[np.bool_]  # (side, side) texels that have heights already
     heights: Field  # (side, side) theirs
     features: Field | None = None  # (CELLS²) those that are wanted, in the example's deviations; None: any
     weight: float = 0.0  # of the features, beside the known heights
@@ -153,18 +155,18 @@ class Candidates:
         self.side = side
         self.orientations = orientations
         self.which = rng.integers(len(orientations), size=count)
-        shapes = np.array([one.shape for one in orientations])[self.which] - side - 1
+        shapes = np.array([orientation.shape for orientation in orientations])[self.which] - side - 1
         self.corners = (rng.random((count, 2)) * (shapes + 1)).astype(np.intp)  # y, x in its orientation
         features = features or features_both_ways(orientations, side)
         self.deviation = float(features[0].std()) or 1.0
         turned = [*_mirrored(features[0]), *_mirrored(features[1])]
-        found = np.empty((count, side, side), np.float32)
+        pieces = np.empty((count, side, side), np.float32)
         cells = np.empty((count, CELLS * CELLS), np.float32)
         for k, (way, (y, x)) in enumerate(zip(self.which, self.corners, strict=True)):
-            found[k] = orientations[way][y : y + side, x : x + side]
+            pieces[k] = orientations[way][y : y + side, x : x + side]
             cells[k] = in_cells(turned[way][y : y + side, x : x + side])
-        found -= found.mean((1, 2), keepdims=True)
-        self._heights = found.reshape(count, -1)
+        pieces -= pieces.mean((1, 2), keepdims=True)
+        self._heights = pieces.reshape(count, -1)
         self._squares = self._heights**2
         self._cells = cells / self.deviation
         self._uses = np.zeros(count)
@@ -185,15 +187,15 @@ class Candidates:
         always win; and pieces that were used already, in part too, count as worse.
         """
         errors = np.zeros(len(self._heights))
-        count = int(fit.known.sum())
+        count = int(fit.filled.sum())
         if count:
-            mask = fit.known.astype(np.float32).ravel()
+            mask = fit.filled.astype(np.float32).ravel()
             sums, squares = self._over(mask)
-            given = np.where(fit.known, fit.heights, 0.0)
-            given -= given.sum() / count * fit.known
-            products = self._heights @ given.astype(np.float32).ravel()
+            heights = np.where(fit.filled, fit.heights, 0.0)
+            heights -= heights.sum() / count * fit.filled
+            products = self._heights @ heights.astype(np.float32).ravel()
             own = squares - sums**2 / count
-            others = float((given**2).sum())
+            others = float((heights**2).sum())
             errors += (own + others - 2 * products) / (own + others + 1e-6)
         if fit.features is not None and fit.weight > 0:
             weights = abs(fit.features)
@@ -215,7 +217,7 @@ class Candidates:
 
     def _in_example(self) -> Field:
         """Return the middles of the pieces in the upright example, (count, 2) in its texels."""
-        found = np.empty((len(self.which), 2))
+        positions = np.empty((len(self.which), 2))
         ny, nx = self.orientations[0].shape
         for k, (way, corner) in enumerate(zip(self.which, self.corners, strict=True)):
             shape = np.array(self.orientations[way].shape)
@@ -224,8 +226,8 @@ class Candidates:
             middle = np.where([south, west], shape - middle, middle)
             if way >= 4:  # turned: its rows are the example's columns
                 middle = (middle / shape)[::-1] * (ny, nx)
-            found[k] = middle
-        return found
+            positions[k] = middle
+        return positions
 
 
 def _mirrored(field: Field) -> list[Field]:
@@ -251,7 +253,7 @@ def quilted(
     *,
     features: Field | None = None,
     weight: float = 1.0,
-    report: Callable[[int, int], None] = lambda done, wanted: None,
+    report: Callable[[int, int], None] = lambda done, total: None,
 ) -> Quilt:
     """Return terrain of a size (nx, ny) laid of pieces that overlap by so many texels.
 
@@ -263,30 +265,30 @@ def quilted(
     columns, rows = (max(-(-(n - overlap) // step), 1) for n in (nx, ny))
     shape = rows * step + overlap, columns * step + overlap
     quilt = Quilt(np.zeros(shape), np.zeros(shape), np.zeros(shape))
-    known = np.zeros(shape, bool)
-    wanted = np.zeros((rows, columns, CELLS * CELLS))
+    filled = np.zeros(shape, bool)
+    total = np.zeros((rows, columns, CELLS * CELLS))
     if features is not None:
         whole = np.pad(features, ((0, max(shape[0] - ny, 0)), (0, max(shape[1] - nx, 0))), mode="edge")
         for j in range(rows):
             for i in range(columns):
                 part = whole[j * step : j * step + side, i * step : i * step + side]
-                wanted[j, i] = in_cells(part)
-    strength = np.sqrt((wanted**2).mean(-1))
-    placed = np.zeros((rows, columns), bool)
+                total[j, i] = in_cells(part)
+    strength = np.sqrt((total**2).mean(-1))
+    is_placed = np.zeros((rows, columns), bool)
     for done, (j, i) in enumerate(_order(strength)):
         report(done, rows * columns)
-        place = slice(j * step, j * step + side), slice(i * step, i * step + side)
+        slices = slice(j * step, j * step + side), slice(i * step, i * step + side)
         strong = min(strength[j, i], 1.0)
         fit = Fit(
-            known[place],
-            quilt.heights[place],
-            wanted[j, i] if strong > _WEAK else None,
+            filled[slices],
+            quilt.heights[slices],
+            total[j, i] if strong > _WEAK else None,
             weight * strong,
         )
         number = candidates.best(fit)
-        beside = [_is_placed(placed, j + dj, i + di) for dj, di in _SIDES]
-        _put(quilt, known, place, candidates.with_border(number), overlap, beside)
-        placed[j, i] = True
+        beside = [_is_placed(is_placed, j + dj, i + di) for dj, di in _SIDES]
+        _put(quilt, filled, slices, candidates.with_border(number), overlap, beside)
+        is_placed[j, i] = True
     cut = slice(ny), slice(nx)
     return Quilt(quilt.heights[cut], quilt.east[cut], quilt.north[cut])
 
@@ -305,9 +307,9 @@ def _order(strength: Field) -> Iterator[tuple[int, int]]:
     strong = np.where(strength > _WEAK, strength, 0.0).tolist()
     waiting = {(j, i) for j in range(rows) for i in range(columns)}
 
-    def rank(place: tuple[int, int]) -> tuple[float, int, int, int]:
+    def rank(cell: tuple[int, int]) -> tuple[float, int, int, int]:
         """Return what is least for the place that comes first; it falls as places beside it are filled."""
-        j, i = place
+        j, i = cell
         beside = sum((j + dj, i + di) not in waiting for dj, di in _SIDES)
         return -strong[j][i], -beside, j, i
 
@@ -319,22 +321,22 @@ def _order(strength: Field) -> Iterator[tuple[int, int]]:
         while border and border[0][2:] not in waiting:
             heappop(border)
         follows = border and (border[0][0] < 0 or begins[-1][0] == 0)
-        place = (heappop(border) if follows else begins.pop())[2:]
-        waiting.remove(place)
+        cell = (heappop(border) if follows else begins.pop())[2:]
+        waiting.remove(cell)
         for dj, di in _SIDES:
-            if (beside := (place[0] + dj, place[1] + di)) in waiting:
+            if (beside := (cell[0] + dj, cell[1] + di)) in waiting:
                 heappush(border, rank(beside))
-        yield place
+        yield cell
 
 
-def _is_placed(placed: NDArray[np.bool_], j: int, i: int) -> bool:
-    return 0 <= j < placed.shape[0] and 0 <= i < placed.shape[1] and bool(placed[j, i])
+def _is_placed(array: NDArray[np.bool_], j: int, i: int) -> bool:
+    return 0 <= j < array.shape[0] and 0 <= i < array.shape[1] and bool(array[j, i])
 
 
 def _put(
     quilt: Quilt,
-    known: NDArray[np.bool_],
-    place: tuple[slice, slice],
+    filled: NDArray[np.bool_],
+    slices: tuple[slice, slice],
     piece: Field,
     overlap: int,
     beside: list[bool],
@@ -343,7 +345,7 @@ def _put(
 
     ``beside`` says whether there is a piece to the west, east, south and north.
     """
-    there, old, heights = known[place], quilt.heights[place], piece[:-1, :-1]
+    there, old, heights = filled[slices], quilt.heights[slices], piece[:-1, :-1]
     if there.any():
         heights = heights + (old[there] - heights[there]).mean()
     else:
@@ -357,10 +359,10 @@ def _put(
             keep = np.arange(len(line)) >= line[:, np.newaxis]
             taken &= np.rot90(keep, -turns)
     taken |= ~there
-    quilt.heights[place][taken] = heights[taken]
-    quilt.east[place][taken] = np.diff(piece, axis=1)[:-1][taken]
-    quilt.north[place][taken] = np.diff(piece, axis=0)[:, :-1][taken]
-    known[place] = True
+    quilt.heights[slices][taken] = heights[taken]
+    quilt.east[slices][taken] = np.diff(piece, axis=1)[:-1][taken]
+    quilt.north[slices][taken] = np.diff(piece, axis=0)[:, :-1][taken]
+    filled[slices] = True
 
 
 def cut(error: Field) -> NDArray[np.intp]:
@@ -383,7 +385,7 @@ def cut(error: Field) -> NDArray[np.intp]:
     return way
 
 
-_LEAST, _MOST = 12, 192  # texels of a piece's side
+_MIN_PIECE, _MAX_PIECE = 12, 192  # texels of a piece's side
 _BYTES = 2**26  # that the pieces may take
 _OVERLAP = 3  # a piece overlaps the next by a third of it
 _WEIGHT = 8.0  # of features that are followed wholly, beside the overlaps
@@ -391,7 +393,7 @@ _BEFORE, _STEPS = 3, 6  # resampling, cutting out, features; with what comes aft
 
 
 @dataclass(frozen=True)
-class Wishes:
+class SynthesisSettings:
     """What is made of an example."""
 
     piece: float = 3840.0  # [m] side of the pieces
@@ -405,9 +407,9 @@ def made_like(
     spacing_of_example: tuple[float, float],
     size: tuple[int, int],
     spacing: tuple[float, float],
-    wishes: Wishes,
+    wishes: SynthesisSettings,
     guide: Field | None = None,
-    report: Callable[[int, int], None] = lambda done, wanted: None,
+    report: Callable[[int, int], None] = lambda done, total: None,
 ) -> Field:
     """Return heights (ny, nx), in the example's unit, about 0; row 0 is south.
 
@@ -420,8 +422,8 @@ def made_like(
     ways = _ways(example, spacing_of_example, spacing)
     side = _side(wishes, spacing, ways, example)
     report(1, _STEPS)
-    known = _features(example, spacing_of_example, spacing, side)
-    pieces = Candidates(ways, side, _count(wishes, side), rng, known)
+    existing = _features(example, spacing_of_example, spacing, side)
+    pieces = Candidates(ways, side, _count(wishes, side), rng, existing)
     report(2, _STEPS)
     hills = _guide(guide, size)
     features = features_of(hills, side / 6) if hills is not None and wishes.follow > 0 else None
@@ -429,10 +431,10 @@ def made_like(
         features = features / deviation
     laid = 0
 
-    def laying(done: int, wanted: int) -> None:
+    def laying(done: int, total: int) -> None:
         nonlocal laid
-        laid = wanted
-        report(done + _BEFORE, wanted + _STEPS)
+        laid = total
+        report(done + _BEFORE, total + _STEPS)
 
     quilt = quilted(
         pieces,
@@ -449,9 +451,9 @@ def made_like(
         deviation = float(smoothed(ways[0], side / 6).std()) / (float(wide.std()) or 1.0)
         near, nearness = (wide - wide.mean()) * deviation, 2 * wishes.follow * (1.5 / side) ** 2
     report(laid + _BEFORE + 1, laid + _STEPS)
-    found = integrated(quilt.east, quilt.north, near, nearness)
+    field = integrated(quilt.east, quilt.north, near, nearness)
     report(laid + _BEFORE + 2, laid + _STEPS)
-    return found
+    return field
 
 
 @SOURCES.cached(weight=bytes_held)
@@ -470,9 +472,11 @@ def _features(
     return features_both_ways(_ways(example, spacing_of_example, spacing), side)
 
 
-def _side(wishes: Wishes, spacing: tuple[float, float], ways: list[Field], example: Elevation) -> int:
+def _side(
+    wishes: SynthesisSettings, spacing: tuple[float, float], ways: list[Field], example: Elevation
+) -> int:
     """Return the texels of a piece's side."""
-    side = int(np.clip(round(wishes.piece / np.sqrt(spacing[0] * spacing[1])), _LEAST, _MOST))
+    side = int(np.clip(round(wishes.piece / np.sqrt(spacing[0] * spacing[1])), _MIN_PIECE, _MAX_PIECE))
     least = min(min(way.shape) for way in ways)
     if least < side + 2:
         ny, nx = ways[0].shape
@@ -484,7 +488,7 @@ def _side(wishes: Wishes, spacing: tuple[float, float], ways: list[Field], examp
     return side
 
 
-def _count(wishes: Wishes, side: int) -> int:
+def _count(wishes: SynthesisSettings, side: int) -> int:
     return max(min(wishes.candidates, _BYTES // (8 * side * side)), 1)
 
 
@@ -499,7 +503,7 @@ def _guide(guide: Field | None, size: tuple[int, int]) -> Field | None:
 
 PARAMETERS = ("elevation", "texel", "rise", "piece", "candidates", "follow", "seed")
 INPUTS = ("guide",)
-_LONGEST = 2049  # texels of an example's longer side, of a file that has more
+_MAX_SIDE = 2049  # texels of an example's longer side, of a file that has more
 _SALT = crc32(b"generation/from_example")
 
 
@@ -518,7 +522,7 @@ def work(
     span = example.highest - example.lowest
     texel = _number(values, "texel")
     spacing = (texel * coarser, texel * coarser) if texel else example.spacing
-    wishes = Wishes(
+    wishes = SynthesisSettings(
         piece=_number(values, "piece"),
         candidates=int(_number(values, "candidates")),
         follow=_number(values, "follow"),
@@ -541,10 +545,10 @@ def work(
 def notes(values: Mapping[str, Value]) -> tuple[str, ...]:
     """Return what was assumed of the example."""
     example, _ = _example(values)
-    found = [f"{example.name}: {note}" for note in example.notes]
+    facts = [f"{example.name}: {note}" for note in example.notes]
     if example.spacing is None and not _number(values, "texel"):
-        found.append(f"{example.name}: it does not say how large it is, so its texels are this terrain's")
-    return tuple(found)
+        facts.append(f"{example.name}: it does not say how large it is, so its texels are this terrain's")
+    return tuple(facts)
 
 
 def _metres(values: Mapping[str, Value]) -> tuple[float | None, float | None]:
@@ -566,15 +570,15 @@ def _example(values: Mapping[str, Value]) -> tuple[Elevation, float]:
 @SOURCES.cached(weight=bytes_held)
 def _read(path: str, content: str) -> tuple[Elevation, float]:  # ``content`` changes whenever the file does
     file = open_elevation(Path(path))
-    size = fitted(file.size, _LONGEST)
-    found = fill_no_data(file.read_at(size), "fill")
-    if min(found.size) < 2:
+    size = fitted(file.size, _MAX_SIDE)
+    elevation = fill_no_data(file.read_at(size), "fill")
+    if min(elevation.size) < 2:
         raise DataError("an example needs 2 x 2 texels at least", file=path)
     if size == file.size:
-        return found, 1.0
+        return elevation, 1.0
     whole, fewer = (f"{x} x {y}" for x, y in (file.size, size))
     note = f"its {whole} texels are read as {fewer}, enough for an example"
-    return replace(found, notes=(*found.notes, note)), (max(file.size) - 1) / (max(size) - 1)
+    return replace(elevation, notes=(*elevation.notes, note)), (max(file.size) - 1) / (max(size) - 1)
 
 
 def _number(values: Mapping[str, Value], name: str) -> float:
@@ -597,8 +601,8 @@ def rank_heights(
     """
     nx, ny = size
     material.report(0, _RANKED_STEPS)
-    given = material.inputs.get("example")
-    heights = np.zeros((ny, nx)) if given is None else given.reshape(*given.shape[:2], -1)[..., 0]
+    value = material.inputs.get("example")
+    heights = np.zeros((ny, nx)) if value is None else value.reshape(*value.shape[:2], -1)[..., 0]
     heights = np.nan_to_num(np.asarray(heights, np.float64), posinf=0.0, neginf=0.0)
     if heights.shape != (ny, nx):
         heights = resample(heights, size).astype(np.float64) if min(heights.shape) > 1 else np.zeros((ny, nx))
@@ -621,7 +625,7 @@ def rank_heights(
 
 
 def normal_deviate(share: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the number below which a share of a normal distribution lies, to 1e-8.
+    """Return the number below which a fraction of a normal distribution lies, to 1e-8.
 
     Source: P. J. Acklam 2003, "An algorithm for computing the inverse normal cumulative distribution
     function": rational functions, near each end of the square root of -2 log.
@@ -636,5 +640,5 @@ def normal_deviate(share: NDArray[np.float64]) -> NDArray[np.float64]:
     middle = share - 0.5
     r = middle**2
     inner = np.polyval([*a, 2.506628277459239], r) * middle / np.polyval([*b, 1.0], r)
-    found: NDArray[np.float64] = np.where(tail < 0.02425, np.copysign(outer, middle), inner)
-    return found
+    deviates: NDArray[np.float64] = np.where(tail < 0.02425, np.copysign(outer, middle), inner)
+    return deviates

@@ -9,7 +9,7 @@ from playground.engine.results import Cached, Pool, Result
 
 # Results of any size: a driver spends memory on each texture besides its texels, so that thousands
 # of small ones, one for each save of a small sketch, would grow past any bound in bytes.
-MOST = 512
+MAX_ENTRIES = 512
 # Of one pass: whoever drags a slider leaves a version behind with every picture, and comes back to none of
 # them. Their textures are used again: to make one costs as much as to fill it (1025 x 1025: 2 ms).
 VERSIONS = 4
@@ -116,8 +116,8 @@ class Cache:
 
     def earlier(self, path: str, unfinished: str, iterations: int) -> str:
         """Return the key of the same pass after fewer iterations; "" where nothing is cached of it."""
-        known, key, before = self._latest.get(path, ("", "", 0))
-        return key if known == unfinished and before < iterations and key in self._cached else ""
+        step_key, key, before = self._latest.get(path, ("", "", 0))
+        return key if step_key == unfinished and before < iterations and key in self._cached else ""
 
     def note_read(self, path: str, read: str, key: str) -> None:
         """Remember what a pass has read that has this key."""
@@ -125,8 +125,8 @@ class Cache:
 
     def with_same_read(self, path: str, read: str) -> str:
         """Return the key of the same pass where it read the same; "" where nothing is cached of it."""
-        known, key = self._read.get(path, ("", ""))
-        return key if known == read and key in self._cached and key not in self._in_use else ""
+        read_key, key = self._read.get(path, ("", ""))
+        return key if read_key == read and key in self._cached and key not in self._in_use else ""
 
     def take(self, key: str) -> Result:
         """Hand over the result of a pass to the caller, and forget it."""
@@ -180,7 +180,7 @@ class Cache:
             self.drop(key)
 
     def _holds(self, more: int = 0) -> bool:
-        return self._total + self.states.bytes + more <= self._bound and len(self._cached) <= MOST
+        return self._total + self.states.bytes + more <= self._bound and len(self._cached) <= MAX_ENTRIES
 
     def clear(self) -> None:
         """Drop everything."""

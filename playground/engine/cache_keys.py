@@ -31,7 +31,7 @@ from playground.engine.source_kinds import Terrain
 from playground.memo import GRAPHS
 from playground.shader.expressions import counts_frames
 from playground.shader.reserved_names import CLOCKED, GIVEN, MATCHES, PRESSED, TOWARDS
-from playground.sketch.flat import Fed, Ref, Shape, Source
+from playground.sketch.flat import Fed, GraphShape, Ref, Source
 from playground.sketch.model import (
     ComputeVariant,
     CpuSource,
@@ -66,8 +66,8 @@ class StepKey:
         that reads is another: ask its step why.
         """
         ours, theirs = ({name: repr(part) for name, part in key.parts} for key in (self, other))
-        found = [name for name in {**theirs, **ours} if ours.get(name) != theirs.get(name)]
-        return tuple(found or (("iterations of its loop",) if self.result != other.result else ()))
+        names = [name for name in {**theirs, **ours} if ours.get(name) != theirs.get(name)]
+        return tuple(names or (("iterations of its loop",) if self.result != other.result else ()))
 
 
 @dataclass
@@ -113,32 +113,32 @@ class KeyMaker:
         self._last: _PlanKeys | None = None  # of the last plan
 
     def keys_of(
-        self, plan: Plan, driver: Callable[[Step], str], given: Callable[[Step], Mapping[str, Any]]
+        self, plan: Plan, driver: Callable[[Step], str], uniforms_of: Callable[[Step], Mapping[str, Any]]
     ) -> Keys:
         """Return the keys of a plan; they are not to be changed.
 
-        ``driver`` chooses what a step runs by, always the same; ``given`` returns what the engine gives it
+        ``driver`` chooses how a step runs, always the same; ``uniforms_of`` returns what the engine gives it
         besides its parameters: of a kernel, what its text names, and which of its buttons are pressed.
         """
         last = self._last
-        found = last.copy() if last is not None and last.is_like(plan) else _PlanKeys(plan)
-        computation = _KeyComputation(self.text_of, self._content, driver, given, found)
-        waiting = found.doubtful(plan.nodes)  # places of nodes, the first on top
-        known, stale = set(waiting), set[int]()
+        keys = last.copy() if last is not None and last.is_like(plan) else _PlanKeys(plan)
+        computation = _KeyComputation(self.text_of, self._content, driver, uniforms_of, keys)
+        waiting = keys.doubtful(plan.nodes)  # places of nodes, the first on top
+        queued, stale = set(waiting), set[int]()
         while waiting:
-            place = heappop(waiting)
-            before = found.parts[place]
-            if before is None or place in stale or computation.differs(before, plan.nodes[place]):
-                part = computation.part(plan.nodes[place], before)
-                found.put(place, part)
+            index = heappop(waiting)
+            before = keys.parts[index]
+            if before is None or index in stale or computation.differs(before, plan.nodes[index]):
+                part = computation.part(plan.nodes[index], before)
+                keys.put(index, part)
                 if before is None or part.shown != before.shown:
-                    for reader in found.readers[place]:
+                    for reader in keys.readers[index]:
                         stale.add(reader)
-                        if reader not in known:
-                            known.add(reader)
+                        if reader not in queued:
+                            queued.add(reader)
                             heappush(waiting, reader)
-        self._last = found
-        return found.keys
+        self._last = keys
+        return keys.keys
 
     def text_of(self, kernel: Kernel) -> _Text:
         """Return what a kernel's text says, worked out once: texts are long, and kernels seldom change."""
@@ -176,7 +176,7 @@ def _read_text(kernel: Kernel, text_of: Callable[[Kernel], str]) -> _Text:
     is_moving = (
         not isinstance(kernel, TexelKernel | ComputeVariant)
         or bool(kernel.file_parameters)
-        or not _FIXED.issuperset(kernel.given)
+        or not _FIXED.issuperset(kernel.engine_uniforms)
         or any(parameter.widget.kind == "button" for parameter in kernel.parameters)
     )
     by_texels = frozenset[str]()
@@ -208,7 +208,7 @@ class _Reads(NamedTuple):
     driver: str
     files: list[str]  # contents
     sources: list[tuple[str, str]]  # input → key of what it reads
-    given: Mapping[str, Any]
+    uniforms: Mapping[str, Any]
     is_continued: bool  # by a later draw
     clocked: frozenset[str]  # what is in no key, since it is that of the frame that a loop is at
 
@@ -221,13 +221,13 @@ class _Known(NamedTuple):
     key: StepKey
 
 
-class _Part(NamedTuple):
+class _NodeKeys(NamedTuple):
     """A node of a plan whose keys are known, with what is inside it."""
 
     node: PlanNode
     steps: Mapping[int, _Known]  # by the step's identity
     moving: tuple[Step, ...]  # steps that the same plan may give something else in the next frame
-    given: str  # what they were given
+    uniforms: str  # what they were given
     shown: list[tuple[str, frozenset[str]]]  # what the nodes that read it see of it: see ``_KeyComputation``
 
 
@@ -235,12 +235,12 @@ class _PlanKeys:
     """The keys of one plan, and what is needed to compute those of the next one from them."""
 
     def __init__(self, plan: Plan) -> None:
-        self.shape: Shape = plan.flat.shape
+        self.shape: GraphShape = plan.flat.shape
         self.terrain: Terrain = plan.terrain
         self.continued = plan.continued
         self.keys = Keys()
         self.varies: dict[str, frozenset[str]] = {}  # loops that a step changes with, for its next reader
-        self.parts: list[_Part | None] = [None] * len(plan.nodes)
+        self.parts: list[_NodeKeys | None] = [None] * len(plan.nodes)
         self.moving: set[int] = set()  # places of the nodes with moving steps
         self.readers = _readers(plan.nodes)  # places of the nodes that read each node
 
@@ -250,24 +250,24 @@ class _PlanKeys:
 
     def copy(self) -> _PlanKeys:
         """Return the same, to be changed."""
-        found = copy(self)
-        found.keys, found.varies = self.keys.copy(), self.varies.copy()
-        found.parts, found.moving = self.parts.copy(), self.moving.copy()
-        return found
+        copied = copy(self)
+        copied.keys, copied.varies = self.keys.copy(), self.varies.copy()
+        copied.parts, copied.moving = self.parts.copy(), self.moving.copy()
+        return copied
 
     def doubtful(self, nodes: Sequence[PlanNode]) -> list[int]:
         """Return the places of nodes whose keys may be others now, ascending."""
         pairs = enumerate(zip(nodes, self.parts, strict=True))
-        others = {place for place, (node, part) in pairs if part is None or part.node is not node}
+        others = {index for index, (node, part) in pairs if part is None or part.node is not node}
         return sorted(others | self.moving)
 
-    def put(self, place: int, part: _Part) -> None:
+    def put(self, index: int, part: _NodeKeys) -> None:
         """Set the keys of the node at a place."""
-        self.parts[place] = part
+        self.parts[index] = part
         if part.moving:
-            self.moving.add(place)
+            self.moving.add(index)
         else:
-            self.moving.discard(place)
+            self.moving.discard(index)
 
 
 def _inside(node: PlanNode) -> list[PlanNode]:
@@ -277,13 +277,13 @@ def _inside(node: PlanNode) -> list[PlanNode]:
 
 def _readers(nodes: Sequence[PlanNode]) -> list[frozenset[int]]:
     """Return the places of the nodes that read each node, by its place."""
-    home = {step.path: place for place, node in enumerate(nodes) for step in walk((node,))}
-    found: list[set[int]] = [set() for _ in nodes]
-    for place, node in enumerate(nodes):
+    home = {step.path: index for index, node in enumerate(nodes) for step in walk((node,))}
+    readers: list[set[int]] = [set() for _ in nodes]
+    for index, node in enumerate(nodes):
         for source in sources_of(node):
-            if isinstance(source, Ref) and home[source.path] != place:
-                found[home[source.path]].add(place)
-    return [frozenset(places) for places in found]
+            if isinstance(source, Ref) and home[source.path] != index:
+                readers[home[source.path]].add(index)
+    return [frozenset(places) for places in readers]
 
 
 class _KeyComputation:
@@ -294,38 +294,38 @@ class _KeyComputation:
         text_of: Callable[[Kernel], _Text],
         content: Callable[[Path], str],
         driver: Callable[[Step], str],
-        given: Callable[[Step], Mapping[str, Any]],
+        uniforms_of: Callable[[Step], Mapping[str, Any]],
         whole: _PlanKeys,
     ) -> None:
         self.keys = whole.keys
         self.varies = whole.varies
         self.continued = whole.continued
         self.before: Mapping[int, _Known] = {}
-        self.found: dict[int, _Known] = {}
+        self.step_keys: dict[int, _Known] = {}
         self.sized: dict[tuple[str, bool], frozenset[str]] = {}  # see ``_note_sized``
         self.text_of = text_of
         self.content = content
         self.driver = driver
-        self.given = given
+        self.uniforms_of = uniforms_of
 
-    def differs(self, part: _Part, node: PlanNode) -> bool:
+    def differs(self, part: _NodeKeys, node: PlanNode) -> bool:
         """Return whether a node is another than it was, or its moving steps are given something else."""
-        return part.node is not node or (bool(part.moving) and part.given != self._given_to(part.moving))
+        return part.node is not node or (bool(part.moving) and part.uniforms != self._given_to(part.moving))
 
-    def part(self, node: PlanNode, before: _Part | None) -> _Part:
+    def part(self, node: PlanNode, before: _NodeKeys | None) -> _NodeKeys:
         """Compute the keys of a node and of what is inside it; ``before``: those of the last plan."""
-        self.before, self.found = before.steps if before else {}, {}
+        self.before, self.step_keys = before.steps if before else {}, {}
         if before is not None:
             for old in _inside(before.node):
                 self.keys.changes.pop(id(old), None)
         self.add(node, _NO_LOOP, {}, {})
-        steps = [one for one in _inside(node) if isinstance(one, Step)]
+        steps = [step for step in _inside(node) if isinstance(step, Step)]
         moving = tuple([step for step in steps if self.text_of(step.kernel).is_moving])
         shown = [(self.keys.steps[step.path].result, self.varies[step.path]) for step in steps]
-        return _Part(node, self.found, moving, self._given_to(moving) if moving else "", shown)
+        return _NodeKeys(node, self.step_keys, moving, self._given_to(moving) if moving else "", shown)
 
     def _given_to(self, steps: Sequence[Step]) -> str:
-        return repr([(self._files_of(step), self.given(step)) for step in steps])
+        return repr([(self._files_of(step), self.uniforms_of(step)) for step in steps])
 
     def _files_of(self, step: Step) -> list[str]:
         """Return what tells the contents of a step's files from others."""
@@ -342,16 +342,16 @@ class _KeyComputation:
         kernel, path = node.kernel, node.path
         sources = [(name, self._source(source, fed) if source else "") for name, source in node.inputs]
         files = self._files_of(node)
-        given, clocked = self.given(node), frozenset[str]()
+        uniforms, clocked = self.uniforms_of(node), frozenset[str]()
         if loops.frames or counts_frames(kernel.repeat):
-            clocked = _clocked(node, given)
-            given = {name: value for name, value in given.items() if name not in clocked}
-        reads = _Reads(self.driver(node), files, sources, given, path in self.continued, clocked)
-        known, written = self.before.get(id(node)), repr(reads)
-        if known is None or known.step is not node or known.reads != written:
-            known = _Known(node, written, self._key_of(node, reads))
-        self.found[id(node)] = known
-        self.keys.steps[path] = known.key
+            clocked = _clocked(node, uniforms)
+            uniforms = {name: value for name, value in uniforms.items() if name not in clocked}
+        reads = _Reads(self.driver(node), files, sources, uniforms, path in self.continued, clocked)
+        cached, written = self.before.get(id(node)), repr(reads)
+        if cached is None or cached.step is not node or cached.reads != written:
+            cached = _Known(node, written, self._key_of(node, reads))
+        self.step_keys[id(node)] = cached
+        self.keys.steps[path] = cached.key
         varies = self.sized.get((path, False), frozenset[str]())
         for _, source in node.inputs:
             varies |= self._varies(source, varying) if source else varies
@@ -374,7 +374,7 @@ class _KeyComputation:
                 own.append((f"file {name}", (name, parameter.sampling, suffix, next(contents))))
             elif name in text.used and name not in reads.clocked:
                 own.append((f"value {name}", (name, value)))
-        more: list[tuple[str, Any]] = [(f"given {pair[0]}", pair) for pair in reads.given.items()]
+        more: list[tuple[str, Any]] = [(f"given {pair[0]}", pair) for pair in reads.uniforms.items()]
         if "iterations" in text.used:
             more.append(("iterations", step.whole))
         if reads.is_continued:
@@ -413,15 +413,15 @@ class _KeyComputation:
             changes[Fed(loop.path, name)] = outer | {loop.path}
         around = _Loops(loop.path, loop.path if loop.counts_frames else loops.frames)
         self._note_sized(loop)
-        found: dict[int, list[str]] = {}  # the keys of the steps inside, by the identity of the body
+        inner_keys: dict[int, list[str]] = {}  # the keys of the steps inside, by the identity of the body
         for body in (*loop.bodies, loop.body):
-            if id(body) not in found or body is loop.body:
+            if id(body) not in inner_keys or body is loop.body:
                 for node in body:
                     self.add(node, around, names, changes)
-                found[id(body)] = [self.keys.steps[path].result for path in inside]
-        parts: list[Any] = [loop.path, *found[id(loop.body)]]
+                inner_keys[id(body)] = [self.keys.steps[path].result for path in inside]
+        parts: list[Any] = [loop.path, *inner_keys[id(loop.body)]]
         if len(loop.bodies) > 1:
-            parts = [loop.path, *(found[id(body)] for body in loop.bodies)]
+            parts = [loop.path, *(inner_keys[id(body)] for body in loop.bodies)]
         parts += [(name, self._source(first, fed), str(ref)) for name, first, ref in loop.feedback]
         if any("iterations" in self.text_of(step.kernel).used for step in walk(loop.body)):
             parts.append(loop.whole)
@@ -460,18 +460,18 @@ class _KeyComputation:
         return fed[source] if isinstance(source, Fed) else f"{self.keys.result(source.path)}:{source.output}"
 
 
-def _clocked(step: Step, given: Mapping[str, Any]) -> frozenset[str]:
+def _clocked(step: Step, uniforms: Mapping[str, Any]) -> frozenset[str]:
     """Return what a step reads that belongs to one frame: given names, and buttons among its parameters."""
     buttons = [p.name for p in step.kernel.parameters if p.widget.kind == "button"]
-    return (CLOCKED & given.keys()) | frozenset([*buttons, *(f"{PRESSED}{name}" for name in buttons)])
+    return (CLOCKED & uniforms.keys()) | frozenset([*buttons, *(f"{PRESSED}{name}" for name in buttons)])
 
 
 def _loops_in(loop: LoopStep) -> set[str]:
-    found = {loop.path}
+    loops = {loop.path}
     for node in loop.body:
         if isinstance(node, LoopStep):
-            found |= _loops_in(node)
-    return found
+            loops |= _loops_in(node)
+    return loops
 
 
 def _digest(parts: object) -> str:

@@ -49,10 +49,10 @@ def cos_sin(degrees: float) -> tuple[float, float]:
 
 
 def _series(factors: Sequence[float], x: float) -> float:
-    found = 0.0
+    total = 0.0
     for factor in reversed(factors):
-        found = found * x + factor
-    return found
+        total = total * x + factor
+    return total
 
 
 Vector = tuple[float, float, float]
@@ -133,10 +133,10 @@ def _half_height(camera: Camera) -> float:
 
 
 def _length(*parts: float) -> float:
-    found = 0.0
+    length_squared = 0.0
     for part in parts:
-        found += part * part
-    return math.sqrt(found)
+        length_squared += part * part
+    return math.sqrt(length_squared)
 
 
 def _inverse(matrix: list[list[float]]) -> list[list[float]]:
@@ -215,22 +215,22 @@ _HALVINGS = 24
 
 def ground_under(
     eye: Eye,
-    place: tuple[float, float],
+    position: tuple[float, float],
     heights: NDArray[np.floating],
     extent: tuple[float, float],
     relief: float,
 ) -> tuple[float, float] | None:
     """Return where on the terrain a place of the picture lies; None where there is sky.
 
-    ``place``: shares of the picture's width and height from its lower left. ``heights``:
-    (ny, nx), row 0 south, 0..1 of ``relief`` [m]; ``extent`` [m]. The answer is in shares of the
+    ``position``: shares of the picture's width and height from its lower left. ``heights``:
+    (ny, nx), row 0 south, 0..1 of ``relief`` [m]; ``extent`` [m]. The answer is in fractions of the
     terrain's sides, east and north. Steps are as long as a texel, so that a needle between two may
     be missed; between steps the ground is halved in.
     """
-    found = ray_over(eye, place, heights.shape[::-1], extent)
-    if found is None:
+    hit = ray_over(eye, position, heights.shape[::-1], extent)
+    if hit is None:
         return None
-    origin, way, entry, leave, steps = found
+    origin, way, entry, leave, steps = hit
     along = np.linspace(entry, leave, steps + 1)
     below = _over_ground(origin, way, along, heights, extent, relief) <= 0
     if not below.any():
@@ -248,14 +248,14 @@ def ground_under(
 
 
 def ray_over(
-    eye: Eye, place: tuple[float, float], size: tuple[int, ...], extent: tuple[float, float]
+    eye: Eye, position: tuple[float, float], size: tuple[int, ...], extent: tuple[float, float]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], float, float, int] | None:
     """Return how to look for the ground under a place of the picture; None where its ray meets no terrain.
 
     Where the ray begins [m], its unit vector, from where to where along it [m] it is over a terrain of
     ``size`` texels (nx, ny), and in how many steps, each no longer than a texel, to march that way.
     """
-    origin, way = _ray(eye, place)
+    origin, way = _ray(eye, position)
     entry, leave = _over_terrain(origin, way, extent)
     if not entry < leave:
         return None
@@ -273,18 +273,23 @@ def seen_from(
 ) -> list[tuple[float, float]]:
     """Return where in the picture places on the ground are seen, (n, 2) shares of the terrain's sides.
 
-    In shares of the picture from its lower left; what is behind the eye is left out.
+    In fractions of the picture from its lower left; what is behind the eye is left out.
     """
-    place = np.asarray(shares, np.float64) * extent
-    ground = _ground(place[:, 0], place[:, 1], heights, extent, relief)
-    world = np.concatenate([place, ground[:, None], np.ones((len(place), 1))], axis=1)
+    position = np.asarray(shares, np.float64) * extent
+    ground = _ground(position[:, 0], position[:, 1], heights, extent, relief)
+    world = np.concatenate([position, ground[:, None], np.ones((len(position), 1))], axis=1)
     clip = world @ eye.clip_from_world.astype(np.float64).T
     return [(float(x / w + 1) / 2, float(y / w + 1) / 2) for x, y, _, w in clip if w > 0]
 
 
-def _ray(eye: Eye, place: tuple[float, float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _ray(eye: Eye, position: tuple[float, float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return where a pixel's ray begins and its unit vector."""
-    far = np.linalg.inv(eye.clip_from_world.astype(np.float64)) @ [2 * place[0] - 1, 2 * place[1] - 1, 1, 1]
+    far = np.linalg.inv(eye.clip_from_world.astype(np.float64)) @ [
+        2 * position[0] - 1,
+        2 * position[1] - 1,
+        1,
+        1,
+    ]
     origin = np.array(eye.position, np.float64)
     way = far[:3] / far[3] - origin
     return origin, way / np.linalg.norm(way)

@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 
 _BYTES = {"vec2": 8, "ivec2": 8, "uvec2": 8, "vec4": 16, "ivec4": 16, "uvec4": 16}
 _MAX_BUFFER = 2**31 - 1
-_MOST_SPARE = 1.25  # of the bytes needed: those that passes of one size ask for differ a little
+_MAX_SPARE_RATIO = 1.25  # of the bytes needed: those that passes of one size ask for differ a little
 _RECENT = 32  # runs: those of one picture, of a sketch with many
-_MOST_ALIGNED = 8  # bytes, of those that OpenGL fills rows up to
+_MAX_ALIGNMENT = 8  # bytes, of those that OpenGL fills rows up to
 _UNPACK_ROW_LENGTH, _PACK_ROW_LENGTH = 0x0CF2, 0x0D02  # GL's, in texels; 0: the texture's own
 
 
@@ -124,7 +124,7 @@ class ComputeVariants:
         stage = (("stage", stages[iteration]),) if stages else ()
         program = self.kernels.program(job, COMPUTE, *stage, *reading)
         if program is not bound:  # a program that was bound before may find other textures on its units
-            self.kernels.binder.bind(program, step, job.given, job.inputs)
+            self.kernels.binder.bind(program, step, job.uniforms, job.inputs)
         for name, number in stage:
             program.set(name, number)
         return program
@@ -135,16 +135,16 @@ class ComputeVariants:
         if size > _MAX_BUFFER:
             message = f"buffer '{declared.name}' would be {size / 2**20:.0f} MiB; 2048 at most"
             raise kernel.error(f"pass '{job.step.path}': {message}")
-        fitting = [spare for spare in self._spare if size <= spare.buffer.size <= size * _MOST_SPARE]
+        fitting = [spare for spare in self._spare if size <= spare.buffer.size <= size * _MAX_SPARE_RATIO]
         if fitting:
             taken = min(reversed(fitting), key=_bytes)
             self._spare.remove(taken)
-            found = taken.buffer
+            buffer = taken.buffer
         else:
-            found = self.ctx.buffer(reserve=size)
+            buffer = self.ctx.buffer(reserve=size)
         if declared.name not in kernel.storage.overwrites:
-            found.clear()
-        return found
+            buffer.clear()
+        return buffer
 
     @staticmethod
     def _size(declared: Buffer, names: dict[str, Number]) -> int:
@@ -183,7 +183,7 @@ class ComputeVariants:
         if texture.dtype != "f4" or buffer.size < needed:
             message = f"buffer '{declared.name}' holds {buffer.size} bytes; the output needs {needed}"
             raise job.step.kernel.error(f"pass '{job.step.path}': {message}, 32 bits a number")
-        if aligned <= _MOST_ALIGNED:
+        if aligned <= _MAX_ALIGNMENT:
             yield aligned
             return
         call, kinds = Calls(self.ctx), (ctypes.c_int, ctypes.c_int)

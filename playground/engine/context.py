@@ -163,7 +163,7 @@ def _open_software(device: int | None) -> moderngl.Context:
     first = _open(device, environment)
     if device is not None or context_info(first).software:
         return _software_or_refuse(first)
-    wanted = context_info(first).renderer
+    renderer = context_info(first).renderer
     first.release()
     for index in range(_MAX_DEVICES, -1, -1):
         try:
@@ -173,7 +173,9 @@ def _open_software(device: int | None) -> moderngl.Context:
         if context_info(ctx).software:
             return ctx
         ctx.release()
-    raise ContextError(f"--software was given, but OpenGL gives {wanted} only; is Mesa's llvmpipe installed?")
+    raise ContextError(
+        f"--software was given, but OpenGL gives {renderer} only; is Mesa's llvmpipe installed?"
+    )
 
 
 def _software_or_refuse(ctx: moderngl.Context) -> moderngl.Context:
@@ -348,7 +350,7 @@ def keep_freed_memory() -> None:
     """Let the C library keep what it frees, up to 48 MiB of blocks below 8 MiB each.
 
     llvmpipe allocates the triangles of each frame and frees them. Given back to the system, their pages
-    are made anew in the next frame: 7 of 69 ms of a draw of 133,000 triangles. glibc only.
+    are made again in the next frame: 7 of 69 ms of a draw of 133,000 triangles. glibc only.
     """
     if not sys.platform.startswith("linux"):
         return

@@ -17,7 +17,7 @@ amount more than all before it, so both ways leave the same edge of a tie, in an
 
 No point falls on an edge. The greatest of 2 n + 2 triangles has at least the mean area, so
 no altitude of it is shorter than 1 / (n + 1) / sqrt(2) of a square terrain's side, and a
-point is over 1/11 of one away from each edge: for ``MOST_POINTS`` over 100 spacings of the
+point is over 1/11 of one away from each edge: for ``MAX_POINTS`` over 100 spacings of the
 lattice, and over 18 on the longest terrain, where rounding moves it by less than one.
 """
 
@@ -37,8 +37,8 @@ from playground.memo import SOURCES, bytes_held
 SIDE = 2**24
 """Lattice spacings along the longer side of the terrain: a float32 holds every whole number up to it."""
 
-MOST_POINTS = 10_000
-LONGEST = 8.0
+MAX_POINTS = 10_000
+MAX_PROPORTION = 8.0
 """How many times longer one side of the terrain may be than the other."""
 
 _CELLS = 4096  # sides are multiples of SIDE / _CELLS, so that GLSL can divide them by a terrain's texels
@@ -79,10 +79,10 @@ class Triangulation:
 @SOURCES.cached(weight=bytes_held)
 def triangulate(rules: Rules) -> Triangulation:
     """Return the triangulation that some rules make; raise ``DataError`` where it would not be exact."""
-    if not 0 <= rules.points <= MOST_POINTS:
-        raise DataError(f"{rules.points} points to triangulate; 0 to {MOST_POINTS} were expected")
-    if not 1.0 / LONGEST <= rules.proportion <= LONGEST:
-        raise DataError(f"sides 1 to {rules.proportion:g} to triangulate; 1 to {LONGEST:g} at most")
+    if not 0 <= rules.points <= MAX_POINTS:
+        raise DataError(f"{rules.points} points to triangulate; 0 to {MAX_POINTS} were expected")
+    if not 1.0 / MAX_PROPORTION <= rules.proportion <= MAX_PROPORTION:
+        raise DataError(f"sides 1 to {rules.proportion:g} to triangulate; 1 to {MAX_PROPORTION:g} at most")
     growing = _Growing(rules)
     for _ in range(rules.points):
         growing.insert()
@@ -110,12 +110,12 @@ def tables(made: Triangulation, size: tuple[int, int]) -> dict[str, NDArray[np.f
     most = max(map(len, rows.values()))
     if most > width * height:
         raise DataError(f"{most} entries do not fit into {width} x {height} texels; make the pass larger")
-    found = {}
+    arrays = {}
     for name, row in rows.items():
         table = np.zeros((height * width, 4), np.float32)
         table[: len(row)] = row
-        found[name] = table.reshape(height, width, 4)
-    return found
+        arrays[name] = table.reshape(height, width, 4)
+    return arrays
 
 
 def hash3(x: int, y: int, z: int) -> tuple[int, int, int]:
@@ -169,11 +169,11 @@ class _Growing:
         """Return what has grown, its triangles from the greatest on."""
         triples = [self._triple(t) for t in range(len(self.corners) // 3)]
         order = sorted(range(len(triples)), key=lambda t: (-self._area(t), triples[t]))
-        place = {t: k for k, t in enumerate(order)} | {_OUTSIDE: _OUTSIDE}
+        index_of = {t: k for k, t in enumerate(order)} | {_OUTSIDE: _OUTSIDE}
         neighbours = []
         for t in order:
             shift = self.corners[3 * t : 3 * t + 3].index(triples[t][0])
-            neighbours.append([place[self.across[3 * t + (shift + i) % 3]] for i in range(3)])
+            neighbours.append([index_of[self.across[3 * t + (shift + i) % 3]] for i in range(3)])
         return Triangulation(
             self.sides,
             np.array([self.x, self.y], np.int32).T,
@@ -324,18 +324,18 @@ class _Growing:
 
     # ── triangles ────────────────────────────────────────────────────────────
 
-    def _join(self, t: int, place: int, behind: int, u: int, v: int) -> None:
-        """Make two triangles neighbours along the edge u v, which lies across from ``place`` in t."""
-        self.across[3 * t + place] = behind
+    def _join(self, t: int, index: int, behind: int, u: int, v: int) -> None:
+        """Make two triangles neighbours along the edge u v, which lies across from ``index`` in t."""
+        self.across[3 * t + index] = behind
         if behind != _OUTSIDE:
             self.across[3 * behind + self._place_of(behind, u, v)] = t
 
     def _place_of(self, t: int, u: int, v: int) -> int:
         """Return which of a triangle's corners is neither u nor v."""
         corners = self.corners
-        for place in range(3):
-            if corners[3 * t + place] not in (u, v):
-                return place
+        for index in range(3):
+            if corners[3 * t + index] not in (u, v):
+                return index
         raise AssertionError("a triangle has three corners")
 
     def _opposite(self, t: int, u: int, v: int) -> int:

@@ -39,14 +39,14 @@ from playground.json_text import read_json
 
 LIMIT = 2**30  # [bytes] unless the environment says another
 VARIABLE = "PLAYGROUND_CACHE"
-MOST = 4096  # files, however small
+MAX_FILES = 4096  # files, however small
 SHARE = 4  # no file takes more than a quarter of the bound
 
 _MAGIC = b"playground land 1\n"
 _ENDING = ".land"
 _PART = ".part"
 _ABANDONED = 3600.0  # [s] after which a half-written file is removed
-_LONGEST_HEADER = 2**16  # [bytes]
+_MAX_HEADER_BYTES = 2**16  # [bytes]
 _UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
 _LAYERS = ("engine", "gpu", "images", "sketch", "terrain")  # whose Python decides what a pass computes
 
@@ -83,24 +83,24 @@ class Listed:
     textures: CachedTextures | None  # None: it cannot be read
 
 
-def place() -> Path:
+def cache_directory() -> Path:
     """Return the folder that holds the files."""
     return cache_folder() / "land"
 
 
 def limit_in(environment: Mapping[str, str] = os.environ) -> int:
     """Return the bound [bytes] that the environment sets, 0 for no disk cache; raise ``ParameterError``."""
-    given = environment.get(VARIABLE, "").strip()
-    if not given:
+    setting = environment.get(VARIABLE, "").strip()
+    if not setting:
         return LIMIT
-    text = given.upper().removesuffix("IB").removesuffix("B")
+    text = setting.upper().removesuffix("IB").removesuffix("B")
     unit = text[-1:] if text[-1:] in _UNITS else ""
     try:
         number = 0.0 if text == "OFF" else float(text.removesuffix(unit))
     except ValueError:
         number = -1.0
     if not 0 <= number < 1e15:
-        raise ParameterError(f"{VARIABLE}={given}: expected a size, as 500M or 2G, or 0 to cache nothing")
+        raise ParameterError(f"{VARIABLE}={setting}: expected a size, as 500M or 2G, or 0 to cache nothing")
     return int(number * _UNITS[unit])
 
 
@@ -110,7 +110,7 @@ class DiskCache:
     def __init__(self, folder: Path, *, limit: int = LIMIT, made_by: str = "") -> None:
         self.folder = folder
         self.limit = limit  # [bytes]
-        self.trouble = ""  # why files can no longer be written, in a sentence
+        self.trouble = ""  # why files can no longer be written, in a message
         self._made_by = made_by
         self._waiting: queue.SimpleQueue[tuple[str, CachedTextures] | None] = queue.SimpleQueue()
         self._thread: threading.Thread | None = None
@@ -174,29 +174,29 @@ class DiskCache:
 
 def disk_cache_for(renderer: ContextInfo, limit: int, folder: Path | None = None) -> DiskCache:
     """Return the disk cache of a renderer's build, in the user's cache unless a folder is named."""
-    return DiskCache(folder or place(), limit=limit, made_by=repr((build_of(renderer), tool())))
+    return DiskCache(folder or cache_directory(), limit=limit, made_by=repr((build_of(renderer), tool())))
 
 
 @cache
 def tool() -> str:
     """Return a hash of what decides a texture besides the driver: our own files, what reads images."""
-    found: list[object] = [__version__]
+    versions: list[object] = [__version__]
     # Another version of a package is another file; importlib.metadata takes 30 ms to be imported.
     for package in ("moderngl", "numpy", "PIL", "rasterio", "tifffile"):
         spec = find_spec(package)
         if spec is not None and spec.origin is not None:
             status = Path(spec.origin).stat()
-            found.append((spec.origin, status.st_size, status.st_mtime_ns))
+            versions.append((spec.origin, status.st_size, status.st_mtime_ns))
     home = Path(paths.__file__).parent
     for path in sorted(path for layer in _LAYERS for path in (home / layer).glob("*.py")):
         status = path.stat()
-        found.append((path.name, status.st_size, status.st_mtime_ns))
-    return hashlib.blake2b(repr(found).encode(), digest_size=16).hexdigest()
+        versions.append((path.name, status.st_size, status.st_mtime_ns))
+    return hashlib.blake2b(repr(versions).encode(), digest_size=16).hexdigest()
 
 
 def listed(folder: Path) -> list[Listed]:
     """Return the files of a disk cache, those used last first."""
-    found = []
+    entries = []
     for entry, status in _entries(folder):
         path = Path(entry.path)
         try:
@@ -204,8 +204,8 @@ def listed(folder: Path) -> list[Listed]:
                 textures = _head(file)[1]
         except (OSError, ValueError):
             textures = None
-        found.append(Listed(path, status.st_size, status.st_mtime, textures))
-    return sorted(found, key=lambda each: -each.used)
+        entries.append(Listed(path, status.st_size, status.st_mtime, textures))
+    return sorted(entries, key=lambda each: -each.used)
 
 
 def bytes_in(folder: Path) -> tuple[int, int]:
@@ -224,7 +224,7 @@ def clear(folder: Path) -> tuple[int, int]:
     return number, size
 
 
-def trim(folder: Path, limit: int, most: int = MOST) -> None:
+def trim(folder: Path, limit: int, most: int = MAX_FILES) -> None:
     """Remove what was used least recently until the bounds hold, and what was left half-written."""
     entries = sorted(_entries(folder), key=lambda each: each[1].st_mtime, reverse=True)
     total = 0
@@ -286,7 +286,7 @@ def _head(file: IO[bytes]) -> tuple[bytes, CachedTextures, str]:
     if len(start) < len(_MAGIC) + 4 or not start.startswith(_MAGIC):
         raise ValueError("not a file of the disk cache")
     (length,) = struct.unpack("<I", start[len(_MAGIC) :])
-    if length > _LONGEST_HEADER:
+    if length > _MAX_HEADER_BYTES:
         raise ValueError("not a header")
     header = file.read(length)
     try:

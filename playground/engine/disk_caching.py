@@ -108,10 +108,10 @@ class DiskCaching:
                 return nullcontext()
             return self._timed(runner.ctx.finish, key, lambda: runner.works.took.pop(path, 0.0))
 
-        found = choose(keys, needed(plan.nodes, ref), ref, execution.cache.get, read, skips=self.skips)
-        self.skipped = found.skipped
-        execution.results, execution.timed = found.taken, timed
-        return found.nodes
+        choice = choose(keys, needed(plan.nodes, ref), ref, execution.cache.get, read, skips=self.skips)
+        self.skipped = choice.skipped
+        execution.results, execution.timed = choice.taken, timed
+        return choice.nodes
 
     def would_run(
         self, cache: Cache, plan: Plan, keys: Keys, ref: Ref, painted: Collection[Path]
@@ -142,8 +142,8 @@ class DiskCaching:
     def _take(self, execution: Execution, step: Step, key: str) -> bool:
         """Put what the disk cache has of a step into the cache in memory."""
         cached, outputs = self.store.read(key), step.kernel.outputs
-        wanted = step.size, tuple((o.name, o.format) for o in outputs)
-        if cached is None or (cached.size, cached.outputs) != wanted:
+        expected = step.size, tuple((o.name, o.format) for o in outputs)
+        if cached is None or (cached.size, cached.outputs) != expected:
             return False
         result = execution.runner.pool.take(step.size, outputs)
         for output, data in zip(outputs, cached.data, strict=True):
@@ -201,11 +201,11 @@ class DiskCaching:
         """Write what is worth it, a piece at a time; ends early where a texture is gone."""
         passes, costs = passing(plan, source.runner.painted), self._costs
         more: dict[str, float] = {}
-        if source.runner.info.software:  # one texture whose mipmaps are made anew has that compiled again
+        if source.runner.info.software:  # one texture whose mipmaps are made again has that compiled again
             more = {path: MIPMAPS for path, result in source.record.results.items() if result.mipmapped}
         for worth in worth_caching(plan, keys, plan.picture, passes, costs, read_time, self.floor, more):
-            known = source.record.keys.steps.get(worth.path)
-            if known is None or known.result != worth.key:
+            step = source.record.keys.steps.get(worth.path)
+            if step is None or step.result != worth.key:
                 self._is_new = True  # another sketch was drawn since
                 return
             result = source.record.results.get(worth.path)
@@ -267,15 +267,15 @@ def _passing(
     painted: frozenset[Path],
 ) -> frozenset[str]:
     """Return what ``passing`` does, worked out once for the frames that have the same passes."""
-    found: set[str] = set()
+    names: set[str] = set()
     for node in nodes:
         reads = {source.path for source in sources_of(node) if isinstance(source, Ref)}
         steps = list(walk((node,)))
         loops = [loop for loop in every_node((node,)) if isinstance(loop, LoopStep)]
         own = any(_passes(step, frame_size, continued) or _reads_one(step, painted) for step in steps)
-        if own or reads & found or any(_stops(loop) for loop in loops):
-            found |= {node.path, *(step.path for step in steps)}
-    return frozenset(found)
+        if own or reads & names or any(_stops(loop) for loop in loops):
+            names |= {node.path, *(step.path for step in steps)}
+    return frozenset(names)
 
 
 def _reads_one(step: Step, files: Collection[Path]) -> bool:
@@ -326,35 +326,33 @@ def choose(
     ``held(key)`` is what is cached in memory. ``read(step)`` puts a step's textures there from the disk
     cache, and says whether it could. ``skips``: what nothing that runs reads is left out.
     """
-    known = list(nodes)
-    wanted = {ref.path} if skips else {step.path for step in walk(tuple(known))}
+    reached = list(nodes)
+    paths = {ref.path} if skips else {step.path for step in walk(tuple(reached))}
     run: list[PlanNode] = []
     taken: dict[str, Result] = {}
     skipped: set[str] = set()
-    for node in reversed(known):
+    for node in reversed(reached):
         here = _in_memory(node, keys, held)
         if here is None:
             inside = {step.path: step for step in walk((node,))}
             # Of a loop that was read, each step that others read is cached by itself.
-            missing = [
-                step for path, step in inside.items() if path in wanted and not held(keys.result(path))
-            ]
+            missing = [step for path, step in inside.items() if path in paths and not held(keys.result(path))]
             if all(read(step) for step in missing):
-                here = {path: found for path in inside if (found := _alone(held(keys.result(path))))}
+                here = {path: cached for path in inside if (cached := _alone(held(keys.result(path))))}
                 skipped |= inside.keys() - here.keys() - {step.path for step in missing}
         if here is not None:
             taken |= here
             continue
         run.append(node)
-        wanted |= {source.path for source in sources_of(node) if isinstance(source, Ref)}
+        paths |= {source.path for source in sources_of(node) if isinstance(source, Ref)}
     return Chosen(run[::-1], taken, frozenset(skipped))
 
 
 def _in_memory(node: PlanNode, keys: Keys, held: Callable[[str], Cached | None]) -> dict[str, Result] | None:
     """Return what is cached in memory of a node, by the step's path; None where it has to be run, or read."""
     if isinstance(node, Step):
-        found = _alone(held(keys.result(node.path)))
-        return None if found is None else {node.path: found}
+        result = _alone(held(keys.result(node.path)))
+        return None if result is None else {node.path: result}
     cached = held(keys.loops[node.path])
     if cached is None or cached.iterations != node.repeat or not cached.results:
         return None
@@ -420,16 +418,16 @@ def worth_caching(
         mine = sum(to_read[step.path] for step in walk((node,)) if step.path in others)
         stays = not any(step.path in passes for step in walk((node,)))
         is_read.append(stays and sum(way.values()) - mine >= floor)
-    found: list[Worth] = []
-    wanted = {ref.path}
+    candidates: list[Worth] = []
+    paths = {ref.path}
     for number in reversed(range(len(nodes))):
-        read_here = [step.path for step in walk((nodes[number],)) if step.path in wanted]
+        read_here = [step.path for step in walk((nodes[number],)) if step.path in paths]
         if read_here and is_read[number]:
             cost = sum(wholes[number].values())
-            found += [Worth(path, keys.result(path), cost) for path in read_here]
+            candidates += [Worth(path, keys.result(path), cost) for path in read_here]
         elif read_here:
-            wanted |= sources[number]
-    return found[::-1]
+            paths |= sources[number]
+    return candidates[::-1]
 
 
 def bytes_in(step: Step) -> int:

@@ -79,7 +79,7 @@ class Draws:
             self._begin(job, kernel, surface)
             if step.window is not None:
                 self._look_through(step.window, program)
-            self.kernels.binder.bind(program, step, job.given, job.inputs)
+            self.kernels.binder.bind(program, step, job.uniforms, job.inputs)
             _enable(ctx, "over" if kernel.over else kernel.depth, kernel.blend)
             for iteration in range(step.repeat):
                 job.count(program, iteration, kernel.repeat, step.whole)
@@ -189,21 +189,21 @@ class Draws:
             _refuse_others(job, wired)
             self.ctx.copy_framebuffer(surface.framebuffer, earlier.framebuffer)
             return
-        begun = started(kernel.outputs, wired)
+        textures = started(kernel.outputs, wired)
         surface.framebuffer.use()
         if len(surface.formats) == 1:  # what is overwritten needs no clearing
-            surface.framebuffer.color_mask = (not begun,) * 4
+            surface.framebuffer.color_mask = (not textures,) * 4
         surface.framebuffer.clear(0, 0, 0, 0, depth=1.0)
         if len(surface.formats) == 1:
             surface.framebuffer.color_mask = (True,) * 4
         alike = surface.samples == 1 and wired.result is not None and wired.result.size == surface.size
-        if wired.result is not None and alike and _same_outputs(wired.result, surface, begun):
+        if wired.result is not None and alike and _same_outputs(wired.result, surface, textures):
             # The same bits, on a software renderer in a tenth of the time.
             self.ctx.copy_framebuffer(surface.framebuffer, wired.result.framebuffer(self.ctx))
             return
         for unit, output in enumerate(kernel.outputs):
-            if output.name in begun:
-                self._copy_into(surface, unit, begun[output.name])
+            if output.name in textures:
+                self._copy_into(surface, unit, textures[output.name])
 
     def _take_depth(self, job: Job, name: str, surface: Surface) -> None:
         """Begin with the depth of the draw whose pixels are drawn over; it is read and not written."""
@@ -227,15 +227,15 @@ class Draws:
 
     def _chosen(self, job: Job) -> Chosen:
         """Return what to draw of a mesh with levels of detail."""
-        kernel, given = _draw_of(job), job.given
+        kernel, uniforms = _draw_of(job), job.uniforms
         chooser = CHOOSERS[kernel.mesh]
-        wanted = ("clip_from_world", "eye", "extent", "relief")
-        known = {*given, *job.step.values}
-        missing = [name for name in (*wanted, *chooser.parameters) if name not in known]
+        required = ("clip_from_world", "eye", "extent", "relief")
+        names = {*uniforms, *job.step.values}
+        missing = [name for name in (*required, *chooser.parameters) if name not in names]
         if missing:
             raise kernel.error(f"mesh '{kernel.mesh}' needs a draw that reads {', '.join(missing)}")
-        matrix = np.array(given["clip_from_world"], np.float64).reshape(4, 4).T
-        view = View(matrix, given["eye"], given["extent"], given["relief"], job.step.whole_size)
+        matrix = np.array(uniforms["clip_from_world"], np.float64).reshape(4, 4).T
+        view = View(matrix, uniforms["eye"], uniforms["extent"], uniforms["relief"], job.step.whole_size)
 
         def tables() -> dict[str, NDArray[np.float32]]:
             return {name: self._table(job, name) for name in chooser.inputs}
@@ -273,20 +273,20 @@ class Draws:
         mesh.release()
 
 
-def _same_outputs(result: Result, surface: Surface, begun: Mapping[str, moderngl.Texture]) -> bool:
+def _same_outputs(result: Result, surface: Surface, textures: Mapping[str, moderngl.Texture]) -> bool:
     """Return whether a result has just the textures that a surface begins with, in its order."""
     formats = tuple([output.format for output in result.outputs])
-    return formats == surface.formats and [*result.textures.values()] == [*begun.values()]
+    return formats == surface.formats and [*result.textures.values()] == [*textures.values()]
 
 
 def _refuse_others(job: Job, wired: Wired) -> None:
     """Refuse to go on from a draw of more or fewer outputs, whose samples have no place here."""
-    given = [output.name for output in wired.result.outputs] if wired.result else []
+    outputs = [output.name for output in wired.result.outputs] if wired.result else []
     own = [output.name for output in job.step.kernel.outputs]
-    if len(given) != len(own) or given[0] != wired.output:
+    if len(outputs) != len(own) or outputs[0] != wired.output:
         source = dict(job.step.inputs)["initial"]
         earlier = source.path if isinstance(source, Ref) else "initial"
-        what = f"a draw of {', '.join(given)}; it gives {', '.join(own)}, and they must be as many"
+        what = f"a draw of {', '.join(outputs)}; it gives {', '.join(own)}, and they must be as many"
         raise job.step.spec.error(f"pass '{job.step.path}' goes on from '{earlier}', {what}")
 
 
@@ -376,7 +376,7 @@ class _Loaded:
         self._indices.release()
 
 
-MOST = 2**20
+MAX_INSTANCES = 2**20
 """Instances that one draw may have."""
 _COMPONENTS = "xyzw"
 
@@ -390,10 +390,10 @@ class Texels:
 
     def of(self, result: Result, output: str) -> tuple[float, ...]:
         """Return the components of the first texel of an output."""
-        known = self._known.setdefault(result, {})
-        if output not in known:
-            known[output] = self._read(result, output)
-        return known[output]
+        cached = self._known.setdefault(result, {})
+        if output not in cached:
+            cached[output] = self._read(result, output)
+        return cached[output]
 
     def _read(self, result: Result, output: str) -> tuple[float, ...]:
         index = [each.name for each in result.outputs].index(output)
@@ -407,7 +407,7 @@ class Texels:
 def instances_of(job: Job, texels: Texels) -> int:
     """Return how often a step's mesh is drawn; 1 where its header does not say.
 
-    Raises ``SketchError`` where that is not a whole number from 0 to ``MOST``.
+    Raises ``SketchError`` where that is not a whole number from 0 to ``MAX_INSTANCES``.
     """
     step, kernel = job.step, job.step.kernel
     if not isinstance(kernel, Draw) or not kernel.instances:
@@ -421,12 +421,12 @@ def instances_of(job: Job, texels: Texels) -> int:
         return numbers[name] if name in numbers else _component(job, name, texels)
 
     try:
-        found = expressions.evaluate(kernel.instances, number)
+        count = expressions.evaluate(kernel.instances, number)
     except ExpressionError as error:
         raise step.spec.error(f"pass '{step.path}': instances {error}") from None
-    if not 0 <= found <= MOST:
-        raise step.spec.error(f"pass '{step.path}': instances = {found}; 0 to {MOST} were expected")
-    return found
+    if not 0 <= count <= MAX_INSTANCES:
+        raise step.spec.error(f"pass '{step.path}': instances = {count}; 0 to {MAX_INSTANCES} were expected")
+    return count
 
 
 def counts_instances(technique: Technique, name: str) -> bool:
@@ -449,13 +449,13 @@ def _component(job: Job, name: str, texels: Texels) -> Number:
     wired, step = job.inputs.get(declared, Wired()), job.step
     if wired.result is None:
         raise ExpressionError(f"names '{declared}', to which nothing is wired")
-    found = texels.of(wired.result, wired.output)
+    texels_read = texels.of(wired.result, wired.output)
     index = _COMPONENTS.index(component)
-    if index >= len(found):
+    if index >= len(texels_read):
         form = next(o.format for o in wired.result.outputs if o.name == wired.output)
         raise ExpressionError(f"names '{name}': '{declared}' has no component {component}; it is {form}")
-    if not math.isfinite(found[index]):
+    if not math.isfinite(texels_read[index]):
         raise step.spec.error(
-            f"pass '{step.path}': instances: '{declared}' holds {found[index]}; a number was expected"
+            f"pass '{step.path}': instances: '{declared}' holds {texels_read[index]}; a number was expected"
         )
-    return int(found[index]) if found[index].is_integer() else found[index]
+    return int(texels_read[index]) if texels_read[index].is_integer() else texels_read[index]

@@ -1,6 +1,6 @@
 """Return how to fix what OpenGL, EGL or the window system complains of.
 
-Drivers answer with a code or half a sentence (``eglInitialize failed
+Drivers answer with a code or half a message (``eglInitialize failed
 (0x3001)``). `advice` finds the complaint in one table, and gives back what it
 means and what to do, on this platform, in one line. The environment is handed
 in, since some complaints have another cause inside a container, under WSL or
@@ -73,7 +73,7 @@ class Complaint:
 
     name: str  # what the causes below call it
     says: tuple[str, ...]  # regular expressions; one found anywhere, in any case, will do
-    means: str  # one sentence, true on every platform
+    means: str  # one message, true on every platform
     linux: str = ""  # sentences; empty: the advice that helps most often
     darwin: str = ""
     win32: str = ""
@@ -297,8 +297,11 @@ def _any_set(*names: str) -> Callable[[Mapping[str, str]], bool]:
 
 def _nvidia_container(*, draws: bool) -> Callable[[Mapping[str, str]], bool]:
     def holds(environ: Mapping[str, str]) -> bool:
-        given = {"all", "graphics"} & set(environ.get("NVIDIA_DRIVER_CAPABILITIES", "").split(","))
-        return environ.get("NVIDIA_VISIBLE_DEVICES", "") not in {"", "void", "none"} and bool(given) == draws
+        capabilities = {"all", "graphics"} & set(environ.get("NVIDIA_DRIVER_CAPABILITIES", "").split(","))
+        return (
+            environ.get("NVIDIA_VISIBLE_DEVICES", "") not in {"", "void", "none"}
+            and bool(capabilities) == draws
+        )
 
     return holds
 
@@ -366,7 +369,7 @@ _CAUSES = (
 
 def complaint(message: str) -> Complaint | None:
     """Return the entry of the table that a message belongs to, or None."""
-    return next((known for known in COMPLAINTS if known.matches(message)), None)
+    return next((existing for existing in COMPLAINTS if existing.matches(message)), None)
 
 
 def advice(message: str, platform: str, environ: Mapping[str, str]) -> str:
@@ -377,11 +380,13 @@ def advice(message: str, platform: str, environ: Mapping[str, str]) -> str:
     `os.environ`. An unknown message gets the advice that helps most often.
     """
     system = platform if platform in _ANYWHERE else "linux"
-    known = complaint(message)
-    if known is None:
+    complaint_of = complaint(message)
+    if complaint_of is None:
         return f"OpenGL did not start, for a reason that is not known here. {_ANYWHERE[system]}"
     likely = (
-        [c.advice for c in _CAUSES if known.name in c.of and c.holds(environ)] if system == "linux" else []
+        [c.advice for c in _CAUSES if complaint_of.name in c.of and c.holds(environ)]
+        if system == "linux"
+        else []
     )
-    own = {"linux": known.linux, "darwin": known.darwin, "win32": known.win32}[system]
-    return " ".join([known.means, *likely, own or _ANYWHERE[system]])
+    own = {"linux": complaint_of.linux, "darwin": complaint_of.darwin, "win32": complaint_of.win32}[system]
+    return " ".join([complaint_of.means, *likely, own or _ANYWHERE[system]])

@@ -24,7 +24,7 @@ from playground.engine.renderer import Renderer
 from playground.engine.textures import read_picture, read_texture
 from playground.errors import SketchError
 from playground.sketch.load import opened
-from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE, Sketch
+from playground.sketch.model import DEFAULT_PICTURE, MAX_PICTURE_SIDE, Sketch
 
 if TYPE_CHECKING:
     import moderngl
@@ -127,10 +127,10 @@ class Engine(Renderer):
 
         Raises ``PlaygroundError`` for any mistake in the sketch.
         """
-        found = opened(sketch)
-        size = drawn_size(found, size)
-        texture = self.draw(found, size=size, time=time, steps=steps, interpolated=interpolated)
-        return Frame(reduced(read_picture(texture), found.supersample), found.name, time)
+        opened_sketch = opened(sketch)
+        size = drawn_size(opened_sketch, size)
+        texture = self.draw(opened_sketch, size=size, time=time, steps=steps, interpolated=interpolated)
+        return Frame(reduced(read_picture(texture), opened_sketch.supersample), opened_sketch.name, time)
 
     def draw(
         self,
@@ -227,8 +227,8 @@ class Engine(Renderer):
         Raises as ``texture``, and ``SketchError`` for a texture with several numbers a texel.
         """
         plan = self.plan(sketch, size, time, steps, ref, interpolated=interpolated)
-        found = self.texture_of(plan, plan.flat.ref(ref, plan.sketch.name))
-        values = read_texture(found)
+        texture = self.texture_of(plan, plan.flat.ref(ref, plan.sketch.name))
+        values = read_texture(texture)
         if values.ndim != 2:
             raise SketchError(f"texture '{ref}' has {values.shape[2]} channels; heights have one")
         return plan.terrain.metres(values)
@@ -253,13 +253,13 @@ class Engine(Renderer):
 
         Raises as ``texture``, and ``SketchError`` with those that repeat for a pass that does not.
         """
-        found = opened(sketch)
-        repeated = repeated_in(found, path)
+        opened_sketch = opened(sketch)
+        repeated = repeated_in(opened_sketch, path)
         # No fast variant replaces a pass that is stopped.
-        plan = self.plan(found, size, time, {repeated: 0})
+        plan = self.plan(opened_sketch, size, time, {repeated: 0})
         whole = most_iterations(plan.nodes)[repeated]
         for done in range(whole + 1):
-            yield done, self.read(found, repeated, size=size, time=time, steps={repeated: done})
+            yield done, self.read(opened_sketch, repeated, size=size, time=time, steps={repeated: done})
 
     def not_finite(self) -> NotFinite | None:
         """Return the first number that is not finite among what the last frame was made from, if any.
@@ -294,9 +294,9 @@ class Engine(Renderer):
 
         Raises ``PlaygroundError`` for any mistake in the sketch.
         """
-        found = opened(sketch)
-        size = drawn_size(found, size, LARGEST_PICTURE)
-        plan = self.plan(found, size, time, steps, largest=LARGEST_PICTURE)
+        opened_sketch = opened(sketch)
+        size = drawn_size(opened_sketch, size, MAX_PICTURE_SIDE)
+        plan = self.plan(opened_sketch, size, time, steps, largest=MAX_PICTURE_SIDE)
         made = f"{self.picture_hash(plan)} {self._info.renderer} {self._info.opengl}"
         return blake2b(made.encode(), digest_size=16).hexdigest()
 

@@ -69,11 +69,11 @@ class Execution:
 
     def _drop(self, step: Step) -> None:
         """Drop the textures of a step, and what else has the same ones."""
-        found = self.results.get(step.path)
+        dropped = self.results.get(step.path)
         own = self.keys.steps[step.path]
         for key in {own.result, own.computed}:
             self.cache.drop(key)
-        for path in [path for path, result in self.results.items() if result is found]:
+        for path in [path for path, result in self.results.items() if result is dropped]:
             del self.results[path]
 
     def _run_once(self, node: PlanNode) -> None:
@@ -84,11 +84,11 @@ class Execution:
         if isinstance(node, LoopStep):
             self._run_cached_loop(node)
             return
-        found = self._unchanged_draw(node) if isinstance(node.kernel, Draw) and not node.repeat else None
-        if found is None:
+        result = self._unchanged_draw(node) if isinstance(node.kernel, Draw) and not node.repeat else None
+        if result is None:
             cached = self.cache.get(self.keys.result(node.path))
-            found = cached.result if cached else self._stale_result(node)
-        self.results[node.path] = found
+            result = cached.result if cached else self._stale_result(node)
+        self.results[node.path] = result
 
     def _unchanged_draw(self, step: Step) -> Result | None:
         """Return the earlier draw's result for a step that draws nothing over it, samples and depth too."""
@@ -108,9 +108,9 @@ class Execution:
             return self._computed(step)
         cached = self.cache.get(self.keys.computed(step.path))
         raw = cached.result if cached else self._computed(step)
-        found = self.runner.kernels.drawn_own("fill_between.frag", raw, **step.between.uniforms)
-        self.cache.put(self.keys.result(step.path), Cached({step.path: found}))
-        return found
+        result = self.runner.kernels.run_utility_shader("fill_between.frag", raw, **step.between.uniforms)
+        self.cache.put(self.keys.result(step.path), Cached({step.path: result}))
+        return result
 
     def _computed(self, step: Step) -> Result:
         """Run a step, from where its earlier iterations are cached, and cache its result."""
@@ -122,18 +122,18 @@ class Execution:
         read = self._read(step, inputs)
         before = self.cache.with_same_read(step.path, read) if read else ""
         if before:
-            found = self.cache.take(before)
+            result = self.cache.take(before)
         else:
             with self.timed(step.path, key) if self.timed else nullcontext():
-                found = self.compute(step, inputs, None, earlier)
+                result = self.compute(step, inputs, None, earlier)
             if self.ended is not None:
-                self.ended(step, found)
-        self.cache.put(key, Cached({step.path: found}))
+                self.ended(step, result)
+        self.cache.put(key, Cached({step.path: result}))
         if read:
             self.cache.note_read(step.path, read, key)
         if goes_on:
             self.cache.note_progress(step.path, unfinished, key, step.repeat)
-        return found
+        return result
 
     def _read(self, step: Step, inputs: Mapping[str, Wired]) -> str:
         """Return all that a step's textures depend on, where its key may change without that; "" elsewhere.
@@ -152,7 +152,7 @@ class Execution:
         key = self.cache.earlier(step.path, unfinished, step.repeat)
         if not key:
             return None
-        if all(known.computed != key for known in self.keys.steps.values()):
+        if all(step.computed != key for step in self.keys.steps.values()):
             return self.cache.take(key)
         cached = self.cache.get(key)
         assert cached is not None
@@ -246,11 +246,11 @@ class Execution:
                 self.replayed(replay.steps, state.iterations - first)
 
     def _changing(self, loop: LoopStep, iteration: int) -> list[PlanNode]:
-        """Return what an iteration of a loop computes anew."""
+        """Return what an iteration of a loop computes again."""
         body = loop.body_of(iteration)
         if id(body) not in self._changing_in:
-            found = [node for node in body if loop.path in self.keys.changes[id(node)]]
-            self._changing_in[id(body)] = found
+            changing = [node for node in body if loop.path in self.keys.changes[id(node)]]
+            self._changing_in[id(body)] = changing
         return self._changing_in[id(body)]
 
     def _run_inside(
@@ -274,14 +274,14 @@ class Execution:
     def _input(self, step: Step, name: str, source: Source | None, fed: Mapping[Fed, Wired]) -> Wired:
         """Return what an input reads; of what is fed back, before the first iteration, perhaps zeros.
 
-        Zeros of the size of what is fed back are for other tools' shaders, and for an input that says so.
+        Zeros of the size of what is fed back are for other tools' shaders, and for an input that reports it.
         """
-        found = self._wired(source, fed)
-        if found.texture is not None or not isinstance(source, Fed):
-            return found
+        wired = self._wired(source, fed)
+        if wired.texture is not None or not isinstance(source, Fed):
+            return wired
         declared = next((each for each in step.kernel.inputs if each.name == name), None)
         if declared is None or not (isinstance(step.kernel, ForeignShader) or declared.fallback == "zero"):
-            return found
+            return wired
         origin, output = self._fed_from[source]
         kept = self._states[source.loop].zeros
         zeros = kept[source.name] = kept.get(source.name) or self.runner.kernels.empty(origin)
@@ -291,25 +291,25 @@ class Execution:
         self, loop: LoopStep, changing: list[PlanNode], fed: Mapping[Fed, Wired]
     ) -> dict[str, Result]:
         """Return what a loop gives before its first iteration: what that would read, else zeros."""
-        found = {step.path: self.runner.kernels.empty(step) for step in walk(tuple(changing))}
+        results = {step.path: self.runner.kernels.empty(step) for step in walk(tuple(changing))}
         for name, _, ref in loop.feedback:
             texture = fed[Fed(loop.path, name)].texture
-            if texture is not None and ref.path in found:
-                self.runner.kernels.copy_texture(found[ref.path].textures[ref.output], texture)
-        return found
+            if texture is not None and ref.path in results:
+                self.runner.kernels.copy_texture(results[ref.path].textures[ref.output], texture)
+        return results
 
 
 def would_run(keys: Keys, cache: Cache, nodes: Iterable[PlanNode], plan: Plan) -> list[str]:
     """Return the paths of the steps that running some nodes of a plan would run: those not in the cache."""
     steps = {step.path: step for step in plan.walk()}
-    found: list[str] = []
+    paths: list[str] = []
     for node in nodes:
         if isinstance(node, LoopStep):
             if not cache.holds(keys.loops[node.path], node.repeat):
-                found += [step.path for step in walk((node,))]
+                paths += [step.path for step in walk((node,))]
         elif keys.result(node.path) not in cache and not _draws_nothing(node, steps):
-            found.append(node.path)
-    return found
+            paths.append(node.path)
+    return paths
 
 
 def _draws_nothing(step: Step, steps: Mapping[str, Step]) -> bool:
@@ -338,13 +338,13 @@ def last_uses(plan: Plan, nodes: Sequence[PlanNode], keys: Keys, ref: Ref) -> di
             step = own.get(path)
             if step is not None and not isinstance(step.kernel, Draw) and keys.result(path) not in kept:
                 last[keys.result(path)] = node.path, step
-    found: dict[str, list[Step]] = {}
+    steps: dict[str, list[Step]] = {}
     for path, step in last.values():
-        found.setdefault(path, []).append(step)
-    return found
+        steps.setdefault(path, []).append(step)
+    return steps
 
 
 def _read(node: PlanNode) -> set[str]:
     versions = [inside for body in node.bodies for inside in walk(body)] if isinstance(node, LoopStep) else []
     every = [node, *versions]
-    return {source.path for one in every for source in sources_of(one) if isinstance(source, Ref)}
+    return {source.path for step in every for source in sources_of(step) if isinstance(source, Ref)}

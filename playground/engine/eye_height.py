@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     import moderngl
 
 CLEARANCE = (
-    0.002  # above the ground, as a share of the eye's distance from its target: see ``terrain.camera``
+    0.002  # above the ground, as a fraction of the eye's distance from its target: see ``terrain.camera``
 )
-_HIGHEST = 89.0  # [degrees] of elevation, at most
+_MAX_ELEVATION = 89.0  # [degrees] of elevation, at most
 
 
 class EyeHeight:
@@ -64,20 +64,20 @@ class EyeHeight:
         ``keys`` and ``results`` are those of the plan, which was drawn.
         """
         self.raised_by = 0.0
-        source, place = _terrain_of(plan), _place_of(plan)
+        source, position = _terrain_of(plan), _place_of(plan)
         result = results.get(source.path) if source else None
-        if source is None or result is None or place is None:
+        if source is None or result is None or position is None:
             return None
-        key = (result.number, *place)
+        key = (result.number, *position)
         if self._read is None or self._read[0] != key:
-            self._read = key, _height_at(place, result, source.output, ctx)
+            self._read = key, _height_at(position, result, source.output, ctx)
         self._terrain_key = keys.result(source.path)
-        return self._over(plan, place, self._read[1])
+        return self._over(plan, position, self._read[1])
 
-    def _over(self, plan: Plan, place: tuple[float, float], height: float) -> Camera | None:
+    def _over(self, plan: Plan, position: tuple[float, float], height: float) -> Camera | None:
         """Return a camera over a height that is known at a place; None where the plan's own eye may stay."""
         self.raised_by = 0.0
-        if plan.terrain.relief is None or _place_of(plan) != place:
+        if plan.terrain.relief is None or _place_of(plan) != position:
             return None
         x, y, z = plan.eye.position
         lowest = height * plan.terrain.relief + CLEARANCE * plan.eye.distance
@@ -88,7 +88,7 @@ class EyeHeight:
 
 
 def _place_of(plan: Plan) -> tuple[float, float] | None:
-    """Return where the eye is above the terrain, in shares of its sides; None outside it.
+    """Return where the eye is above the terrain, in fractions of its sides; None outside it.
 
     None as well where the sketch lets the eye be under the ground.
     """
@@ -109,15 +109,15 @@ def _terrain_of(plan: Plan) -> Ref | None:
 
 def _height_at(share: tuple[float, float], result: Result, output: str, ctx: moderngl.Context) -> float:
     """Return the height between the four texels around a place."""
-    place = np.array(share) * (np.array(result.size) - 1)
-    low = np.minimum(place.astype(int), np.maximum(np.array(result.size) - 2, 0))
+    texel = np.array(share) * (np.array(result.size) - 1)
+    low = np.minimum(texel.astype(int), np.maximum(np.array(result.size) - 2, 0))
     wide, tall = (min(2, n) for n in result.size)
     window = int(low[0]), int(low[1]), wide, tall
     attachment = [each.name for each in result.outputs].index(output)
     read = result.framebuffer(ctx).read(window, 1, attachment=attachment, alignment=1, dtype="f4")
     texels = np.frombuffer(read, np.float32).reshape(tall, wide)
     corners = np.pad(texels, ((0, 2 - tall), (0, 2 - wide)), mode="edge")
-    p, q = place - low
+    p, q = texel - low
     return float(np.array([1 - q, q]) @ corners.astype(np.float64) @ np.array([1 - p, p]))
 
 
@@ -130,7 +130,7 @@ def _camera_at(position: tuple[float, float, float], plan: Plan) -> Camera:
     return replace(
         camera,
         azimuth=math.degrees(math.atan2(east, north)) if level > 0 else camera.azimuth,
-        elevation=min(math.degrees(math.atan2(up, level)), _HIGHEST),
+        elevation=min(math.degrees(math.atan2(up, level)), _MAX_ELEVATION),
         distance=math.hypot(level, up),
         target=target,
     )

@@ -40,9 +40,9 @@ from playground.data.gis import transformed
 from playground.data.grid import Packing, check_grid, fitted
 from playground.data.image_files import Image, read_image, replacing
 from playground.data.models import Model, read_model
-from playground.data.place import Place
+from playground.data.place import Georeference
 from playground.data.resample import resample
-from playground.data.vectors import Grid, Line, Shape, draw, read_vectors
+from playground.data.vectors import Grid, Line, VectorShape, draw, read_vectors
 from playground.engine.source_kinds import Terrain
 from playground.errors import DataError
 from playground.memo import FILES, SOURCES, bytes_held
@@ -52,7 +52,7 @@ from playground.sketch.model import Value
 LARGE = 2**24
 """Texels of a file above which not all of them are read, unless the terrain has its size."""
 
-USUAL_SIDE = 4097
+DEFAULT_SIDE = 4097
 """Texels of the longer side of terrain from a large file, where nothing says how many."""
 
 KEPT = 2**26
@@ -67,18 +67,18 @@ def describe(values: Mapping[str, Value]) -> Terrain:
     asked = _asked(values)
     file = _opened(asked)
     size = _size(file, values)
-    known = _known(asked, size)
-    low, high = known.lowest, known.highest
+    facts = _known(asked, size)
+    low, high = facts.lowest, facts.highest
     metres = values["metres"]  # of the file's lowest and highest codes; equal: nothing is known
     relief = base = None
     assumed = ""
     if isinstance(metres, tuple) and metres[0] != metres[1]:
-        codes = known.code_range or (low, high)
+        codes = facts.code_range or (low, high)
         scale = (metres[1] - metres[0]) / ((codes[1] - codes[0]) or 1.0)
         base, relief = metres[0] + (low - codes[0]) * scale, (high - low) * scale
-    elif known.in_metres:
-        base, relief, assumed = low, high - low, known.assumed
-    return Terrain(size, file.extent, relief, base, file.found.place, assumed)
+    elif facts.in_metres:
+        base, relief, assumed = low, high - low, facts.assumed
+    return Terrain(size, file.extent, relief, base, file.grid.place, assumed)
 
 
 def make(
@@ -113,11 +113,11 @@ def notes(values: Mapping[str, Value]) -> tuple[str, ...]:
     asked = _asked(values)
     file = _opened(asked)
     size = _size(file, values)
-    found = _known(asked, size).notes
+    facts = _known(asked, size).notes
     if not values.get("longest") and size != file.size:
         texels, fewer = (f"{x} x {y}" for x, y in (file.size, size))
-        found += (f"has {texels} texels; unless a size or `longest` says how many, {fewer} are read",)
-    return tuple(f"{file.path.name}: {note}" for note in found)
+        facts += (f"has {texels} texels; unless a size or `longest` says how many, {fewer} are read",)
+    return tuple(f"{file.path.name}: {note}" for note in facts)
 
 
 def _size(file: ElevationFile, values: Mapping[str, Value]) -> tuple[int, int]:
@@ -126,7 +126,7 @@ def _size(file: ElevationFile, values: Mapping[str, Value]) -> tuple[int, int]:
     assert isinstance(longest, int)  # the kernel's file says so
     if longest:
         return fitted(file.size, longest)
-    return fitted(file.size, USUAL_SIDE) if math.prod(file.size) > LARGE else file.size
+    return fitted(file.size, DEFAULT_SIDE) if math.prod(file.size) > LARGE else file.size
 
 
 def _asked(values: Mapping[str, Value]) -> Asked:
@@ -160,8 +160,15 @@ class _Known:
 
 @FILES.cached()
 def _known(asked: Asked, size: tuple[int, int]) -> _Known:
-    found = _at(asked, size)
-    return _Known(found.lowest, found.highest, found.code_range, found.in_metres, found.assumed, found.notes)
+    elevation = _at(asked, size)
+    return _Known(
+        elevation.lowest,
+        elevation.highest,
+        elevation.code_range,
+        elevation.in_metres,
+        elevation.assumed,
+        elevation.notes,
+    )
 
 
 def _at(asked: Asked, size: tuple[int, int]) -> Elevation:
@@ -238,13 +245,13 @@ def read_numbers(path: Path, size: tuple[int, int]) -> NDArray[np.float32]:
     Raises:
         DataError: missing, damaged, no grid of finite numbers.
     """
-    found = read_elevation(path)
-    if found.missing:
-        raise DataError(f"{found.missing} texels have no data; expected a number in each", file=path)
-    if found.size == size:
-        return found.heights
+    elevation = read_elevation(path)
+    if elevation.missing:
+        raise DataError(f"{elevation.missing} texels have no data; expected a number in each", file=path)
+    if elevation.size == size:
+        return elevation.heights
     nx, ny = size
-    return resample(found.heights, (max(nx, 2), max(ny, 2)))[:ny, :nx]
+    return resample(elevation.heights, (max(nx, 2), max(ny, 2)))[:ny, :nx]
 
 
 def write_numbers(path: Path, numbers: NDArray[np.float32]) -> None:
@@ -283,13 +290,13 @@ def make_model(
     if corners > texels:
         message = f"this model has {corners} corners; {texels} texels were expected to hold them"
         raise DataError(message, file=Path(str(values["model"])))
-    found = {}
+    arrays = {}
     for name, numbers in (("place", model.corners), ("facing", model.normals), ("tint", model.colours)):
         rows = np.zeros((texels, 4), np.float32)
         rows[:corners, :3] = numbers.reshape(-1, 3)
         rows[:corners, 3] = 1.0
-        found[name] = rows.reshape(size[1], size[0], 4)
-    return found
+        arrays[name] = rows.reshape(size[1], size[0], 4)
+    return arrays
 
 
 def _model(values: Mapping[str, Value]) -> Model:
@@ -306,7 +313,7 @@ def _read(path: Path, _: str) -> Model:
 _ALIKE = frozenset({"EPSG:4326", "EPSG:4269", "EPSG:4258", "OGC:CRS84"})
 """Degrees on datums that differ by metres."""
 
-_MOST_PIECES = 512
+_MAX_PIECES = 512
 """Of a straight line, which is bent in another reference system."""
 
 
@@ -314,8 +321,8 @@ _MOST_PIECES = 512
 class _Placed:
     """The shapes of a file, in the reference system of the terrain."""
 
-    place: Place
-    shapes: tuple[Shape, ...]
+    place: Georeference
+    shapes: tuple[VectorShape, ...]
     extent: tuple[float, float]  # [m]
     notes: tuple[str, ...]
 
@@ -325,13 +332,13 @@ def make_mask(
 ) -> dict[str, NDArray[np.float32]]:
     """Return how much of each texel the shapes cover."""
     check_grid(size[::-1], np.dtype(np.float32), Path("mask of vector data"))
-    placed = _placed(*_vector_request(values))
-    west, south, east, north = placed.place.bounds
+    positioned = _placed(*_vector_request(values))
+    west, south, east, north = positioned.place.bounds
     scale = (size[0] - 1) / (east - west), (size[1] - 1) / (north - south)
     shapes = [
-        replace(s, lines=tuple((line - (west, south)) * scale for line in s.lines)) for s in placed.shapes
+        replace(s, lines=tuple((line - (west, south)) * scale for line in s.lines)) for s in positioned.shapes
     ]
-    spacing = placed.extent[0] / (size[0] - 1), placed.extent[1] / (size[1] - 1)
+    spacing = positioned.extent[0] / (size[0] - 1), positioned.extent[1] / (size[1] - 1)
     width = values["width"]
     assert isinstance(width, int | float)  # the kernel's file says so
     return {"mask": draw(shapes, Grid(size, spacing), float(width), filled=values["polygons"] == 0)}
@@ -351,33 +358,35 @@ def _vector_request(values: Mapping[str, Value]) -> tuple[str, str, str, str]:
 @SOURCES.cached(weight=bytes_held)
 def _placed(vectors: str, elevation: str, *contents: str) -> _Placed:
     path, terrain = Path(vectors), open_elevation(elevation)
-    place, extent = terrain.found.place, terrain.extent
-    if place is None or not place.crs.facts.kind or extent is None:
+    georeference, extent = terrain.grid.place, terrain.extent
+    if georeference is None or not georeference.crs.facts.kind or extent is None:
         message = "does not say where its terrain lies, so nothing can be laid on it; a GeoTIFF does"
         raise DataError(message, file=terrain.path)
-    found = read_vectors(path)
-    shapes = _in_system(found.shapes, found.crs, place, path)
-    said = list(found.notes)
-    lost = len(found.shapes) - len(shapes)
+    text_placed = read_vectors(path)
+    shapes = _in_system(text_placed.shapes, text_placed.crs, georeference, path)
+    said = list(text_placed.notes)
+    lost = len(text_placed.shapes) - len(shapes)
     if lost:
         said.append(
-            f"{lost} of its {len(found.shapes)} shapes have no place in the terrain's reference system"
+            f"{lost} of its {len(text_placed.shapes)} shapes have no place in the terrain's reference system"
         )
-    if not any(_meets(shape, place.bounds) for shape in shapes):
+    if not any(_meets(shape, georeference.bounds) for shape in shapes):
         said.append("none of its shapes lies on the terrain")
-    return _Placed(place, shapes, extent, tuple(said))
+    return _Placed(georeference, shapes, extent, tuple(said))
 
 
-def _in_system(shapes: tuple[Shape, ...], crs: str, place: Place, path: Path) -> tuple[Shape, ...]:
+def _in_system(
+    shapes: tuple[VectorShape, ...], crs: str, georeference: Georeference, path: Path
+) -> tuple[VectorShape, ...]:
     """Return shapes in the terrain's reference system, without those that have no place in it."""
     if not crs:
         return shapes  # the file says nothing: it is taken for that of the terrain
-    wanted = place.crs.name or place.crs.text
-    if crs == wanted or {crs, wanted} <= _ALIKE:
+    system = georeference.crs.name or georeference.crs.text
+    if crs == system or {crs, system} <= _ALIKE:
         return shapes
     lines = [_dense(line) if shape.kind != "point" else line for shape in shapes for line in shape.lines]
     try:
-        points = transformed(np.concatenate(lines), crs, wanted)
+        points = transformed(np.concatenate(lines), crs, system)
     except DataError as error:
         raise DataError(error.diagnostics[0].message, file=path) from None
     bent = iter(np.split(points, np.cumsum([len(line) for line in lines])[:-1]))
@@ -391,14 +400,14 @@ def _dense(line: Line) -> Line:
         return line
     degrees = np.abs(line).max() <= 360.0  # metres of a terrain near the origin are cut finer than need be
     length = np.hypot(*(line[1:] - line[:-1]).T)
-    counts = np.clip(np.ceil(length / (0.01 if degrees else 1000.0)), 1, _MOST_PIECES).astype(np.intp)
+    counts = np.clip(np.ceil(length / (0.01 if degrees else 1000.0)), 1, _MAX_PIECES).astype(np.intp)
     owner = np.repeat(np.arange(len(counts)), counts)
     number = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
     step = (line[1:] - line[:-1]) / counts[:, None]
     return np.concatenate([line[owner] + step[owner] * number[:, None], line[-1:]])
 
 
-def _meets(shape: Shape, bounds: tuple[float, float, float, float]) -> bool:
+def _meets(shape: VectorShape, bounds: tuple[float, float, float, float]) -> bool:
     """Return whether a shape may lie on the terrain, by what is around it."""
     points = np.concatenate(shape.lines)
     (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)

@@ -32,7 +32,7 @@ _IMAGES = (".jpg", ".jpeg", ".webp")
 _DATA = {*_IMAGES, *ELEVATIONS, *VECTORS, *VIDEO_FILES, *SOUND_FILES}
 
 
-class _Found(NamedTuple):
+class _FoundFile(NamedTuple):
     """A file that was found, and where."""
 
     earlier: tuple[Path, ...]  # places that are looked at before, where there was no file
@@ -42,10 +42,10 @@ class _Found(NamedTuple):
 
     def holds(self) -> bool:
         """Return whether it would be found again."""
-        if any(_identity(place) is not None for place in self.earlier):
+        if any(_identity(position) is not None for position in self.earlier):
             return False
         places = (self.place,) if self.place == self.file else (self.place, self.file)
-        return all(_identity(place) == self.identity for place in places)
+        return all(_identity(position) == self.identity for position in places)
 
 
 def _identity(path: Path) -> tuple[int, int] | None:
@@ -67,17 +67,17 @@ def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:
     if not text:
         raise DataError(f"{parameter} names no file")
     key = (find_file, text, folder, declared_in)
-    known: _Found | None = FILES.get(key)
-    if known is not None and known.holds():
-        return known.file
+    cached: _FoundFile | None = FILES.get(key)
+    if cached is not None and cached.holds():
+        return cached.file
     path = Path(text)
     places = [Path(folder), Path(declared_in).parent, GLSL]
     if path.is_absolute():
         if path.is_file():
             return path
         places = []
-    for number, place in enumerate(places):
-        candidate = (place / path).resolve()
+    for number, path_root in enumerate(places):
+        candidate = (path_root / path).resolve()
         roots = [root.resolve() for root in (named_root(candidate), Path(folder), GLSL) if root is not None]
         if candidate.is_file() and any(map(candidate.is_relative_to, roots)):
             outside = outside_sidecar(candidate, roots)
@@ -87,13 +87,13 @@ def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:
             identity = _identity(candidate)
             if identity is not None and not sidecar_places(candidate):  # those may come, and lead elsewhere
                 earlier = tuple([before / path for before in places[:number]])
-                FILES.put(key, _Found(earlier, place / path, candidate, identity))
+                FILES.put(key, _FoundFile(earlier, path_root / path, candidate, identity))
             return candidate
-    folders = [(place / path).parent for place in places] or [path.parent]
+    folders = [(path_root / path).parent for path_root in places] or [path.parent]
     near = sorted(
         {p.name for folder in folders if folder.is_dir() for p in folder.iterdir() if p.suffix in _DATA}
     )
-    what = next(filter(None, map(irregularity, [*(place / path for place in places), path])), "")
+    what = next(filter(None, map(irregularity, [*(path_root / path for path_root in places), path])), "")
     message = what or f"there is no such file{nearest(path.name, near)}"
     raise DataError(f"{parameter}: {message}", file=shown(path))
 

@@ -49,7 +49,7 @@ class Frame:
     ) -> Path:
         """Write a picture by the path's ending, whole or not at all: .png, .jpg, .webp or .tif.
 
-        ``text`` goes into a PNG; ``say`` is called with a sentence where a JPEG drops alpha.
+        ``text`` goes into a PNG; ``say`` is called with a message where a JPEG drops alpha.
         Returns the path.
 
             playground.render("l_dot_n", size=(64, 36)).save("land.webp")

@@ -71,12 +71,12 @@ def read_mipmap(texture: moderngl.Texture, level: int, size: tuple[int, int]) ->
     """Return the texels of a mipmap, whose size is given; moderngl reads none that it has not made."""
     ctx = texture.ctx
     call = Calls(ctx)
-    found = ctypes.create_string_buffer(size[0] * size[1] * _texel(texture))
+    buffer = ctypes.create_string_buffer(size[0] * size[1] * _texel(texture))
     texture.use(ctx.default_texture_unit)
     call("glPixelStorei", (ctypes.c_int, ctypes.c_int), _PACK_ALIGNMENT, 1)
     kinds = (*(ctypes.c_int,) * 4, ctypes.c_void_p)
-    call("glGetTexImage", kinds, _TEXTURE_2D, level, *_kind(texture), ctypes.addressof(found))
-    return found.raw
+    call("glGetTexImage", kinds, _TEXTURE_2D, level, *_kind(texture), ctypes.addressof(buffer))
+    return buffer.raw
 
 
 def write_mipmaps(texture: moderngl.Texture, sizes: Sequence[tuple[int, int]], data: memoryview) -> None:
@@ -95,8 +95,8 @@ def write_mipmaps(texture: moderngl.Texture, sizes: Sequence[tuple[int, int]], d
     for level, (width, height) in enumerate(sizes, 1):
         texels = bytes(data[start : start + width * height * _texel(texture)])
         start += len(texels)
-        place = (_TEXTURE_2D, level, form.value, width, height, 0)
-        call("glTexImage2D", kinds, *place, *_kind(texture), texels)
+        level_arguments = (_TEXTURE_2D, level, form.value, width, height, 0)
+        call("glTexImage2D", kinds, *level_arguments, *_kind(texture), texels)
     texture.filter = ctx.LINEAR_MIPMAP_LINEAR, ctx.LINEAR
 
 

@@ -67,8 +67,8 @@ class Settling:
         program.set("k_block", _BLOCK)
         with self._query:
             for output in now.outputs:
-                for name, result, place in (("k_now", now, unit), ("k_before", before, unit + 1)):
-                    self.binder.texture(program, name, place, result.textures[output.name], Sampling())
+                for name, result, unit_of in (("k_now", now, unit), ("k_before", before, unit + 1)):
+                    self.binder.texture(program, name, unit_of, result.textures[output.name], Sampling())
                 program.fill()
         self.pool.give(target)
         return self._query
@@ -99,7 +99,7 @@ _SAMPLERS = frozenset(
     {*range(0x8B5D, 0x8B65), *range(0x8DC0, 0x8DC6), *range(0x8DC9, 0x8DD9), *range(0x9108, 0x910E)}
 )
 """GL_SAMPLER_1D to GL_UNSIGNED_INT_SAMPLER_2D_MULTISAMPLE_ARRAY."""
-_MOST_LEVELS = 12  # of a pyramid of another tool
+_MAX_LEVELS = 12  # of a pyramid of another tool
 _SHAPES = {0x8B5D: "line", 0x8B5F: "volume", 0x8B60: "cube", 0x8DC1: "layers"}
 """GL_SAMPLER_1D, 3D, CUBE and 2D_ARRAY, with the shapes of what they read."""
 
@@ -109,7 +109,7 @@ class Job:
     """One step about to run, with all it reads."""
 
     step: Step
-    given: Mapping[str, Any]  # what the engine gives, by name
+    uniforms: Mapping[str, Any]  # what the engine gives, by name
     inputs: Mapping[str, Wired]
     loop_iteration: LoopIteration | None = None  # where it is in the loops around it
     start: Result | None = None  # the same step after fewer iterations, to go on from; it is used up
@@ -130,8 +130,8 @@ class Job:
     def numbers(self, **more: Number) -> dict[str, Number]:
         """Return what the expressions of a header may name."""
         width, height = self.step.whole_size
-        found: dict[str, Number] = {"size.x": width, "size.y": height, **more}
-        return found | {k: v for k, v in self.step.values.items() if isinstance(v, int | float)}
+        numbers: dict[str, Number] = {"size.x": width, "size.y": height, **more}
+        return numbers | {k: v for k, v in self.step.values.items() if isinstance(v, int | float)}
 
 
 class Kernels:
@@ -167,7 +167,7 @@ class Kernels:
             return self._untouched(step, state)
         if driver == FRAGMENT and self.software and self.software.runs_in_parts(kernel):
             return self._in_parts(self.software, job, program, state, wires)
-        unit = self.binder.bind(program, step, job.given, job.inputs, wires)
+        unit = self.binder.bind(program, step, job.uniforms, job.inputs, wires)
         if driver == COMPUTE and kernel.visits:
             return self._in_place(job, kernel, program, state)
         return self._alternately(job, kernel, program, driver, state, unit)
@@ -190,7 +190,7 @@ class Kernels:
         choices = self.software.choices(job.step, job.inputs, driver, in_loop=in_loop)
         return self.programs.get(job.step.kernel, driver, (*choices, *more))
 
-    def draw_own(
+    def draw_utility_shader(
         self, shader: str, target: moderngl.Framebuffer, source: moderngl.Texture, **uniforms: Any
     ) -> None:
         """Fill a framebuffer by one of the engine's own fragment shaders, which reads a texture."""
@@ -200,32 +200,32 @@ class Kernels:
         program.set_all(uniforms)
         program.fill()
 
-    def drawn_own(self, shader: str, result: Result, **uniforms: Any) -> Result:
-        """Return new textures, the caller's, each filled from that of a result as ``draw_own`` does."""
-        found = self.pool.take(result.size, result.outputs)
+    def run_utility_shader(self, shader: str, result: Result, **uniforms: Any) -> Result:
+        """Return new textures of the caller, each filled from a result's as ``draw_utility_shader`` does."""
+        result_textures = self.pool.take(result.size, result.outputs)
         for output in result.outputs:
-            target = make_framebuffer(self.ctx, [found.textures[output.name]])
-            self.draw_own(shader, target, result.textures[output.name], **uniforms)
+            target = make_framebuffer(self.ctx, [result_textures.textures[output.name]])
+            self.draw_utility_shader(shader, target, result.textures[output.name], **uniforms)
             target.release()
-        return found
+        return result_textures
 
     def copy(self, target: moderngl.Framebuffer, size: tuple[int, int], texture: moderngl.Texture) -> None:
         """Fill a framebuffer with a texture, nearest texel for nearest."""
-        self.draw_own("copy.frag", target, texture, k_size=size)
+        self.draw_utility_shader("copy.frag", target, texture, k_size=size)
 
     def copied(self, result: Result) -> Result:
         """Return a result's copy, the caller's."""
-        found = self.pool.take(result.size, result.outputs)
+        copy = self.pool.take(result.size, result.outputs)
         for output in result.outputs:
-            self.copy_texture(found.textures[output.name], result.textures[output.name])
-        found.iterations, found.settled = result.iterations, result.settled
-        return found
+            self.copy_texture(copy.textures[output.name], result.textures[output.name])
+        copy.iterations, copy.settled = result.iterations, result.settled
+        return copy
 
     def empty(self, step: Step) -> Result:
         """Return the textures of a step, all zeros."""
         result = self.pool.take(step.size, step.kernel.outputs)
         framebuffer = result.framebuffer(self.ctx)
-        framebuffer.use()  # clear() binds anew what was bound before, which may have been released by now
+        framebuffer.use()  # clear() binds again what was bound before, which may have been released by now
         framebuffer.clear()
         return result
 
@@ -240,7 +240,7 @@ class Kernels:
         for parameter in kernel.parameters:
             value = step.values[parameter.name]
             if parameter.widget.kind != "file":
-                program.set(parameter.name, job.given.get(f"{PRESSED}{parameter.name}", value))
+                program.set(parameter.name, job.uniforms.get(f"{PRESSED}{parameter.name}", value))
             elif parameter.name in program.uniforms or foreign:
                 texture = self.binder.file_texture(parameter, value, encoded=True)
                 sizes[parameter.name] = (*texture.size, 1)
@@ -319,13 +319,16 @@ class Kernels:
                 state = result.textures
                 if result.settled:
                     break
-        found = swap.before
-        assert found is not None
+        utility_shader = swap.before
+        assert utility_shader is not None
         if shift:  # each texel of the lattice goes to its place, with zeros between
-            close, found = found, self.drawn_own("spread.frag", found, k_shift=shift)
+            close, utility_shader = (
+                utility_shader,
+                self.run_utility_shader("spread.frag", utility_shader, k_shift=shift),
+            )
             self.pool.give(close)
-        found.iterations = step.repeat
-        return found
+        utility_shader.iterations = step.repeat
+        return utility_shader
 
     def _in_parts(
         self,
@@ -340,7 +343,7 @@ class Kernels:
         result = self.pool.take(step.size, step.kernel.outputs)
         with software.drawing_once(result):
             for part in (self.program(job, FRAGMENT, FIRST_PART), program):
-                unit = self.binder.bind(part, step, job.given, job.inputs, wires)
+                unit = self.binder.bind(part, step, job.uniforms, job.inputs, wires)
                 self.binder.previous(self.binder.previous_units(part, step.kernel, unit), state)
                 job.count(part, 0, step.kernel.repeat, step.whole)
                 with self.filling:
@@ -415,7 +418,7 @@ class Kernels:
         if job.start is not None:
             return dict(job.start.textures)
         step = job.step
-        found: dict[str, moderngl.Texture] = {}
+        textures: dict[str, moderngl.Texture] = {}
         for name, output in initial_names(step.kernel).items():
             texture = job.inputs.get(name, NOT_WIRED).texture
             if texture is None:
@@ -425,8 +428,8 @@ class Kernels:
                     f"pass '{step.path}': {name} is {texture.width} x {texture.height} texels, "
                     f"the pass {step.size[0]} x {step.size[1]}; they must agree"
                 )
-            found[output] = texture
-        return found
+            textures[output] = texture
+        return textures
 
     def _untouched(self, step: Step, state: Mapping[str, moderngl.Texture]) -> Result:
         """Return the state before the first iteration, in textures of its own."""
@@ -448,9 +451,9 @@ class Kernels:
             result.textures[output.name].bind_to_image(unit, read=read, write=True)
 
 
-def usual_of(kernel: Kernel, known: Mapping[str, tuple[float, ...]]) -> dict[str, tuple[float, ...]]:
+def usual_of(kernel: Kernel, values: Mapping[str, tuple[float, ...]]) -> dict[str, tuple[float, ...]]:
     """Return those of the usual uniforms that a plain shader's text names, by meaning."""
-    return {meaning: known[meaning] for _, meaning in kernel.usual if meaning in known}
+    return {meaning: values[meaning] for _, meaning in kernel.usual if meaning in values}
 
 
 def _shares(whole: tuple[int, int], *pairs: tuple[int, int]) -> tuple[float, ...]:
@@ -464,7 +467,7 @@ def _numbers(meaning: str, job: Job, sizes: Mapping[str, tuple[int, int, int]]) 
         return (float(meaning.removeprefix(VALUE)),)
     if meaning.startswith(DEPTH):
         halved = int(meaning.removeprefix(DEPTH))
-        return (float(min(max(min(job.step.whole_size).bit_length() + halved - 2, 0), _MOST_LEVELS)),)
+        return (float(min(max(min(job.step.whole_size).bit_length() + halved - 2, 0), _MAX_LEVELS)),)
     if meaning in ("iteration", "iterations"):
         around = job.loop_iteration
         number, whole = (around.number, around.whole) if around is not None else (0, 1)
@@ -474,8 +477,8 @@ def _numbers(meaning: str, job: Job, sizes: Mapping[str, tuple[int, int, int]]) 
 
 def _size(meaning: str, sizes: Mapping[str, tuple[int, int, int]]) -> tuple[float, ...]:
     """Return the sizes [texels] of the samplers that a meaning lists, three numbers each; 0 for none."""
-    found = [sizes.get(name, (0, 0, 0)) for name in meaning.removeprefix(SIZES).split()]
-    return tuple(float(number) for size in found for number in size)
+    result = [sizes.get(name, (0, 0, 0)) for name in meaning.removeprefix(SIZES).split()]
+    return tuple(float(number) for size in result for number in size)
 
 
 def _set_fitting(program: Program, name: str, values: tuple[float, ...]) -> None:
@@ -489,8 +492,8 @@ def _set_fitting(program: Program, name: str, values: tuple[float, ...]) -> None
     elements: list[Any] = []
     for index in range(length):
         own = values[3 * index : 3 * index + 3] if length > 1 and len(values) > 1 else values
-        found = [int(v) if whole else float(v) for v in (*own, *(0.0,) * count)[:count]]
-        elements.append(found[0] if count == 1 else tuple(found))
+        numbers = [int(v) if whole else float(v) for v in (*own, *(0.0,) * count)[:count]]
+        elements.append(numbers[0] if count == 1 else tuple(numbers))
     program.write(name, elements[0] if length == 1 else elements)
 
 

@@ -69,33 +69,33 @@ def vertices() -> NDArray[np.float32]:
 @cache
 def pieces() -> Mapping[Piece, NDArray[np.uint32]]:
     """Return every list of indices, three a triangle, counter-clockwise from above or outside."""
-    found: dict[Piece, NDArray[np.uint32]] = {}
+    indices: dict[Piece, NDArray[np.uint32]] = {}
     for level in range(LEVELS - 1):
         for coarser in range(16):
-            found["fans", level, coarser] = _fans(level, coarser)
+            indices["fans", level, coarser] = _fans(level, coarser)
     south_west, south_east = _side(SOUTH, CELLS)
     north_east, north_west = _side(NORTH, CELLS)
     cut = [south_west, south_east, north_east, south_west, north_east, north_west]
-    found["fans", LEVELS - 1, 0] = np.array(cut, np.uint32)
+    indices["fans", LEVELS - 1, 0] = np.array(cut, np.uint32)
     cut = [south_west, south_east, north_west, south_east, north_east, north_west]
-    found["fans", LEVELS - 1, 1] = np.array(cut, np.uint32)
+    indices["fans", LEVELS - 1, 1] = np.array(cut, np.uint32)
     for east in (0, 1):
         for north in (0, 1):
-            found["quarter", east, north] = _fans(0, 0, (east, north))
+            indices["quarter", east, north] = _fans(0, 0, (east, north))
     for level in range(LEVELS):
         for side in SIDES:
-            found["wall", level, side] = _wall(level, side)
-    return found
+            indices["wall", level, side] = _wall(level, side)
+    return indices
 
 
 @cache
 def ranges() -> Mapping[Piece, tuple[int, int]]:
     """Return where each piece begins when all are one after another: its first index, and how many."""
-    found, first = {}, 0
+    ranges_by_piece, first = {}, 0
     for piece, indices in pieces().items():
-        found[piece] = first, len(indices)
+        ranges_by_piece[piece] = first, len(indices)
         first += len(indices)
-    return found
+    return ranges_by_piece
 
 
 def _side(side: int, step: int) -> NDArray[np.int64]:
@@ -123,8 +123,8 @@ def _fans(level: int, coarser: int, quarter: tuple[int, int] | None = None) -> N
     ring, centre = around @ (1, _ROW), middle @ (1, _ROW)
     after = np.roll(ring, -1, axis=1)
     fans = np.stack([np.broadcast_to(centre[:, None], ring.shape), ring, after], axis=2)
-    found: NDArray[np.uint32] = fans[ring != after].astype(np.uint32).ravel()
-    return found
+    indices: NDArray[np.uint32] = fans[ring != after].astype(np.uint32).ravel()
+    return indices
 
 
 def _wall(level: int, side: int) -> NDArray[np.uint32]:
@@ -208,10 +208,10 @@ class Boxes:
     def support(self, plane: Floats) -> Floats:
         """Return the support of each box (ny, nx): the most of a plane's equation at a place of it."""
         east, north = (plane[0] * self.east).max(axis=0), (plane[1] * self.north).max(axis=0)
-        found: Floats = plane[2] * self.up[int(plane[2] > 0)]
-        found += east
-        found += north[:, None] + plane[3]
-        return found
+        supports: Floats = plane[2] * self.up[int(plane[2] > 0)]
+        supports += east
+        supports += north[:, None] + plane[3]
+        return supports
 
     def depths(self, view: View) -> Floats:
         """Return the least depth [m] of each that can be visible."""
@@ -234,11 +234,11 @@ class Boxes:
 
     def visible(self, view: View) -> NDArray[np.bool_]:
         """Return which are not wholly outside one of the six planes of the view."""
-        found = np.ones(self.up.shape[1:], bool)
+        is_visible = np.ones(self.up.shape[1:], bool)
         for row in (0, 1, 2):
             for sign in (1.0, -1.0):
-                found &= self.support(view.clip_from_world[3] + sign * view.clip_from_world[row]) >= 0
-        return found
+                is_visible &= self.support(view.clip_from_world[3] + sign * view.clip_from_world[row]) >= 0
+        return is_visible
 
     def with_walls(self, view: View) -> Boxes:
         """Return boxes that hold the walls at the terrain's rim as well.
@@ -248,14 +248,14 @@ class Boxes:
         return replace(self, up=np.stack([np.minimum(self.up[0], -max(view.extent)), self.up[1]]))
 
 
-def _dot(one: Sequence[float], other: Sequence[float]) -> float:
+def _dot(left: Sequence[float], other: Sequence[float]) -> float:
     """Return the product of the first three numbers of each."""
-    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
+    return left[0] * other[0] + left[1] * other[1] + left[2] * other[2]
 
 
 def _length(east: Floats, north: Floats, up: Floats) -> Floats:
-    found: Floats = np.sqrt(east + north[:, None] + up)
-    return found
+    length_squared: Floats = np.sqrt(east + north[:, None] + up)
+    return length_squared
 
 
 def boxes_of(spans: NDArray[np.float32], view: View) -> Boxes:
@@ -280,13 +280,13 @@ NEARLY = 0.8
 
 def pyramid(spans: NDArray[np.float32]) -> list[NDArray[np.float32]]:
     """Return the spans of squares of 1, 2, 4 ... tiles a side, up to one square: see ``boxes_of``."""
-    found = [spans]
-    while max(found[-1].shape[:2]) > 1:
-        ny, nx = found[-1].shape[:2]
-        even = np.pad(found[-1], ((0, ny % 2), (0, nx % 2), (0, 0)), mode="edge")
+    levels = [spans]
+    while max(levels[-1].shape[:2]) > 1:
+        ny, nx = levels[-1].shape[:2]
+        even = np.pad(levels[-1], ((0, ny % 2), (0, nx % 2), (0, 0)), mode="edge")
         four = np.stack([even[j::2, i::2] for j in (0, 1) for i in (0, 1)])
-        found.append(np.concatenate([four[..., :1].min(axis=0), four[..., 1:].max(axis=0)], axis=-1))
-    return found
+        levels.append(np.concatenate([four[..., :1].min(axis=0), four[..., 1:].max(axis=0)], axis=-1))
+    return levels
 
 
 def level_distances(
@@ -304,18 +304,18 @@ def level_distances(
     """
     pixel = abs(view.relief) * view.pixels * view.stretch / max(tolerance, 1e-9)
     boxes = [boxes_of(each, view) for each in squares]
-    found: list[float] = []
+    distances: list[float] = []
     for level in range(1, len(squares)):
         size = max(level - LEVELS + 1, 0)  # of the squares whose errors are known
         heights = np.diff(squares[size].astype(np.float64), axis=-1)[..., 0]
         if level < LEVELS:
             errors = tables["errors"][..., level - 1].astype(np.float64)
             heights = np.where(errors < FAR / 2, errors, 0.0)  # holes may change their shape
-        wanted = _furthest(boxes[size], heights * pixel, view)
+        furthest = _furthest(boxes[size], heights * pixel, view)
         # The tile before was cut because its parent is near: its points may be a parent's size further.
-        within = (found[-1] + boxes[level - 1].longest) * 1.02 if found else 0.0
-        found.append(min(max(wanted, within) / START, FAR))
-    return np.array([*found, FAR])
+        within = (distances[-1] + boxes[level - 1].longest) * 1.02 if distances else 0.0
+        distances.append(min(max(furthest, within) / START, FAR))
+    return np.array([*distances, FAR])
 
 
 def _furthest(boxes: Boxes, fine: Floats, view: View) -> float:
@@ -361,8 +361,8 @@ def morph(values: Mapping[str, object], tables: Mapping[str, NDArray[np.float32]
     runs: list[tuple[Piece, int]] = []
     order = sorted(places, key=lambda each: each[0])
     for piece in dict.fromkeys(piece for piece, _ in order):
-        runs.append((piece, sum(len(found) for other, found in order if other == piece)))
-    return Chosen(tuple(runs), np.concatenate([found for _, found in order]))
+        runs.append((piece, sum(len(indices) for other, indices in order if other == piece)))
+    return Chosen(tuple(runs), np.concatenate([indices for _, indices in order]))
 
 
 def _placed(chosen: NDArray[np.bool_], level: int, shown: int, distances: Floats) -> NDArray[np.float32]:
@@ -398,12 +398,12 @@ def levels_of(errors: NDArray[np.float32], boxes: Boxes, view: View, tolerance: 
 
 def coarser_of(levels: Levels) -> Levels:
     """Return, for each tile, the sides whose neighbours are coarser."""
-    found = np.zeros_like(levels)
-    found[1:] |= SOUTH * (levels[:-1] > levels[1:])
-    found[:-1] |= NORTH * (levels[1:] > levels[:-1])
-    found[:, 1:] |= WEST * (levels[:, :-1] > levels[:, 1:])
-    found[:, :-1] |= EAST * (levels[:, 1:] > levels[:, :-1])
-    return found
+    coarser = np.zeros_like(levels)
+    coarser[1:] |= SOUTH * (levels[:-1] > levels[1:])
+    coarser[:-1] |= NORTH * (levels[1:] > levels[:-1])
+    coarser[:, 1:] |= WEST * (levels[:, :-1] > levels[:, 1:])
+    coarser[:, :-1] |= EAST * (levels[:, 1:] > levels[:, :-1])
+    return coarser
 
 
 def geomipmap(values: Mapping[str, object], tables: Tables, view: View) -> Chosen:
@@ -425,21 +425,21 @@ def tiles_at(levels: Levels, boxes: Boxes, view: View) -> Chosen:
     visible = boxes.with_walls(view).visible(view)
     for side, rim in rims_of(ny, nx).items():
         places.append(_gathered("wall", levels, np.full((ny, nx), side, np.int8), visible & rim))
-    runs = tuple(run for found, _ in places for run in found)
+    runs = tuple(run for runs_found, _ in places for run in runs_found)
     return Chosen(runs, np.concatenate([each for _, each in places]))
 
 
 def _gathered(
-    kind: str, levels: Levels, sides: Levels, wanted: NDArray[np.bool_]
+    kind: str, levels: Levels, sides: Levels, selected: NDArray[np.bool_]
 ) -> tuple[Sequence[tuple[Piece, int]], NDArray[np.float32]]:
     """Return the wanted tiles, those of one piece after another."""
-    north, east = np.nonzero(wanted)
-    level, side = levels[wanted], sides[wanted]
+    north, east = np.nonzero(selected)
+    level, side = levels[selected], sides[selected]
     code = level.astype(np.int64) * 16 + side
     order = np.argsort(code, kind="stable")
     places = np.stack([CELLS * east, CELLS * north, level, side], axis=1)[order].astype(np.float32)
-    found, counts = np.unique(code, return_counts=True)
-    runs = [((kind, int(c) // 16, int(c) % 16), int(n)) for c, n in zip(found, counts, strict=True)]
+    codes, counts = np.unique(code, return_counts=True)
+    runs = [((kind, int(c) // 16, int(c) % 16), int(n)) for c, n in zip(codes, counts, strict=True)]
     return runs, places
 
 

@@ -135,10 +135,10 @@ class LoopState:
                     before, now, cached.iterations = now, before, number + 1
                     if self._is_due(number):
                         kept: State = {}
-                        for place, step in enumerate(steps):
+                        for index, step in enumerate(steps):
                             if step.path in self._fed:
-                                kept[step.path] = now[place]
-                                now[place] = pool.take(step.size, step.kernel.outputs)
+                                kept[step.path] = now[index]
+                                now[index] = pool.take(step.size, step.kernel.outputs)
                         self._keep(number, kept)
                     after_each()
         finally:
@@ -148,11 +148,11 @@ class LoopState:
 
     def _go_back(self) -> None:
         """Set the loop back where it is too far, or on to a later state that was kept."""
-        done, wanted = self.iterations, self.loop.repeat
-        if done == wanted or not self._key:
+        done, total = self.iterations, self.loop.repeat
+        if done == total or not self._key:
             return
-        latest = self._kept.latest(self.loop.path, self._key, wanted - 1) if self._kept is not None else 0
-        if latest <= done < wanted:
+        latest = self._kept.latest(self.loop.path, self._key, total - 1) if self._kept is not None else 0
+        if latest <= done < total:
             return
         self._set_aside()
         if self._kept is not None and latest:
@@ -211,13 +211,13 @@ class _Kept:
         """Return the state that is missed least: see the module."""
         # A loop over places, for this is asked at every iteration.
         numbers, now = self.numbers, self.now
-        ends, before, found, cost = (*numbers[1:], max(now, numbers[-1])), 0, numbers[0], inf
+        ends, before, result, cost = (*numbers[1:], max(now, numbers[-1])), 0, numbers[0], inf
         for number, after in zip(numbers, ends, strict=True):
             own = (after - before) / (abs(now - number) + 1)
             if own < cost:
-                found, cost = number, own
+                result, cost = number, own
             before = number
-        return found
+        return result
 
 
 class KeptStates:
@@ -244,8 +244,8 @@ class KeptStates:
     def latest(self, path: str, key: str, most: int) -> int:
         """Return the most iterations, up to ``most``, after which there is a state; 0 for none."""
         kept = self._kept[path].get(key) if path in self._kept else None
-        place = bisect_right(kept.numbers, most) if kept else 0
-        return kept.numbers[place - 1] if kept and place else 0
+        index = bisect_right(kept.numbers, most) if kept else 0
+        return kept.numbers[index - 1] if kept and index else 0
 
     def is_due(self, path: str, key: str, number: int, now: int) -> bool:
         """Return whether to keep a state after some iterations, while a loop runs on to ``now``.
@@ -293,9 +293,9 @@ class KeptStates:
 
     def retain(self, keys: set[str]) -> None:
         """Drop the states of all other keys."""
-        for known in self._kept.values():
-            for key in known.keys() - keys:
-                self._release(known.pop(key))
+        for kept in self._kept.values():
+            for key in kept.keys() - keys:
+                self._release(kept.pop(key))
 
     def clear(self) -> None:
         """Drop every state."""
@@ -320,7 +320,7 @@ class _Made(NamedTuple):
     unit: int
     sampler: moderngl.Sampler
     is_before: bool  # of the iteration before, not of this one
-    place: int  # of the pass that makes it
+    pass_index: int  # of the pass that makes it
     output: str
 
 
@@ -348,18 +348,18 @@ class Replay:
     def run(self, at: LoopIteration, before: Sequence[Result], now: Sequence[Result]) -> None:
         """Run an iteration: it reads ``before``, the results of the last, and writes ``now``, one a pass."""
         use, number = self._kernels.binder.use, at.number
-        for one, target in zip(self._passes, now, strict=True):
-            for unit, texture, sampler in one.fixed:
+        for bound_pass, target in zip(self._passes, now, strict=True):
+            for unit, texture, sampler in bound_pass.fixed:
                 use(unit, texture, sampler)
-            for unit, sampler, is_before, place, output in one.made:
-                use(unit, (before if is_before else now)[place].textures[output], sampler)
-            program = one.program
+            for unit, sampler, is_before, index, output in bound_pass.made:
+                use(unit, (before if is_before else now)[index].textures[output], sampler)
+            program = bound_pass.program
             program.set("iteration", number)
-            program.set("iterations", one.whole)
+            program.set("iterations", bound_pass.whole)
             program.set("until", number + 1)
-            if one.is_clocked and at.frame is not None:
+            if bound_pass.is_clocked and at.frame is not None:
                 program.set("time", at.frame / FRAME_RATE)
-            self._kernels.write(program, one.driver, target)
+            self._kernels.write(program, bound_pass.driver, target)
 
 
 def replay_of(
@@ -377,7 +377,7 @@ def replay_of(
     steps = [node for node in nodes if isinstance(node, Step)]
     if len(loop.bodies) > 1 or len(steps) < len(nodes):
         return None
-    places = {step.path: place for place, step in enumerate(steps)}
+    places = {step.path: index for index, step in enumerate(steps)}
     fed = {Fed(loop.path, name): ref for name, _, ref in loop.feedback}
     passes: list[_Pass] = []
     for step in steps:
@@ -387,10 +387,10 @@ def replay_of(
             if isinstance(ref, Ref) and ref.path in places:
                 made[name] = ref is not source, places[ref.path], ref.output
         inputs = {name: wired(source) for name, source in step.inputs}
-        found = _pass_of(step, loop.whole, inputs, made, kernels, driver_for(step))
-        if found is None:
+        bound_pass = _pass_of(step, loop.whole, inputs, made, kernels, driver_for(step))
+        if bound_pass is None:
             return None
-        passes.append(found)
+        passes.append(bound_pass)
     return Replay(kernels, steps, passes)
 
 
@@ -406,10 +406,10 @@ def _pass_of(
     kernel, binder = step.kernel, kernels.binder
     if not isinstance(kernel, TexelKernel) or not kernel.runs_once or step.repeat != 1:
         return None
-    found = kernels.bound_for(step, driver, inputs)
-    if found is None:
+    result = kernels.bound_for(step, driver, inputs)
+    if result is None:
         return None
-    program, bound = found
+    program, bound = result
     fixed: list[tuple[int, moderngl.Texture, moderngl.Sampler]] = []
     changing: list[_Made] = []
     for declared, unit, sampler in bound.units:
@@ -419,4 +419,4 @@ def _pass_of(
             return None
         else:
             changing.append(_Made(unit, sampler, *made[declared.name]))
-    return _Pass(program, "time" in kernel.given, whole, tuple(fixed), tuple(changing), driver)
+    return _Pass(program, "time" in kernel.engine_uniforms, whole, tuple(fixed), tuple(changing), driver)

@@ -108,7 +108,7 @@ def mesh_key(name: str, values: Mapping[str, object]) -> tuple[tuple[str, int], 
     """
     if name not in MESHES:
         raise SketchError(f"there is no mesh '{name}'{nearest(name, MESHES)}")
-    found = []
+    key = []
     for parameter, (low, high) in MESHES[name][1].items():
         value = values.get(parameter)
         if not isinstance(value, int):
@@ -116,8 +116,8 @@ def mesh_key(name: str, values: Mapping[str, object]) -> tuple[tuple[str, int], 
             raise SketchError(f"mesh '{name}' needs a parameter 'uniform int {parameter}'{other}")
         if not low <= value <= high:
             raise SketchError(f"{parameter} = {value}: mesh '{name}' takes {low} to {high}")
-        found.append((parameter, value))
-    return tuple(found)
+        key.append((parameter, value))
+    return tuple(key)
 
 
 def build_mesh(name: str, key: tuple[tuple[str, int], ...]) -> Mesh:
@@ -132,10 +132,10 @@ def drawn_mesh(name: str, key: tuple[tuple[str, int], ...]) -> Mesh:
     remembers the vertices that it shaded last. llvmpipe finds one by its number modulo 256: in rows of
     257, two of each square took each other's place, and each vertex was shaded four times.
     """
-    mesh, given = build_mesh(name, key), dict(key)
-    if "grid" not in given or given.get("detail"):
+    mesh, settings = build_mesh(name, key), dict(key)
+    if "grid" not in settings or settings.get("detail"):
         return mesh
-    across = given["grid"] - 1
+    across = settings["grid"] - 1
     squares, skirt = np.split(mesh.indices, [6 * across**2])
     rows = squares.reshape(across, across, 6)
     strips = [rows[:, start : start + _STRIP].ravel() for start in range(0, across, _STRIP)]

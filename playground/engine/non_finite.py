@@ -7,8 +7,8 @@ point that the last frame went through is looked at, in the order in which the p
 Passes that write bytes themselves (nearly every view does, and weights of textures) hide
 theirs: such a pass is run once more into textures of half floats, and what it writes there is
 looked at. What is not finite there may only be too large for a half: then the pass is run into
-32 bits as well. It need be done only for one that has run anew; of terrain that stays, and is lit
-anew, only the light is looked at again. Left as they are: passes inside a loop, kernels that
+32 bits as well. It need be done only for one that has run again; of terrain that stays, and is lit
+again, only the light is looked at again. Left as they are: passes inside a loop, kernels that
 repeat, compute variants (whose kernels give the same), and draws that go on from another one's samples.
 
 A hole in the terrain counts too: no shipped source leaves one (`no_data` refuses or fills them),
@@ -82,7 +82,7 @@ class FiniteCheck:
 
     def first(self) -> NotFinite | None:
         """Return what is not finite in the first such texture of the last frame; None if all is."""
-        return next((found for found in self.looks() if found is not None), None)
+        return next((not_finite for not_finite in self.looks() if not_finite is not None), None)
 
     def look_early(self, step: Step, result: Result, key: str) -> None:
         """Look at what a step outside of loops has just given: it will not be there when the frame ends."""
@@ -106,25 +106,25 @@ class FiniteCheck:
             result = record.results.get(step.path)
             if result is None:
                 continue
-            iterations, found = self._checked.get(result, (-1, None))
+            iterations, entry = self._checked.get(result, (-1, None))
             if iterations != result.iterations:
                 with self.source.borrowed():
-                    found = self._look(step, result, within)
-                self._checked[result] = result.iterations, found
+                    entry = self._look(step, result, within)
+                self._checked[result] = result.iterations, entry
             # Another sketch may have the same result under another name.
-            yield found if found is None else replace(found, path=step.path)
+            yield entry if entry is None else replace(entry, path=step.path)
 
     def _look(self, step: Step, result: Result, within: bool) -> NotFinite | None:
         for output in result.outputs:
             if output.format.endswith("f"):
                 self.looked_at += 1
-                found = _not_finite(result.textures[output.name])
-                if found is not None:
-                    return replace(found, path=step.path, output=output.name)
+                not_finite = _not_finite(result.textures[output.name])
+                if not_finite is not None:
+                    return replace(not_finite, path=step.path, output=output.name)
         if within or all(output.format.endswith("f") for output in result.outputs):
             return None
-        found = self._look_beneath(step, result, "16f")
-        return found if found is None else self._look_beneath(step, result, "32f")
+        not_finite = self._look_beneath(step, result, "16f")
+        return not_finite if not_finite is None else self._look_beneath(step, result, "32f")
 
     def _look_beneath(self, step: Step, result: Result, form: str) -> NotFinite | None:
         """Look at what a pass that writes bytes would have written, in floats of a form."""
@@ -139,9 +139,9 @@ class FiniteCheck:
             for output in result.outputs:
                 if not output.format.endswith("f"):
                     self.looked_at += 1
-                    found = _not_finite(made.textures[output.name])
-                    if found is not None:
-                        return replace(found, path=step.path, output=output.name)
+                    not_finite = _not_finite(made.textures[output.name])
+                    if not_finite is not None:
+                        return replace(not_finite, path=step.path, output=output.name)
         finally:
             runner.pool.give(made)
         return None
@@ -156,32 +156,32 @@ class FiniteCheck:
             if not isinstance(source, Ref):
                 inputs[name] = Wired()
                 continue
-            found = self.source.record.results.get(source.path)
-            if found is None:
+            result = self.source.record.results.get(source.path)
+            if result is None:
                 return None
-            if isinstance(kernel, Draw) and name == "initial" and found.surface is not None:
+            if isinstance(kernel, Draw) and name == "initial" and result.surface is not None:
                 return None
-            inputs[name] = Wired(found, found.textures[source.output], source.output)
+            inputs[name] = Wired(result, result.textures[source.output], source.output)
         return replace(step, kernel=self._widened(kernel, form)), inputs
 
     def _widened(self, kernel: Kernel, form: str) -> Kernel:
-        known = self._wide.get((id(kernel), form))
-        if known is None:
+        program = self._wide.get((id(kernel), form))
+        if program is None:
             outputs = tuple(replace(o, format=_widened(o.format, form)) for o in kernel.outputs)
-            known = self._wide[id(kernel), form] = kernel, replace(kernel, outputs=outputs)
+            program = self._wide[id(kernel), form] = kernel, replace(kernel, outputs=outputs)
             while len(self._wide) > 64:
                 self._wide.pop(next(iter(self._wide)))
-        return known[1]
+        return program[1]
 
 
 def _not_finite(texture: moderngl.Texture) -> NotFinite | None:
     """Return where numbers of a texture are not finite; a large one is read a part at a time."""
     first, count = None, 0
     for south, values in read_bands(texture):
-        found = not_finite_in(values)
-        if found is not None:
-            count += found.count
-            first = first or replace(found, texel=(found.texel[0], south + found.texel[1]))
+        not_finite = not_finite_in(values)
+        if not_finite is not None:
+            count += not_finite.count
+            first = first or replace(not_finite, texel=(not_finite.texel[0], south + not_finite.texel[1]))
     width, height = texture.size
     return first and replace(first, count=count, size=(width, height))
 
@@ -204,9 +204,9 @@ def not_finite_in(values: NDArray[Any]) -> NotFinite | None:
     return NotFinite("", "", (x, y), name, int(np.count_nonzero(texels)), (texels.shape[1], texels.shape[0]))
 
 
-def _widened(form: str, wanted: str) -> str:
+def _widened(form: str, output: str) -> str:
     components, _ = split_format(form)
-    return form if form.endswith("f") else {1: "r", 2: "rg", 4: "rgba"}[components] + wanted
+    return form if form.endswith("f") else {1: "r", 2: "rg", 4: "rgba"}[components] + output
 
 
 def _steps(plan: Plan | None) -> Iterator[tuple[Step, bool]]:

@@ -72,12 +72,12 @@ class OnArrays:
         sets its parameters, by path inside it; ``steps`` stops its repeats early, "" being its own. What
         the engine drew last stays its last frame. Raises ``PlaygroundError`` for any mistake.
         """
-        given = {name: np.ascontiguousarray(array, np.float32) for name, array in arrays.items()}
-        wanted = outputs or output_names(self.technique)
-        self._check(given, wanted)
-        sketch = self._sketch(given)
-        ny, nx = next(iter(given.values())).shape[:2] if given else (1, 1)
-        numbers = {f"{name}.{_NUMBER}": next(_numbers) for name in given}
+        inputs = {name: np.ascontiguousarray(array, np.float32) for name, array in arrays.items()}
+        names = outputs or output_names(self.technique)
+        self._check(inputs, names)
+        sketch = self._sketch(inputs)
+        ny, nx = next(iter(inputs.values())).shape[:2] if inputs else (1, 1)
+        numbers = {f"{name}.{_NUMBER}": next(_numbers) for name in inputs}
         sketch = sketch.with_values(
             {
                 "size": (nx, ny),
@@ -89,44 +89,44 @@ class OnArrays:
             }
         )
         stops = {f"{self.name}.{path}".rstrip("."): number for path, number in (steps or {}).items()}
-        found: dict[str, NDArray[np.float32]] = {}
+        arrays_out: dict[str, NDArray[np.float32]] = {}
         with self._apart():
             plan = self.engine.plan(sketch, (nx, ny), time, stops, interpolated=False)
             keys = self.engine.keys_of(plan)
             try:
-                for name, array in given.items():
+                for name, array in inputs.items():
                     self._put(plan, keys.result(name), name, array)
-                for output in wanted:
+                for output in names:
                     ref = plan.flat.ref(f"{self.name}:{output}", sketch.name)
-                    found[output] = read_texture(self.engine.texture_of(plan, ref))
+                    arrays_out[output] = read_texture(self.engine.texture_of(plan, ref))
             finally:
-                self._forget(plan, keys, set(given))
-        return found
+                self._forget(plan, keys, set(inputs))
+        return arrays_out
 
-    def _check(self, given: Mapping[str, NDArray[np.float32]], wanted: tuple[str, ...]) -> None:
+    def _check(self, inputs: Mapping[str, NDArray[np.float32]], outputs: tuple[str, ...]) -> None:
         technique = self.technique
-        known = list(input_names(technique))
+        expected = list(input_names(technique))
         if isinstance(technique, Kernel):
-            known += [name for name in initial_names(technique) if name not in known]
-        for name, array in given.items():
-            if name not in known:
-                raise ParameterError(f"{technique.name} has no input '{name}'{nearest(name, known)}")
+            expected += [name for name in initial_names(technique) if name not in expected]
+        for name, array in inputs.items():
+            if name not in expected:
+                raise ParameterError(f"{technique.name} has no input '{name}'{nearest(name, expected)}")
             if 0 in array.shape or array.ndim not in (2, 3) or _channels(array.shape) not in _FORMATS:
                 message = f"an array of shape {array.shape}; (ny, nx) or (ny, nx, 1, 2 or 4) was expected"
                 raise ParameterError(f"{name}: {message}")
-        for name in known:
-            if name not in given and not is_optional(technique, name):
+        for name in expected:
+            if name not in inputs and not is_optional(technique, name):
                 raise ParameterError(f"{technique.name} needs an array for its input '{name}'")
-        for name in wanted:
+        for name in outputs:
             if name not in output_names(technique):
                 hint = nearest(name, output_names(technique))
                 raise ParameterError(f"{technique.name} has no output '{name}'{hint}")
 
-    def _sketch(self, given: Mapping[str, NDArray[np.float32]]) -> Sketch:
+    def _sketch(self, inputs: Mapping[str, NDArray[np.float32]]) -> Sketch:
         """Return the sketch for arrays of some shapes: the same object for the same."""
-        key = tuple((name, array.shape) for name, array in given.items())
+        key = tuple((name, array.shape) for name, array in inputs.items())
         if key not in self._sketches:
-            passes = [_array_pass(name, array.shape) for name, array in given.items()]
+            passes = [_array_pass(name, array.shape) for name, array in inputs.items()]
             folder = Path(self.technique.path).parent
             self._sketches[key] = shown_alone(self.technique, self.name, passes, folder)
         return self._sketches[key]

@@ -19,7 +19,7 @@ from playground.engine.textures import make_texture, split_format, write_texels,
 if TYPE_CHECKING:
     import moderngl
 
-_MOST = 4  # textures cached
+_MAX_SIZES = 4  # textures cached
 
 
 class Painted(Protocol):
@@ -69,15 +69,15 @@ class PaintedTextures:
     def texture_of(self, painted: Painted, form: str) -> moderngl.Texture:
         """Return the texture of an image in a format of as many channels, its changes written to it."""
         key, pixels = (painted.token, form), painted.pixels
-        known = self._textures.pop(key, None)
-        if known is None:
-            while len(self._textures) >= _MOST:
+        cached = self._textures.pop(key, None)
+        if cached is None:
+            while len(self._textures) >= _MAX_SIZES:
                 self._textures.pop(next(iter(self._textures)))[0].release()
             texture = make_texture(self._ctx, (pixels.shape[1], pixels.shape[0]), form)
             write_texture(texture, _in_format(pixels, form))
             self.uploaded += pixels.shape[0] * pixels.shape[1]
         else:
-            texture, version = known
+            texture, version = cached
             rows, columns = painted.changed_since(version)
             part = pixels[rows, columns]
             if part.size:

@@ -36,16 +36,16 @@ class PictureHasher:
         self._keys = KeyMaker(_compiled_text)
 
     def hash_of(
-        self, plan: Plan, driver: Callable[[Step], str], given: Callable[[Step], Mapping[str, Any]]
+        self, plan: Plan, driver: Callable[[Step], str], uniforms_of: Callable[[Step], Mapping[str, Any]]
     ) -> str:
         """Return the hash of what a plan's picture is made from; arguments as ``KeyMaker`` takes them."""
 
         def smoothed(step: Step) -> dict[str, Any]:
-            return {n: value if n == MOMENT else rounded(value) for n, value in given(step).items()}
+            return {n: value if n == MOMENT else rounded(value) for n, value in uniforms_of(step).items()}
 
-        found = self._keys.keys_of(plan, driver, smoothed).result(plan.picture.path)
+        keys = self._keys.keys_of(plan, driver, smoothed).result(plan.picture.path)
         times = plan.sketch.supersample
-        return found if times == 1 else f"{found} reduced {times} times"
+        return keys if times == 1 else f"{keys} reduced {times} times"
 
 
 def rounded(value: Any) -> Any:

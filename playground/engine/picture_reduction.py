@@ -31,13 +31,13 @@ def reduced(pixels: NDArray[np.uint8], times: int) -> NDArray[np.uint8]:
     squares = pixels.reshape(height, times, width, times, 4)
     alpha = squares[..., 3].sum(axis=(1, 3), dtype=np.uint32)
     opaque = bool((alpha == 255 * times * times).all())
-    found = np.empty((height, width, 4), np.uint8)
-    found[..., 3] = np.rint(alpha / (times * times))
+    reduced_picture = np.empty((height, width, 4), np.uint8)
+    reduced_picture[..., 3] = np.rint(alpha / (times * times))
     for channel in range(3):
         light = _light()[squares[..., channel]]
         if opaque:
             mean = light.mean(axis=(1, 3))
         else:
             mean = (light * squares[..., 3]).sum(axis=(1, 3)) / np.maximum(alpha, 1)
-        found[..., channel] = np.rint(255 * linear_to_srgb(mean))
-    return found
+        reduced_picture[..., channel] = np.rint(255 * linear_to_srgb(mean))
+    return reduced_picture

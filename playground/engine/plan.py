@@ -19,7 +19,7 @@ from playground.memo import PLANS
 from playground.paths import shown
 from playground.shader.expressions import counts_frames
 from playground.sketch.flat import Flat, Ref, Source, leaves_of
-from playground.sketch.model import LARGEST_SIDE, Draw, Kernel, PassSpec, Shot, Sketch, TexelKernel, Value
+from playground.sketch.model import MAX_SIDE, Draw, Kernel, PassSpec, Shot, Sketch, TexelKernel, Value
 from playground.sketch.wiring import input_names
 
 
@@ -40,7 +40,7 @@ class PlanRequest:
     steps: Mapping[str, int] = field(default_factory=dict)
     wanted: str = ""  # a texture, ``pass[.inner…][:output]``; "" for the picture
     interpolated: bool | None = None
-    largest: int = LARGEST_SIDE
+    largest: int = MAX_SIDE
 
     @property
     def fills(self) -> bool:
@@ -127,7 +127,7 @@ class PlanBasis:
     named: frozenset[str]  # paths of the values that a size or a count names
     by_time: bool  # one of them names the time
     pictures: Mapping[Path, tuple[int, int]]  # files whose sizes one of them names
-    refusals: Mapping[str, str]  # why a fast variant does not take its size: a sentence, by its technique
+    refusals: Mapping[str, str]  # why a fast variant does not take its size: a message, by its technique
     own: Mapping[str, tuple[int, int]]  # texels that sources have by themselves, by the path of the leaf
 
 
@@ -145,7 +145,7 @@ class Plan:
     basis: PlanBasis = field(repr=False, compare=False)
     steps: Mapping[str, int] = field(default_factory=dict)
     interpolated: bool = False  # what stopped passes have not reached is filled
-    lacking: tuple[str, ...] = ()  # a sentence for each technique that does without its fast variant
+    lacking: tuple[str, ...] = ()  # a message for each technique that does without its fast variant
 
     def walk(self) -> list[Step]:
         """Return every step, those inside loops included."""
@@ -177,13 +177,13 @@ class Plan:
 
 def walk(nodes: tuple[PlanNode, ...]) -> list[Step]:
     """Return every step of some nodes, those of loops' last iterations included."""
-    found: list[Step] = []
+    steps: list[Step] = []
     for node in nodes:
         if isinstance(node, LoopStep):
-            found += walk(node.body)
+            steps += walk(node.body)
         else:
-            found.append(node)
-    return found
+            steps.append(node)
+    return steps
 
 
 @PLANS.cached(identities=1)
@@ -207,23 +207,23 @@ def _continued(nodes: tuple[PlanNode, ...]) -> frozenset[str]:
 
 def every_node(nodes: tuple[PlanNode, ...]) -> list[PlanNode]:
     """Return every step and loop of some nodes, a loop before what its last iteration runs."""
-    found: list[PlanNode] = []
+    result: list[PlanNode] = []
     for node in nodes:
-        found.append(node)
+        result.append(node)
         if isinstance(node, LoopStep):
-            found += every_node(node.body)
-    return found
+            result += every_node(node.body)
+    return result
 
 
 def every_version(nodes: tuple[PlanNode, ...]) -> list[PlanNode]:
     """Return every step and loop of some nodes, of a loop those of each iteration that has its own."""
-    found: list[PlanNode] = []
+    result: list[PlanNode] = []
     for node in nodes:
-        found.append(node)
+        result.append(node)
         if isinstance(node, LoopStep):
             for body in {id(body): body for body in node.bodies}.values():
-                found += every_version(body)
-    return found
+                result += every_version(body)
+    return result
 
 
 def most_iterations(nodes: tuple[PlanNode, ...]) -> dict[str, int]:
@@ -233,14 +233,14 @@ def most_iterations(nodes: tuple[PlanNode, ...]) -> dict[str, int]:
     """
     every = every_version(nodes)
     loops = {node.path for node in every if isinstance(node, LoopStep)}
-    found: dict[str, int] = {}
+    counts: dict[str, int] = {}
     for node in every:
         if isinstance(node, Step):
             # Of a loop of one kernel, the loop is what counts, not the kernel in it.
             if not isinstance(node.kernel, TexelKernel) or node.kernel.repeat == "1" or node.path in loops:
                 continue
-        found[node.path] = max(node.whole, found.get(node.path, 0))
-    return found
+        counts[node.path] = max(node.whole, counts.get(node.path, 0))
+    return counts
 
 
 def needed(nodes: tuple[PlanNode, ...], ref: Ref) -> list[PlanNode]:
@@ -250,24 +250,24 @@ def needed(nodes: tuple[PlanNode, ...], ref: Ref) -> list[PlanNode]:
 
 @PLANS.cached(identities=1)
 def _needed(nodes: tuple[PlanNode, ...], ref: Ref) -> tuple[PlanNode, ...]:
-    wanted = {ref.path}
-    found: list[PlanNode] = []
+    paths = {ref.path}
+    result: list[PlanNode] = []
     for node in reversed(nodes):
         inside = [node] if isinstance(node, Step) else walk(node.body)
-        if not wanted.isdisjoint([step.path for step in inside]):
-            found.append(node)
-            wanted.update([source.path for source in sources_of(node) if isinstance(source, Ref)])
-    return tuple(found[::-1])
+        if not paths.isdisjoint([step.path for step in inside]):
+            result.append(node)
+            paths.update([source.path for source in sources_of(node) if isinstance(source, Ref)])
+    return tuple(result[::-1])
 
 
 def sources_of(node: PlanNode) -> list[Source]:
     """Return what a node reads, what the passes of a loop read from each other included."""
     if isinstance(node, Step):
         return [source for _, source in node.inputs if source is not None]
-    found = [first for _, first, _ in node.feedback if first is not None]
+    sources = [first for _, first, _ in node.feedback if first is not None]
     for inside in node.body:
-        found += sources_of(inside)
-    return found
+        sources += sources_of(inside)
+    return sources
 
 
 # ── checks of a caller's arguments ───────────────────────────────────────────
@@ -275,10 +275,10 @@ def sources_of(node: PlanNode) -> list[Source]:
 
 def checked_pixels(size: object, largest: int) -> tuple[int, int]:
     """Return width and height of a picture; raise ``ParameterError`` unless 1..``largest`` a side."""
-    found = tuple(size) if isinstance(size, Iterable) and not isinstance(size, str) else ()
-    if len(found) != 2 or not all([isinstance(n, Integral) and not isinstance(n, bool) for n in found]):
+    sides = tuple(size) if isinstance(size, Iterable) and not isinstance(size, str) else ()
+    if len(sides) != 2 or not all([isinstance(n, Integral) and not isinstance(n, bool) for n in sides]):
         raise ParameterError(f"size {size!r}: expected two whole numbers, width and height in pixels")
-    width, height = int(found[0]), int(found[1])
+    width, height = int(sides[0]), int(sides[1])
     if not (1 <= width <= largest and 1 <= height <= largest):
         raise ParameterError(f"a picture of {width} x {height} pixels; 1 to {largest} a side were expected")
     return width, height
@@ -298,7 +298,7 @@ def checked_steps(path: str, count: object) -> int:
     return int(count)
 
 
-def drawn_size(sketch: Sketch, size: tuple[int, int], largest: int = LARGEST_SIDE) -> tuple[int, int]:
+def drawn_size(sketch: Sketch, size: tuple[int, int], largest: int = MAX_SIDE) -> tuple[int, int]:
     """Return the pixels in which a picture of a size is drawn; raise ``ParameterError`` for too many.
 
     ``largest``: the most that a side may be drawn with.
@@ -308,7 +308,7 @@ def drawn_size(sketch: Sketch, size: tuple[int, int], largest: int = LARGEST_SID
     return width * times, height * times
 
 
-def placed(error: DataError, sketch: Sketch, spec: PassSpec) -> DataError:
+def error_at(error: DataError, sketch: Sketch, spec: PassSpec) -> DataError:
     """Return an error of a data file at the pass that names it, the file in the sentence.
 
     Where an override set the file, or it was opened itself, the sketch's text is right, and the error
@@ -319,8 +319,8 @@ def placed(error: DataError, sketch: Sketch, spec: PassSpec) -> DataError:
     )
     if overridden or not spec.file or all(d.file == spec.file for d in error.diagnostics):
         return error
-    found = "; ".join(f"{d.place}: {d.message}" if d.place else d.message for d in error.diagnostics)
-    return DataError(found, file=spec.file, line=spec.line)
+    message = "; ".join(f"{d.location}: {d.message}" if d.location else d.message for d in error.diagnostics)
+    return DataError(message, file=spec.file, line=spec.line)
 
 
 @contextmanager
@@ -366,6 +366,6 @@ def view_input(plan: Plan, name: str) -> str:
 
 def view_height(plan: Plan) -> str:
     """Return the terrain's heights: those that the view shows, else the latest there are; "" without any."""
-    found = view_input(plan, "height")
+    text = view_input(plan, "height")
     passes = [spec.name for spec in reversed(plan.sketch.graph.passes) if spec.name != "view"]
-    return found or next((f"{path}:height" for path in passes if "height" in plan.flat.outputs[path]), "")
+    return text or next((f"{path}:height" for path in passes if "height" in plan.flat.outputs[path]), "")

@@ -45,13 +45,13 @@ class PlanWarnings:
         """Report the warnings of a plan that were not reported yet."""
         if self.report is None:
             return
-        found = list(warnings_of_sketch(plan.sketch)) if self._is_from_another_file(plan.sketch) else []
+        warnings = list(warnings_of_sketch(plan.sketch)) if self._is_from_another_file(plan.sketch) else []
         self._sketch = plan.sketch
-        found += source_warnings(plan, self.inputs())
+        warnings += source_warnings(plan, self.inputs())
         if plan.sketch.graph is not self._graph:
             self._graph = plan.sketch.graph
-            found += kernel_warnings(plan.sketch.graph, unheeded)
-        for warning in found:
+            warnings += kernel_warnings(plan.sketch.graph, unheeded)
+        for warning in warnings:
             self.once(warning, warning.message)
         for path, warning in _stops_past_the_end(plan):
             self.once(warning, f"steps of {path}")  # in a film each frame would have another number
@@ -71,13 +71,13 @@ class PlanWarnings:
 def _stops_past_the_end(plan: Plan) -> list[tuple[str, Diagnostic]]:
     """Return the repeats that stop after more steps than they have now, which change with the time."""
     most = most_iterations(plan.nodes) if plan.steps else {}
-    found = []
+    stops = []
     for path, steps in plan.steps.items():
         if steps > most.get(path, steps):
             message = f"steps: '{path}' stops after {steps} steps, but at {plan.time:g} s it has {most[path]}"
             file = shown(plan.sketch.file)
-            found.append((path, Diagnostic(message, file, severity="warning")))
-    return found
+            stops.append((path, Diagnostic(message, file, severity="warning")))
+    return stops
 
 
 def kernel_warnings(
@@ -96,14 +96,14 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
     kernels say, make no sense together.
     """
     live = inputs or LiveInputs()
-    found: dict[str, Diagnostic] = {}
+    diagnostics: dict[str, Diagnostic] = {}
     assumptions = _assumptions(plan)
     for step in _fed_from_outside(plan.nodes):
         if isinstance(step.kernel, ForeignShader):
             from playground.shader.dialects.foreign import unfed_warnings
 
             for warning in unfed_warnings(step.kernel, _wired(plan, step)):
-                found.setdefault(f"{step.kernel.path} {warning.message}", warning)
+                diagnostics.setdefault(f"{step.kernel.path} {warning.message}", warning)
         if isinstance(step.kernel, CpuSource):
             spec = plan.flat.user(step.path)
             kind, notes = source_kind(step.kernel.registry), tuple[str, ...]()
@@ -114,18 +114,18 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
             for note in (*notes, *assumptions.get(step.path, ())):
                 file = spec.file or shown(step.kernel.path)
                 note = note.removeprefix(f"{Path(file).name}: ")  # of a file that was opened itself
-                found.setdefault(note, Diagnostic(note, file, spec.line, severity="warning"))
+                diagnostics.setdefault(note, Diagnostic(note, file, spec.line, severity="warning"))
     for step, conditions in _with_conditions(plan.nodes, plan.flat):
         spec = plan.flat.user(step.path)
-        for condition, message, known in conditions:
-            names: dict[str, Number] = {"size.x": step.size[0], "size.y": step.size[1], **known}
+        for condition, message, numbers in conditions:
+            names: dict[str, Number] = {"size.x": step.size[0], "size.y": step.size[1], **numbers}
             names |= _numbers(step.values)
             with suppress(ExpressionError):  # a division by zero, say: nothing that can be warned of
                 if expressions.evaluate(condition, names):
                     text = f"pass '{spec.name}': {message}"
                     file = spec.file or shown(step.kernel.path)
-                    found.setdefault(text, Diagnostic(text, file, spec.line, severity="warning"))
-    return tuple(found.values())
+                    diagnostics.setdefault(text, Diagnostic(text, file, spec.line, severity="warning"))
+    return tuple(diagnostics.values())
 
 
 def _assumptions(plan: Plan) -> dict[str, tuple[str, ...]]:
@@ -139,23 +139,23 @@ def _assumptions(plan: Plan) -> dict[str, tuple[str, ...]]:
         if step is None:
             continue
         try:
-            known = kind.describe(step.values)
+            existing = kind.describe(step.values)
         except DataError:  # the file has gone since; drawing reports it
             return {}
-        if known == Terrain():
+        if existing == Terrain():
             continue
-        name, found = Path(str(step.values[kind.files[0]])).name, list[str]()
+        name, messages = Path(str(step.values[kind.files[0]])).name, list[str]()
         assert terrain.relief is not None and terrain.base_elevation is not None and terrain.extent
-        if sketch.relief is None and known.relief is None:
+        if sketch.relief is None and existing.relief is None:
             low, high = terrain.base_elevation, terrain.base_elevation + terrain.relief
-            found.append(f"{name}: its heights have no unit and are stretched to {low:g}..{high:g} m")
-        elif sketch.relief is None and known.assumed:
-            found.append(f"{name}: {known.assumed}")
-        if sketch.extent is None and known.extent is None and known.size and not known.place:
-            found.append(
+            messages.append(f"{name}: its heights have no unit and are stretched to {low:g}..{high:g} m")
+        elif sketch.relief is None and existing.assumed:
+            messages.append(f"{name}: {existing.assumed}")
+        if sketch.extent is None and existing.extent is None and existing.size and not existing.place:
+            messages.append(
                 f"{name}: nothing says how large it is; a width of {terrain.extent[0]:g} m is assumed"
             )
-        return {leaf.path: tuple(found)}
+        return {leaf.path: tuple(messages)}
     return {}
 
 
@@ -169,13 +169,13 @@ def _conditions(flat: Flat, step: Step) -> list[tuple[str, str, dict[str, Number
     if not is_variant:
         technique = step.kernel
     values = effective_values(technique)
-    found = []
+    conditions = []
     for path, kernel in kernels_of(technique):
         if not isinstance(kernel, TexelKernel):
             continue
         own = {p.name: values[f"{path}.{p.name}" if path else p.name] for p in kernel.parameters}
-        found += [(condition, message, _numbers(own)) for condition, message in kernel.warns]
-    return found
+        conditions += [(condition, message, _numbers(own)) for condition, message in kernel.warns]
+    return conditions
 
 
 def _numbers(values: Mapping[str, object]) -> dict[str, Number]:
@@ -200,8 +200,8 @@ def _fed_from_outside(nodes: tuple[PlanNode, ...]) -> tuple[Step, ...]:
 def _readers(plan: Plan, source: Step) -> str:
     """Return the inputs that read a step, or its own name where none does."""
     inputs = [(name, s) for step in plan.walk() for name, s in step.inputs]
-    found = dict.fromkeys(name for name, s in inputs if isinstance(s, Ref) and s.path == source.path)
-    return ", ".join(found) or source.path
+    readers = dict.fromkeys(name for name, s in inputs if isinstance(s, Ref) and s.path == source.path)
+    return ", ".join(readers) or source.path
 
 
 def _wired(plan: Plan, step: Step) -> set[str]:

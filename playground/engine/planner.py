@@ -28,8 +28,8 @@ from playground.engine.plan import (
     checked_pixels,
     checked_seconds,
     checked_steps,
+    error_at,
     most_iterations,
-    placed,
 )
 from playground.engine.sizes import MAX_REPEAT, PassSizes, counted
 from playground.engine.source_kinds import Terrain
@@ -80,11 +80,11 @@ def repeated_in(sketch: Sketch, path: str) -> str:
     It is the path itself, or that of the only pass that repeats inside a technique.
     """
     nodes = flatten(sketch).nodes
-    found = repeated_path(str(path), nodes)
-    if found is None:
+    path_of_repeat = repeated_path(str(path), nodes)
+    if path_of_repeat is None:
         hint = nearest(str(path), repeated_paths(nodes)) or "; none of its passes repeats"
         raise SketchError(f"steps: no repeated pass '{path}' in sketch {sketch.name}{hint}")
-    return found
+    return path_of_repeat
 
 
 def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: float = 0.0) -> dict[str, int]:
@@ -122,7 +122,7 @@ def _made(sketch: Sketch, request: PlanRequest, last: Plan | None) -> Plan:
         return substitute_variants(
             flatten(sketch),
             () if sketch.plain else request.variants,
-            wanted=request.wanted,
+            text=request.wanted,
             stopped=tuple(request.steps),
             refused=tuple(refused),
         )
@@ -131,14 +131,14 @@ def _made(sketch: Sketch, request: PlanRequest, last: Plan | None) -> Plan:
         now = last.flat  # most frames set no value
         if sketch.overrides is not last.sketch.overrides:
             now = flat(last.basis.refusals)
-        renewed = _Planning(sketch, now, request, varies, last=last).renewed()
-        if renewed is not None:
-            return renewed
+        updated_plan = _Planning(sketch, now, request, varies, last=last).updated_plan()
+        if updated_plan is not None:
+            return updated_plan
     making, refused = _Planning(sketch, flat(()), request, varies), dict[str, str]()
     while more := making.refusals(refused):
         refused |= more
         making = _Planning(sketch, flat(refused), request, varies, after=making)
-    return making.whole(refused)
+    return making.build(refused)
 
 
 class _Planning:
@@ -180,8 +180,8 @@ class _Planning:
         # Of the same values a file may have come that is found first.
         doubtful, changed = [(leaf, True) for leaf in flat.with_files], dict[str, Mapping[str, Value]]()
         if flat is not last.flat:
-            found = [(leaf, flat.has_values_of(last.flat, leaf)) for leaf in flat.leaves]
-            doubtful = [pair for pair in found if not pair[1] or pair[0].kernel.file_parameters]
+            pairs_of_leaves = [(leaf, flat.has_values_of(last.flat, leaf)) for leaf in flat.leaves]
+            doubtful = [pair for pair in pairs_of_leaves if not pair[1] or pair[0].kernel.file_parameters]
         for leaf, is_same in doubtful:
             now = _given_values(leaf, sketch, flat)
             if not is_same or now != last.basis.values[leaf.path]:
@@ -192,14 +192,14 @@ class _Planning:
     def sizes(self) -> PassSizes:
         """What works out sizes and counts."""
         assert self.terrain.size is not None
-        found = PassSizes(self.sketch, self.flat, self.request, self.terrain.size, self.values, self.own)
+        pass_sizes = PassSizes(self.sketch, self.flat, self.request, self.terrain.size, self.values, self.own)
         if self._after is not None:
             copied = self._after.flat.shape.copied
-            found.named = {copied.get(path, path) for path in self._after.sizes.named}
-            found.by_time = self._after.sizes.by_time
-        return found
+            pass_sizes.named = {copied.get(path, path) for path in self._after.sizes.named}
+            pass_sizes.by_time = self._after.sizes.by_time
+        return pass_sizes
 
-    def renewed(self) -> Plan | None:
+    def updated_plan(self) -> Plan | None:
         """Return the last plan with the values of now; None where it has to be made whole."""
         last, time = self.last, self.request.time
         if (
@@ -217,29 +217,29 @@ class _Planning:
         eye = last.eye if last.sketch.camera == self.sketch.camera else self._eye()
         nodes = last.nodes
         if self.values is not basis.values:
-            nodes, basis = self._all_renewed(nodes, {}), replace(basis, values=self.values)
+            nodes, basis = self._all_updated(nodes, {}), replace(basis, values=self.values)
         return replace(last, sketch=self.sketch, nodes=nodes, flat=self.flat, eye=eye, time=time, basis=basis)
 
-    def _all_renewed(self, nodes: tuple[PlanNode, ...], done: dict[int, Any]) -> tuple[PlanNode, ...]:
+    def _all_updated(self, nodes: tuple[PlanNode, ...], done: dict[int, Any]) -> tuple[PlanNode, ...]:
         """Return nodes with the values of now; ``done``: what was returned for nodes and for several."""
         if id(nodes) not in done:
-            found = tuple([self._renewed(node, done) for node in nodes])
-            same = all([now is before for now, before in zip(found, nodes, strict=True)])
-            done[id(nodes)] = nodes if same else found
+            updated = tuple([self._renewed(node, done) for node in nodes])
+            same = all([now is before for now, before in zip(updated, nodes, strict=True)])
+            done[id(nodes)] = nodes if same else updated
         return done[id(nodes)]  # type: ignore[no-any-return]
 
     def _renewed(self, node: PlanNode, done: dict[int, Any]) -> PlanNode:
         if id(node) not in done:
             done[id(node)] = node
             if isinstance(node, LoopStep):
-                bodies = tuple([self._all_renewed(body, done) for body in node.bodies])
+                bodies = tuple([self._all_updated(body, done) for body in node.bodies])
                 if any([now is not before for now, before in zip(bodies, node.bodies, strict=True)]):
                     done[id(node)] = replace(node, bodies=bodies)
             elif node.values is not self.values[node.path]:
                 done[id(node)] = replace(node, values=self.values[node.path])
         return done[id(node)]  # type: ignore[no-any-return]
 
-    def whole(self, refused: Mapping[str, str]) -> Plan:
+    def build(self, refused: Mapping[str, str]) -> Plan:
         """Make the plan from nothing; ``refused``: the sentences that ``refusals`` gave, by technique."""
         # What has the terrain's own size first: the others' sizes follow from it.
         for leaf in self.flat.leaves:
@@ -275,22 +275,22 @@ class _Planning:
         )
 
     def refusals(self, before: Collection[str]) -> dict[str, str]:
-        """Return a sentence for each technique whose fast variant does not take its size, by its path.
+        """Return a message for each technique whose fast variant does not take its size, by its path.
 
         Those of ``before`` are left out.
         """
-        found: dict[str, str] = {}
+        refusals: dict[str, str] = {}
         for leaf in self.flat.leaves:
             path, accepts = _sizes_of_variant(leaf, self.flat)
-            if accepts and path not in found and path not in before:
+            if accepts and path not in refusals and path not in before:
                 for size in self.sizes.sizes_of(self._sized(leaf)):
                     if not expressions.is_accepted(accepts, size):
-                        found[path] = (
+                        refusals[path] = (
                             f"{path}: {Path(leaf.kernel.path).name} takes {accepts} texels a side, "
                             f"not {size[0]} x {size[1]}; the plain form runs"
                         )
                         break
-        return found
+        return refusals
 
     def _eye(self) -> Eye:
         extent, relief = self.terrain.extent, self.terrain.relief
@@ -333,8 +333,8 @@ class _Planning:
 
     def _body(self, nodes: tuple[Node, ...]) -> tuple[PlanNode, ...]:
         """Return what an iteration of a loop runs: the very same where another runs the same."""
-        found = tuple([self._node(node) for node in nodes])
-        return self._bodies.setdefault(tuple(map(id, found)), found)
+        body = tuple([self._node(node) for node in nodes])
+        return self._bodies.setdefault(tuple(map(id, body)), body)
 
     def _note_names(self, leaf: Leaf) -> None:
         """Note what a kernel's own counts name."""
@@ -375,10 +375,10 @@ class _Planning:
         technique: Technique = self.flat.graphs.get(path, leaf.kernel)
         while isinstance(technique, Graph):
             where = target_of(technique, output_names(technique)[0]).partition(":")[0]
-            path, found = f"{path}.{where}", inner(technique, where)
-            if found is None:
+            path, technique_inside = f"{path}.{where}", inner(technique, where)
+            if technique_inside is None:
                 break
-            technique = found
+            technique = technique_inside
         return path
 
 
@@ -417,33 +417,33 @@ def _known_by_sources(sketch: Sketch, flat: Flat, values: Values) -> Terrain:
     for leaf in flat.sources:
         _check_source(leaf)
         try:
-            known = source_kind(leaf.kernel.registry).describe(values[leaf.path])
+            terrain = source_kind(leaf.kernel.registry).describe(values[leaf.path])
         except DataError as error:
-            raise placed(error, sketch, flat.user(leaf.path)) from error
-        if known != Terrain():
-            return known
+            raise error_at(error, sketch, flat.user(leaf.path)) from error
+        if terrain != Terrain():
+            return terrain
     return Terrain()
 
 
 def extent_follows_size(sketch: Sketch, flat: Flat, values: Values) -> bool:
     """Return whether nothing says the terrain's metres: its sides are to each other as its texels are."""
-    known = _known_by_sources(sketch, flat, values)
-    return sketch.extent is None and known.extent is None and known.size is None
+    terrain = _known_by_sources(sketch, flat, values)
+    return sketch.extent is None and terrain.extent is None and terrain.size is None
 
 
 def _terrain_of(sketch: Sketch, flat: Flat, values: Values) -> Terrain:
     """Return the terrain with every field known: by the sketch, else by its first source that knows."""
-    known = _known_by_sources(sketch, flat, values)
-    size = sketch.size or flat.accepted(known.size or DEFAULT_SIZE)
-    extent = sketch.extent or known.extent
+    terrain = _known_by_sources(sketch, flat, values)
+    size = sketch.size or flat.accepted(terrain.size or DEFAULT_SIZE)
+    extent = sketch.extent or terrain.extent
     if extent is None:
-        shape = known.size or size
+        shape = terrain.size or size
         ratio = (shape[1] - 1) / max(shape[0] - 1, 1) or 1.0
         extent = (DEFAULT_EXTENT, DEFAULT_EXTENT * ratio)
-    relief = sketch.relief if sketch.relief is not None else known.relief
-    base = sketch.base_elevation if sketch.base_elevation is not None else known.base_elevation
+    relief = sketch.relief if sketch.relief is not None else terrain.relief
+    base = sketch.base_elevation if sketch.base_elevation is not None else terrain.base_elevation
     relief = DEFAULT_RELIEF if relief is None else relief
-    return Terrain(size, extent, relief, base or 0.0, known.place)
+    return Terrain(size, extent, relief, base or 0.0, terrain.place)
 
 
 def _own_sizes(sketch: Sketch, flat: Flat, values: Values) -> Iterator[tuple[str, tuple[int, int]]]:
@@ -453,7 +453,7 @@ def _own_sizes(sketch: Sketch, flat: Flat, values: Values) -> Iterator[tuple[str
             try:
                 size = source_kind(leaf.kernel.registry).size(values[leaf.path])
             except DataError as error:
-                raise placed(error, sketch, flat.user(leaf.path)) from error
+                raise error_at(error, sketch, flat.user(leaf.path)) from error
             if size is not None:
                 yield leaf.path, size
 
@@ -462,13 +462,13 @@ def _given_values(leaf: Leaf, sketch: Sketch, flat: Flat) -> dict[str, Value]:
     """Return a leaf's values as its kernel gets them: files by absolute path, of menus their values."""
     values = flat.values_of(leaf)
     for parameter in leaf.kernel.valued_menus:
-        values[parameter.name] = parameter.widget.given(values[parameter.name])
+        values[parameter.name] = parameter.widget.uniform_value(values[parameter.name])
     for parameter in leaf.kernel.file_parameters:
         text = str(values[parameter.name])
         try:
             path = find_file(text, flat.folder, parameter.file, f"{leaf.path}.{parameter.name}")
         except DataError as error:
-            raise placed(error, sketch, flat.user(leaf.path)) from error
+            raise error_at(error, sketch, flat.user(leaf.path)) from error
         values[parameter.name] = str(path)
     return values
 
@@ -481,8 +481,8 @@ def _check_source(leaf: Leaf) -> None:
     missing = [name for name in kind.parameters if leaf.kernel.parameter(name) is None]
     if missing:
         raise leaf.spec.error(f"source '{leaf.kernel.registry}' needs the parameters {', '.join(missing)}")
-    declared = [one.name for one in leaf.kernel.inputs]
+    declared = [item.name for item in leaf.kernel.inputs]
     if set(declared) != set(kind.inputs):
-        wanted = f"the inputs {', '.join(kind.inputs)}" if kind.inputs else "no inputs"
-        found = f"; the file declares {', '.join(declared) or 'none'}"
-        raise leaf.spec.error(f"source '{leaf.kernel.registry}' needs {wanted}{found}")
+        expected = f"the inputs {', '.join(kind.inputs)}" if kind.inputs else "no inputs"
+        declared_text = f"; the file declares {', '.join(declared) or 'none'}"
+        raise leaf.spec.error(f"source '{leaf.kernel.registry}' needs {expected}{declared_text}")

@@ -79,22 +79,22 @@ def explain(text: str, wrapped: Wrapped) -> ShaderError:
 
     stage_name, log = split_moderngl(text)
     stage = wrapped.stages.get(stage_name) or wrapped.stages.get("fragment") or wrapped.stages["compute"]
-    found: dict[tuple[str, int, str], Diagnostic] = {}
+    diagnostics: dict[tuple[str, int, str], Diagnostic] = {}
     foreign = None if stage.first else version_line(stage.source)
     for entry in without_consequences(parse_log(log)):
         if foreign is not None:
             # Of a plain shader the vertex stage is ours, and the version is all that it takes from the file.
-            found[("", 0, "")] = foreign.diagnostic(f"this driver refuses the version: {entry.message}")
+            diagnostics[("", 0, "")] = foreign.diagnostic(f"this driver refuses the version: {entry.message}")
             break
         diagnostic = diagnostic_of(entry, stage, wrapped)
         # An open bracket makes everything behind the last line wrong: once is enough.
         past = _is_past_end(entry, stage) and diagnostic.severity == "error"
         key = (diagnostic.file, diagnostic.line, "" if past else diagnostic.message)
-        found.setdefault(key, diagnostic)
-    if not any(d.severity == "error" for d in found.values()):
+        diagnostics.setdefault(key, diagnostic)
+    if not any(d.severity == "error" for d in diagnostics.values()):
         message = log.strip() or "the driver refused the shader and gave no reason"
-        found[("", 0, "")] = Diagnostic(message, shown(wrapped.kernel.path))
-    return ShaderError(diagnostics=found.values())
+        diagnostics[("", 0, "")] = Diagnostic(message, shown(wrapped.kernel.path))
+    return ShaderError(diagnostics=diagnostics.values())
 
 
 def diagnostic_of(entry: LogEntry, stage: ShaderStage, wrapped: Wrapped) -> Diagnostic:
@@ -104,10 +104,10 @@ def diagnostic_of(entry: LogEntry, stage: ShaderStage, wrapped: Wrapped) -> Diag
     for name, ours in sorted(FETCHES.items(), reverse=True):  # the longer first
         entry = replace(entry, message=entry.message.replace(ours, name))
     line = stage.locate(entry.line) if entry.line else _defined(entry.message, stage.source)
-    if line is not None and entry.severity == "error" and (place := _beyond_ascii(line)) is not None:
-        found = line.text[place]
-        message = FOREIGN.format(f"{ord(found):04X}", name_of(found, NAMELESS))
-        return line.diagnostic(message, place + 1, entry.severity)
+    if line is not None and entry.severity == "error" and (column_index := _beyond_ascii(line)) is not None:
+        character = line.text[column_index]
+        message = FOREIGN.format(f"{ord(character):04X}", name_of(character, NAMELESS))
+        return line.diagnostic(message, column_index + 1, entry.severity)
     more = (
         whereabouts(entry.message, stage.source, line, wrapped.kernel)
         or guess(entry.message, stage.source, line, names_given(wrapped.kernel))
@@ -135,7 +135,7 @@ def _is_past_end(entry: LogEntry, stage: ShaderStage) -> bool:
 def _beyond_ascii(line: Line) -> int | None:
     """Return where a line has a character that the driver was given as "?"; None where it has none."""
     pairs = enumerate(zip(line.text, line.code, strict=False))
-    return next((place for place, (own, given) in pairs if given == "?" and not own.isascii()), None)
+    return next((index for index, (own, character) in pairs if character == "?" and not own.isascii()), None)
 
 
 def _defined(message: str, source: SourceText) -> Line | None:
@@ -148,13 +148,15 @@ def _defined(message: str, source: SourceText) -> Line | None:
         chain = CHAIN.search(message)
         begins = re.compile(rf"^\s*\w+\s+{chain[1]}\s*\(") if chain else None
         return next((line for line in source.lines if begins and begins.match(line.code)), None)
-    wanted = [words.split()[0] for words in match.group(3).split(",") if words.split()]
+    types = [words.split()[0] for words in match.group(3).split(",") if words.split()]
     code, near = source.code, None
-    for found in re.finditer(rf"\b{match.group(1)}\s+{match.group(2)}\s*\(([^)]*)\)\s*\{{", code):
-        line = source.lines[code.count("\n", 0, found.start())]
+    for definition in re.finditer(rf"\b{match.group(1)}\s+{match.group(2)}\s*\(([^)]*)\)\s*\{{", code):
+        line = source.lines[code.count("\n", 0, definition.start())]
         near = near or line
-        given = [[w for w in part.split() if w not in _QUALIFIERS] for part in found.group(1).split(",")]
-        if [words[0] for words in given if words] == wanted:
+        parameters = [
+            [w for w in part.split() if w not in _QUALIFIERS] for part in definition.group(1).split(",")
+        ]
+        if [words[0] for words in parameters if words] == types:
             return line
     return near
 
@@ -333,7 +335,7 @@ def _texts(wrapped: Wrapped) -> tuple[str, ...]:
     return tuple(stage.text for stage in wrapped.stages.values())
 
 
-_MOST = 64 * 1024  # bytes of a log
+_MAX_LOG_BYTES = 64 * 1024  # bytes of a log
 _STAGES = {"vertex": 0x8B31, "fragment": 0x8B30, "compute": 0x91B9}
 
 _UINT, _INT = ctypes.c_uint, ctypes.c_int
@@ -350,7 +352,7 @@ def warnings_of(ctx: moderngl.Context, wrapped: Wrapped) -> tuple[Diagnostic, ..
     from playground.shader.driver_log import parse_log
 
     load = getattr(getattr(ctx.mglo, "_context", None), "load_opengl_function", None)
-    found: dict[tuple[str, int, str], Diagnostic] = {}
+    diagnostics: dict[tuple[str, int, str], Diagnostic] = {}
     if load is None:
         return ()
     for name, stage in wrapped.stages.items():
@@ -363,8 +365,8 @@ def warnings_of(ctx: moderngl.Context, wrapped: Wrapped) -> tuple[Diagnostic, ..
                 continue  # it begins at 0: see zero_values
             if stage.locate(entry.line) is not None:
                 diagnostic = diagnostic_of(entry, stage, wrapped)
-                found.setdefault((diagnostic.file, diagnostic.line, diagnostic.message), diagnostic)
-    return tuple(found.values())
+                diagnostics.setdefault((diagnostic.file, diagnostic.line, diagnostic.message), diagnostic)
+    return tuple(diagnostics.values())
 
 
 def _compile_log(load: Callable[[str], int], kind: int, text: str) -> str:
@@ -384,9 +386,9 @@ def _compile_log(load: Callable[[str], int], kind: int, text: str) -> str:
     shader = create(kind)
     if not shader:
         return ""
-    log = ctypes.create_string_buffer(_MOST)
+    log = ctypes.create_string_buffer(_MAX_LOG_BYTES)
     source(shader, 1, ctypes.byref(ctypes.c_char_p(text.encode())), None)
     build(shader)
-    read(shader, _MOST, None, log)
+    read(shader, _MAX_LOG_BYTES, None, log)
     delete(shader)
     return log.value.decode("utf-8", "replace")

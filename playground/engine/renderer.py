@@ -1,7 +1,7 @@
 """Run plans of sketches on a context, and only what is stale: what an ``Engine`` is made on.
 
 A pass runs again when its key changes (see ``cache_keys``): so moving the sun lights the terrain
-anew and leaves the terrain alone. ``execution`` runs the passes in order, ``runner`` each of
+again and leaves the terrain alone. ``execution`` runs the passes in order, ``runner`` each of
 them. Programs call ``engine``; the window and other tools also use what is here.
 """
 
@@ -51,8 +51,8 @@ from playground.sketch.flat import Ref
 from playground.sketch.load import opened
 from playground.sketch.model import (
     DRIVERS,
-    LARGEST_PICTURE,
-    LARGEST_SIDE,
+    MAX_PICTURE_SIDE,
+    MAX_SIDE,
     ComputeVariant,
     PlainCompute,
     Sketch,
@@ -160,8 +160,8 @@ class Renderer:
         size: tuple[int, int],
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
-        wanted: str = "",
-        largest: int = LARGEST_SIDE,
+        text: str = "",
+        largest: int = MAX_SIDE,
         interpolated: bool | None = None,
         *,
         in_parts: bool = False,
@@ -171,10 +171,12 @@ class Renderer:
         A picture to be drawn ``in_parts`` has draws in their plain form: windows are cut out of those.
         """
         self._context.check()
-        found = opened(sketch)
-        samples = 0 if in_parts else min(found.samples, self._info.max_samples)
+        opened_sketch = opened(sketch)
+        samples = 0 if in_parts else min(opened_sketch.samples, self._info.max_samples)
         kinds = self.plain_forms.kinds if samples == 1 else self.plain_forms.kinds_without_draws
-        return planned(found, PlanRequest(size, time, kinds, steps or {}, wanted, interpolated, largest))
+        return planned(
+            opened_sketch, PlanRequest(size, time, kinds, steps or {}, text, interpolated, largest)
+        )
 
     def draw_window(
         self,
@@ -186,7 +188,7 @@ class Renderer:
     ) -> moderngl.Texture:
         """Draw a window of a picture and return its texture, which lives until the next frame.
 
-        The whole picture may have up to ``LARGEST_PICTURE`` pixels a side, more than any texture.
+        The whole picture may have up to ``MAX_PICTURE_SIDE`` pixels a side, more than any texture.
         Raises ``SketchError`` at a pass that cannot be drawn in parts (see ``window``).
         """
         plan_of = partial(self.plan_for_window, window=window, time=time, steps=steps)
@@ -219,10 +221,10 @@ class Renderer:
         steps: Mapping[str, int] | None = None,
     ) -> Plan:
         """Make a sketch concrete for a window of a picture; raise as ``draw_window`` does."""
-        found, (width, height) = opened(sketch), window.whole
-        plan = self.plan(found, window.whole, time, steps, largest=LARGEST_PICTURE, in_parts=True)
+        opened_sketch, (width, height) = opened(sketch), window.whole
+        plan = self.plan(opened_sketch, window.whole, time, steps, largest=MAX_PICTURE_SIDE, in_parts=True)
         larger = width + 1, height + 1
-        other = self.plan(found, larger, time, steps, largest=LARGEST_PICTURE + 1, in_parts=True)
+        other = self.plan(opened_sketch, larger, time, steps, largest=MAX_PICTURE_SIDE + 1, in_parts=True)
         return windowed(plan, other, window)
 
     def texture_of(self, plan: Plan, ref: Ref) -> moderngl.Texture:
@@ -285,12 +287,12 @@ class Renderer:
     @contextmanager
     def _supposing(self, plan: Plan) -> Iterator[None]:
         """Suppose that a plan were being drawn; afterwards the last frame's is the last frame's again."""
-        self.runner.look_at(plan)
+        self.runner.set_frame(plan)
         try:
             yield
         finally:
             if self.record.plan is not None:
-                self.runner.look_at(self.record.plan)
+                self.runner.set_frame(self.record.plan)
 
     # ── running ──────────────────────────────────────────────────────────────
 
@@ -299,7 +301,7 @@ class Renderer:
         self.plain_forms.report(plan.sketch, plan.lacking)
         self.record = record = FrameRecord(plan, before=self.record.keys)
         self.cache.begin()
-        self.runner.look_at(plan)
+        self.runner.set_frame(plan)
         self.runner.programs.frame += 1
         record.keys = self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
         execution = Execution(record.keys, self.cache, self.runner, self._compute, self.driver_for)
@@ -323,14 +325,14 @@ class Renderer:
     def _run_once(self, execution: Execution, plan: Plan, ref: Ref) -> None:
         """Run what a texture needs, and drop what is read no more."""
         keys, needs = execution.keys, needed(plan.nodes, ref)
-        found = choose(keys, needs, ref, self.cache.get, lambda _: False, skips=True)
-        self.record.results = execution.results = found.taken
+        result = choose(keys, needs, ref, self.cache.get, lambda _: False, skips=True)
+        self.record.results = execution.results = result.taken
         if self.options.looks_early:
             execution.ended = lambda step, result: self._finite.look_early(
                 step, result, keys.computed(step.path)
             )
-        execution.last_uses = last_uses(plan, found.nodes, keys, ref)
-        execution.run(found.nodes)
+        execution.last_uses = last_uses(plan, result.nodes, keys, ref)
+        execution.run(result.nodes)
 
     @contextmanager
     def borrowed(self) -> Iterator[None]:

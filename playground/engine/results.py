@@ -98,8 +98,8 @@ class Result:
             texels = self.texels[output] = read_texture(self.textures[output])
         if x >= self.size[0] or y >= self.size[1]:
             return (0.0, 0.0, 0.0, 0.0)
-        found = np.atleast_1d(texels[y, x]).astype(float).tolist()
-        return tuple([*found, *(0.0, 0.0, 0.0, 1.0)[len(found) :]])
+        components = np.atleast_1d(texels[y, x]).astype(float).tolist()
+        return tuple([*components, *(0.0, 0.0, 0.0, 1.0)[len(components) :]])
 
     def framebuffer(self, ctx: moderngl.Context) -> moderngl.Framebuffer:
         """Return the framebuffer that draws to all of its textures."""
@@ -111,7 +111,7 @@ class Result:
         """Forget what was made of its textures, which are about to be written again."""
         self.texels.clear()
         self.release_copies()
-        for name in self.mipmapped:  # their levels are made anew before anybody reads them
+        for name in self.mipmapped:  # their levels are made again before anybody reads them
             self.textures[name].filter = ctx.LINEAR, ctx.LINEAR
         self.with_levels |= self.mipmapped
         self.mipmapped = set()
@@ -205,8 +205,8 @@ def started(outputs: Sequence[Output], start: Wired) -> dict[str, moderngl.Textu
     """
     if start.texture is None or start.result is None:
         return {}
-    found = {o.name: start.result.textures[o.name] for o in outputs[1:] if o.name in start.result.textures}
-    return {outputs[0].name: start.texture, **found}
+    textures = {o.name: start.result.textures[o.name] for o in outputs[1:] if o.name in start.result.textures}
+    return {outputs[0].name: start.texture, **textures}
 
 
 _Shape = tuple[tuple[int, int], tuple[str, ...]]
@@ -227,7 +227,7 @@ class Pool:
         self.ctx = ctx
         self.limit = limit  # [bytes]
         self.make_room: Callable[[int], None] = lambda _: None
-        self.made = 0  # how often a texture was made anew
+        self.made = 0  # how often a texture was made again
         # Whether texels begin as zeros: what does not write all of them shows nothing of what others drew.
         self.clears = False
         self._taken = 0
@@ -257,29 +257,29 @@ class Pool:
         return result
 
     def _take(self, size: tuple[int, int], outputs: Sequence[Output]) -> Result:
-        wanted = tuple(outputs)
+        formats = tuple(outputs)
         self._taken += 1
-        if alike := self._alike.get(_shape(size, wanted)) or self._given(size, wanted):
+        if alike := self._alike.get(_shape(size, formats)) or self._given(size, formats):
             spare = alike.pop()
             del self._spare[id(spare)]
             self._bytes -= spare.bytes
-            textures = dict(zip([o.name for o in wanted], spare.textures.values(), strict=True))
-            found = Result(size, wanted, textures, number=self._taken, own_bytes=spare.own_bytes)
-            found._framebuffer, found.target = spare._framebuffer, spare.target
+            textures = dict(zip([o.name for o in formats], spare.textures.values(), strict=True))
+            result = Result(size, formats, textures, number=self._taken, own_bytes=spare.own_bytes)
+            result._framebuffer, result.target = spare._framebuffer, spare.target
             if spare.with_levels:
-                pairs = zip(wanted, spare.outputs, strict=True)
-                found.with_levels = {now.name for now, before in pairs if before.name in spare.with_levels}
-            return found
+                pairs = zip(formats, spare.outputs, strict=True)
+                result.with_levels = {now.name for now, before in pairs if before.name in spare.with_levels}
+            return result
         self.made += 1
         made: dict[str, moderngl.Texture] = {}
         try:
-            for output in wanted:
+            for output in formats:
                 made[output.name] = make_texture(self.ctx, size, output.format)
         except Exception:
             for texture in made.values():
                 texture.release()
             raise
-        return Result(size, wanted, made, number=self._taken)
+        return Result(size, formats, made, number=self._taken)
 
     def _given(self, size: tuple[int, int], outputs: Sequence[Output]) -> list[Result]:
         """Return the spare results of a shape of which there was none, once others have made room."""
@@ -328,11 +328,11 @@ OPEN, WIRED, MATCHING = range(3)
 
 def wires_of(step: Step, inputs: Mapping[str, Wired]) -> tuple[int, ...]:
     """Return how each input of a step is wired: by nothing, by a texture, by one of the step's size."""
-    found = []
+    wires = []
     for declared in step.kernel.inputs:
         texture = inputs.get(declared.name, UNWIRED).texture
-        found.append(OPEN if texture is None else MATCHING if texture.size == step.size else WIRED)
-    return tuple(found)
+        wires.append(OPEN if texture is None else MATCHING if texture.size == step.size else WIRED)
+    return tuple(wires)
 
 
 def are_of_own_size(step: Step, inputs: Mapping[str, Wired]) -> bool:

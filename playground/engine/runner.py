@@ -20,7 +20,7 @@ from playground.engine.context import ContextInfo
 from playground.engine.draws import Draws
 from playground.engine.kernels import Job, Kernels, usual_of
 from playground.engine.painted_images import Painted, PaintedFiles, PaintedTextures, channels_of
-from playground.engine.plan import LoopIteration, Plan, Step, placed
+from playground.engine.plan import LoopIteration, Plan, Step, error_at
 from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.software import Software
@@ -77,7 +77,7 @@ class Runner:
         """Milliseconds of each program compiled, by file."""
         return self.programs.compile_times
 
-    def look_at(self, plan: Plan) -> None:
+    def set_frame(self, plan: Plan) -> None:
         """Take terrain, time and camera from a plan."""
         self._plan = plan
         eye = plan.eye
@@ -111,20 +111,20 @@ class Runner:
         kernel = step.kernel
         if isinstance(kernel, CpuSource):
             return self._moment(step, frame) | self._of_the_terrain(step)
-        found: dict[str, Any] = {}
+        uniforms: dict[str, Any] = {}
         if self.pressed:
             names = (p.name for p in kernel.parameters if p.widget.kind == "button")
-            found |= {f"{PRESSED}{name}": True for name in names if f"{step.path}.{name}" in self.pressed}
+            uniforms |= {f"{PRESSED}{name}": True for name in names if f"{step.path}.{name}" in self.pressed}
         if isinstance(kernel, PlainShader):
-            return found | dict(usual_of(kernel, self._usual(step, frame)))
-        for name in kernel.given:
+            return uniforms | dict(usual_of(kernel, self._usual(step, frame)))
+        for name in kernel.engine_uniforms:
             if name == "spacing":
-                found[name] = self._spacing(step)
+                uniforms[name] = self._spacing(step)
             elif name == "time" and frame is not None:
-                found[name] = frame / FRAME_RATE
+                uniforms[name] = frame / FRAME_RATE
             elif name in self._given:
-                found[name] = self._given[name]
-        return found
+                uniforms[name] = self._given[name]
+        return uniforms
 
     def _spacing(self, step: Step) -> tuple[float, float]:
         (width, height), (wide, tall) = self._given["extent"], step.whole_size
@@ -132,15 +132,15 @@ class Runner:
 
     def _of_the_terrain(self, step: Step) -> dict[str, Any]:
         """Return what a source reads of the terrain."""
-        known = {"spacing": self._spacing(step), "relief": self._given["relief"]}
-        return {name: known[name] for name in step.kernel.depends if name in OF_THE_TERRAIN}
+        values = {"spacing": self._spacing(step), "relief": self._given["relief"]}
+        return {name: values[name] for name in step.kernel.depends if name in OF_THE_TERRAIN}
 
     def given_for_key(self, step: Step) -> dict[str, Any]:
         """Return all that the engine gives a step and that its textures depend on."""
-        given = self.given_for(step)
+        uniforms = self.given_for(step)
         if not isinstance(step.kernel, Draw):
-            return given
-        return {**given, "samples": self._samples_for(step.kernel)}
+            return uniforms
+        return {**uniforms, "samples": self._samples_for(step.kernel)}
 
     def _samples_for(self, kernel: Kernel) -> int:
         """Return how many samples a pixel of a draw has here."""
@@ -174,8 +174,8 @@ class Runner:
             with self._placed(step) if step.kernel.file_parameters else _NOTHING:
                 return self.kernels.run(job, driver)
         frame = iteration.frame if iteration is not None else None
-        given, samples = self.given_for(step, frame), self._samples_for(step.kernel)
-        job = Job(step, given, inputs, iteration, start, samples, keeps_surface, key)
+        uniforms, samples = self.given_for(step, frame), self._samples_for(step.kernel)
+        job = Job(step, uniforms, inputs, iteration, start, samples, keeps_surface, key)
         with self._placed(step):
             match step.kernel:
                 case Draw():
@@ -188,13 +188,13 @@ class Runner:
 
     def _given_now(self, step: Step, iteration: LoopIteration | None) -> dict[str, Any]:
         """Return what the engine gives a kernel in this frame: the very same in every iteration, if it is."""
-        if iteration is not None and iteration.frame is not None and "time" in step.kernel.given:
+        if iteration is not None and iteration.frame is not None and "time" in step.kernel.engine_uniforms:
             return self.given_for(step, iteration.frame)
-        known, pressed, given = self._known_given.get(id(step), (None, None, {}))
-        if known is not step or pressed is not self.pressed:
-            given = self.given_for(step)
-            self._known_given[id(step)] = step, self.pressed, given
-        return given
+        step_before, pressed, uniforms = self._known_given.get(id(step), (None, None, {}))
+        if step_before is not step or pressed is not self.pressed:
+            uniforms = self.given_for(step)
+            self._known_given[id(step)] = step, self.pressed, uniforms
+        return uniforms
 
     @contextmanager
     def _placed(self, step: Step) -> Iterator[None]:
@@ -203,7 +203,7 @@ class Runner:
         try:
             yield
         except DataError as error:
-            raise placed(error, self._plan.sketch, self._plan.flat.user(step.path)) from error
+            raise error_at(error, self._plan.sketch, self._plan.flat.user(step.path)) from error
 
     def _moment(self, step: Step, frame: int | None) -> dict[str, Any]:
         """Return what a source depends on besides its parameters, as ``moment``."""
@@ -234,8 +234,8 @@ class Runner:
             return result
         for output in step.kernel.outputs:
             if output.name not in arrays:
-                given = ", ".join(arrays)
-                raise step.spec.error(f"source '{step.kernel.registry}' gives {given}, not '{output.name}'")
+                names = ", ".join(arrays)
+                raise step.spec.error(f"source '{step.kernel.registry}' gives {names}, not '{output.name}'")
             write_texture(result.textures[output.name], arrays[output.name])
         return result
 
@@ -244,7 +244,7 @@ class Runner:
         step, work = job.step, kind.work
         if work is None:
             assert kind.make is not None, "a kind has one of the two"
-            return kind.make(step.values, step.size, job.given.get(MOMENT))
+            return kind.make(step.values, step.size, job.uniforms.get(MOMENT))
         if self.works.idle:
             width, height = step.size
             return {
@@ -253,9 +253,13 @@ class Runner:
             }
 
         def task() -> Task:
-            wired = {name: one.texture for name, one in job.inputs.items() if one.texture is not None}
+            wired = {
+                name: wired_input.texture
+                for name, wired_input in job.inputs.items()
+                if wired_input.texture is not None
+            }
             arrays = {name: read_texture(texture) for name, texture in wired.items()}
-            facts = {name: job.given[name] for name in OF_THE_TERRAIN if name in job.given}
+            facts = {name: job.uniforms[name] for name in OF_THE_TERRAIN if name in job.uniforms}
             return lambda report: work(step.values, step.size, Material(arrays, report=report, **facts))
 
         return self.works.made(step.path, job.key, task)
@@ -294,8 +298,8 @@ class Runner:
     def _scene(self, step: Step) -> dict[str, tuple[float, ...]]:
         """Return the sketch's camera and sun, where a step's shader asks for one of them."""
         assert self._plan is not None, "look_at() comes first"
-        wanted = any(meaning in OF_THE_SCENE for _, meaning in step.kernel.usual)
-        return scene_of(self._plan) if wanted else {}
+        needs_scene = any(meaning in OF_THE_SCENE for _, meaning in step.kernel.usual)
+        return scene_of(self._plan) if needs_scene else {}
 
 
 OF_THE_SCENE = frozenset({"camera", "light"})
@@ -317,7 +321,7 @@ def scene_of(plan: Plan) -> dict[str, tuple[float, ...]]:
         for parameter in step.kernel.parameters
         if parameter.widget.kind == "direction"
     ]
-    sun = min(directions, key=lambda found: found[0])[1] if directions else None
+    sun = min(directions, key=lambda direction: direction[0])[1] if directions else None
     return {
         "camera": plan.eye.position if any(isinstance(s.kernel, Draw) for s in steps) else neutral,
         "light": unit_vector(sun) if isinstance(sun, tuple) else neutral,

@@ -84,7 +84,7 @@ class Activity:
 
     @property
     def subject(self) -> str:
-        """What it is, as a sentence's subject."""
+        """What it is, as a message's subject."""
         return f"pass '{self.path}'" if self.path else "this file"
 
 

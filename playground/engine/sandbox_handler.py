@@ -118,7 +118,7 @@ def _draw_some_frames(engine: Engine, sketch: Sketch, request: TrySketch) -> Non
                 engine.draw(sketch, size=request.size, time=at)
                 return
             except Unfinished as stopped:
-                at *= stopped.done / stopped.wanted
+                at *= stopped.done / stopped.total
     finally:
         engine.options.patience = None
     engine.draw(sketch, size=request.size, time=0.0)
@@ -126,11 +126,11 @@ def _draw_some_frames(engine: Engine, sketch: Sketch, request: TrySketch) -> Non
 
 def _refuse(engine: Engine, what: str) -> None:
     """Raise ``ShaderError`` at the first pass that gives a number that is not finite, or nothing else."""
-    for found in engine.not_finite_by_pass():
-        if found is None or engine.record.plan is None:
+    for number in engine.not_finite_by_pass():
+        if number is None or engine.record.plan is None:
             continue
-        width, height = found.size
-        throughout = found.count == width * height
-        step = engine.record.plan.step(found.path)
+        width, height = number.size
+        throughout = number.count == width * height
+        step = engine.record.plan.step(number.path)
         if step is not None and (throughout or what == "any"):
-            raise step.kernel.error(found.everywhere() if throughout else str(found))
+            raise step.kernel.error(number.everywhere() if throughout else str(number))

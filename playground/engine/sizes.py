@@ -13,14 +13,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from playground.data.image_files import picture_size
-from playground.engine.plan import PlanRequest, placed
+from playground.engine.plan import PlanRequest, error_at
 from playground.errors import DataError, PlaygroundError
 from playground.memo import GRAPHS
 from playground.shader import expressions
 from playground.shader.expressions import CLOCKS, COUNTERS, ITERATION, ExpressionError, Number, names_in
 from playground.sketch.assign import find_targets, resolve
-from playground.sketch.flat import Fed, Flat, Loop, Node, Shape, Source
-from playground.sketch.model import LARGEST_SIDE, Kernel, PassSpec, Sketch, Value
+from playground.sketch.flat import Fed, Flat, GraphShape, Loop, Node, Source
+from playground.sketch.model import MAX_SIDE, Kernel, PassSpec, Sketch, Value
 
 CLOCK, SIZE, PICTURE, VALUE, COMPUTE = "clock", "size", "picture", "value", "compute"
 COUNTER, FED, UNWIRED = "counter", "fed", "unwired"
@@ -57,16 +57,16 @@ def counting(flat: Flat) -> frozenset[str]:
 
 
 @GRAPHS.cached(identities=1)
-def _counting(shape: Shape) -> frozenset[str]:
-    found = set[str]()
+def _counting(shape: GraphShape) -> frozenset[str]:
+    names = set[str]()
     for path, spec in shape.specs.items():
         around = loops_around(shape.specs, path)
         texts = [(text, around[-1:]) for text in spec.size or ()]
         texts += [(spec.repeat, around[:-1][-1:])] if spec.repeat else []
         graph = shape.graphs.get(path.rpartition(".")[0])  # None inside what a fast variant replaces
         if graph is not None and not find_targets(graph, ITERATION):
-            found.update(*(loop for text, loop in texts if ITERATION in names_in(text)))
-    return frozenset(found)
+            names.update(*(loop for text, loop in texts if ITERATION in names_in(text)))
+    return frozenset(names)
 
 
 def named(flat: Flat, path: str, name: str, *, repeat: bool = False) -> Named:
@@ -118,7 +118,7 @@ def inside(prefix: str, name: str) -> str:
 
 MAX_REPEAT = 1_000_000
 _MAX_BOUND = 2**31 - 1  # of a repeat that ends by itself: what GLSL counts
-_MOST_COUNTED = 1024  # iterations of a loop of which each may have its own sizes: each is planned
+_MAX_COUNTED = 1024  # iterations of a loop of which each may have its own sizes: each is planned
 Size = tuple[int, int]
 Names = Mapping[str, Number] | Callable[[str], Number]
 """The numbers of the names in an expression."""
@@ -196,17 +196,17 @@ class PassSizes:
 
         ``outside``: without the pass itself.
         """
-        found: dict[str, int] = {}
+        counts: dict[str, int] = {}
         if not self.counting:
-            return found
+            return counts
         for loop in loops_around(self.flat.specs, path):
             if loop in self.counting and not (outside and loop == path):
                 if loop in self._at:
-                    found[loop] = self._at[loop]
+                    counts[loop] = self._at[loop]
                 else:
-                    with self._in(found):
-                        found[loop] = max(self.request.steps_of(loop, self.count_of(loop)) - 1, 0)
-        return found
+                    with self._in(counts):
+                        counts[loop] = max(self.request.steps_of(loop, self.count_of(loop)) - 1, 0)
+        return counts
 
     # ── counts ───────────────────────────────────────────────────────────────
 
@@ -218,9 +218,9 @@ class PassSizes:
             spec = self.flat.specs[loop]
             with self._in(around):
                 count = counted(spec.repeat, spec.name, spec, partial(self._number, loop, repeat=True))
-            if loop in self.counting and count > _MOST_COUNTED:
+            if loop in self.counting and count > _MAX_COUNTED:
                 why = "were expected where a size or a repeat inside names the iteration"
-                message = f"repeat '{spec.repeat}' gives {count}; 0 to {_MOST_COUNTED} {why}"
+                message = f"repeat '{spec.repeat}' gives {count}; 0 to {_MAX_COUNTED} {why}"
                 raise spec.error(f"pass '{spec.name}': {message}")
             self._counts[key] = count
         return self._counts[key]
@@ -276,9 +276,9 @@ class PassSizes:
         return self._first[fed]
 
     def _check_sides(self, spec: PassSpec, size: Size) -> None:
-        if not all(1 <= side <= LARGEST_SIDE for side in size):
+        if not all(1 <= side <= MAX_SIDE for side in size):
             when = f" in iteration {[*self._at.values()][-1]}" if self._at else ""
-            message = f"size {size[0]} x {size[1]}{when}; 1 to {LARGEST_SIDE} a side were expected"
+            message = f"size {size[0]} x {size[1]}{when}; 1 to {MAX_SIDE} a side were expected"
             raise spec.error(f"pass '{spec.name}': {message}")
 
     def _size_around(self, base: str) -> Size:
@@ -313,7 +313,9 @@ class PassSizes:
                 return 0
             return 1
         self.named.add(path)
-        value = resolve(self.flat.graphs[prefix], name)[0].parameter.widget.given(self.flat.values[path])
+        value = resolve(self.flat.graphs[prefix], name)[0].parameter.widget.uniform_value(
+            self.flat.values[path]
+        )
         if not isinstance(value, int | float):
             raise KeyError(name)
         return value
@@ -324,7 +326,7 @@ class PassSizes:
         A technique that is ``inside`` no loop is in iteration 0 of 1, as its kernels are.
         """
         if not loop and not inside:
-            where = "the size of a pass with a repeat and for what is inside it"
+            where = "the size of a pass with a repeat and for the passes inside it"
             raise ExpressionError(f"names '{name}', which is for {where}")
         if name == ITERATION:
             return self._at[loop] if loop else 0
@@ -338,7 +340,7 @@ class PassSizes:
         try:
             self.pictures[file] = picture_size(file)
         except DataError as error:
-            raise placed(error, self.sketch, self.flat.user(leaf)) from error
+            raise error_at(error, self.sketch, self.flat.user(leaf)) from error
         return self.pictures[file]
 
 

@@ -184,22 +184,22 @@ class Software:
         self, fixed: Sequence[Fixed], kernel: Kernel, inputs: Mapping[str, Wired]
     ) -> dict[str, tuple[float, ...]]:
         """Return the values of uniforms that are texels of inputs."""
-        found = {}
+        values = {}
         unwired = reads_unwired(kernel) and has_unwired(kernel, inputs)
         for uniform, name, x, y in fixed:
             result, _, output = inputs[name]
             assert result is not None, "only such an input is written so: see ``_is_read_back``"
             if unwired and result.size == (1, 1):  # where one input is unwired, so is each of one texel
                 x = y = 0
-            found[uniform] = result.texel(output, x, y)
-        return found
+            values[uniform] = result.texel(output, x, y)
+        return values
 
     def texels_read(self, kernel: Kernel, inputs: Mapping[str, Wired]) -> list[float] | None:
         """Return all that a text reads of those inputs of which it reads single texels only.
 
         Of each texel the components that it takes. None where one of the inputs cannot be read back.
         """
-        found: list[float] = []
+        texels: list[float] = []
         names = [name for name in read_by_texels_alone(kernel.source) if name in inputs]
         names = [name for name in names if inputs[name].texture is not None]
         if not all(_is_read_back(name, inputs) for name in names):
@@ -211,8 +211,8 @@ class Software:
                 # With another input unwired, one of a single texel gives that at every place.
                 at = (0, 0) if result.size == (1, 1) else (texel.x, texel.y)
                 values = result.texel(output, *at)
-                found += [values[component] for component in sorted(texel.components)]
-        return found
+                texels += [values[component] for component in sorted(texel.components)]
+        return texels
 
     # ── costly rest ──────────────────────────────────────────────────────────
 
@@ -247,13 +247,13 @@ class Software:
 
         None where one is longer than a texture may be. ``end_reading`` takes them off.
         """
-        found = read_by_functions(kernel)
-        longest = max([buffers[b.name].size // 4 for b in found], default=0)  # in texels of a float
-        if not found or longest > self.max_texels:
+        result = read_by_functions(kernel)
+        longest = max([buffers[b.name].size // 4 for b in result], default=0)  # in texels of a float
+        if not result or longest > self.max_texels:
             return ()
-        while len(self._textures) < len(found):
+        while len(self._textures) < len(result):
             self._textures.append(self._new_texture())
-        for number, declared in enumerate(found):
+        for number, declared in enumerate(result):
             self._call.activate(_FIRST_UNIT + number)
             self._call("glBindTexture", _UINTS[:2], _TEXTURE_BUFFER, self._textures[number].value)
             form, buffer = _BUFFER_FORMATS[declared.type], buffers[declared.name].glo
@@ -303,27 +303,27 @@ def quicker_choices(kernel: Kernel) -> frozenset[str]:
     ``OWN_SIZE`` holds where each input is as large as what the kernel makes, ``PLACE`` where the fragment
     driver draws the whole of that at once.
     """
-    found = set[str]()
+    choices = set[str]()
     if fetched_alone(kernel).fetches or any(kernel.reads(previous_name(kernel, o)) for o in kernel.outputs):
-        found.add(NEAREST)
+        choices.add(NEAREST)
     if isinstance(kernel, TexelKernel) and not kernel.fills_lattice:
-        found.add(PLACE)
+        choices.add(PLACE)
         # No texture but inputs may be asked for its size.
-        if not kernel.file_parameters and (NEAREST in found or kernel.reads("textureSize")):
-            found.add(OWN_SIZE)
-    return frozenset(found)
+        if not kernel.file_parameters and (NEAREST in choices or kernel.reads("textureSize")):
+            choices.add(OWN_SIZE)
+    return frozenset(choices)
 
 
 def _quicker(step: Step, inputs: Mapping[str, Wired], driver: str) -> list[str]:
     """Return which of ``QUICKER`` are made for a step."""
-    found = quicker_choices(step.kernel)
-    if found and (step.window is not None or step.size != step.whole_size):
-        found -= {OWN_SIZE, PLACE}
-    if PLACE in found and driver != FRAGMENT:
-        found -= {PLACE}
-    if OWN_SIZE in found and not are_of_own_size(step, inputs):
-        found -= {OWN_SIZE}
-    return sorted(found)
+    quicker = quicker_choices(step.kernel)
+    if quicker and (step.window is not None or step.size != step.whole_size):
+        quicker -= {OWN_SIZE, PLACE}
+    if PLACE in quicker and driver != FRAGMENT:
+        quicker -= {PLACE}
+    if OWN_SIZE in quicker and not are_of_own_size(step, inputs):
+        quicker -= {OWN_SIZE}
+    return sorted(quicker)
 
 
 def _is_read_back(name: str, inputs: Mapping[str, Wired]) -> bool:
@@ -340,7 +340,7 @@ def _is_read_back(name: str, inputs: Mapping[str, Wired]) -> bool:
 def specialise(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrapped:
     """Return stages with what is chosen written into them: see ``Software.choices``."""
     stages = {}
-    quick, own_size, place = [any(choice == name for choice, _ in choices) for name in QUICKER]
+    quick, own_size, position = [any(choice == name for choice, _ in choices) for name in QUICKER]
     fixed = frozenset(choice.removeprefix(FIXED) for choice, _ in choices if choice.startswith(FIXED))
     for name, stage in wrapped.stages.items():
         text = stage.text
@@ -361,7 +361,7 @@ def specialise(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrapped:
         stage = _with_quick_fetches(stage, wrapped.kernel, own_size=own_size) if quick else stage
         stages[name] = _with_own_size(stage) if own_size else stage
     wrapped = replace(wrapped, stages=stages)
-    return _with_interpolated_place(wrapped) if place else wrapped
+    return _with_interpolated_place(wrapped) if position else wrapped
 
 
 def _fixed_name(x: int, y: int, name: str) -> str:
@@ -378,7 +378,7 @@ def fixed_texel(uniform: str) -> tuple[str, int, int] | None:
 def _with_uniform_texels(stage: ShaderStage, inputs: Collection[str]) -> ShaderStage:
     """Write uniforms in place of the fetches of some inputs' texels at places written as numbers.
 
-    A software renderer fetches such a texel anew for every texel that it computes, which takes it as long
+    A software renderer fetches such a texel again for every texel that it computes, which takes it as long
     as one that differs; a uniform is there. No column changes: a fetch takes more letters than the name.
     """
     if not stage.first:
@@ -387,11 +387,11 @@ def _with_uniform_texels(stage: ShaderStage, inputs: Collection[str]) -> ShaderS
     for texel in fixed_texels(stage.source):
         index, uniform = stage.first - 1 + texel.line, _fixed_name(texel.x, texel.y, texel.input)
         own = stage.source.lines[texel.line].code[texel.start : texel.end]
-        given = lines[index][texel.start : texel.end]
+        fetch = lines[index][texel.start : texel.end]
         # What a stage does not have, as the other's function, is blank.
-        if texel.input in inputs and given in (own, own.replace("texelFetch", FETCHES["texelFetch"])):
+        if texel.input in inputs and fetch in (own, own.replace("texelFetch", FETCHES["texelFetch"])):
             line = lines[index]
-            lines[index] = line[: texel.start] + uniform.ljust(len(given)) + line[texel.end :]
+            lines[index] = line[: texel.start] + uniform.ljust(len(fetch)) + line[texel.end :]
             uniforms[uniform] = f"uniform vec4 {uniform};"
     if not uniforms:
         return stage
@@ -407,8 +407,8 @@ def _with_own_size(stage: ShaderStage) -> ShaderStage:
     if not stage.first:
         return stage
     lines = stage.text.split("\n")
-    given = [i for i in range(stage.first - 1) if lines[i] == _GIVEN_SIZE]
-    for index in given:  # the part declares it, before all that asks
+    lines_given = [i for i in range(stage.first - 1) if lines[i] == _GIVEN_SIZE]
+    for index in lines_given:  # the part declares it, before all that asks
         lines[index] = ""
     part = own_part("own_size.glsl", size=OWN_SIZE, share=_OWN_SHARE).split("\n")
     lines[1:1] = part
@@ -492,17 +492,17 @@ def _given_to(code: str, at: int) -> list[str]:
     opens = _OPENS.match(code, at)
     if opens is None:
         return []
-    found, depth, start = [], 1, opens.end()
+    names, depth, start = [], 1, opens.end()
     for mark in _BRACKETS.finditer(code, opens.end()):
         if mark.group() in "([":
             depth += 1
         elif mark.group() in ")]":
             depth -= 1
         if depth == 0 or (depth == 1 and mark.group() == ","):
-            found.append(code[start : mark.start()].strip())
+            names.append(code[start : mark.start()].strip())
             start = mark.end()
         if depth == 0:
-            return found
+            return names
     return []
 
 
@@ -558,11 +558,11 @@ def _fetched_alone(source: SourceText, inputs: tuple[str, ...]) -> FetchedAlone:
     reached = _reaching(text.handed_to, [(name, -1) for name in alone])
     places = [at for at, sampler in text.fetches if sampler in reached and sampler not in mixed]
     lines = [0, *(match.end() for match in re.finditer("\n", source.code))]
-    found = []
+    result = []
     for at in sorted(places):
         line = bisect_right(lines, at) - 1
-        found.append((line, at - lines[line]))
-    return FetchedAlone(alone, tuple(found))
+        result.append((line, at - lines[line]))
+    return FetchedAlone(alone, tuple(result))
 
 
 class _Uses:
@@ -571,13 +571,15 @@ class _Uses:
     def __init__(self, code: str) -> None:
         self._code = _without_directives(code)
         of_macros = " ".join(match.group() for match in _DIRECTIVE.finditer(code))
-        self._functions = [one for one in outline(code) if one.kind == "function" and "(" in one.signature]
-        self._starts = [one.start for one in self._functions]
-        self._names = [_arguments_of(one.signature) for one in self._functions]
+        self._functions = [
+            item for item in outline(code) if item.kind == "function" and "(" in item.signature
+        ]
+        self._starts = [function.start for function in self._functions]
+        self._names = [_arguments_of(function.signature) for function in self._functions]
         self._takes: dict[str, set[int]] = defaultdict(set)  # which arguments of a function are samplers
-        for one in self._functions:
-            inside = one.signature[one.signature.index("(") :].split(",")
-            self._takes[one.name] |= {i for i, part in enumerate(inside) if _SAMPLER.search(part)}
+        for function in self._functions:
+            inside = function.signature[function.signature.index("(") :].split(",")
+            self._takes[function.name] |= {i for i, part in enumerate(inside) if _SAMPLER.search(part)}
         self.samplers: set[_Sampler] = set()
         self.used_otherwise: set[_Sampler] = set()
         self.handed_to: dict[_Sampler, set[_Sampler]] = defaultdict(set)
@@ -587,10 +589,10 @@ class _Uses:
         self._in_macros = in_macros = set(re.findall(r"[A-Za-z_]\w*", of_macros))
         takers = {name for name, taken in self._takes.items() if taken}
         # Each sampler that the text declares is a uniform, or an argument of a function that is known.
-        known = sum(len(_SAMPLER.findall(one.signature)) for one in self._functions)
-        known += len(_UNIFORM.findall(self._code))
+        existing = sum(len(_SAMPLER.findall(function.signature)) for function in self._functions)
+        existing += len(_UNIFORM.findall(self._code))
         self.is_unclear = bool(
-            known != len(_SAMPLERS.findall(self._code))
+            existing != len(_SAMPLERS.findall(self._code))
             or in_macros & {"sampler2D", *_ASKED, *names, *takers}
             or _ASKED & self._takes.keys()
         )
@@ -600,7 +602,7 @@ class _Uses:
 
     def uniforms_but(self, names: Collection[str]) -> Iterator[_Sampler]:
         """Yield the uniform samplers that have other names than these."""
-        yield from (one for one in self.samplers if one[1] < 0 and one[0] not in names)
+        yield from (sampler for sampler in self.samplers if sampler[1] < 0 and sampler[0] not in names)
 
     def _look(self, name: str, at: int) -> None:
         """Note what one naming of a sampler does."""
@@ -642,15 +644,15 @@ class _Uses:
         return name, -1
 
 
-def _reaching(steps: dict[_Sampler, set[_Sampler]], begun: Collection[_Sampler]) -> set[_Sampler]:
+def _reaching(steps: dict[_Sampler, set[_Sampler]], starts: Collection[_Sampler]) -> set[_Sampler]:
     """Return what is reached from some samplers by steps, themselves included."""
-    found, left = set(begun), list(begun)
+    samplers, left = set(starts), list(starts)
     while left:
         for step in steps.get(left.pop(), ()):
-            if step not in found:
-                found.add(step)
+            if step not in samplers:
+                samplers.add(step)
                 left.append(step)
-    return found
+    return samplers
 
 
 @dataclass(frozen=True, slots=True)
@@ -676,19 +678,19 @@ def fixed_texels(source: SourceText) -> tuple[FixedTexel, ...]:
     """
     if "texelFetch" not in source.names:
         return ()
-    found = [(match.start(), match) for match in _FETCH.finditer(source.code)]
-    if not found:
+    matches = [(match.start(), match) for match in _FETCH.finditer(source.code)]
+    if not matches:
         return ()
     text = _Text(source.code)
     texels = []
-    for at, match in found:
+    for at, match in matches:
         if not text.reads_uniform(match[1], at):
             continue
         line_start = source.code.rfind("\n", 0, at) + 1
         line, x = source.code.count("\n", 0, at), int(match[2])
         y = x if match[3] is None else int(match[3])
         taken = _COMPONENTS.match(source.code, match.end())
-        components = frozenset(_index(one) for one in (taken[1] if taken else "xyzw"))
+        components = frozenset(_index(letter) for letter in (taken[1] if taken else "xyzw"))
         start, end = at - line_start, match.end() - line_start
         texels.append(FixedTexel(match[1], x, y, line, start, end, components))
     return tuple(texels)
@@ -704,7 +706,7 @@ def read_by_texels_alone(source: SourceText) -> frozenset[str]:
     if not starts:
         return frozenset()
     text = _Text(source.code)
-    return frozenset([name for name, known in starts.items() if text.has_no_other_use(name, known)])
+    return frozenset([name for name, offset in starts.items() if text.has_no_other_use(name, offset)])
 
 
 def _index(component: str) -> int:
@@ -719,7 +721,9 @@ class _Text:
         self.directives = [match.span() for match in directives]
         self.code = _without_directives(code)
         self.of_macros = " ".join([match.group() for match in directives])
-        self.functions: list[Declared] = [one for one in outline(code) if one.kind == "function"]
+        self.functions: list[Declared] = [
+            function for function in outline(code) if function.kind == "function"
+        ]
 
     def reads_uniform(self, sampler: str, at: int, seen: frozenset[str] = frozenset()) -> bool:
         """Return whether a name in some place stands for the uniform of that name, and for nothing else."""
@@ -727,7 +731,14 @@ class _Text:
             return False
         if re.search(rf"\bdefine[ \t]+(?:{sampler}|texelFetch|ivec2)\b", self.of_macros):
             return False
-        around = next((one for one in self.functions if one.body >= 0 and one.start <= at < one.end), None)
+        around = next(
+            (
+                function
+                for function in self.functions
+                if function.body >= 0 and function.start <= at < function.end
+            ),
+            None,
+        )
         if around is None:
             return False
         arguments = _arguments_of(around.signature)
@@ -735,7 +746,9 @@ class _Text:
             return True
         if around.name in seen:
             return True  # a recursion, which is judged where it is entered
-        alike = [one for one in self.functions if one.name == around.name and one.body >= 0]
+        alike = [
+            function for function in self.functions if function.name == around.name and function.body >= 0
+        ]
         if len(alike) > 1 or re.search(rf"\b{around.name}\b", self.of_macros):
             return False
         return self._is_handed(around, arguments.index(sampler), sampler, seen | {around.name})
@@ -762,21 +775,21 @@ class _Text:
         if call is None:
             return False
         name, index, opens = call
-        alike = [one for one in self.functions if one.name == name]
-        given = _given_to(self.code, opens) if alike else []
-        if len(given) <= index or given[index] != sampler:
+        alike = [function for function in self.functions if function.name == name]
+        arguments = _given_to(self.code, opens) if alike else []
+        if len(arguments) <= index or arguments[index] != sampler:
             return False
-        known = [_arguments_of(one.signature) for one in alike]
-        return all(len(arguments) > index and arguments[index] == sampler for arguments in known)
+        parameters = [_arguments_of(function.signature) for function in alike]
+        return all(len(arguments) > index and arguments[index] == sampler for arguments in parameters)
 
     def _is_handed(self, function: Declared, index: int, sampler: str, seen: frozenset[str]) -> bool:
         """Return whether each call hands a function the uniform of a name as its argument of that index."""
-        declared = {one.at for one in self.functions if one.name == function.name}
+        declared = {item.at for item in self.functions if item.name == function.name}
         for call in re.finditer(rf"\b{function.name}\b", self.code):
             if call.start() in declared:
                 continue
-            given = _given_to(self.code, call.end())
-            if len(given) <= index or given[index] != sampler:
+            arguments = _given_to(self.code, call.end())
+            if len(arguments) <= index or arguments[index] != sampler:
                 return False
             if not self.reads_uniform(sampler, call.start(), seen):
                 return False

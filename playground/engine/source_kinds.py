@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.data.live_inputs import LiveInputs, Now
-from playground.data.place import Place
+from playground.data.place import Georeference
 from playground.sketch.model import Value
 
 
@@ -28,7 +28,7 @@ class Terrain:
     extent: tuple[float, float] | None = None  # [m]
     relief: float | None = None  # [m] from height 0 to height 1
     base_elevation: float | None = None  # [m] above sea level at height 0
-    place: Place | None = None  # where it lies on the Earth
+    place: Georeference | None = None  # where it lies on the Earth
     assumed: str = ""  # of the unit of its heights, where nothing says it
 
     def metres(self, heights: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -54,7 +54,7 @@ class Material:
     spacing: tuple[float, float] = (1.0, 1.0)  # [m] between its own texels, east and north
     relief: float = 1.0  # [m] from height 0 to height 1
     # Takes how many parts are done, and of how many; what it raises ends the work.
-    report: Callable[[int, int], None] = lambda done, wanted: None
+    report: Callable[[int, int], None] = lambda done, total: None
 
 
 class Work(Protocol):

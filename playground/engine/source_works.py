@@ -27,12 +27,12 @@ _WAIT = 0.03  # [s] that one picture waits for a work
 class SourceUnfinished(Unfinished):
     """A source is still at work; the next frame asks again."""
 
-    def __init__(self, path: str, done: int, wanted: int) -> None:
-        super().__init__(done, wanted)
+    def __init__(self, path: str, done: int, total: int) -> None:
+        super().__init__(done, total)
         self.path = path
 
     def __str__(self) -> str:
-        return f"{self.path} is being made, {self.done} of {self.wanted}: try again when it is there"
+        return f"{self.path} is being made, {self.done} of {self.total}: try again when it is there"
 
 
 class SourceWorks:
@@ -41,7 +41,7 @@ class SourceWorks:
     def __init__(self) -> None:
         self.waits = True  # for each work to end; else ``SourceUnfinished`` is raised meanwhile
         self.idle = False  # nothing is worked out at all: where only shaders are tried
-        self.on_progress: Callable[[str, int, int], None] = lambda path, done, wanted: None
+        self.on_progress: Callable[[str, int, int], None] = lambda path, done, total: None
         self.took: dict[str, float] = {}  # [s] that the last work in a thread took, by the step's path
         self._works: dict[str, _Work] = {}  # likewise
         self._ending: dict[str, _Work] = {}  # likewise, those that were cancelled: they may go on for a while
@@ -63,7 +63,7 @@ class SourceWorks:
             work = None
         if work is None:
             if self.waits or not key:
-                return task()(lambda done, wanted: self.on_progress(path, done, wanted))
+                return task()(lambda done, total: self.on_progress(path, done, total))
             ending = self._ending.get(path)
             if ending is not None and not ending.ended.wait(_WAIT):
                 raise SourceUnfinished(path, 0, ending.progress[1])
@@ -112,10 +112,10 @@ class _Work:
             raise self._error
         return self._found
 
-    def _report(self, done: int, wanted: int) -> None:
+    def _report(self, done: int, total: int) -> None:
         if self._cancelled:
             raise Cancelled
-        self.progress = done, wanted
+        self.progress = done, total
 
     def _run(self) -> None:
         start = time.perf_counter()

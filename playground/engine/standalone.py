@@ -41,7 +41,7 @@ def standalone_sketch(
 
     ``folder`` is where its files are; ``picture`` is the file of parameters that name none.
     """
-    wanted = technique.needs_inputs if isinstance(technique, Kernel) else [e.name for e in technique.inputs]
+    inputs = technique.needs_inputs if isinstance(technique, Kernel) else [e.name for e in technique.inputs]
     line = technique.pragma.number if isinstance(technique, Kernel) and technique.pragma else 0
     over = technique.over if isinstance(technique, Draw) else ""
     passes = [
@@ -50,7 +50,7 @@ def standalone_sketch(
         else PassSpec(name, "a placeholder", _COUNT)
         if counts_instances(technique, name)
         else PassSpec(name, "a placeholder", _TERRAIN, values=((SEED, seed),))
-        for name in wanted
+        for name in inputs
     ]
     return with_pictures(shown_alone(technique, subject, passes, folder, line), picture)
 
@@ -79,7 +79,7 @@ def with_pictures(sketch: Sketch, picture: Path) -> Sketch:
 
 def free_name(name: str, technique: Technique) -> str:
     """Return a name for the pass of a technique that none of its inputs has."""
-    taken = {one.name for one in technique.inputs} | {"view"}
+    taken = {declared.name for declared in technique.inputs} | {"view"}
     while name in taken:
         name += "_"
     return name

@@ -34,7 +34,7 @@ _NUMPY: dict[str, np.dtype[Any]] = {
     "f2": np.dtype("f2"),
     "f4": np.dtype("f4"),
 }
-_LARGEST_HALF = 65504.0
+_MAX_HALF = 65504.0
 _BAND = 2**26  # [bytes] of a texture that is read, or of numbers that are written, at once
 
 
@@ -130,11 +130,11 @@ def write_texture(texture: moderngl.Texture, values: NDArray[Any]) -> None:
     r8 and r16 formats take 0..1, or whole numbers of their own kind; what is not a number
     becomes 0 there. Half floats stop at their largest.
     """
-    wanted = _NUMPY[texture.dtype]
+    dtype = _NUMPY[texture.dtype]
     width, height = texture.size
-    rows = max(_BAND // (width * texture.components * wanted.itemsize), 1)
+    rows = max(_BAND // (width * texture.components * dtype.itemsize), 1)
     if len(values) != height or rows >= height:
-        texture.write(texel_bytes(values, wanted), alignment=1)
+        texture.write(texel_bytes(values, dtype), alignment=1)
         return
     for south in range(0, height, rows):  # copies of all of a large one would be as large
         write_texels(texture, (0, south), values[south : south + rows])
@@ -151,16 +151,16 @@ def texels_in(form: str, values: NDArray[Any]) -> bytes:
     return texel_bytes(values, _NUMPY[split_format(form)[1]])
 
 
-def texel_bytes(values: NDArray[Any], wanted: np.dtype[Any]) -> bytes:
+def texel_bytes(values: NDArray[Any], dtype: np.dtype[Any]) -> bytes:
     """Return an array's numbers as a texture of a kind of number holds them: see ``write_texture``."""
     if values.dtype.kind == "f":
-        if wanted.kind == "u":
-            top = np.iinfo(wanted).max
+        if dtype.kind == "u":
+            top = np.iinfo(dtype).max
             values = np.round(np.clip(np.nan_to_num(values, nan=0.0), 0, 1) * top)
-        elif wanted == np.float16:
-            values = np.clip(values, -_LARGEST_HALF, _LARGEST_HALF)
+        elif dtype == np.float16:
+            values = np.clip(values, -_MAX_HALF, _MAX_HALF)
     with np.errstate(under="ignore"):
-        return np.ascontiguousarray(values.astype(wanted, copy=False)).tobytes()
+        return np.ascontiguousarray(values.astype(dtype, copy=False)).tobytes()
 
 
 def read_texture(texture: moderngl.Texture) -> NDArray[np.float32]:

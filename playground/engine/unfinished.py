@@ -11,10 +11,10 @@ _EVERY = 4  # iterations between two looks at the clock, for which the graphics 
 class Unfinished(Exception):
     """A loop was stopped by an engine's ``patience``: nothing is wrong, the next frame goes on."""
 
-    def __init__(self, done: int, wanted: int) -> None:
-        super().__init__(f"{done} of {wanted} iterations have run")
+    def __init__(self, done: int, total: int) -> None:
+        super().__init__(f"{done} of {total} iterations have run")
         self.done = done
-        self.wanted = wanted
+        self.total = total
 
 
 class PassesUnfinished(Exception):
@@ -51,10 +51,10 @@ class Deadline:
         self._end = None if seconds is None else time.perf_counter() + seconds
         self._finish = finish
 
-    def check(self, ran: int, done: int, wanted: int) -> None:
+    def check(self, ran: int, done: int, total: int) -> None:
         """Raise ``Unfinished`` where time is over and iterations are left; ``ran`` are those of this run."""
-        if self._end is None or done >= wanted or ran % _EVERY:
+        if self._end is None or done >= total or ran % _EVERY:
             return
         self._finish()
         if time.perf_counter() > self._end:
-            raise Unfinished(done, wanted)
+            raise Unfinished(done, total)

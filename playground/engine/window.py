@@ -8,7 +8,7 @@ of the whole picture, and so are a draw's clip space and its viewport, clipped t
 A kernel's text is changed for that in three places: it gets the texel of the whole, reads
 the window's own textures at the window's texel, and `gl_FragCoord` counts from the whole's
 corner. What reads such a texture anywhere but at its own texel cannot be drawn in parts,
-and a sentence says so, and which parameter switches it off if one does: a kernel that runs no step
+and a message says so, and which parameter switches it off if one does: a kernel that runs no step
 hands on what it begins with, part by part.
 """
 
@@ -100,14 +100,14 @@ def _changed(kernel: Kernel, inputs: tuple[str, ...]) -> Kernel | str:
     code = kernel.source.code
     if isinstance(kernel, TexelKernel):
         if not kernel.runs_once or _names(code, "previous", *_previous(kernel)):
-            return "it goes by iterations"
-        found = _kernel_code(kernel, code, inputs)
+            return "it depends on the iteration"
+        code_and_inputs = _kernel_code(kernel, code, inputs)
     else:
         others = [name for name in inputs if name != "initial" and _names(code, name)]
         if others:
             return f"it reads '{others[0]}' while it draws"
-        found = _with_coordinates(kernel, code), ""
-    changed, why = found
+        code_and_inputs = _with_coordinates(kernel, code), ""
+    changed, why = code_and_inputs
     return why if changed is None else replace(kernel, source=_source(kernel.source, changed))
 
 
@@ -150,20 +150,20 @@ def _kernel_code(kernel: Kernel, code: str, inputs: Iterable[str]) -> tuple[str 
 def _without_own(code: str, name: str) -> str:
     """Blank the functions and structs of a text that have a variable of a name: there it is no texture."""
     own = re.compile(rf"\b(?:bool|int|uint|float|[biu]?vec[234]|mat\w+)\s+{name}\b")
-    found = code
+    text = code
     for match in _BLOCK.finditer(code):
         end = _end_of_body(code, match.end())
         if own.search(code, match.start(), end):
-            found = found[: match.start()] + " " * (end - match.start()) + found[end:]
-    return found
+            text = text[: match.start()] + " " * (end - match.start()) + text[end:]
+    return text
 
 
 def _end_of_body(code: str, start: int) -> int:
     depth = 1
-    for place in range(start, len(code)):
-        depth += {"{": 1, "}": -1}.get(code[place], 0)
+    for index in range(start, len(code)):
+        depth += {"{": 1, "}": -1}.get(code[index], 0)
         if depth == 0:
-            return place
+            return index
     return len(code)
 
 

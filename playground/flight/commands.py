@@ -76,10 +76,10 @@ class Request:
         """Load the sketch with the values of the record and its own; return it and its own values."""
         from playground.sketch.load import load
 
-        found = load(self.sketch or (record.header.sketch if record else DEFAULT_FLIGHT))
-        found = found.plainly(self.plain).with_values(record.header.values if record else {})
-        values = with_whole_paths(found, self.values)
-        return found.with_values(values), values
+        loaded = load(self.sketch or (record.header.sketch if record else DEFAULT_FLIGHT))
+        loaded = loaded.plainly(self.plain).with_values(record.header.values if record else {})
+        values = with_whole_paths(loaded, self.values)
+        return loaded.with_values(values), values
 
 
 def fly(
@@ -138,10 +138,10 @@ def read_radius(text: str) -> float | None:
     """Return the number of ``--radius``; raise ``ParameterError``."""
     if not text:
         return None
-    from playground.flight.record import LEAST_RADIUS, MOST_RADIUS
+    from playground.flight.record import MAX_RADIUS, MIN_RADIUS
 
-    expected = f"a number of parts, {LEAST_RADIUS:g} to {MOST_RADIUS:g}"
-    return read_option("--radius", text, within(LEAST_RADIUS, MOST_RADIUS), expected)
+    expected = f"a number of parts, {MIN_RADIUS:g} to {MAX_RADIUS:g}"
+    return read_option("--radius", text, within(MIN_RADIUS, MAX_RADIUS), expected)
 
 
 def _write(request: Request) -> None:
@@ -151,12 +151,12 @@ def _write(request: Request) -> None:
     from playground.flight.record import read_record
 
     record = read_record(request.replay)
-    found, _ = request.load(record)
+    sketch, _ = request.load(record)
     target, every = prepared(request.frames), request.every or EVERY
-    with busy(f"opening {found.name}"):
+    with busy(f"opening {sketch.name}"):
         engine = request.renderer.open_engine(driver=request.driver, cache_bytes=CACHE_BYTES)
-    with engine, progress(f"flying over {found.name}", count_frames(record, every)) as done:
-        paths = write_frames(engine, found, record, target, every=every, size=request.size, done=done)
+    with engine, progress(f"flying over {sketch.name}", count_frames(record, every)) as done:
+        paths = write_frames(engine, sketch, record, target, every=every, size=request.size, done=done)
     for path in paths:
         print(path)
 
@@ -169,7 +169,7 @@ def _open(request: Request) -> None:
     if request.renderer.device is not None:
         check_display(request.renderer)
     record = read_record(request.replay) if request.replay else None
-    found, values = request.load(record)
+    sketch, values = request.load(record)
     if request.record:
         check_parent(Path(request.record), request.record)
     check_display(request.renderer)
@@ -178,7 +178,7 @@ def _open(request: Request) -> None:
     # What a record names must be found again from another folder.
     name = request.sketch or (record.header.sketch if record else DEFAULT_FLIGHT)
     status = run(
-        found,
+        sketch,
         str(find(name).absolute()) if Path(name).exists() else name,
         values=values,
         size=request.size or (record.header.size if record else DEFAULT_PICTURE),

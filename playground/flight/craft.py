@@ -77,18 +77,18 @@ class Craft:
 
 def stepped(craft: Craft, controls: Controls, ground: Ground) -> Craft:
     """Return the craft a step later."""
-    given = controls.within()
+    controls_now = controls.within()
     share = 1 - math.exp(-_QUICK * STEP)
-    wanted = (given.pitch / 100, given.roll / 100, given.yaw / 100)
-    stick = tuple(s + (w - s) * share for s, w in zip(craft.stick, wanted, strict=True))
-    throttle = _clamped(craft.throttle + given.throttle / 100 * _THROTTLES * STEP, 0.0, 1.0)
+    stick_target = (controls_now.pitch / 100, controls_now.roll / 100, controls_now.yaw / 100)
+    stick = tuple(s + (w - s) * share for s, w in zip(craft.stick, stick_target, strict=True))
+    throttle = _clamped(craft.throttle + controls_now.throttle / 100 * _THROTTLES * STEP, 0.0, 1.0)
 
     pitch = craft.pitch + stick[0] * _PITCHES * STEP
-    if given.pitch == 0:
+    if controls_now.pitch == 0:
         pitch *= math.exp(-_LEVELS * STEP)
     pitch = _clamped(pitch, -STEEPEST, STEEPEST)
     roll = craft.roll + stick[1] * _ROLLS * STEP
-    if given.roll == 0:
+    if controls_now.roll == 0:
         roll *= math.exp(-_RIGHTS * STEP)
     roll = _clamped(roll, -BANKED, BANKED)
 

@@ -1,6 +1,6 @@
 """Find the trees of a part: made once on the graphics card, then sorted so that a picture takes few of them.
 
-Trees are in blocks, and in each by their rank: of a block so far away that a share of its trees
+Trees are in blocks, and in each by their rank: of a block so far away that a fraction of its trees
 is drawn, those are its first.
 """
 
@@ -41,8 +41,8 @@ class Grove:
         starts = np.searchsorted(self.places, blocks)
         counts = np.searchsorted(self.places, blocks + np.minimum(shares, 0.999999)) - starts
         before = np.cumsum(counts) - counts
-        found: NDArray[np.intp] = np.repeat(starts - before, counts) + np.arange(counts.sum())
-        return found
+        indices: NDArray[np.intp] = np.repeat(starts - before, counts) + np.arange(counts.sum())
+        return indices
 
 
 class Planter:
@@ -60,8 +60,8 @@ class Planter:
 
     def plant(self, part: PartName, heights: moderngl.Texture, woods: moderngl.Texture) -> Grove:
         """Return the trees of a part."""
-        plot, found = self.plot, self.plot.trees
-        assert found is not None
+        plot, trees = self.plot, self.plot.trees
+        assert trees is not None
         self._surface.use()
         self._surface.viewport = (0, 0, self.cells, self.cells)
         self.ctx.enable_only(0)
@@ -71,8 +71,8 @@ class Planter:
         sea = plot.view.sea_level - plot.base if plot.view.sea else -1e9
         first = tuple(_wrapped(number * self.cells) for number in part)
         values: dict[str, Any] = {"heights": 0, "woods": 1, "first": first, "side": self.side, "lowest": sea}
-        values |= {"width": plot.width, "relief": plot.relief, "seed": int(found["seed"])}
-        values |= {name: found[name] for name in ("tallest", "shortest")}
+        values |= {"width": plot.width, "relief": plot.relief, "seed": int(trees["seed"])}
+        values |= {name: trees[name] for name in ("tallest", "shortest")}
         for name, value in values.items():
             self._program[name].value = value  # type: ignore[union-attr]
         self._array.render(self.ctx.TRIANGLES, vertices=3)
@@ -102,17 +102,17 @@ def _sorted(tree: NDArray[np.float32], own: NDArray[np.float32], side: float) ->
     rows, columns = np.nonzero(tree[..., 3] > 0)
     across = -(-tree.shape[1] // BLOCK)
     block = rows // BLOCK * across + columns // BLOCK
-    found = np.concatenate([tree[rows, columns], own[rows, columns, :3]], axis=1)
-    places = block + np.minimum(found[:, 4].astype(np.float64), 0.999999)
+    trees = np.concatenate([tree[rows, columns], own[rows, columns, :3]], axis=1)
+    places = block + np.minimum(trees[:, 4].astype(np.float64), 0.999999)
     order = np.argsort(places)
-    found, places, block = found[order], places[order], block[order]
+    trees, places, block = trees[order], places[order], block[order]
     blocks = across * (-(-tree.shape[0] // BLOCK))
     west, south = np.arange(blocks) % across, np.arange(blocks) // across
     low = np.stack([west, south, np.zeros(blocks)], axis=1) * (BLOCK * side)
     high = low + BLOCK * side
     ups, downs = np.full(blocks, -np.inf), np.full(blocks, np.inf)
-    np.maximum.at(ups, block, found[:, 2])
-    np.minimum.at(downs, block, found[:, 2])
+    np.maximum.at(ups, block, trees[:, 2])
+    np.minimum.at(downs, block, trees[:, 2])
     # Of a block without trees nothing is taken.
     low[:, 2], high[:, 2] = (np.where(np.isfinite(up), up, 0.0) for up in (downs, ups))
-    return Grove(found, places, low, high)
+    return Grove(trees, places, low, high)

@@ -48,8 +48,8 @@ class Instruments:
         """Draw everything for this frame."""
         room = imgui.get_main_viewport().size
         if not ready:
-            there = len(flight.parts.wanted) - flight.parts.missing
-            text = f"making the terrain: {there} of {len(flight.parts.wanted)} parts"
+            there = len(flight.parts.visible) - flight.parts.missing
+            text = f"making the terrain: {there} of {len(flight.parts.visible)} parts"
             _plate(text, theme, (room.x / 2, room.y / 2), align=(0.5, 0.5))
             return
         low = room.y - _MARGIN
@@ -113,7 +113,7 @@ class Instruments:
 def _plate(
     text: str,
     theme: Theme,
-    place: tuple[float, float],
+    corner: tuple[float, float],
     *,
     align: tuple[float, float] = (0.0, 0.0),
     ink: Rgb = INK,
@@ -125,7 +125,7 @@ def _plate(
         plate(
             imgui.get_foreground_draw_list(),
             text,
-            place,
+            corner,
             ink=packed(ink),
             ground=packed((0.04, 0.05, 0.06), alpha),
             padding=_PADDING,

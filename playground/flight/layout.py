@@ -97,8 +97,8 @@ class Plot:
         """Return the sketch's time of day in hours; 12 where it has none."""
         if not self.hour:
             return 12.0
-        found = value_of(self.sketch, self.hour, values_of(self.sketch))
-        return float(found) if isinstance(found, int | float) else 12.0
+        value = value_of(self.sketch, self.hour, values_of(self.sketch))
+        return float(value) if isinstance(value, int | float) else 12.0
 
 
 def plot_of(sketch: Sketch, engine: Engine) -> Plot:
@@ -160,8 +160,8 @@ def _check_part(sketch: Sketch, leaves: dict[str, Value]) -> None:
 
 def _apron(sketch: Sketch, leaves: dict[str, Value]) -> int:
     """Return the apron of the height [texels]; raise ``SketchError`` where shadows reach beyond it."""
-    found = _value(sketch, f"{_HEIGHT}.{_APRON}", leaves)
-    apron = found if isinstance(found, int) else 0
+    value = _value(sketch, f"{_HEIGHT}.{_APRON}", leaves)
+    apron = value if isinstance(value, int) else 0
     distance = _value(sketch, f"{LIGHT}.{_MAX_DISTANCE}", leaves)
     if isinstance(distance, int | float) and distance > apron > 0:
         raise _refused(
@@ -210,12 +210,12 @@ def _value(sketch: Sketch, path: str, leaves: dict[str, Value]) -> Value | None:
 
 def _number(sketch: Sketch, path: str, leaves: dict[str, Value]) -> float:
     """Return a parameter's value; 0 where there is none."""
-    found = _value(sketch, path, leaves)
-    return float(found) if isinstance(found, int | float) else 0.0
+    numbers = _value(sketch, path, leaves)
+    return float(numbers) if isinstance(numbers, int | float) else 0.0
 
 
 def _size(sketch: Sketch, engine: Engine, name: str) -> tuple[int, int]:
-    plan = engine.plan(sketch, (1, 1), wanted=name)
+    plan = engine.plan(sketch, (1, 1), text=name)
     try:
         step = plan.step(plan.flat.ref(name, sketch.name).path)
     except PlaygroundError as error:
@@ -240,12 +240,12 @@ def _finer(sketch: Sketch, name: str, size: tuple[int, int], side: int, apron: i
 
 
 def _view(sketch: Sketch, leaves: dict[str, Value]) -> View:
-    found: dict[str, Value] = {}
+    values: dict[str, Value] = {}
     for name in View.__dataclass_fields__:
         value = _value(sketch, f"view.{name}", leaves)
         if value is not None:
-            found[name] = value
-    return replace(View(), **found)  # type: ignore[arg-type]
+            values[name] = value
+    return replace(View(), **values)  # type: ignore[arg-type]
 
 
 def _outdoors(sketch: Sketch, leaves: dict[str, Value]) -> dict[str, Value] | None:
@@ -256,8 +256,8 @@ def _outdoors(sketch: Sketch, leaves: dict[str, Value]) -> dict[str, Value] | No
     # A view outdoors has no other sky.
     if _value(sketch, "view.sky", leaves) == 0 and _value(sketch, "view.mist", leaves) is None:
         return None
-    found = {name: _value(sketch, f"view.{name}", leaves) for name in _OUTDOORS}
-    return {name: value for name, value in found.items() if value is not None}
+    values = {name: _value(sketch, f"view.{name}", leaves) for name in _OUTDOORS}
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def _trees(sketch: Sketch, leaves: dict[str, Value], outdoors: dict[str, Value] | None) -> dict[str, float]:
@@ -272,8 +272,8 @@ def _trees(sketch: Sketch, leaves: dict[str, Value], outdoors: dict[str, Value] 
     for use in _TREES_USE:
         technique = read_technique(use, GLSL, GLSL)
         usual |= {path.rpartition(".")[2]: p.default for path, p in _parameters(technique).items()}
-    found = {name: _value(sketch, f"view.{name}", leaves) for name in _TREES}
-    chosen = {name: usual[name] if value is None else value for name, value in found.items()}
+    values = {name: _value(sketch, f"view.{name}", leaves) for name in _TREES}
+    chosen = {name: usual[name] if value is None else value for name, value in values.items()}
     return {name: float(value) for name, value in chosen.items() if isinstance(value, int | float)}
 
 

@@ -29,10 +29,10 @@ class Block(NamedTuple):
 
 def steps_of(intervals: int) -> tuple[int, ...]:
     """Return for each level how many intervals a triangle's side spans: 1, 2, 4 … as far as they fit."""
-    found = [1]
-    while len(found) < LEVELS and intervals % (2 * found[-1]) == 0 and intervals // (2 * found[-1]) >= 4:
-        found.append(2 * found[-1])
-    return tuple(found)
+    steps = [1]
+    while len(steps) < LEVELS and intervals % (2 * steps[-1]) == 0 and intervals // (2 * steps[-1]) >= 4:
+        steps.append(2 * steps[-1])
+    return tuple(steps)
 
 
 def part_mesh(intervals: int, step: int) -> tuple[NDArray[np.float32], NDArray[np.uint32], list[Block]]:
@@ -50,12 +50,12 @@ def part_mesh(intervals: int, step: int) -> tuple[NDArray[np.float32], NDArray[n
     order = np.argsort(number, kind="stable")
     ends = np.searchsorted(number[order], np.arange(blocks * blocks + 1), side="right") * 3
     starts = [0, *ends[:-1].tolist()]
-    found = []
+    result = []
     for block, (start, end) in enumerate(zip(starts, ends.tolist(), strict=True)):
         if block == blocks * blocks:
-            found.append(Block(start, end - start, (0, 0, intervals, intervals)))
+            result.append(Block(start, end - start, (0, 0, intervals, intervals)))
         elif end > start:
             west, south = block % blocks * side, block // blocks * side
             reach = min(west + side, intervals), min(south + side, intervals)
-            found.append(Block(start, end - start, (west, south, *reach)))
-    return vertices, triangles[order].ravel(), found
+            result.append(Block(start, end - start, (west, south, *reach)))
+    return vertices, triangles[order].ravel(), result

@@ -80,7 +80,7 @@ class Outdoors:
         sketch = self._sketch.with_values({self._plot.hour: hour}) if self._plot.hour else self._sketch
         if self._plot.trees is not None and hour != self._table_hour:
             self._take_table(sketch, hour)
-        plan = self._engine.plan(sketch, size, wanted=_PASS)
+        plan = self._engine.plan(sketch, size, text=_PASS)
         plan = replace(plan, eye=_eye_at(self.over_tile(eye, seconds), lens))
         sky = self._engine.texture_of(plan, plan.flat.ref(_PASS, sketch.name))
 
@@ -110,8 +110,8 @@ class Outdoors:
         """Copy the light on a wood at a time of day."""
         if self._table is not None:
             self._table.release()
-        found = self._engine.texture(sketch, _WOOD)
-        self._table = make_texture(self._engine.ctx, found.size, "rgba32f", found.read(alignment=1))
+        texture = self._engine.texture(sketch, _WOOD)
+        self._table = make_texture(self._engine.ctx, texture.size, "rgba32f", texture.read(alignment=1))
         self._table_hour = hour
 
     def release(self) -> None:
@@ -121,12 +121,12 @@ class Outdoors:
         self._engine.release()
 
 
-def _eye_at(place: tuple[float, float, float], lens: Lens) -> Eye:
+def _eye_at(position: tuple[float, float, float], lens: Lens) -> Eye:
     shift = np.eye(4)
-    shift[:3, 3] = np.negative(place)
+    shift[:3, 3] = np.negative(position)
     with np.errstate(under="ignore"):
         matrix = (lens.clip_from_near.astype(np.float64) @ shift).astype(np.float32)
-    return Eye(matrix, place, place, 1.0)
+    return Eye(matrix, position, position, 1.0)
 
 
 def _with_outdoors(plot: Plot) -> tuple[Sketch, bool]:
@@ -140,15 +140,15 @@ def _with_outdoors(plot: Plot) -> tuple[Sketch, bool]:
             passes.append(PassSpec(name, use, read_technique(use, GLSL, GLSL), size=(size, size)))
     technique = read_technique(_USE, GLSL, GLSL)
     assert isinstance(technique, Graph)
-    given = dict(plot.outdoors or {})
+    outdoors = dict(plot.outdoors or {})
     if not clouded:
-        given["clouds"] = NO_CLOUDS
+        outdoors["clouds"] = NO_CLOUDS
     inputs = tuple((name, f"daylight:{name}") for name in _TABLES)
-    passes.append(PassSpec(_PASS, _USE, technique, inputs=inputs, values=tuple(given.items())))
+    passes.append(PassSpec(_PASS, _USE, technique, inputs=inputs, values=tuple(outdoors.items())))
     if plot.trees is not None:
         wood = read_technique(_WOOD_USE, GLSL, GLSL)
         own = {p.name for p in wood.parameters}
-        known = tuple((name, value) for name, value in plot.trees.items() if name in own)
-        passes.append(PassSpec(_WOOD, _WOOD_USE, wood, values=known, size=_WOOD_SIZE))
+        values = tuple((name, value) for name, value in plot.trees.items() if name in own)
+        passes.append(PassSpec(_WOOD, _WOOD_USE, wood, values=values, size=_WOOD_SIZE))
     graph = replace(sketch.graph, passes=(*passes, view))
     return replace(sketch, graph=graph), clouded

@@ -33,13 +33,13 @@ from playground.sketch.model import Sketch
 if TYPE_CHECKING:
     import moderngl
 
-MOST_BYTES = 2 * 2**30
+MAX_BYTES = 2 * 2**30
 """Of all parts in memory at once."""
 BEHIND = 1.6
 """How many times its distance a part out of view counts when the next part is chosen."""
 _SPARE = 12  # slots more than are ever wanted at once: after turning back, little is made again
-_GRAIN = 4  # the eye's place is taken to this share of a part when parts are chosen
-_HEADINGS = 32  # and its heading to this share of a circle
+_GRAIN = 4  # the eye's place is taken to this fraction of a part when parts are chosen
+_HEADINGS = 32  # and its heading to this fraction of a circle
 
 
 @dataclass(eq=False)
@@ -84,7 +84,7 @@ class Parts:
         self._near = _around(radius)
         self.limit = len(self._near) + _SPARE
         _check_memory(plot, radius, self.limit)
-        # Each part is a version of every pass, which is taken up again when the part is lit anew.
+        # Each part is a version of every pass, which is taken up again when the part is lit again.
         cache = engine.cache
         self._versions_before, cache.versions = cache.versions, max(cache.versions, self.limit)
         self._cutter = Cutter(engine.ctx, plot)
@@ -107,7 +107,7 @@ class Parts:
         return sum(slot.bytes for slot in self._all)
 
     @property
-    def wanted(self) -> tuple[PartName, ...]:
+    def visible(self) -> tuple[PartName, ...]:
         """The parts around the eye, the most wanted first."""
         return tuple(self._wanted)
 
@@ -153,8 +153,8 @@ class Parts:
         # Within a right angle of straight ahead; around the eye itself, nothing is behind.
         visible = (away @ ahead > 0.7 * far) | (far < 1.0)
         order = np.lexsort((offsets[:, 0], offsets[:, 1], np.where(visible, far, BEHIND * far)))
-        wanted = order[far[order] <= self.radius]
-        self._wanted = [(int(i), int(j)) for i, j in offsets[wanted]]
+        nearest = order[far[order] <= self.radius]
+        self._wanted = [(int(i), int(j)) for i, j in offsets[nearest]]
         for part in self._wanted:
             if part in self.slots:
                 self.slots[part].used = self._clock
@@ -297,16 +297,16 @@ class Parts:
 
 
 def _check_memory(plot: Plot, radius: float, slots: int) -> None:
-    """Raise ``SketchError`` where the visible parts would take more than ``MOST_BYTES``."""
+    """Raise ``SketchError`` where the visible parts would take more than ``MAX_BYTES``."""
     nodes, ground = (plot.intervals + 1) ** 2, plot.ground**2 * 8
     each = 2 * 4 * nodes + ground + ground // 3
-    if each * slots <= MOST_BYTES:
+    if each * slots <= MAX_BYTES:
         return
-    fits = [r / 2 for r in range(3, 33) if each * (len(_around(r / 2)) + _SPARE) <= MOST_BYTES]
+    fits = [r / 2 for r in range(3, 33) if each * (len(_around(r / 2)) + _SPARE) <= MAX_BYTES]
     way = f"; --radius {fits[-1]:g} would fit" if fits else "; smaller parts would be less"
     raise SketchError(
         f"sketch {plot.sketch.name}: {slots} parts of {each / 2**20:.0f} MiB, as many as are visible within "
-        f"{radius:g}, are more than {MOST_BYTES / 2**30:g} GiB{way}",
+        f"{radius:g}, are more than {MAX_BYTES / 2**30:g} GiB{way}",
         file=plot.sketch.file,
     )
 
@@ -318,8 +318,8 @@ def _around(radius: float) -> NDArray[np.int64]:
     grid = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
     # How far the middle of a part is from the nearest place in part (0, 0).
     far = np.maximum(np.abs(grid) - 0.5, 0.0)
-    found: NDArray[np.int64] = grid[np.hypot(far[:, 0], far[:, 1]) <= radius]
-    return found
+    offsets: NDArray[np.int64] = grid[np.hypot(far[:, 0], far[:, 1]) <= radius]
+    return offsets
 
 
 def _clamped(number: int) -> int:

@@ -22,10 +22,10 @@ from playground.json_text import read_json
 from playground.regular_file import read_regular
 
 FORMAT, VERSION = "playground flight", 1
-LEAST_RADIUS, MOST_RADIUS = 1.5, 16.0  # [parts] visible: nearer, the end of the terrain would show
-LONGEST = 60 * 60 * 24  # [steps] of one line: no file takes for ever to read
+MIN_RADIUS, MAX_RADIUS = 1.5, 16.0  # [parts] visible: nearer, the end of the terrain would show
+MAX_STEPS_A_LINE = 60 * 60 * 24  # [steps] of one line: no file takes for ever to read
 SAVED_EVERY = 60  # [steps] alike after which they are written, so that a crash loses no more
-_MOST_STEPS = 60 * 60 * 60 * 100
+_MAX_STEPS = 60 * 60 * 60 * 100
 
 
 @dataclass(frozen=True)
@@ -160,17 +160,17 @@ def read_record(path: str | Path) -> Record:
         if not row.strip():
             continue
         with _at_line(path, number):
-            found = _json(row)
-            if isinstance(found, dict) and set(found) == {"hour"} and _is_number(found["hour"]):
-                hour = float(found["hour"]) % 24.0
-            elif isinstance(found, dict) and found == {"reset": True}:
+            row_value = _json(row)
+            if isinstance(row_value, dict) and set(row_value) == {"hour"} and _is_number(row_value["hour"]):
+                hour = float(row_value["hour"]) % 24.0
+            elif isinstance(row_value, dict) and row_value == {"reset": True}:
                 reset = True
             else:
-                count, controls = _steps(found, row)
+                count, controls = _steps(row_value, row)
                 total += count
                 lines.append((count, Moment(controls, hour, reset)))
                 hour, reset = None, False
-            if total > _MOST_STEPS:
+            if total > _MAX_STEPS:
                 raise ValueError("is longer than a hundred hours")
     return Record(header, tuple(lines))
 
@@ -184,16 +184,18 @@ def _at_line(path: str | Path, number: int) -> Iterator[None]:
         raise DataError(str(error), file=str(path), line=number) from None
 
 
-def _steps(found: Any, row: str) -> tuple[int, Controls]:
+def _steps(value: Any, row: str) -> tuple[int, Controls]:
     """Return how many steps of which controls a line holds; raise ``ValueError``."""
-    if not (isinstance(found, list) and len(found) == 5 and all(map(_is_whole, found))):
+    if not (isinstance(value, list) and len(value) == 5 and all(map(_is_whole, value))):
         raise ValueError(
             f"{row.strip()[:60]}: expected [steps, throttle, pitch, roll, yaw] in whole numbers, "
             'or {"hour": 17.5}, or {"reset": true}'
         )
-    count, controls = found[0], Controls(*found[1:])
-    if not 1 <= count <= LONGEST or controls != controls.within():
-        raise ValueError(f"{row.strip()[:60]}: expected 1 to {LONGEST} steps and controls from -100 to 100")
+    count, controls = value[0], Controls(*value[1:])
+    if not 1 <= count <= MAX_STEPS_A_LINE or controls != controls.within():
+        raise ValueError(
+            f"{row.strip()[:60]}: expected 1 to {MAX_STEPS_A_LINE} steps and controls from -100 to 100"
+        )
     return count, controls
 
 
@@ -215,27 +217,27 @@ def _json(row: str) -> Any:
 
 def _header(row: str) -> Header:
     """Return the header of a record; raise ``ValueError``."""
-    found = read_json(row) if _is_json(row) else None
-    if not isinstance(found, dict) or found.get("format") != FORMAT:
+    document = read_json(row) if _is_json(row) else None
+    if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise ValueError(
             f'is no flight: its first line should be {{"format": "{FORMAT}", …}}, as --record writes it'
         )
-    if (version := found.get("version")) != VERSION:
+    if (version := document.get("version")) != VERSION:
         raise ValueError(f"is a flight of version {version}; this playground reads version {VERSION}")
-    sketch, values, radius = (found.get(key) for key in ("sketch", "values", "radius"))
-    size, start = _tuple(found.get("size"), 2), _tuple(found.get("start"), 4)
+    sketch, values, radius = (document.get(key) for key in ("sketch", "values", "radius"))
+    size, start = _tuple(document.get("size"), 2), _tuple(document.get("start"), 4)
     if (
         not isinstance(sketch, str)
         or not all(_is_whole(n) and 1 <= n <= 16384 for n in size)
         or not size
         or not isinstance(values, dict)
-        or not (_is_number(radius) and LEAST_RADIUS <= radius <= MOST_RADIUS)
-        or not (all(map(_is_number, start)) and (start or found.get("start") is None))
+        or not (_is_number(radius) and MIN_RADIUS <= radius <= MAX_RADIUS)
+        or not (all(map(_is_number, start)) and (start or document.get("start") is None))
     ):
         raise ValueError(
             "its first line should have sketch, size, radius, values and start, as --record writes them"
         )
-    step = found.get("step")
+    step = document.get("step")
     if not _is_number(step) or abs(step - STEP) > 1e-9:
         raise ValueError(f"has steps of {step} s; this playground flies in steps of 1/60 s")
     return Header(sketch, size, values, float(radius), start or None)

@@ -86,15 +86,15 @@ class SaveFollower:
         self._checked = None
         try:
             with noting_places() as self._places:
-                found = load(self._path).plainly(self._shown.plain).with_values(self._values)
+                sketch = load(self._path).plainly(self._shown.plain).with_values(self._values)
         except Exception as error:
             self.error = explained(error, self._path)
         else:
             # One that was refused is tried again: what it depends on may have changed.
-            if found == self._shown and self.error is None:
+            if sketch == self._shown and self.error is None:
                 return
-            self._checked = found
-            self._sandbox.submit(TrySketch(found, drivers=(self._driver,)))
+            self._checked = sketch
+            self._sandbox.submit(TrySketch(sketch, drivers=(self._driver,)))
         self._follow(read_at)
 
     def _follow(self, read_at: float) -> None:

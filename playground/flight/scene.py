@@ -208,17 +208,17 @@ class Scene:
         _set(program, air_table=4, towards_sun=self._towards_sun, grain=3)
         _set(program, grain_times=max(round(plot.width / GRAIN), 1))
         _set(program, water=view.water, clarity=view.clarity)
-        names = sorted(parts.wanted)
-        found = [parts.slots.get(name) for name in names]
-        there = [s for s in found if s is not None]
+        names = sorted(parts.visible)
+        slots = [parts.slots.get(name) for name in names]
+        there = [s for s in slots if s is not None]
         low_up = min((s.lowest for s in there), default=0.3) * plot.relief
         middle = float(np.mean([s.nodes[0, 0] for s in there])) if there else 0.3
-        if there and len(there) < len(found):
+        if there and len(there) < len(slots):
             self._flat.write(np.array([middle], np.float32).tobytes())
             self._mean.write(np.mean([s.mean for s in there], axis=0).astype(np.float16).tobytes())
         corner = np.array(names, np.float64).reshape(-1, 2) * plot.width - eye[:2]
-        below = np.array([s.lowest * plot.relief if s else low_up for s in found])
-        above = np.array([s.highest * plot.relief if s else middle * plot.relief for s in found])
+        below = np.array([s.lowest * plot.relief if s else low_up for s in slots])
+        above = np.array([s.highest * plot.relief if s else middle * plot.relief for s in slots])
         skirt = 4 * plot.spacing * self._levels[-1]
         sea_up = view.sea_level - plot.base if view.sea else -1e9
         boxes_low = np.column_stack([corner, below - skirt - eye[2]])
@@ -230,7 +230,7 @@ class Scene:
         # Nearest first: the depth test then skips what they hide.
         for index in np.lexsort((np.arange(len(names)), far)):
             if visible[index]:
-                slot = found[index]
+                slot = slots[index]
                 if slot is None and bare:
                     continue
                 ups = float(boxes_low[index, 2]), float(boxes_high[index, 2])
@@ -288,17 +288,17 @@ class Scene:
         if self._outdoors is None:
             return None
         if self._shown is None or self._shown[0] != (before.eye, before.seconds, size, hour):
-            found = self._outdoors.draw(before.eye, before.lens, size, before.seconds, hour)
-            self._shown = (before.eye, before.seconds, size, hour), found
+            drawn = self._outdoors.draw(before.eye, before.lens, size, before.seconds, hour)
+            self._shown = (before.eye, before.seconds, size, hour), drawn
         return self._shown[1]
 
     def _view_values(self, lens: Lens, eye: tuple[float, float, float]) -> dict[str, Any]:
         """Return what all programs are given."""
         view = self.plot.view
-        found: dict[str, Any] = {"daylight": 2, "natural": self._natural, "zenith": view.zenith}
-        found |= {"horizon": view.horizon, "altitude": self._altitude(eye), "eye_up": eye[2]}
-        found |= {"pixel": lens.pixel, "clip_from_near": lens.clip_from_near.T.ravel().tolist()}
-        return found | {"near_from_clip": lens.near_from_clip.T.ravel().tolist(), "end": self._end}
+        values: dict[str, Any] = {"daylight": 2, "natural": self._natural, "zenith": view.zenith}
+        values |= {"horizon": view.horizon, "altitude": self._altitude(eye), "eye_up": eye[2]}
+        values |= {"pixel": lens.pixel, "clip_from_near": lens.clip_from_near.T.ravel().tolist()}
+        return values | {"near_from_clip": lens.near_from_clip.T.ravel().tolist(), "end": self._end}
 
     def _bind(self, around: Around | None) -> None:
         """Bind what all programs read."""
@@ -355,8 +355,8 @@ class Surface:
 
 def _values_of(around: Around) -> dict[str, Any]:
     """Return what programs are given of what is around the craft."""
-    found = {"sky_picture": 5, "scattered": 6, "left": 7, "cloud": 8, "table": 11, "clouded": around.clouded}
-    return {**found, "wind": around.wind, "open_mean": around.mean, "outdoors_clip": around.clip}
+    units = {"sky_picture": 5, "scattered": 6, "left": 7, "cloud": 8, "table": 11, "clouded": around.clouded}
+    return {**units, "wind": around.wind, "open_mean": around.mean, "outdoors_clip": around.clip}
 
 
 def _set(program: moderngl.Program, **values: Any) -> None:

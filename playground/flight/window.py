@@ -40,7 +40,7 @@ from playground.workbench.last_frame import Painter
 MAKING = 0.005  # [s] of each picture for parts
 OPENING = 0.05  # [s] between pictures before the first step
 DRAWN = 640 * 360  # [pixels] that a processor draws in time; a larger window shows them larger
-MOST_STEPS = 6  # of one picture: on a slower machine time goes slower
+MAX_STEPS = 6  # of one picture: on a slower machine time goes slower
 HOURS = 0.5  # that a key moves the time of day
 _IDLE = 0.1  # [s] between frames while it is paused
 _WRITES = 0.05  # [s] between lines of the status
@@ -206,18 +206,18 @@ class Fly:
         return max(round(size[0] * share), 1), max(round(size[1] * share), 1)
 
     def _fly(self, passed: float) -> None:
-        """Fly the steps of the time that has passed, at most ``MOST_STEPS``."""
-        self._owed = min(self._owed + passed, MOST_STEPS * STEP)
+        """Fly the steps of the time that has passed, at most ``MAX_STEPS``."""
+        self._owed = min(self._owed + passed, MAX_STEPS * STEP)
         controls = self._controls() if self.replay is None else Controls()
         while self._owed >= STEP:
             self._owed -= STEP
             moment = Moment(together(controls, self._wheel.next()), self._hour, self._reset)
             if self.replay is not None:
-                found = next(self.replay, None)
-                if found is None:
+                replay = next(self.replay, None)
+                if replay is None:
                     self.paused, self.instruments.ended = True, True
                     return
-                moment = found
+                moment = replay
             self._hour, self._reset = None, False
             self._record(moment)
             self.flight.step(moment, 0)
@@ -237,14 +237,14 @@ class Fly:
     def _controls(self) -> Controls:
         self._wheel.scroll(imgui.get_io().mouse_wheel)
         held = {name for name, keys in _HOLDS.items() if any(map(imgui.is_key_down, keys))}
-        found = [by_keys(held)]
+        controls_held = [by_keys(held)]
         if imgui.is_mouse_down(0):
             gone = imgui.get_mouse_drag_delta(0, 0.0)
-            found.append(by_mouse(gone.x, gone.y, imgui.get_main_viewport().size.y))
+            controls_held.append(by_mouse(gone.x, gone.y, imgui.get_main_viewport().size.y))
         pad = self._gamepad()
         if pad is not None:
-            found.append(by_gamepad(list(pad.axes)))
-        return together(*found)
+            controls_held.append(by_gamepad(list(pad.axes)))
+        return together(*controls_held)
 
     def _gamepad(self) -> Any:
         """Return the state of the first gamepad, None where there is none."""
@@ -344,5 +344,5 @@ _PAD = {4: "earlier", 5: "later", 6: "reset", 7: "pause"}
 
 
 def _pressed() -> set[str]:
-    found = {name for key, name in _PRESSES.items() if imgui.is_key_pressed(key, repeat=False)}
-    return found | ({"help"} if "?" in letters() else set())  # its key depends on the keyboard
+    pressed = {name for key, name in _PRESSES.items() if imgui.is_key_pressed(key, repeat=False)}
+    return pressed | ({"help"} if "?" in letters() else set())  # its key depends on the keyboard

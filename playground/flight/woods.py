@@ -25,8 +25,8 @@ from playground.flight.programs import screen_program, trees_program
 if TYPE_CHECKING:
     import moderngl
 
-MOST_TREES = 2**16  # of a picture
-SMALLEST, SMALLEST_SLOW = 5.0, 12.0
+MAX_TREES = 2**16  # of a picture
+MIN_TREE_PIXELS, MIN_TREE_PIXELS_ON_SOFTWARE = 5.0, 12.0
 """[pixels] The tallest trees, where the first is left out: on a graphics card, on a processor."""
 BEYOND = 4.0
 """Times as far away, the last is."""
@@ -69,12 +69,12 @@ class Woods:
         self.drawn = 0  # trees of the last picture
         self.level_from: tuple[float, float, float] | None = None
         """Where levels of detail are chosen from [m]; None: from the eye."""
-        self._smallest = SMALLEST_SLOW if engine.info.software else SMALLEST
+        self._smallest = MIN_TREE_PIXELS_ON_SOFTWARE if engine.info.software else MIN_TREE_PIXELS
         self._cell = cells_of(plot)[1]
         self._planter = Planter(ctx, plot)
         self._program = trees_program(ctx)
         self._corners = ctx.buffer(np.array([-1, -1, 1, -1, -1, 1, 1, 1], np.float32).tobytes())
-        self._buffer = ctx.buffer(reserve=MOST_TREES * _FLOATS * 4)
+        self._buffer = ctx.buffer(reserve=MAX_TREES * _FLOATS * 4)
         content = [(self._corners, "2f", "corner"), (self._buffer, "4f 3f 2f/i", "tree", "own", "part")]
         self._array = ctx.vertex_array(self._program, content)
         sizes = {"drawn_share": (_LEVELS, "r32f"), "leaf_colours": (2, "rgba32f")}
@@ -92,13 +92,13 @@ class Woods:
         """Choose the trees of a picture; return what programs are given that draw them, and the ground."""
         level, whole = self.level_from or eye, self.whole_at(lens)
         names = ("tallest", "shortest", "needles", "needles_from", "ragged")
-        found: dict[str, Any] = {name: self._trees[name] for name in names}
-        found |= {"whole": whole, "reach": BEYOND * whole, "cell": self._cell, "day": light.day}
-        found |= {"base": self.plot.base, "leaf_colours": self._colours(light.day)}
-        found["sun_light"] = tuple(self.plot.gain * n for n in light.sun)
-        found["sky_light"] = tuple(self.plot.ambient * n for n in light.sky)
-        found["level_eye"] = tuple(at - to for at, to in zip(eye, level, strict=True))
-        return found | {"room": self._choose(parts, eye, lens)}
+        values: dict[str, Any] = {name: self._trees[name] for name in names}
+        values |= {"whole": whole, "reach": BEYOND * whole, "cell": self._cell, "day": light.day}
+        values |= {"base": self.plot.base, "leaf_colours": self._colours(light.day)}
+        values["sun_light"] = tuple(self.plot.gain * n for n in light.sun)
+        values["sky_light"] = tuple(self.plot.ambient * n for n in light.sky)
+        values["level_eye"] = tuple(at - to for at, to in zip(eye, level, strict=True))
+        return values | {"room": self._choose(parts, eye, lens)}
 
     def _choose(self, parts: Parts, eye: tuple[float, float, float], lens: Lens) -> float:
         """Choose the trees of a picture; return the share that there is room for."""
@@ -111,12 +111,12 @@ class Woods:
         ]
         trees = np.concatenate(chosen) if chosen else np.zeros((0, _FLOATS), np.float32)
         room = 1.0
-        if len(trees) > MOST_TREES:
+        if len(trees) > MAX_TREES:
             places = trees[:, :3] + np.column_stack([trees[:, 7:9], np.full(len(trees), -eye[2])])
             far = np.linalg.norm(places - (level - eye), axis=1)
             keys = trees[:, 4] / np.maximum(np.interp(far, *shares), 1e-9)
-            room = min(float(np.partition(keys, MOST_TREES)[MOST_TREES]), 1.0)
-            trees = trees[keys < room][:MOST_TREES]
+            room = min(float(np.partition(keys, MAX_TREES)[MAX_TREES]), 1.0)
+            trees = trees[keys < room][:MAX_TREES]
         self.drawn = len(trees)
         self._buffer.orphan()
         self._buffer.write(np.ascontiguousarray(trees, np.float32).tobytes())
@@ -140,15 +140,15 @@ class Woods:
 
     def _near(self, parts: Parts, eye: tuple[float, float, float], reach: float) -> Iterable[PartName]:
         """Return the parts that have trees to draw, the nearest first."""
-        width, found = self.plot.width, []
-        for part in parts.wanted:
+        width, parts_near = self.plot.width, []
+        for part in parts.visible:
             east, north = (
                 max(n * width - at, at - (n + 1) * width, 0.0) for n, at in zip(part, eye, strict=False)
             )
             far = float(np.hypot(east, north))
             if part in parts.slots and far < reach:
-                found.append((far, part))
-        return [part for _, part in sorted(found)]
+                parts_near.append((far, part))
+        return [part for _, part in sorted(parts_near)]
 
     def _grove(self, parts: Parts, part: PartName) -> Grove:
         slot = parts.slots[part]
@@ -178,20 +178,20 @@ class Woods:
         far = np.sqrt((gap**2).sum(axis=1))
         blocks = np.nonzero(visible & (far < reach))[0]
         blocks = blocks[np.argsort(far[blocks], kind="stable")]
-        found = grove.first_of(blocks, np.interp(far[blocks], *shares))
-        moved = np.broadcast_to((corner[:2] - eye[:2]).astype(np.float32), (len(found), 2))
-        return np.concatenate([grove.trees[found], moved], axis=1)
+        first = grove.first_of(blocks, np.interp(far[blocks], *shares))
+        moved = np.broadcast_to((corner[:2] - eye[:2]).astype(np.float32), (len(first), 2))
+        return np.concatenate([grove.trees[first], moved], axis=1)
 
     def _colours(self, day: float) -> list[tuple[float, ...]]:
         """Return the colours of broad leaves and of needles on a day of the year (trees/kinds)."""
         if self._leaves is None or self._leaves[0] != day:
             self._tables["leaf_colours"].render(day=day)
-            found = read_texture(self._tables["leaf_colours"].texture)[0, :, :3]
-            self._leaves = day, [tuple(float(n) for n in colour) for colour in found]
+            texture = read_texture(self._tables["leaf_colours"].texture)[0, :, :3]
+            self._leaves = day, [tuple(float(n) for n in colour) for colour in texture]
         return self._leaves[1]
 
     def _shares(self, whole: float, reach: float) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
-        """Return distances [m] and the share of trees that is drawn there (trees/level)."""
+        """Return distances [m] and the fraction of trees that is drawn there (trees/level)."""
         if self._known is None or self._known[0] != whole:
             self._tables["drawn_share"].render(whole=whole, reach=reach, texels=float(_LEVELS))
             self._known = whole, read_texture(self._tables["drawn_share"].texture)[0]

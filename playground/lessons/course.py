@@ -13,7 +13,7 @@ from playground.sketch.toml_table import TomlFile
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class CoursePart:
     """A part of the course."""
 
     titles: Mapping[str, str]  # by language
@@ -25,7 +25,7 @@ def course_file() -> Path:
     return library.TEXTS.parent / "course.toml"
 
 
-def parts() -> list[Part]:
+def parts() -> list[CoursePart]:
     """Return the parts of the course, in their order.
 
     Raises ``SketchError`` at what is wrong with its file: a part without a title in each language,
@@ -34,27 +34,27 @@ def parts() -> list[Part]:
     path = course_file()
     file = TomlFile(path, path.parent)
     file.only(file.table, ("part",))
-    names, seen, found = library.lesson_files(), set[str](), []
+    names, seen, parts_read = library.lesson_files(), set[str](), []
     for index, table in enumerate(file.tables("part")):
-        place = ("part", index)
-        file.only(table, ("title", "lessons"), *place)
-        titles = file.take(table, "title", dict, {}, *place)
-        file.only(titles, tuple(library.LANGUAGES), *place, "title")
+        key_path = ("part", index)
+        file.only(table, ("title", "lessons"), *key_path)
+        titles = file.take(table, "title", dict, {}, *key_path)
+        file.only(titles, tuple(library.LANGUAGES), *key_path, "title")
         for code in library.LANGUAGES:
-            if not file.take(titles, code, str, "", *place, "title").strip():
-                raise file.error(f"a part of the course has a title in '{code}'", *place)
-        lessons = file.take(table, "lessons", list, [], *place)
+            if not file.take(titles, code, str, "", *key_path, "title").strip():
+                raise file.error(f"a part of the course has a title in '{code}'", *key_path)
+        lessons = file.take(table, "lessons", list, [], *key_path)
         for name in lessons:
             if not isinstance(name, str) or name not in names:
                 hint = nearest(name, names) if isinstance(name, str) else ""
-                raise file.error(f"no lesson {spell(name)}{hint}", *place, "lessons")
+                raise file.error(f"no lesson {spell(name)}{hint}", *key_path, "lessons")
             if name in seen:
-                raise file.error(f"lesson {spell(name)} is in the course twice", *place, "lessons")
+                raise file.error(f"lesson {spell(name)} is in the course twice", *key_path, "lessons")
             seen.add(name)
-        found.append(Part(titles, tuple(lessons)))
+        parts_read.append(CoursePart(titles, tuple(lessons)))
     if left := [name for name in names if name not in seen]:
         raise file.error(f"in no part of the course: {', '.join(left)}")
-    return found
+    return parts_read
 
 
 def lesson_names() -> list[str]:

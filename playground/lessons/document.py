@@ -43,15 +43,15 @@ def prose_of(piece: Piece) -> Prose:
     """Return the prose of a piece that is no block of a lesson's own."""
     markdown = piece.text
     if piece.kind == "heading":
-        found = _HEADING.match(markdown)
-        markdown = found[1] if found else markdown
+        match = _HEADING.match(markdown)
+        markdown = match[1] if match else markdown
     kind = "code" if piece.kind == "fence" else piece.kind
     return Prose(piece.line, piece.text, kind, piece.level, markdown)
 
 
 def texts_in(front: TomlFile, key: str) -> tuple[str, ...]:
     """Return the list of texts that a key has; raise ``SketchError`` for anything else."""
-    found = front.take(front.table, key, list, [])
-    if not all(isinstance(item, str) for item in found):
-        raise front.error(f"{key} = {spell(found)}: expected texts in quotes", key)
-    return tuple(found)
+    texts = front.take(front.table, key, list, [])
+    if not all(isinstance(item, str) for item in texts):
+        raise front.error(f"{key} = {spell(texts)}: expected texts in quotes", key)
+    return tuple(texts)

@@ -16,7 +16,7 @@ _KM2 = 1e6  # [m²]
 
 
 def pits(values: Values, grid: Grid) -> float:
-    """Return the share of the texels, borders aside, that no neighbour is lower than, 0..1."""
+    """Return the fraction of the texels, borders aside, that no neighbour is lower than, 0..1."""
     slopes, _ = _ways(values, grid)
     return float((slopes[1:-1, 1:-1] <= 0).mean())
 
@@ -24,7 +24,7 @@ def pits(values: Values, grid: Grid) -> float:
 def tail_power(values: Values, grid: Grid, low: float, high: float) -> float:
     """Return τ of P(A > a) ~ a^−τ, of drained areas A [m²], fitted from ``low`` to ``high`` [km²].
 
-    P is the share of the texels that drain more than a.
+    P is the fraction of the texels that drain more than a.
     """
     at = np.geomspace(low, high, 12) * _KM2 if 0 < low < high else np.empty(0)
     shares = np.array([(values > a).mean() for a in at])
@@ -37,7 +37,7 @@ def slope_where_drained(values: Values, grid: Grid, low: float, high: float) -> 
     """Return the median slope, in metres a metre, of the texels that drain ``low`` to ``high`` [km²]."""
     slopes, _ = _between(values, grid, low, high)
     if not slopes.size:
-        raise ValueError(f"low = {low:g}, high = {high:g}: no texel drains so many km²")
+        raise ValueError(f"low = {low:g}, high = {high:g}: no texel drains that area (km²)")
     return float(np.median(slopes))
 
 
@@ -45,7 +45,7 @@ def slope_area_power(values: Values, grid: Grid, low: float, high: float) -> flo
     """Return θ of S ~ A^θ, fitted to the texels that drain ``low`` to ``high`` [km²]; S is the slope down."""
     slopes, areas = _between(values, grid, low, high)
     if np.unique(areas).size < 2:
-        raise ValueError(f"low = {low:g}, high = {high:g}: fewer than two texels drain so many km²")
+        raise ValueError(f"low = {low:g}, high = {high:g}: fewer than two texels drain that area (km²)")
     return float(np.polyfit(np.log(areas), np.log(slopes), 1)[0])
 
 
@@ -76,7 +76,7 @@ def _areas(values: Values, receivers: NDArray[np.intp]) -> Values:
     """Return how many texels drain through each, itself included: handed on from the highest one down."""
     areas = np.ones(values.size)
     down = receivers.ravel()
-    for place in np.argsort(-values, axis=None, kind="stable"):
-        if down[place] != place:
-            areas[down[place]] += areas[place]
+    for cell in np.argsort(-values, axis=None, kind="stable"):
+        if down[cell] != cell:
+            areas[down[cell]] += areas[cell]
     return areas.reshape(values.shape)

@@ -28,17 +28,17 @@ def excerpt(file: str, anchor: str, text: str | None = None) -> Excerpt:
     ``text`` replaces what is in the file. Raises ``SketchError`` where there is no such
     anchor, or where it has no end.
     """
-    found = anchors(file, read_text(GLSL / file) if text is None else text)
-    if anchor not in found:
-        hint = nearest(anchor, found) or "; it has none"
+    excerpts = anchors(file, read_text(GLSL / file) if text is None else text)
+    if anchor not in excerpts:
+        hint = nearest(anchor, excerpts) or "; it has none"
         raise SketchError(f"no anchor '{anchor}'{hint}", file=GLSL / file)
-    return found[anchor]
+    return excerpts[anchor]
 
 
 def anchors(file: str, text: str) -> dict[str, Excerpt]:
     """Return what each anchor of a text marks, by name."""
     open_at: dict[str, int] = {}
-    found: dict[str, Excerpt] = {}
+    excerpts: dict[str, Excerpt] = {}
     lines = text.split("\n")
     for number, line in enumerate(lines, 1):
         mark = _MARK.match(line)
@@ -46,7 +46,7 @@ def anchors(file: str, text: str) -> dict[str, Excerpt]:
             continue
         word, name = mark.groups()
         if word == "anchor":
-            if name in open_at or name in found:
+            if name in open_at or name in excerpts:
                 raise SketchError(f"a second anchor '{name}'", file=GLSL / file, line=number)
             open_at[name] = number
         elif name not in open_at:
@@ -55,7 +55,7 @@ def anchors(file: str, text: str) -> dict[str, Excerpt]:
             first = open_at.pop(name)
             inside = [each for each in lines[first : number - 1] if not _MARK.match(each)]
             marked = textwrap.dedent("\n".join(each.rstrip() for each in inside))
-            found[name] = Excerpt(file, first + 1, marked.strip("\n"))
+            excerpts[name] = Excerpt(file, first + 1, marked.strip("\n"))
     for name, number in open_at.items():
         raise SketchError(f"anchor '{name}' has no end", file=GLSL / file, line=number)
-    return found
+    return excerpts

@@ -42,10 +42,10 @@ class Fence:
 
     def markdown(self, key: str, *, needed: bool = True) -> str:
         """Return the text that a key has; raise ``SketchError`` if it is needed and not there."""
-        found: str = self.take(key, str, "")
-        if needed and not found.strip():
+        text: str = self.take(key, str, "")
+        if needed and not text.strip():
             raise self.error(f'a {self.kind} block needs {key} = "…"')
-        return found.strip()
+        return text.strip()
 
     def texts(self, key: str) -> tuple[str, ...]:
         """Return the list of texts that a key has."""
@@ -70,30 +70,32 @@ class Fence:
         """Return the picture that the block's own keys describe."""
         return read_scene(self.file, self.state, (), self.sketches, pixels)
 
-    def error(self, message: str, *place: str | int) -> SketchError:
+    def error(self, message: str, *key_path: str | int) -> SketchError:
         """Return an error at a place in the block."""
-        return self.file.error(message, *place)
+        return self.file.error(message, *key_path)
 
 
 def measure_of(
-    fence: Fence, table: Mapping[str, Any], *place: str | int
+    fence: Fence, table: Mapping[str, Any], *key_path: str | int
 ) -> tuple[str, tuple[tuple[str, float], ...], tuple[float, float] | None]:
     """Return the name of the measure that a table asks for, its arguments, and what it must lie between."""
     file = fence.file
-    what = file.take(table, "what", str, "", *place)
+    what = file.take(table, "what", str, "", *key_path)
     if not what:
-        raise fence.error(f'a {fence.kind} of a measure needs what = "…"', *place)
+        raise fence.error(f'a {fence.kind} of a measure needs what = "…"', *key_path)
     if what not in MEASURES:
         message = f"what = '{what}': there is no such measure{nearest(what, MEASURES)}"
-        raise fence.error(message, *place, "what")
-    given: Mapping[str, Any] = file.take(table, "with", dict, {}, *place)
-    wanted = MEASURES[what].arguments
-    file.only(given, wanted, *place, "with")
-    if any(name not in given for name in wanted):
-        names = ", ".join(f"{name} = …" for name in wanted)
-        raise fence.error(f"{what} needs with = {{ {names} }}", *place)
-    taken = tuple((name, float(file.take(given, name, float, 0.0, *place, "with"))) for name in wanted)
-    return what, taken, _between(fence, table, *place)
+        raise fence.error(message, *key_path, "what")
+    arguments: Mapping[str, Any] = file.take(table, "with", dict, {}, *key_path)
+    parameters = MEASURES[what].arguments
+    file.only(arguments, parameters, *key_path, "with")
+    if any(name not in arguments for name in parameters):
+        names = ", ".join(f"{name} = …" for name in parameters)
+        raise fence.error(f"{what} needs with = {{ {names} }}", *key_path)
+    taken = tuple(
+        (name, float(file.take(arguments, name, float, 0.0, *key_path, "with"))) for name in parameters
+    )
+    return what, taken, _between(fence, table, *key_path)
 
 
 def shader(fence: Fence) -> str:
@@ -114,11 +116,11 @@ def check_path(fence: Fence, scene: model.Scene, path: str, key: str) -> None:
         raise fence.error(error.diagnostics[0].message, key) from None
 
 
-def _between(fence: Fence, table: Mapping[str, Any], *place: str | int) -> tuple[float, float] | None:
-    given = fence.file.take(table, "between", list, None, *place)
-    if given is None:
+def _between(fence: Fence, table: Mapping[str, Any], *key_path: str | int) -> tuple[float, float] | None:
+    bounds = fence.file.take(table, "between", list, None, *key_path)
+    if bounds is None:
         return None
-    numbers = all(type(v) in (int, float) for v in given)
-    if len(given) != 2 or not numbers or any(b < a for a, b in pairwise(given)):
-        raise fence.error(f"between = {spell(given)}: expected [lowest, highest]", *place, "between")
-    return float(given[0]), float(given[1])
+    numbers = all(type(v) in (int, float) for v in bounds)
+    if len(bounds) != 2 or not numbers or any(b < a for a, b in pairwise(bounds)):
+        raise fence.error(f"between = {spell(bounds)}: expected [lowest, highest]", *key_path, "between")
+    return float(bounds[0]), float(bounds[1])

@@ -60,15 +60,15 @@ def _steps(fence: Fence) -> model.Steps:
         most = min(repeats_of(scene.sketch, frame_size=scene.pixels, time=scene.time)[p] for p in repeated)
     except PlaygroundError as error:
         raise fence.error(error.diagnostics[0].message, "passes") from None
-    given = fence.take("iterations", list, list(range(most + 1)))
-    if not given or not all(type(one) is int and 0 <= one <= most for one in given):
-        message = f"iterations = {spell(given)}: expected whole numbers from 0 to {most}"
+    iterations = fence.take("iterations", list, list(range(most + 1)))
+    if not iterations or not all(type(picture) is int and 0 <= picture <= most for picture in iterations):
+        message = f"iterations = {spell(iterations)}: expected whole numbers from 0 to {most}"
         raise fence.error(message, "iterations")
     captions = fence.texts("captions")
-    if captions and len(captions) != len(given):
-        raise fence.error(f"captions: {len(captions)} for {len(given)} iterations", "captions")
-    scenes = tuple(with_steps(scene, dict.fromkeys(passes, one)) for one in given)
-    return fence.block(model.Steps, scenes=scenes, passes=passes, iterations=tuple(given))
+    if captions and len(captions) != len(iterations):
+        raise fence.error(f"captions: {len(captions)} for {len(iterations)} iterations", "captions")
+    scenes = tuple(with_steps(scene, dict.fromkeys(passes, picture)) for picture in iterations)
+    return fence.block(model.Steps, scenes=scenes, passes=passes, iterations=tuple(iterations))
 
 
 def _slider(fence: Fence) -> model.Slider:
@@ -82,19 +82,19 @@ def _slider(fence: Fence) -> model.Slider:
 
 
 def _swept(fence: Fence, scene: model.Scene, parameter: str) -> tuple[Value, ...]:
-    given = fence.take("values", list, None)
-    if given is None:
+    values = fence.take("values", list, None)
+    if values is None:
         low, high = (fence.take(key, float, None) for key in ("from", "to"))
         frames = fence.take("frames", int, 9)
         if low is None or high is None or low == high or not 2 <= frames <= 64:
             raise fence.error("a slider needs values = […], or from, to and frames (2 to 64)")
         whole = resolve(scene.sketch.graph, parameter)[0].parameter.type in ("int", "uint")
-        given = [low + (high - low) * i / (frames - 1) for i in range(frames)]
-        given = [round(v) if whole else float(f"{v:.6g}") for v in given]
-    if len(given) < 2:
+        values = [low + (high - low) * i / (frames - 1) for i in range(frames)]
+        values = [round(v) if whole else float(f"{v:.6g}") for v in values]
+    if len(values) < 2:
         raise fence.error("values: a slider has two or more", "values")
     try:
-        return tuple(check_value(scene.sketch, parameter, value) for value in given)
+        return tuple(check_value(scene.sketch, parameter, value) for value in values)
     except PlaygroundError as error:
         raise fence.error(error.diagnostics[0].message, "values") from None
 
@@ -106,9 +106,9 @@ def _compare(fence: Fence) -> model.Compare:
         raise fence.error("a compare block has two or more [[variant]]")
     scenes = []
     for index, table in enumerate(tables):
-        place = ("variant", index)
-        fence.file.only(table, STATE, *place)
-        scenes.append(read_scene(fence.file, table, place, fence.sketches, under=fence.state))
+        site = ("variant", index)
+        fence.file.only(table, STATE, *site)
+        scenes.append(read_scene(fence.file, table, site, fence.sketches, under=fence.state))
     labels = fence.texts("labels")
     if len(labels) != len(scenes):
         raise fence.error(f"labels: {len(labels)} for {len(scenes)} variants", "labels")

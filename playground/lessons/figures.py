@@ -65,7 +65,7 @@ def thesis_figures() -> list[ThesisFigure]:
 
 def _shots() -> dict[str, list[tuple[str, FigurePicture]]]:
     sketches = Sketches()
-    found: dict[str, list[tuple[str, FigurePicture]]] = {}
+    shots: dict[str, list[tuple[str, FigurePicture]]] = {}
     for name in shipped_sketches():
         sketch = sketches.load(name)
         for shot in sketch.shots:
@@ -77,8 +77,8 @@ def _shots() -> dict[str, list[tuple[str, FigurePicture]]]:
                 made, shot.size, shot.time, shot.steps, shot.name, shot.preset, shot.values, plain=True
             )
             drawn = FigurePicture(name, shot.name, scene, _parameters(sketch, made))
-            found.setdefault(f"{match[1]}.{match[2]}", []).append((f"{match[3] or ''} {name}", drawn))
-    return found
+            shots.setdefault(f"{match[1]}.{match[2]}", []).append((f"{match[3] or ''} {name}", drawn))
+    return shots
 
 
 def _parameters(file: Sketch, made: Sketch) -> tuple[tuple[str, str], ...]:

@@ -31,7 +31,7 @@ class Term:
 
     key: str
     names: dict[str, tuple[str, ...]]  # by language; the first is the one to use
-    meaning: dict[str, str]  # one sentence, by language
+    meaning: dict[str, str]  # one message, by language
     avoid: tuple[str, ...] = ()  # English words that this project does not use for it
     thesis: str = ""  # section of the thesis that names it
     thesis_name: str = ""  # what the thesis calls it, where that is another word
@@ -48,16 +48,16 @@ def terms(file: Path = FILE) -> dict[str, Term]:
     with file.open("rb") as handle:
         tables = tomllib.load(handle)
     required = {*MEANING, *MEANING.values()}
-    found = {}
-    for key, given in tables.items():
-        unknown, missing = set(given) - required - _OPTIONAL, required - set(given)
+    result = {}
+    for key, entry in tables.items():
+        unknown, missing = set(entry) - required - _OPTIONAL, required - set(entry)
         if unknown or missing:
             raise ValueError(f"{file.name}: {key}: unknown {sorted(unknown)}, missing {sorted(missing)}")
-        names = {language: tuple(given[language]) for language in MEANING}
-        meaning = {language: given[text] for language, text in MEANING.items()}
-        rest = {**given, "avoid": tuple(given.get("avoid", ()))}
-        found[key] = Term(key, names, meaning, **{name: rest[name] for name in _OPTIONAL & set(rest)})
-    return found
+        names = {language: tuple(entry[language]) for language in MEANING}
+        meaning = {language: entry[text] for language, text in MEANING.items()}
+        rest = {**entry, "avoid": tuple(entry.get("avoid", ()))}
+        result[key] = Term(key, names, meaning, **{name: rest[name] for name in _OPTIONAL & set(rest)})
+    return result
 
 
 def alphabetical(language: str) -> list[Term]:
@@ -78,8 +78,8 @@ def linked_term(address: str) -> Term | None:
 
 def terms_in(*texts: Markdown) -> list[Term]:
     """Return the terms that texts link to, each once, in the order of the texts."""
-    found = (linked_term(address) for text in texts for address in links(text))
-    return list({term.key: term for term in found if term}.values())
+    linked_terms = (linked_term(address) for text in texts for address in links(text))
+    return list({term.key: term for term in linked_terms if term}.values())
 
 
 def terms_of(lesson: Lesson) -> list[Term]:

@@ -60,8 +60,8 @@ def interface_labels(language: str) -> Labels:
 def preferred_language(environment: Mapping[str, str] = os.environ) -> str:
     """Return the language that the environment asks for, if lessons have it; else English."""
     for variable in ("LC_ALL", "LC_MESSAGES", "LANG"):
-        found = environment.get(variable, "")
-        if found:
-            code = found[:2].lower()
+        language = environment.get(variable, "")
+        if language:
+            code = language[:2].lower()
             return code if code in LANGUAGES else SOURCE
     return SOURCE

@@ -37,8 +37,8 @@ class Piece:
 
 def parser() -> MarkdownIt:
     """Return the parser of lessons: CommonMark without HTML, with tables and formulas between dollars."""
-    found = MarkdownIt("commonmark", {"html": False}).enable("table")
-    return found.use(
+    markdown = MarkdownIt("commonmark", {"html": False}).enable("table")
+    return markdown.use(
         dollarmath_plugin, allow_space=False, allow_digits=False, allow_labels=False, double_inline=False
     )
 
@@ -46,7 +46,7 @@ def parser() -> MarkdownIt:
 def pieces(text: str) -> list[Piece]:
     """Split a text into its top-level parts, in order."""
     lines = text.split("\n")
-    found = []
+    indices = []
     for token in parser().parse(text):
         if token.level or token.map is None or token.type not in _KINDS:
             continue
@@ -55,8 +55,8 @@ def pieces(text: str) -> list[Piece]:
         level = int(token.tag[1]) if token.type == "heading_open" else 0
         fence = token.type == "fence"
         info, inside = (token.info.strip(), token.content) if fence else ("", "")
-        found.append(Piece(_KINDS[token.type], written, start + 1, level, info, inside))
-    return found
+        indices.append(Piece(_KINDS[token.type], written, start + 1, level, info, inside))
+    return indices
 
 
 def formulas(text: str) -> Iterator[str]:

@@ -66,17 +66,17 @@ def deviation(values: Values, grid: Grid) -> float:
 
 
 def share_below(values: Values, grid: Grid, limit: float) -> float:
-    """Return the share of the texels that lies below a limit, 0..1."""
+    """Return the fraction of the texels that lies below a limit, 0..1."""
     return float((values < limit).mean())
 
 
 def share_above(values: Values, grid: Grid, limit: float) -> float:
-    """Return the share of the texels that lies above a limit, 0..1."""
+    """Return the fraction of the texels that lies above a limit, 0..1."""
     return float((values > limit).mean())
 
 
 def share_between(values: Values, grid: Grid, low: float, high: float) -> float:
-    """Return the share of the texels that lies between two limits, both included, 0..1."""
+    """Return the fraction of the texels that lies between two limits, both included, 0..1."""
     return float(((values >= low) & (values <= high)).mean())
 
 
@@ -91,7 +91,7 @@ def local_maxima(values: Values, grid: Grid) -> float:
 
 
 def peaks_on_lattice(values: Values, grid: Grid, every: float) -> float:
-    """Return the share of the local maxima that has a row and a column that ``every`` divides, 0..1."""
+    """Return the fraction of the local maxima that has a row and a column that ``every`` divides, 0..1."""
     step = int(every)
     if step < 1:
         raise ValueError(f"every = {every:g}: expected 1 or more")
@@ -115,14 +115,14 @@ def mean_slope(values: Values, grid: Grid) -> float:
 
 
 def share_steeper(values: Values, grid: Grid, degrees: float) -> float:
-    """Return the share of the terrain that is steeper than some degrees, 0..1."""
+    """Return the fraction of the terrain that is steeper than some degrees, 0..1."""
     return float((_slopes(values, grid) > degrees).mean())
 
 
 def _slopes(values: Values, grid: Grid) -> Values:
     north, east = np.gradient(values * grid.relief, grid.spacing[1], grid.spacing[0])
-    found: Values = np.degrees(np.arctan(np.hypot(east, north)))
-    return found
+    slopes: Values = np.degrees(np.arctan(np.hypot(east, north)))
+    return slopes
 
 
 def spectrum_slope(values: Values, grid: Grid) -> float:

@@ -64,8 +64,8 @@ def filled(markdown: Markdown, numbers: Mapping[str, Number], comma: bool = Fals
 
     def text(match: re.Match[str]) -> str:
         number = numbers.get(match[1])
-        found = number.text if number else "…"
-        return found.replace(".", ",") if comma else found
+        number_text = number.text if number else "…"
+        return number_text.replace(".", ",") if comma else number_text
 
     return _PLACE.sub(text, markdown)
 
@@ -89,13 +89,13 @@ def spelled(value: float, digits: int, unit: str = "") -> str:
 
 def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
     at: dict[str, Any] = {"size": scene.pixels, "time": scene.time, "steps": dict(scene.steps)}
-    found = MEASURES[measure.what]
-    if isinstance(found, OfTexture):
+    value = MEASURES[measure.what]
+    if isinstance(value, OfTexture):
         values = engine.read(scene.sketch, measure.of, **at)
         first = values if values.ndim == 2 else values[..., 0]
         grid = _grid(engine.record.plan, first.shape)
         try:
-            return found.function(first.astype(np.float64), grid, **dict(measure.arguments))
+            return value.function(first.astype(np.float64), grid, **dict(measure.arguments))
         except ValueError as error:
             raise SketchError(f"measure '{measure.name}': {error}", line=measure.line) from None
     if measure.what == "triangles":
@@ -131,10 +131,10 @@ def _texels(node: Step | LoopStep) -> int:
 def _seconds(engine: Engine, measure: Measure, scene: Scene, at: dict[str, Any]) -> float:
     engine.cache.clear()
     engine.ctx.finish()
-    begun = time.perf_counter()
+    started = time.perf_counter()
     engine.texture(scene.sketch, measure.of, **at)
     engine.ctx.finish()
-    return time.perf_counter() - begun
+    return time.perf_counter() - started
 
 
 def _grid(plan: Plan | None, shape: tuple[int, ...]) -> Grid:

@@ -228,13 +228,13 @@ class Lesson:
     @property
     def sections(self) -> tuple[Section, ...]:
         """Its blocks, by headings of the second level; the first section comes before any."""
-        found: list[tuple[Markdown, list[Block]]] = [("", [])]
+        sections: list[tuple[Markdown, list[Block]]] = [("", [])]
         for block in self.blocks:
             if isinstance(block, Prose) and block.kind == "heading" and block.level == 2:
-                found.append((block.markdown, []))
+                sections.append((block.markdown, []))
             else:
-                found[-1][1].append(block)
-        return tuple(Section(title, tuple(blocks)) for title, blocks in found)
+                sections[-1][1].append(block)
+        return tuple(Section(title, tuple(blocks)) for title, blocks in sections)
 
     @property
     def named(self) -> dict[str, Named]:

@@ -17,18 +17,18 @@ SHARE = 0.002
 """Share of all pixels that may differ by more in pictures that are the same."""
 
 
-def differing(one: NDArray[np.uint8], other: NDArray[np.uint8]) -> NDArray[np.bool_]:
+def differing(first: NDArray[np.uint8], other: NDArray[np.uint8]) -> NDArray[np.bool_]:
     """Return which pixels of two pictures (h, w, 3 or 4) of one size differ in a colour; alpha aside."""
-    apart = np.abs(one[..., :3].astype(np.int16) - other[..., :3])
-    found: NDArray[np.bool_] = apart.max(axis=-1) > LEVELS
-    return found
+    apart = np.abs(first[..., :3].astype(np.int16) - other[..., :3])
+    differs: NDArray[np.bool_] = apart.max(axis=-1) > LEVELS
+    return differs
 
 
-def share_differing(one: NDArray[np.uint8], other: NDArray[np.uint8]) -> float:
-    """Return the share of the pixels that differ, 0..1; 1 for pictures of two sizes."""
-    return float(differing(one, other).mean()) if one.shape[:2] == other.shape[:2] else 1.0
+def share_differing(first: NDArray[np.uint8], other: NDArray[np.uint8]) -> float:
+    """Return the fraction of the pixels that differ, 0..1; 1 for pictures of two sizes."""
+    return float(differing(first, other).mean()) if first.shape[:2] == other.shape[:2] else 1.0
 
 
-def mean_difference(one: NDArray[np.uint8], other: NDArray[np.uint8]) -> float:
+def mean_difference(first: NDArray[np.uint8], other: NDArray[np.uint8]) -> float:
     """Return the mean absolute difference of two pictures of one size in red, green and blue, in levels."""
-    return float(np.abs(one[..., :3].astype(np.float64) - other[..., :3]).mean())
+    return float(np.abs(first[..., :3].astype(np.float64) - other[..., :3]).mean())

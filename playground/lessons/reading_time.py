@@ -74,8 +74,8 @@ def _task_seconds(piece: Piece) -> float:
 
 def _block_words(piece: Piece) -> int:
     table = _table(piece)
-    found: Iterable[Any] = (table[key] for key in _READ if key in table)
-    texts = (text for value in found for text in (value if isinstance(value, list) else [value]))
+    values: Iterable[Any] = (table[key] for key in _READ if key in table)
+    texts = (text for value in values for text in (value if isinstance(value, list) else [value]))
     return sum(words_in(text) for text in texts if isinstance(text, str))
 
 

@@ -21,10 +21,10 @@ from playground.lessons.tasks.proof import wrong_task
 from playground.lessons.tasks.tasks import tasks_of
 from playground.sketch.find import shipped_sketches
 
-MOST_WORDS = 60
+MAX_WORDS = 60
 """Words that may come before the first picture, so that it is on the first screen."""
 
-MOST_MINUTES = 12
+MAX_MINUTES = 12
 """Minutes that reading a lesson may take, by ``reading_time``; its exercises are counted apart."""
 
 EXERCISES = 3
@@ -72,16 +72,16 @@ def wrong_pictures(engine: Engine, lesson: model.Lesson) -> Iterator[tuple[int, 
             yield block.line, error.diagnostics[0].message
 
 
-def visible(one: Frame, other: Frame) -> bool:
+def visible(frame: Frame, other: Frame) -> bool:
     """Whether two pictures of one size differ visibly."""
-    difference = np.abs(one.array.astype(np.int16) - other.array).max(axis=-1)
+    difference = np.abs(frame.array.astype(np.int16) - other.array).max(axis=-1)
     share = float((difference > VISIBLE_LEVELS).mean())
     return float(difference.mean()) >= VISIBLE_MEAN or share >= VISIBLE_SHARE
 
 
 def _time(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
-    if lesson.minutes > MOST_MINUTES:
-        message = f"reading takes {lesson.minutes} minutes; at most {MOST_MINUTES} are allowed"
+    if lesson.minutes > MAX_MINUTES:
+        message = f"reading takes {lesson.minutes} minutes; at most {MAX_MINUTES} are allowed"
         yield 1, f"{message}: trim the lesson, or make it two"
 
 
@@ -89,8 +89,8 @@ def _first_screen(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
     words = 0
     for block in lesson.blocks:
         if isinstance(block, model.Figure):
-            if words > MOST_WORDS:
-                yield block.line, f"{words} words before the first figure; at most {MOST_WORDS} are allowed"
+            if words > MAX_WORDS:
+                yield block.line, f"{words} words before the first figure; at most {MAX_WORDS} are allowed"
             return
         words += len(block.text.split()) if isinstance(block, model.Prose) else 0
         if isinstance(block, model.Named):
@@ -100,7 +100,7 @@ def _first_screen(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
 
 
 def _kinds(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
-    wanted: tuple[tuple[str, tuple[type[model.Block], ...]], ...] = (
+    target: tuple[tuple[str, tuple[type[model.Block], ...]], ...] = (
         ("a step or a slider", (model.Steps, model.Slider)),
         ("a compare or a question", (model.Compare, model.Question)),
         ("a code", (model.Code,)),
@@ -109,7 +109,7 @@ def _kinds(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
     tasks = tasks_of(lesson)
     if not tasks and not any(isinstance(block, model.Break) for block in lesson.blocks):
         yield 1, "a lesson has a break block, or an exercise that checks itself"
-    for what, kinds in wanted:
+    for what, kinds in target:
         if not any(isinstance(block, kinds) for block in lesson.blocks):
             yield 1, f"a lesson has {what} block"
     count = sum(isinstance(block, model.Exercise) for block in lesson.blocks)
@@ -162,10 +162,10 @@ def _references(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
 
 def _formula(latex: str) -> Iterator[str]:
     try:
-        known = "\\" not in convert(latex)  # a command that it does not know stays as it is
+        is_convertible = "\\" not in convert(latex)  # a command that it does not know stays as it is
     except Exception as error:  # its errors have no class in common
         message = str(error) or type(error).__name__.removesuffix("Error")
         yield f"formula ${latex}$ cannot be read: {message}"
         return
-    if not known:
+    if not is_convertible:
         yield f"formula ${latex}$ holds a command that cannot be shown"

@@ -16,13 +16,13 @@ from playground.sketch.flat import leaves_of
 from playground.sketch.flatten import flatten
 from playground.sketch.load import load_with
 from playground.sketch.map_sketch import Map
-from playground.sketch.model import LARGEST_SIDE, Shot, Sketch, Value
+from playground.sketch.model import MAX_SIDE, Shot, Sketch, Value
 from playground.sketch.replace_technique import with_texts
 from playground.sketch.techniques import Techniques
 from playground.sketch.toml_graph import read_set
 from playground.sketch.toml_sketch import read_camera, read_steps
 from playground.sketch.toml_table import TomlFile
-from playground.sketch.toml_text import Place
+from playground.sketch.toml_text import KeyPath
 
 STATE = ("sketch", "shot", "preset", "set", "steps", "camera", "time", "pixels", "view", "range")
 """The keys that describe a picture."""
@@ -39,19 +39,19 @@ class Sketches:
     """Sketches that have been loaded, so that a lesson reads each of its shaders once."""
 
     techniques: Techniques = field(default_factory=Techniques)
-    known: dict[str, Sketch] = field(default_factory=dict)
+    loaded: dict[str, Sketch] = field(default_factory=dict)
 
     def load(self, name: str) -> Sketch:
         """Return a shipped sketch by name; raise as ``playground.sketch.load.load`` does."""
-        if name not in self.known:
-            self.known[name] = load_with(self.techniques, SKETCHES / f"{name}.toml")
-        return self.known[name]
+        if name not in self.loaded:
+            self.loaded[name] = load_with(self.techniques, SKETCHES / f"{name}.toml")
+        return self.loaded[name]
 
 
 def read_scene(
     file: TomlFile,
     table: Mapping[str, Any],
-    place: Place,
+    key_path: KeyPath,
     sketches: Sketches,
     pixels: tuple[int, int] = PICTURE,
     under: Mapping[str, Any] | None = None,
@@ -62,31 +62,31 @@ def read_scene(
     ``set`` and ``steps`` of both are joined. ``texts``, by absolute path, replace those of the sketch's
     shaders, none of whose fast variants runs then. Raises ``SketchError`` at the key that is wrong.
     """
-    whole = _joined(file, table, place, under or {})
-    sketch = _sketch(file, whole, place, sketches)
+    whole = _joined(file, table, key_path, under or {})
+    sketch = _sketch(file, whole, key_path, sketches)
     if texts:
         sketch = with_texts(sketch, texts).plainly()
-    shot = _shot(file, whole, place, sketch)
-    preset = file.take(whole, "preset", str, "", *place)
-    values = read_set(file, sketch, whole, place, "this picture")
-    steps = dict(shot.steps) | dict(read_steps(file, sketch, whole, place))
-    begun = sketch.for_shot(shot)
+    shot = _shot(file, whole, key_path, sketch)
+    preset = file.take(whole, "preset", str, "", *key_path)
+    values = read_set(file, sketch, whole, key_path, "this picture")
+    steps = dict(shot.steps) | dict(read_steps(file, sketch, whole, key_path))
+    for_shot = sketch.for_shot(shot)
     try:
-        made = begun.with_preset(preset) if preset else begun
+        made = for_shot.with_preset(preset) if preset else for_shot
         made = replace(made.with_values(dict(values)), warnings=(*made.warnings, *file.warnings))
     except PlaygroundError as error:
-        raise file.error(error.diagnostics[0].message, *place, "preset" if preset else "set") from None
+        raise file.error(error.diagnostics[0].message, *key_path, "preset" if preset else "set") from None
     if "camera" in whole:
-        made = made.with_camera(read_camera(file, whole, begun.camera, place))
-    view = file.take(whole, "view", str, "", *place)
+        made = made.with_camera(read_camera(file, whole, for_shot.camera, key_path))
+    view = file.take(whole, "view", str, "", *key_path)
     if view:
-        made = _from_above(file, whole, place, made)
+        made = _from_above(file, whole, key_path, made)
     elif "range" in whole:
-        raise file.error("range: there is no view, whose lowest and highest value it is", *place, "range")
+        raise file.error("range: there is no view, whose lowest and highest value it is", *key_path, "range")
     scene = Scene(
         sketch=made,
-        pixels=_pixels(file, whole, place, shot.size if shot.name else pixels),
-        time=file.take(whole, "time", float, shot.time, *place),
+        pixels=_pixels(file, whole, key_path, shot.size if shot.name else pixels),
+        time=file.take(whole, "time", float, shot.time, *key_path),
         steps=tuple(steps.items()),
         shot=shot.name,
         preset=preset,
@@ -94,22 +94,22 @@ def read_scene(
         view=view,
         plain=bool(shot.name) and not texts and whole.keys() <= {"sketch", "shot"},
     )
-    _check_steps(file, place, scene)
+    _check_steps(file, key_path, scene)
     return scene
 
 
 def _joined(
-    file: TomlFile, table: Mapping[str, Any], place: Place, under: Mapping[str, Any]
+    file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, under: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Return the keys of both tables; ``set`` and ``steps`` hold those of both, the table's own first."""
     whole = dict(under) | dict(table)
     for key in ("set", "steps"):
         if key in under and key in table:
-            whole[key] = file.take(under, key, dict, {}) | file.take(table, key, dict, {}, *place)
+            whole[key] = file.take(under, key, dict, {}) | file.take(table, key, dict, {}, *key_path)
     return whole
 
 
-def _check_steps(file: TomlFile, place: Place, scene: Scene) -> None:
+def _check_steps(file: TomlFile, key_path: KeyPath, scene: Scene) -> None:
     """Raise ``SketchError`` where a pass cannot be stopped at the iteration that is named."""
     from playground.engine.plan import PlanRequest
     from playground.engine.planner import make_plan  # it needs what is loaded by then only
@@ -120,15 +120,15 @@ def _check_steps(file: TomlFile, place: Place, scene: Scene) -> None:
                 scene.sketch, PlanRequest(frame_size=scene.pixels, time=scene.time, steps=dict(scene.steps))
             )
     except ParameterError as error:
-        raise file.error(error.diagnostics[0].message, *place, "steps") from None
+        raise file.error(error.diagnostics[0].message, *key_path, "steps") from None
 
 
 def comparable(first: Scene, second: Scene) -> bool:
     """Return whether a line can part them: one sketch shows both, at one time and from one place."""
-    one, other = (
+    left, other = (
         (scene.sketch.file, scene.time, scene.view, scene.sketch.camera) for scene in (first, second)
     )
-    return one == other
+    return left == other
 
 
 def with_steps(scene: Scene, steps: Mapping[str, int]) -> Scene:
@@ -142,52 +142,52 @@ def with_value(scene: Scene, path: str, value: Value) -> Scene:
     return replace(scene, sketch=scene.sketch.with_values({path: value}), values=values, plain=False)
 
 
-def _sketch(file: TomlFile, table: Mapping[str, Any], place: Place, sketches: Sketches) -> Sketch:
-    name = file.take(table, "sketch", str, "", *place)
+def _sketch(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, sketches: Sketches) -> Sketch:
+    name = file.take(table, "sketch", str, "", *key_path)
     if name not in shipped_sketches():
         hint = nearest(name, shipped_sketches())
         raise file.error(
-            f"sketch = {spell(name)}: a lesson shows a sketch that ships{hint}", *place, "sketch"
+            f"sketch = {spell(name)}: a lesson shows a sketch that ships{hint}", *key_path, "sketch"
         )
     return sketches.load(name)
 
 
-def _shot(file: TomlFile, table: Mapping[str, Any], place: Place, sketch: Sketch) -> Shot:
-    name = file.take(table, "shot", str, "", *place)
+def _shot(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, sketch: Sketch) -> Shot:
+    name = file.take(table, "shot", str, "", *key_path)
     if not name:
         return Shot("")
     try:
         return sketch.shot(name)
     except PlaygroundError as error:
-        raise file.error(error.diagnostics[0].message, *place, "shot") from None
+        raise file.error(error.diagnostics[0].message, *key_path, "shot") from None
 
 
 def _pixels(
-    file: TomlFile, table: Mapping[str, Any], place: Place, default: tuple[int, int]
+    file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, default: tuple[int, int]
 ) -> tuple[int, int]:
-    given = file.take(table, "pixels", list, list(default), *place)
-    if len(given) != 2 or not all(type(v) is int and 16 <= v <= LARGEST_SIDE for v in given):
-        raise file.error(f"pixels = {spell(given)}: expected [width, height], from 16", *place, "pixels")
-    return given[0], given[1]
+    pixels = file.take(table, "pixels", list, list(default), *key_path)
+    if len(pixels) != 2 or not all(type(v) is int and 16 <= v <= MAX_SIDE for v in pixels):
+        raise file.error(f"pixels = {spell(pixels)}: expected [width, height], from 16", *key_path, "pixels")
+    return pixels[0], pixels[1]
 
 
-def _range(file: TomlFile, table: Mapping[str, Any], place: Place) -> tuple[float, float]:
-    given = file.take(table, "range", list, [0.0, 1.0], *place)
-    if len(given) != 2 or not all(type(v) in (int, float) for v in given) or given[0] >= given[1]:
-        raise file.error(f"range = {spell(given)}: expected [lowest, highest]", *place, "range")
-    return float(given[0]), float(given[1])
+def _range(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath) -> tuple[float, float]:
+    text = file.take(table, "range", list, [0.0, 1.0], *key_path)
+    if len(text) != 2 or not all(type(v) in (int, float) for v in text) or text[0] >= text[1]:
+        raise file.error(f"range = {spell(text)}: expected [lowest, highest]", *key_path, "range")
+    return float(text[0]), float(text[1])
 
 
-def _from_above(file: TomlFile, table: Mapping[str, Any], place: Place, sketch: Sketch) -> Sketch:
+def _from_above(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, sketch: Sketch) -> Sketch:
     ref = table["view"]
     flat = flatten(sketch)
     try:
-        found = flat.ref(ref, sketch.name)
+        ref_found = flat.ref(ref, sketch.name)
     except PlaygroundError as error:
-        raise file.error(error.diagnostics[0].message, *place, "view") from None
+        raise file.error(error.diagnostics[0].message, *key_path, "view") from None
     kernels = {leaf.path: leaf.kernel for leaf in leaves_of(flat.nodes)}
-    output = next(o for o in kernels[found.path].outputs if o.name == found.output)
-    lowest, highest = _range(file, table, place)
+    output = next(o for o in kernels[ref_found.path].outputs if o.name == ref_found.output)
+    lowest, highest = _range(file, table, key_path)
     shown = _map(ref).with_value("lowest", lowest).with_value("highest", highest)
     return shown.with_value("channel", 0 if output.components > 2 else 1).of(sketch)
 

@@ -26,15 +26,17 @@ class Status:
     @property
     def sentences(self) -> list[str]:
         """What there is to do, in English."""
-        found = []
+        sentences_found = []
         if self.state == "unmarked":
-            found.append(f"playground lesson translated {self.name} --lang {self.language}")
+            sentences_found.append(f"playground lesson translated {self.name} --lang {self.language}")
         for change, lines in (("changed", self.changed), ("new", self.added)):
             if lines:
-                found.append(f"{change}: line{'s' if len(lines) > 1 else ''} {', '.join(map(str, lines))}")
+                sentences_found.append(
+                    f"{change}: line{'s' if len(lines) > 1 else ''} {', '.join(map(str, lines))}"
+                )
         if self.removed:
-            found.append(f"{counted(self.removed, 'block')} of it no longer in English")
-        return found
+            sentences_found.append(f"{counted(self.removed, 'block')} of it no longer in English")
+        return sentences_found
 
     def as_json(self) -> dict[str, Any]:
         """Return it as JSON takes it."""

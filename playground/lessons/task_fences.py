@@ -121,69 +121,69 @@ def _scene(fence: Fence, task: model.Task, state: Mapping[str, Any]) -> model.Sc
 
 def _check(fence: Fence, task: model.Exercise, index: int) -> model.Check:
     """Return a check; raise ``SketchError`` at the key that is wrong."""
-    place, file, scene = ("check", index), fence.file, task.scene
+    key_path, file, scene = ("check", index), fence.file, task.scene
     table = file.tables("check")[index]
     assert scene is not None
     measures = "what" in table or "between" in table
-    file.only(table, [*_CHECK, "of", *(_MEASURE if measures else ())], *place)
-    of = file.take(table, "of", str, "height" if measures else "", *place)
+    file.only(table, [*_CHECK, "of", *(_MEASURE if measures else ())], *key_path)
+    of = file.take(table, "of", str, "height" if measures else "", *key_path)
     if of:
         try:
             flatten(scene.sketch).ref(of, scene.sketch.name)
         except PlaygroundError as error:
-            raise fence.error(error.diagnostics[0].message, *place, "of") from None
-    at = _at(fence, task, file.take(table, "at", dict, {}, *place), *place, "at")
-    hidden = file.take(table, "hidden", bool, False, *place)
+            raise fence.error(error.diagnostics[0].message, *key_path, "of") from None
+    at = _at(fence, task, file.take(table, "at", dict, {}, *key_path), *key_path, "at")
+    hidden = file.take(table, "hidden", bool, False, *key_path)
     if hidden and not at:
-        message = "hidden = true: what is hidden? give at = { … }, values that the student is not shown"
-        raise fence.error(message, *place, "hidden")
-    tolerance = file.take(table, "tolerance", float, None if of else SHARE, *place)
+        message = "hidden = true: give at = { … }, values that the student is not shown"
+        raise fence.error(message, *key_path, "hidden")
+    tolerance = file.take(table, "tolerance", float, None if of else SHARE, *key_path)
     if measures:
         if "tolerance" in table:
-            raise fence.error("tolerance: a measure lies between bounds", *place, "tolerance")
-        return model.Check(0.0, at, hidden, of, _measure(fence, task, table, of, *place))
+            raise fence.error("tolerance: a measure lies between bounds", *key_path, "tolerance")
+        return model.Check(0.0, at, hidden, of, _measure(fence, task, table, of, *key_path))
     if tolerance is None:
         message = f"a check of '{of}' needs tolerance = …: how far a value may be from the answer's"
-        raise fence.error(message, *place)
+        raise fence.error(message, *key_path)
     if tolerance < 0 or (tolerance >= 1 and not of):
-        wanted = "0 or more" if of else "a share of the pixels, from 0 to below 1"
-        raise fence.error(f"tolerance = {spell(tolerance)}: expected {wanted}", *place, "tolerance")
+        expected = "0 or more" if of else "a fraction of the pixels, from 0 to below 1"
+        raise fence.error(f"tolerance = {spell(tolerance)}: expected {expected}", *key_path, "tolerance")
     return model.Check(tolerance, at, hidden, of)
 
 
 def _measure(
-    fence: Fence, task: model.Exercise, table: Mapping[str, Any], of: str, *place: str | int
+    fence: Fence, task: model.Exercise, table: Mapping[str, Any], of: str, *slot: str | int
 ) -> model.Measure:
-    what, arguments, between = measure_of(fence, table, *place)
+    what, arguments, between = measure_of(fence, table, *slot)
     if between is None:
-        raise fence.error("a check of a measure needs between = [lowest, highest]", *place)
+        raise fence.error("a check of a measure needs between = [lowest, highest]", *slot)
     return model.Measure(
-        line=fence.file.line(*place) or task.line,
+        line=fence.file.line(*slot) or task.line,
         text="",
         name=task.name,
         of=of,
         what=what,
         arguments=arguments,
-        unit=fence.file.take(table, "unit", str, "", *place),
+        unit=fence.file.take(table, "unit", str, "", *slot),
         between=between,
     )
 
 
 def _at(
-    fence: Fence, task: model.Exercise, given: Mapping[str, Any], *place: str | int
+    fence: Fence, task: model.Exercise, arguments: Mapping[str, Any], *slot: str | int
 ) -> tuple[tuple[str, Value], ...]:
     """Return the values that a check sets; raise ``SketchError`` for one that it cannot."""
     assert task.scene is not None
     own = () if task.file else task.sliders
-    found = []
-    for path, value in given.items():
+    values = []
+    for path, value in arguments.items():
         try:
-            found.append((path, check_value(task.scene.sketch, path, value)))
+            values.append((path, check_value(task.scene.sketch, path, value)))
         except PlaygroundError as error:
-            raise fence.error(error.diagnostics[0].message, *place, path) from None
+            raise fence.error(error.diagnostics[0].message, *slot, path) from None
         if path in own:
-            raise fence.error(f"at: '{path}' is what the student sets", *place, path)
-    return tuple(found)
+            raise fence.error(f"at: '{path}' is what the student sets", *slot, path)
+    return tuple(values)
 
 
 def _check_text(fence: Fence, key: str, name: str, file: str) -> None:
@@ -198,11 +198,11 @@ def _check_text(fence: Fence, key: str, name: str, file: str) -> None:
         raise fence.error(f"{key} = '{name}': not in lessons/exercises/{nearest(name, names)}", key)
 
 
-def _check_path(fence: Fence, scene: model.Scene, path: str, *place: str) -> None:
+def _check_path(fence: Fence, scene: model.Scene, path: str, *location: str) -> None:
     """Raise ``SketchError`` where the picture has no such parameter."""
     if path in TERRAIN_KEYS:
         return
     try:
         resolve(scene.sketch.graph, path)
     except PlaygroundError as error:
-        raise fence.error(error.diagnostics[0].message, *place) from None
+        raise fence.error(error.diagnostics[0].message, *location) from None

@@ -32,7 +32,7 @@ class Said(str):
 
 
 def in_language(text: str, language: str) -> str:
-    """Return a sentence in a language that it is known in; else as it is."""
+    """Return a message in a language that it is known in; else as it is."""
     if not isinstance(text, Said):
         return text
     values = {k: in_language(v, language) if isinstance(v, str) else v for k, v in text.values.items()}

@@ -112,7 +112,7 @@ def write_hashes(english: Document, other: Document) -> None:
     if len(other.pieces) != len(english.pieces):
         raise _other_shape(english, other)
     text = other.path.read_text(encoding="utf-8")
-    rows = [f'    "{found}",' for found in hashes(english)]
+    rows = [f'    "{digest}",' for digest in hashes(english)]
     line = "\n".join(["source = [", *rows, "]"])
     edge = text.index("\n+++", 3)
     front, rest = text[:edge], text[edge:]
@@ -124,11 +124,11 @@ def write_hashes(english: Document, other: Document) -> None:
 
 def _source(other: Document) -> tuple[str, ...]:
     """Return the hashes that a translation holds, none where it was not marked yet."""
-    found = texts_in(other.front, "source")
-    if found and len(found) != len(other.pieces) + 1:
-        message = f"{len(other.pieces)} blocks, but source names {len(found) - 1}"
+    texts = texts_in(other.front, "source")
+    if texts and len(texts) != len(other.pieces) + 1:
+        message = f"{len(other.pieces)} blocks, but source names {len(texts) - 1}"
         raise other.front.error(message, "source")
-    return found
+    return texts
 
 
 def _matched(then: Sequence[str], now: Sequence[str]) -> tuple[dict[int, int], Stale]:
@@ -136,27 +136,29 @@ def _matched(then: Sequence[str], now: Sequence[str]) -> tuple[dict[int, int], S
 
     The map counts blocks without the front, ``Stale`` with it.
     """
-    found: dict[int, int] = {}
+    matches: dict[int, int] = {}
     changed: list[int] = []
     added: list[int] = []
     removed = 0
     for tag, low, high, first, last in difflib.SequenceMatcher(None, then, now, False).get_opcodes():
         both = min(high - low, last - first)
-        found |= dict(zip(range(first, first + both), range(low, low + both), strict=True))
+        matches |= dict(zip(range(first, first + both), range(low, low + both), strict=True))
         if tag != "equal":
             changed += range(first, first + both)
             added += range(first + both, last)
             removed += high - low - both
-    pairs = {new - 1: old - 1 for new, old in found.items() if new and old}
+    pairs = {new - 1: old - 1 for new, old in matches.items() if new and old}
     return pairs, Stale(tuple(changed), tuple(added), removed)
 
 
 def _put(block: Block, piece: Piece, other: Document, sketches: Sketches) -> Block:
     if isinstance(block, Prose):
-        if block.kind != (found := prose_of(piece)).kind or block.level != found.level:
-            message = f"a {found.kind} is here, where the English has a {block.kind} (line {block.line})"
+        if block.kind != (prose_block := prose_of(piece)).kind or block.level != prose_block.level:
+            message = (
+                f"a {prose_block.kind} is here, where the English has a {block.kind} (line {block.line})"
+            )
             raise SketchError(message, file=other.path, line=piece.line)
-        return replace(block, markdown=found.markdown)
+        return replace(block, markdown=prose_block.markdown)
     assert isinstance(block, Named)
     kind = block.text.split(maxsplit=1)[0].lstrip("`~")
     head = f"{kind} {block.name}"
@@ -175,17 +177,17 @@ def _texts(block: Named, fence: Fence) -> dict[str, Any]:
         if key not in keys:
             message = f"'{key}' is not for a translation, which sets only {', '.join(keys)}"
             raise fence.error(message, key)
-    found: dict[str, Any] = {}
+    plan: dict[str, Any] = {}
     for text in texts:
         key, there = key_of(text), getattr(block, text.name)
         listed = "listed" in text.metadata
-        given: Any = fence.texts(key) if listed else fence.markdown(key, needed=bool(there))
-        if listed and len(given) != len(there):
-            raise fence.error(f"{key}: {len(given)} here, {len(there)} in English", key)
-        if given and not there:
+        texts_given: Any = fence.texts(key) if listed else fence.markdown(key, needed=bool(there))
+        if listed and len(texts_given) != len(there):
+            raise fence.error(f"{key}: {len(texts_given)} here, {len(there)} in English", key)
+        if texts_given and not there:
             raise fence.error(f"{key}: the English has none", key)
-        found[text.name] = given
-    return found
+        plan[text.name] = texts_given
+    return plan
 
 
 def _other_shape(english: Lesson | Document, other: Document) -> SketchError:

@@ -45,7 +45,7 @@ from playground.live.picture_keys import PictureKeys
 from playground.live.present.stage import Presenting, Stage
 from playground.live.status import Status
 from playground.live.window import Window, wake
-from playground.live.window_place import Place
+from playground.live.window_place import WindowPlacement
 from playground.paths import DEFAULT_SKETCH
 from playground.remote.remotes import Remotes
 from playground.shader.wrap import COMPUTE, FRAGMENT, wrap
@@ -53,7 +53,7 @@ from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, ComputeVariant, CpuSource, Kernel, PlainCompute, Value
 from playground.workbench.autosave import QUIET, Autosave, memory_of
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.disk_caching import SessionCaching
 from playground.workbench.editors import Opener
 from playground.workbench.interface import WindowControls, remembered_size
@@ -74,7 +74,7 @@ FRAME = 1 / 60  # [s] between pictures while time runs
 IDLE = 1.0  # [s] between frames while nothing happens
 _SANDBOX = 0.1  # [s] between questions to the sandbox, whose answer wakes the window
 _SETTLES = 3  # frames that the panel takes to settle after something happened
-_LONGEST_STEP = 0.25  # [s] time never jumps by more, however long a frame took
+_MAX_STEP = 0.25  # [s] time never jumps by more, however long a frame took
 
 
 def run(
@@ -123,8 +123,8 @@ def run(
             sandbox = stack.enter_context(Sandbox(software=software))
             sandbox.start()
         memory = memory_of(path)
-        found, complaint = (Remembered(), "") if fresh else memory.read()
-        opens = size or (found.window if found.window != (0, 0) else DEFAULT_PICTURE)
+        remembered, complaint = (Remembered(), "") if fresh else memory.read()
+        opens = size or (remembered.window if remembered.window != (0, 0) else DEFAULT_PICTURE)
         window = stack.enter_context(Window(title_of(path), opens))
         sandbox.on_answer = wake
         engine = Engine(window.ctx, driver=driver)
@@ -132,20 +132,20 @@ def run(
             engine,
             path,
             values=checked,
-            start=found.start,
+            start=remembered.start,
             plain=plain,
             dialect=dialect,
             sandbox=sandbox,
             is_lost=lambda: window.lost,
         )
         session.notes.extend(filter(None, [complaint, unpacked]))
-        autosave = Autosave(session, memory, found)
+        autosave = Autosave(session, memory, remembered)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
         live = Live(window, session, watcher, autosave, SessionCaching(session, cache_limit), report)
         live.remotes = remotes or stack.enter_context(Remotes())
         live.remotes.attach(live.bench, wake)
-        if found.at is not None:
-            live.place.move_to(found.at)
+        if remembered.at is not None:
+            live.place.move_to(remembered.at)
         live.lessons.begin(lesson, language, show_lessons=show_lessons)
         if present is not None:
             live.stage.begin(present)
@@ -201,14 +201,14 @@ class Live:
         self.session = session
         self.follower = Follower(session, watcher)
         self.panel = Panel()
-        self.place = Place(lambda: window.handle)
+        self.place = WindowPlacement(lambda: window.handle)
         controls = WindowControls(
             quit=window.ask_to_close,
             toggle_full=self.place.toggle_full,
             is_full=lambda: self.place.full,
             sign_held=lambda: window.sign_held,
         )
-        self.bench = Bench(session, controls, opener=Opener(wake), size=remembered_size(), wake=wake)
+        self.bench = Workbench(session, controls, opener=Opener(wake), size=remembered_size(), wake=wake)
         self.drops = Drops(self.bench.commands)
         self.guard = Guard(self.bench.notices.say)
         self.terminal = TerminalErrors(report)
@@ -297,7 +297,7 @@ class Live:
 
     def _patience(self) -> float:
         """Return how long nothing needs to be done [s]."""
-        if self.session.listens or (self.session.animated and self.session.clock.playing):
+        if self.session.is_listening or (self.session.animated and self.session.clock.playing):
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
         if self._settling > 0 or self.remotes.waits:
             return 0.0
@@ -330,7 +330,7 @@ class Live:
         self._settling = _SETTLES if woken else max(self._settling - 1, 0)
         now = time.perf_counter()
         if self.session.animated:
-            self.session.advance(min(now - self._last, _LONGEST_STEP), datetime.now())
+            self.session.advance(min(now - self._last, _MAX_STEP), datetime.now())
         self._last = now
 
     def _draw_frame(self) -> None:
@@ -370,21 +370,21 @@ class Live:
     def _draw_presentation(self) -> None:
         """Draw the rest of a frame while a lesson is presented: its picture, and what is written of it."""
         window, bench, guard, stage = self.window, self.bench, self.guard, self.stage
-        place, density = stage.area(window.pixels), window.density
-        area: Area = (0.0, 0.0, place[2] / density, place[3] / density)
+        stage_area, density = stage.area(window.pixels), window.density
+        area: Area = (0.0, 0.0, stage_area[2] / density, stage_area[3] / density)
         if guard.draw("keys and mouse of the presentation", lambda: stage.act(area), False):
             guard.draw("the mouse over the picture", lambda: self._act(area), None)
         if stage.turned():  # its words come at once, its picture as soon as it is drawn
             picture, self._settling = self.session.picture.texture, _SETTLES
         else:
-            picture = guard.run("the picture", lambda: self._picture((place[2], place[3])), None)
+            picture = guard.run("the picture", lambda: self._picture((stage_area[2], stage_area[3])), None)
         guard.run("taking in the picture", self._take_in, None)
         if picture is not None:
             compared = bench.inspection.compare
             guard.run("the picture that it is compared with", lambda: compared.follow(picture), None)
         bench.inspection.update()
         guard.draw("the presentation", lambda: stage.draw(window.pixels, density, area), None)
-        guard.run("showing the picture", lambda: self._show(picture, place), None)
+        guard.run("showing the picture", lambda: self._show(picture, stage_area), None)
         window.end()
         guard.run("what follows a picture", self._follow_up, None)
 
@@ -422,8 +422,8 @@ class Live:
         bench, session, look, draw = self.bench, self.session, self.window.theme, self.guard.draw
         taken = draw("the bar of time", lambda: height_of_timeline(session, bench.interface, look), 0.0)
         above = (*area[:3], area[3] - taken)
-        found = self.finite
-        draw("what is not finite", lambda: draw_not_finite(found, session, look, above), None)
+        finite = self.finite
+        draw("what is not finite", lambda: draw_not_finite(finite, session, look, above), None)
         errors = ErrorsList(bench.problems, bench.files, session, bench.interface)
         draw("the list of errors", lambda: errors.draw(look, above), None)
         if picture is None and session.error is None and session.catch_up.behind is None:
@@ -455,12 +455,12 @@ class Live:
 
     def _follow_up(self) -> None:
         """Do what may wait until the frame is shown: driver warnings, the status, the lessons."""
-        rests = self._settling == 0 and not self.session.drafts.testing
-        if rests:
+        is_idle = self._settling == 0 and not self.session.drafts.testing
+        if is_idle:
             self.warnings.look()
-        self.status.write(self.bench, self.finite.found)
+        self.status.write(self.bench, self.finite.non_finite)
         self.remotes.tell()
-        self.lessons.update(idle=rests and not imgui.is_mouse_down(0))
+        self.lessons.update(idle=is_idle and not imgui.is_mouse_down(0))
 
     def _remember(self) -> None:
         geometry = self.place.geometry()

@@ -11,7 +11,7 @@ from playground.live.draw import buttons, choose
 from playground.live.panel_rows import row
 from playground.live.sliders import slide
 from playground.workbench.brush import ERASER, TOOLS, Brush
-from playground.workbench.painting import NARROWEST, WIDEST, Painting
+from playground.workbench.painting import MAX_RADIUS, MIN_RADIUS, Painting
 
 _LAYERS = {0: "the first", 1: "the second", 2: "the third", 3: "the fourth", ERASER: "none: erase"}
 
@@ -33,7 +33,7 @@ def draw_paintbox(painting: Painting) -> None:
             if target is not None:
                 painting.choose(target)
     brush = _with_tool(painting) if painting.sculpts else _with_layer(painting.brush)
-    widths = NARROWEST * painting.side, WIDEST * painting.side
+    widths = MIN_RADIUS * painting.side, MAX_RADIUS * painting.side
     for name, note, ends, form in (
         ("radius", "The brush's, on the ground", widths, "%.0f m"),
         ("strength", _strength(painting), (0.01, 1.0), "%.2f"),

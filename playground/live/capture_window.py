@@ -12,7 +12,14 @@ from playground.live.draw import POPUP_COLOUR, QUIET, button, choose, disabled, 
 from playground.live.panel_rows import row
 from playground.live.theme import Theme
 from playground.paths import shown
-from playground.workbench.captures import MULTIPLES, Captures, Wish, open_folder, parts_of, sweep_text
+from playground.workbench.captures import (
+    MULTIPLES,
+    Captures,
+    CaptureSettings,
+    open_folder,
+    parts_of,
+    sweep_text,
+)
 from playground.workbench.edits import Draft
 from playground.workbench.parameter_list import Listing
 
@@ -32,7 +39,7 @@ def draw_capture(captures: Captures, look: Theme) -> None:
         captures.shown = bool(stays)
         if visible:
             with disabled(captures.working is not None):
-                _wish(captures.wish, captures.session.shown)
+                _wish(captures.capture_settings, captures.session.shown)
             imgui.separator()
             if captures.working is not None:
                 _progress(captures.working, look)
@@ -41,57 +48,74 @@ def draw_capture(captures: Captures, look: Theme) -> None:
         imgui.end()
 
 
-def _wish(wish: Wish, draft: Draft | None) -> None:
+def _wish(capture_settings: CaptureSettings, draft: Draft | None) -> None:
     with row("What", "From the sketch as it is now, with all edits"):
-        kind = choose("##kind", _NAMES[wish.kind], KINDS, wish.kind, name=_NAMES.__getitem__)
-        wish.kind = kind or wish.kind
-    of = "320 pixels wide" if wish.kind == SHEET else "the window's"
+        kind = choose(
+            "##kind", _NAMES[capture_settings.kind], KINDS, capture_settings.kind, name=_NAMES.__getitem__
+        )
+        capture_settings.kind = kind or capture_settings.kind
+    of = "320 pixels wide" if capture_settings.kind == SHEET else "the window's"
 
     def named(multiple: int) -> str:
         return f"{multiple} × {of}" if multiple else "typed"
 
     with row("Size", "A picture larger than a texture is drawn in parts"):
-        multiple = choose("##multiple", named(wish.multiple), (*MULTIPLES, 0), wish.multiple, name=named)
-        wish.multiple = wish.multiple if multiple is None else multiple
-    if not wish.multiple:
+        multiple = choose(
+            "##multiple",
+            named(capture_settings.multiple),
+            (*MULTIPLES, 0),
+            capture_settings.multiple,
+            name=named,
+        )
+        capture_settings.multiple = capture_settings.multiple if multiple is None else multiple
+    if not capture_settings.multiple:
         with row("Pixels", "Width and height"):
-            changed, size = imgui.input_int2("##pixels", list(wish.size))
+            changed, size = imgui.input_int2("##pixels", list(capture_settings.size))
             if changed:
-                wish.size = max(size[0], 1), max(size[1], 1)
-    if wish.kind in (FILM, PICTURES):
-        _film(wish)
-    if wish.kind == SHEET:
+                capture_settings.size = max(size[0], 1), max(size[1], 1)
+    if capture_settings.kind in (FILM, PICTURES):
+        _film(capture_settings)
+    if capture_settings.kind == SHEET:
         for number in range(2):
-            _sweep(wish, number, draft)
+            _sweep(capture_settings, number, draft)
 
 
-def _film(wish: Wish) -> None:
+def _film(capture_settings: CaptureSettings) -> None:
     with row("From", "The time of the first picture"):
-        _, start = imgui.input_float("##start", wish.start, 0.0, 0.0, "%.2f s")
-        wish.start = max(start, 0.0)
+        _, start = imgui.input_float("##start", capture_settings.start, 0.0, 0.0, "%.2f s")
+        capture_settings.start = max(start, 0.0)
     with row("Seconds", "How long; 0: to the last keyframe, or ten where there is none"):
-        _, seconds = imgui.input_float("##seconds", wish.seconds, 0.0, 0.0, "%.2f s")
-        wish.seconds = max(seconds, 0.0)
-    with row("Pictures a second", "Picture n is that of the time n / so many, however long drawing takes"):
-        _, fps = imgui.input_int("##fps", wish.fps, 0)
-        wish.fps = min(max(fps, 1), 1000)
-    if wish.kind == FILM:
+        _, seconds = imgui.input_float("##seconds", capture_settings.seconds, 0.0, 0.0, "%.2f s")
+        capture_settings.seconds = max(seconds, 0.0)
+    with row("Pictures a second", "Picture n is that of the time n / rate, however long drawing takes"):
+        _, fps = imgui.input_int("##fps", capture_settings.fps, 0)
+        capture_settings.fps = min(max(fps, 1), 1000)
+    if capture_settings.kind == FILM:
         with row("Format", "By FFmpeg"):
-            shown_ending, endings = VIDEO_ENDINGS[wish.ending], list(VIDEO_ENDINGS)
+            shown_ending, endings = VIDEO_ENDINGS[capture_settings.ending], list(VIDEO_ENDINGS)
             ending = choose(
-                "##ending", shown_ending, endings, wish.ending, name=lambda e: f"{e}  {VIDEO_ENDINGS[e]}"
+                "##ending",
+                shown_ending,
+                endings,
+                capture_settings.ending,
+                name=lambda e: f"{e}  {VIDEO_ENDINGS[e]}",
             )
-            wish.ending = ending or wish.ending
+            capture_settings.ending = ending or capture_settings.ending
         with row("Quality", "The better, the larger"):
-            wish.quality = choose("##quality", wish.quality, QUALITIES, wish.quality) or wish.quality
+            capture_settings.quality = (
+                choose("##quality", capture_settings.quality, QUALITIES, capture_settings.quality)
+                or capture_settings.quality
+            )
 
 
-def _sweep(wish: Wish, number: int, draft: Draft | None) -> None:
+def _sweep(capture_settings: CaptureSettings, number: int, draft: Draft | None) -> None:
     note = "A parameter and its values, as light.gain=0.5..3,9 or light.gain=1,2,4"
     with row("Sweep" if number == 0 else "And down", note):
         imgui.set_next_item_width(imgui.calc_item_width() - imgui.get_frame_height())
         hint = "a parameter" if number == 0 else "a second, for a grid"
-        _, wish.sweeps[number] = imgui.input_text_with_hint(f"##sweep{number}", hint, wish.sweeps[number])
+        _, capture_settings.sweeps[number] = imgui.input_text_with_hint(
+            f"##sweep{number}", hint, capture_settings.sweeps[number]
+        )
         imgui.same_line(0, 0)
         if imgui.begin_combo(f"##swept{number}", "", imgui.ComboFlags_.no_preview):
             sections = Listing().sections(draft) if draft is not None else ()
@@ -99,7 +123,7 @@ def _sweep(wish: Wish, number: int, draft: Draft | None) -> None:
                 for part in parts_of(item.parameter):
                     name = f"{item.path}.{part}" if part else item.path
                     if imgui.selectable(name, False)[0]:
-                        wish.sweeps[number] = sweep_text(item.path, item.parameter, part)
+                        capture_settings.sweeps[number] = sweep_text(item.path, item.parameter, part)
             imgui.end_combo()
 
 

@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 from playground.live.draw import choose
 from playground.live.panel_rows import cross, fitting_choice, row, slot
 from playground.live.theme import Theme
-from playground.live.widgets import Place, draw_value, explanation
+from playground.live.widgets import WidgetSlot, draw_value, explanation
 from playground.sketch.model import PassSpec, Sketch
 from playground.workbench.channel_list import endings_of, file_of, in_words, note_of
 from playground.workbench.channels import Channel, channels, source_of, sources
@@ -60,15 +60,15 @@ class ChannelRows:
 
     def _file(self, channel: Channel, draft: Draft, session: Session, look: Theme) -> None:
         """Draw the field of the file that feeds a channel, if one does."""
-        found = file_of(draft.base, channel)
-        if found is None:
+        file = file_of(draft.base, channel)
+        if file is None:
             return
-        path, parameter = found
+        path, parameter = file
         values = self.listing.values(draft)
         with row("  file", lambda: explanation(parameter, path), edited=path in values.changed):
             endings = endings_of(draft.base, channel.source)
-            place = Place(f"##of {channel.path}", look.scale, Path(draft.file.folder), endings)
-            new = draw_value(parameter, values.of[path], place)
+            position = WidgetSlot(f"##of {channel.path}", look.scale, Path(draft.file.folder), endings)
+            new = draw_value(parameter, values.of[path], position)
         if new is not None:
             session.drafts.set(path, new)
 

@@ -22,7 +22,7 @@ from playground.workbench.open_files import OpenFiles
 from playground.workbench.problems import Problems
 from playground.workbench.text_file import Editing, unsaved
 
-_TALLEST = 0.46  # share of the picture's height, so that the list below stays visible
+_MAX_HEIGHT = 0.46  # share of the picture's height, so that the list below stays visible
 _CLASH = "Saved by others meanwhile"
 _CLOSING = "Close without saving?"
 _LEAVING = "Quit without saving?"
@@ -125,7 +125,7 @@ def _view_of(editing: Editing) -> _View:
 def _place(area: Area, at: int, scale: float) -> Area:
     """Return where the window of one of several files appears."""
     x, y, wide, high = area
-    size = min(wide * 0.7, 720 * scale), min(high * _TALLEST, 640 * scale)
+    size = min(wide * 0.7, 720 * scale), min(high * _MAX_HEIGHT, 640 * scale)
     step = at * 24 * scale
     return x + max(wide - size[0] - 14 * scale - step, 0.0), y + 14 * scale + step, *size
 
@@ -217,7 +217,7 @@ def _insert(view: _View, left: str, right: str = "") -> None:
 
 
 def _bar(editing: Editing, view: _View, notices: Notices, look: Theme) -> None:
-    note = "Ctrl+S; what is saved is checked at once, as from any editor"
+    note = "Ctrl+S; a save is checked at once, as from any editor"
     buttons(
         ("Save", note, lambda: save(editing, notices), view.changed),
         ("Undo", "", view.editor.undo, view.editor.can_undo()),
@@ -225,9 +225,9 @@ def _bar(editing: Editing, view: _View, notices: Notices, look: Theme) -> None:
         small=True,
     )
     imgui.same_line()
-    place = view.editor.get_main_cursor_position()
+    cursor = view.editor.get_main_cursor_position()
     with look.font(look.text, theme.SMALL):
-        imgui.text_disabled(f"line {place.line + 1}, column {place.index + 1}   Ctrl+F finds")
+        imgui.text_disabled(f"line {cursor.line + 1}, column {cursor.index + 1}   Ctrl+F finds")
 
 
 def _mark(editing: Editing, view: _View, problems: Problems) -> None:
@@ -308,12 +308,12 @@ def _ask(editing: Editing, view: _View, notices: Notices) -> bool:
 
 
 def _merge(editing: Editing, view: _View, notices: Notices) -> None:
-    found = editing.text.merged(view.written())
-    if found is None:
+    merged = editing.text.merged(view.written())
+    if merged is None:
         view.clash = "Both changed the same lines, or lines side by side: choose one of the two."
         return
     view.clash = ""
-    _replace(view, found)
+    _replace(view, merged)
     save(editing, notices)
 
 

@@ -23,7 +23,7 @@ from playground.workbench.inspect.frame_costs import Record
 from playground.workbench.inspect.toggles import Inspection
 from playground.workbench.session import Session
 
-_MOST = 6  # passes with a line of their own
+_MAX_ROWS = 6  # passes with a line of their own
 _HIGH = 110.0  # of a plot
 _TABLE = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
 
@@ -76,7 +76,7 @@ def _plots(record: Record, look: Theme) -> None:
     axes = implot.AxisFlags_.no_decorations, implot.AxisFlags_.auto_fit
     held = len(record.whole)
     across: np.ndarray = np.arange(record.pictures - held, record.pictures, dtype=np.float64)
-    expensive = record.most_expensive(_MOST)
+    expensive = record.most_expensive(_MAX_ROWS)
     with plots.plot("##ms", size, implot.Flags_.no_legend.value) as drawn:
         if drawn:
             implot.setup_axes("", "", axes[0] | implot.AxisFlags_.auto_fit, axes[1])

@@ -10,14 +10,14 @@ GRAB_DISTANCE = 6.0
 
 
 def dividers_of(sketch: Sketch) -> dict[str, float]:
-    """Return where the lines are, in shares of the picture's width from its left, by path."""
+    """Return where the lines are, in fractions of the picture's width from its left, by path."""
     leaves = values_of(sketch)
-    found = {
+    dividers = {
         shown.path: value_of(sketch, shown.path, leaves)
         for shown in shown_parameters(sketch)
         if shown.exported and shown.parameter.widget.kind == "divider"
     }
-    return {path: float(value) for path, value in found.items() if isinstance(value, int | float)}
+    return {path: float(value) for path, value in dividers.items() if isinstance(value, int | float)}
 
 
 def divider_at(sketch: Sketch, across: float, width: float) -> str:

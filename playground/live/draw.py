@@ -181,7 +181,7 @@ def plate_size(text: str, padding: float, wrap: float = -1.0) -> ImVec2:
 def plate(
     draw: imgui.ImDrawList,
     text: str,
-    place: tuple[float, float],
+    position: tuple[float, float],
     *,
     ink: int,
     ground: int,
@@ -192,10 +192,10 @@ def plate(
 ) -> ImVec2:
     """Write text on a plate of its size; return the plate's lower right corner.
 
-    ``place`` is the corner that ``align`` says: (0, 0) the upper left one, (1, 1) the lower right one.
+    ``position`` is the corner that ``align`` says: (0, 0) the upper left one, (1, 1) the lower right one.
     """
     size = plate_size(text, padding, wrap)
-    low = ImVec2(place[0] - align[0] * size.x, place[1] - align[1] * size.y)
+    low = ImVec2(position[0] - align[0] * size.x, position[1] - align[1] * size.y)
     corner = low + size
     draw.add_rect_filled(low, corner, ground, rounding)
     inner = ImVec2(low.x + padding, low.y + padding)

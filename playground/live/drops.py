@@ -77,14 +77,14 @@ class Drops:
         for path in paths:
             if path not in files:
                 say(f"{path.name} is neither a sketch, a shader nor an image, a video or a sound")
-        placed = [path for path in files if self.parameters(path) or self.channels(path)]
-        if files and not placed and _is_terrain(files[0]):
+        parameter_files = [path for path in files if self.parameters(path) or self.channels(path)]
+        if files and not parameter_files and _is_terrain(files[0]):
             self.commands.open(files[0])
             return
-        if files and not placed:
+        if files and not parameter_files:
             say(f"no parameter of this sketch takes a file like {files[0].name}, so it has no place in it")
-        elif placed:
-            self.waiting, self._asks = placed, True
+        elif parameter_files:
+            self.waiting, self._asks = parameter_files, True
 
     def parameters(self, file: Path) -> list[tuple[str, Parameter, Value]]:
         """Return the parameters that take a file, those a technique exports first; those of channels not.
@@ -104,11 +104,11 @@ class Drops:
             usual = VECTORS if item.parameter.name == _VECTORS else IMAGES
             return file.suffix.lower() in MEDIA.get(registry, usual)
 
-        found = [item for item in items if item.parameter.widget.kind == "file" and takes(item)]
+        items_found = [item for item in items if item.parameter.widget.kind == "file" and takes(item)]
         feeders = {taker.channel.feeder for taker in self.channels(file) if taker.channel.alone}
-        found = [item for item in found if item.path.partition(".")[0] not in feeders]
-        found.sort(key=lambda item: not item.exported)
-        return [(item.path, item.parameter, values[item.path]) for item in found]
+        items_found = [item for item in items_found if item.path.partition(".")[0] not in feeders]
+        items_found.sort(key=lambda item: not item.exported)
+        return [(item.path, item.parameter, values[item.path]) for item in items_found]
 
     def channels(self, file: Path) -> tuple[Taker, ...]:
         """Return the channels of other tools' shaders that take a file."""

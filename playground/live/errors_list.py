@@ -18,9 +18,9 @@ from playground.workbench.open_files import OpenFiles, editor_name
 from playground.workbench.problems import Problems, passes_of
 from playground.workbench.session import Session
 
-MOST = 60
+MAX_ROWS = 60
 """Diagnostics drawn at most."""
-_TALLEST = 0.5  # share of the picture that the list may cover
+_MAX_HEIGHT = 0.5  # share of the picture that the list may cover
 _GROUND = (0.17, 0.075, 0.075)  # under errors
 _MILD = (0.125, 0.118, 0.095)  # under warnings alone
 _FLAGS = QUIET | imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_resize
@@ -49,8 +49,8 @@ class ErrorsList:
     def _window(self, name: str, area: Area, look: Theme, **sizes: ImVec2) -> AbstractContextManager[None]:
         """Draw a window in the lower left corner of an area, in the colour of their severity."""
         margin = 14 * look.scale
-        place = ImVec2(area[0] + margin, area[1] + area[3] - margin)
-        imgui.set_next_window_pos(place, imgui.Cond_.always, ImVec2(0, 1))
+        position = ImVec2(area[0] + margin, area[1] + area[3] - margin)
+        imgui.set_next_window_pos(position, imgui.Cond_.always, ImVec2(0, 1))
         ground = theme.colour(_GROUND if self.problems.errors else _MILD, 0.95)
         named = {getattr(imgui.StyleVar_, key): value for key, value in sizes.items()}
         return window(name, _FLAGS, ground=ground, rounding=8 * look.scale, sizes=named)
@@ -65,7 +65,7 @@ class ErrorsList:
 
     def _list(self, look: Theme, area: Area) -> None:
         problems, margin = self.problems, 14 * look.scale
-        width, tallest = max(area[2] - 2 * margin, 120.0), max(area[3] * _TALLEST, 120.0)
+        width, tallest = max(area[2] - 2 * margin, 120.0), max(area[3] * _MAX_HEIGHT, 120.0)
         imgui.set_next_window_size_constraints(ImVec2(width, 0), ImVec2(width, tallest))
         with styled({imgui.Col_.text_link: theme.colour(theme.DIM)}), self._window("error", area, look):
             self._headline(look)
@@ -74,10 +74,10 @@ class ErrorsList:
             imgui.begin_child("list", ImVec2(0, 0), imgui.ChildFlags_.auto_resize_y)
             number = 0
             for file, mine in problems.by_file():
-                if number < MOST:
+                if number < MAX_ROWS:
                     self._file(file, mine, number, look)
                 number += len(mine)
-            if (left := len(problems.all) - MOST) > 0:
+            if (left := len(problems.all) - MAX_ROWS) > 0:
                 imgui.text_disabled(f"and {left} more; Copy has them all")
             problems.moved = False
             imgui.end_child()
@@ -110,26 +110,28 @@ class ErrorsList:
             opened = imgui.tree_node_ex(f"{title}   {_count(mine)}###file {file}", flags)
         if not opened:
             return
-        shown = mine[: MOST - first]
-        for place, (before, diagnostic) in enumerate(zip([None, *shown], shown, strict=False), first):
+        shown = mine[: MAX_ROWS - first]
+        for index, (before, diagnostic) in enumerate(zip([None, *shown], shown, strict=False), first):
             again = before is not None and before.line == diagnostic.line
-            with pushed_id(place):
-                self._diagnostic(diagnostic, place, again, look)
+            with pushed_id(index):
+                self._diagnostic(diagnostic, index, again, look)
         imgui.tree_pop()
 
-    def _diagnostic(self, diagnostic: Diagnostic, place: int, again: bool, look: Theme) -> None:
+    def _diagnostic(self, diagnostic: Diagnostic, index: int, again: bool, look: Theme) -> None:
         """Draw one mistake: its place, its message, the lines around it, how it came to be included.
 
         ``again``: the one before is on the same line, so that its lines need not be shown twice.
         """
         problems = self.problems
-        current, heights = problems.at == place, problems.heights
-        start, size = imgui.get_cursor_screen_pos(), (place, imgui.get_content_region_avail().x)
+        current, heights = problems.at == index, problems.heights
+        start, size = imgui.get_cursor_screen_pos(), (index, imgui.get_content_region_avail().x)
         above = imgui.get_window_pos().y
-        known = heights.get(size)
-        away = start.y > above + imgui.get_window_height() or (known is not None and start.y + known < above)
-        if known is not None and away and not problems.moved and not imgui.is_any_item_active():
-            imgui.dummy(ImVec2(1, known))
+        row_height = heights.get(size)
+        away = start.y > above + imgui.get_window_height() or (
+            row_height is not None and start.y + row_height < above
+        )
+        if row_height is not None and away and not problems.moved and not imgui.is_any_item_active():
+            imgui.dummy(ImVec2(1, row_height))
             return
         imgui.spacing()
         top = imgui.get_cursor_screen_pos()
@@ -160,10 +162,10 @@ class ErrorsList:
         if not diagnostic.file:
             return
         with look.font(look.code), styled({imgui.Col_.text_link: theme.colour(theme.WARM)}):
-            if imgui.text_link(f"{self._short(diagnostic.place)}##place"):
+            if imgui.text_link(f"{self._short(diagnostic.location)}##place"):
                 self.files.open_problem(diagnostic)
         if imgui.is_item_hovered():
-            imgui.set_tooltip(f"{diagnostic.place}\nOpens in {editor_name() or 'a window here'}")
+            imgui.set_tooltip(f"{diagnostic.location}\nOpens in {editor_name() or 'a window here'}")
         with look.font(look.text, theme.SMALL):
             imgui.same_line(0, 16 * look.scale)
             if imgui.text_link("edit here##here"):
@@ -175,8 +177,8 @@ class ErrorsList:
                     self.interface.show_pass(name)
                 imgui.set_item_tooltip("Shows the pass in the panel")
 
-    def _short(self, place: str) -> str:
-        return short_place(place, self._folder)
+    def _short(self, location: str) -> str:
+        return short_place(location, self._folder)
 
     @cached_property
     def _folder(self) -> str:

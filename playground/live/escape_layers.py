@@ -8,13 +8,13 @@ from functools import partial
 from imgui_bundle import imgui
 
 from playground.live.code_window import ask_to_close, stay
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 
 Layer = tuple[str, Callable[[], None]]
 """The name of something open, and what closes it."""
 
 
-def close_one(bench: Bench) -> None:
+def close_one(bench: Workbench) -> None:
     """Close what is topmost; where nothing is open, say how to quit."""
     for _, close in _open(bench):
         close()
@@ -22,12 +22,12 @@ def close_one(bench: Bench) -> None:
     bench.notices.say("nothing is open that Esc could close; Ctrl+Q quits")
 
 
-def open_layers(bench: Bench) -> list[str]:
+def open_layers(bench: Workbench) -> list[str]:
     """Return the names of what is open, topmost first."""
     return [name for name, _ in _open(bench)]
 
 
-def _open(bench: Bench) -> Iterator[Layer]:
+def _open(bench: Workbench) -> Iterator[Layer]:
     inspection = bench.inspection
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
         yield "popup", lambda: _close_popup(bench)
@@ -51,7 +51,7 @@ def _open(bench: Bench) -> Iterator[Layer]:
         yield "lesson", bench.lessons.toggle
 
 
-def _close_popup(bench: Bench) -> None:
+def _close_popup(bench: Workbench) -> None:
     """Close the innermost popup; a question in it is dismissed."""
     stay(bench.files)
     depth = len(imgui.get_current_context().open_popup_stack)

@@ -20,7 +20,7 @@ log = logging.getLogger("playground.live")
 
 
 class Guard:
-    """Runs the parts of each frame; ``say`` puts a sentence on the screen."""
+    """Runs the parts of each frame; ``say`` puts a message on the screen."""
 
     def __init__(self, say: Callable[[str], None]) -> None:
         self._say = say

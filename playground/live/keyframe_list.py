@@ -22,19 +22,19 @@ class KeyframeList:
     changed: bool = True  # every edited parameter
     paths: list[str] = field(default_factory=list)  # parameters besides
 
-    def wanted(self, edits: KeyframeEdits) -> list[str]:
+    def selected_paths(self, edits: KeyframeEdits) -> list[str]:
         """Return the parameters that the next keyframe takes."""
         return list(dict.fromkeys([*(edits.changed_paths if self.changed else []), *self.paths]))
 
     def draw(self, edits: KeyframeEdits, look: Theme) -> None:
         """Draw the list, folded unless there is a keyframe."""
-        known = edits.keyframes
+        keyframes = edits.keyframes
         imgui.spacing()
-        opened = header("Keyframes###keyframes", look, imgui.TreeNodeFlags_.default_open if known else 0)
+        opened = header("Keyframes###keyframes", look, imgui.TreeNodeFlags_.default_open if keyframes else 0)
         if not opened:
             return
         with pushed_id("keyframes"):
-            for index in range(len(known)):
+            for index in range(len(keyframes)):
                 with pushed_id(index):
                     changed = _line(index, edits)
                 if changed:  # the list is another from here on
@@ -65,7 +65,7 @@ class KeyframeList:
         imgui.same_line()
         if button("Add keyframe here", wide=-1):
             clock.playing = False
-            edits.add_here(self.wanted(edits), camera=self.camera)
+            edits.add_here(self.selected_paths(edits), camera=self.camera)
 
 
 def _line(index: int, edits: KeyframeEdits) -> bool:

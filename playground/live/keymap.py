@@ -58,7 +58,7 @@ def draw_keymap(interface: Interface, look: Theme) -> None:
 
 def _joined() -> list[tuple[str, str]]:
     """Return the keys and their meanings, keys that mean the same on one line."""
-    found: dict[str, list[str]] = {}
+    keys_by_action: dict[str, list[str]] = {}
     for key in KEYS:
-        found.setdefault(key.meaning, []).append(key.name)
-    return [(", ".join(names), meaning) for meaning, names in found.items()]
+        keys_by_action.setdefault(key.meaning, []).append(key.name)
+    return [(", ".join(names), meaning) for meaning, names in keys_by_action.items()]

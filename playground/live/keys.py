@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 from playground.live.escape_layers import close_one
 from playground.live.text_field import ctrl_held, keeps_keys, left_a_field, letters
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.brush import TOOLS, Tool
 from playground.workbench.interface import resize
 
@@ -22,7 +22,7 @@ class Key:
     key: imgui.Key
     name: str
     meaning: str
-    act: Callable[[Bench], None]
+    act: Callable[[Workbench], None]
     ctrl: bool = False
     shift: bool = False
     sign: str = ""  # "+" or "-", with Ctrl: on the keypad, and wherever else the keyboard has it
@@ -40,7 +40,7 @@ _BRUSH = "the brush: narrower, wider, weaker, stronger, harder, softer"
 _SIZE_KEYS = "text and panels larger, smaller, at their first size"
 
 
-def _take(bench: Bench, tool: Tool) -> None:
+def _take(bench: Workbench, tool: Tool) -> None:
     bench.painting.take_tool(tool)
 
 
@@ -88,7 +88,7 @@ KEYS: tuple[Key, ...] = (
     Key(_K.none, "Ctrl++", _SIZE_KEYS, lambda b: _resize(b, 1), ctrl=True, sign="+"),
     Key(_K.none, "Ctrl+-", _SIZE_KEYS, lambda b: _resize(b, -1), ctrl=True, sign="-"),
     Key(_K._0, "Ctrl+0", _SIZE_KEYS, lambda b: _resize(b, 0), ctrl=True),
-    Key(_K.escape, "Esc", "close what is open, one thing at a time", close_one),
+    Key(_K.escape, "Esc", "close open panels, one at a time", close_one),
     Key(_K.q, "Ctrl+Q", "quit", lambda b: b.window.quit(), ctrl=True, brief="quit"),
 )
 
@@ -120,19 +120,19 @@ _SIGN_KEYS: dict[imgui.Key, str] = {
 }
 
 
-def _resize(bench: Bench, by: int) -> None:
+def _resize(bench: Workbench, by: int) -> None:
     resize(bench.interface.size, by, bench.notices)
 
 
-def _step(bench: Bench) -> None:
+def _step(bench: Workbench) -> None:
     bench.problems.step(-1 if _shift_held() else 1)
 
 
-def _paste(bench: Bench) -> None:
+def _paste(bench: Workbench) -> None:
     bench.commands.paste(imgui.get_clipboard_text() or "")
 
 
-def _visit(bench: Bench) -> None:
+def _visit(bench: Workbench) -> None:
     bench.commands.visit(1 if _shift_held() else -1)
 
 
@@ -140,7 +140,7 @@ def _shift_held() -> bool:
     return imgui.get_io().key_shift or imgui.is_key_released(imgui.Key.mod_shift)
 
 
-def act_on_keys(bench: Bench) -> None:
+def act_on_keys(bench: Workbench) -> None:
     """Act on the keys pressed since the last frame, unless they belong to a text field or a menu.
 
     Two belong to neither: Esc, unless it leaves the field itself, and what quits.

@@ -87,13 +87,13 @@ class PictureMouse:
         painting, io = self.painting, imgui.get_io()
         if not painting.on or not self.session.orbits:
             return False
-        place = (io.mouse_pos.x - area[0]) / area[2], 1 - (io.mouse_pos.y - area[1]) / area[3]
+        position = (io.mouse_pos.x - area[0]) / area[2], 1 - (io.mouse_pos.y - area[1]) / area[3]
         if imgui.is_mouse_clicked(0):
             self.strokes = True
-            painting.press(place)
+            painting.press(position)
         elif self.strokes and (painting.sculpts or io.mouse_delta.x or io.mouse_delta.y):
-            painting.move(place)
-        self._show_brush(place, area)
+            painting.move(position)
+        self._show_brush(position, area)
         return self.strokes
 
     def _size_brush(self) -> bool:
@@ -110,11 +110,11 @@ class PictureMouse:
             painting.strengthen(by)
         return True
 
-    def _show_brush(self, place: tuple[float, float], area: Area) -> None:
+    def _show_brush(self, position: tuple[float, float], area: Area) -> None:
         """Draw the circle that the brush covers, as it lies on the terrain."""
         corners: list[ImVec2 | tuple[int | float, int | float] | list[int | float]] = [
             ImVec2(area[0] + x * area[2], area[1] + (1 - y) * area[3])
-            for x, y in self.painting.outline(place, _ROUND)
+            for x, y in self.painting.outline(position, _ROUND)
         ]
         if corners:
             draw = imgui.get_background_draw_list()

@@ -32,9 +32,9 @@ def place_in(first: NotFinite, area: Area) -> tuple[float, float]:
 
 def draw_not_finite(watch: FiniteWatch, session: Session, look: Theme, area: Area) -> None:
     """Draw the sentence in the picture's upper left corner; a click goes to the texture and back."""
-    if not watch.found:
+    if not watch.non_finite:
         return
-    first, shown = watch.found[0], session.view.map
+    first, shown = watch.non_finite[0], session.view.map
     ref = ref_of(first)
     shows = shown is not None and shown.ref == ref
     if shows:
@@ -49,8 +49,8 @@ def draw_not_finite(watch: FiniteWatch, session: Session, look: Theme, area: Are
     ground = theme.colour(theme.GROUND, 0.92)
     with window("not finite", OVERLAY, ground=ground, rounding=6 * look.scale):
         with wrapped(widest - 2 * imgui.get_style().window_padding.x):
-            imgui.text_colored(theme.colour(_MAGENTA), summary(watch.found))
-        imgui.set_item_tooltip("\n".join(map(str, watch.found)))
+            imgui.text_colored(theme.colour(_MAGENTA), summary(watch.non_finite))
+        imgui.set_item_tooltip("\n".join(map(str, watch.non_finite)))
         if shows:
             if button("Back to the picture", small=True):
                 session.show(None)

@@ -1,4 +1,4 @@
-"""What lies over the picture: a sentence while there is none, and notices that fade."""
+"""What lies over the picture: a message while there is none, and notices that fade."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ PATIENCE = 0.3
 
 
 def draw_waiting(text: str, area: Area) -> None:
-    """Write a sentence in the middle of the picture, while there is none."""
+    """Write a message in the middle of the picture, while there is none."""
     x, y, wide, high = area
     size = imgui.calc_text_size(text)
-    place = ImVec2(x + (wide - size.x) / 2, y + (high - size.y) / 2)
-    imgui.get_background_draw_list().add_text(place, theme.packed(theme.DIM), text)
+    position = ImVec2(x + (wide - size.x) / 2, y + (high - size.y) / 2)
+    imgui.get_background_draw_list().add_text(position, theme.packed(theme.DIM), text)
 
 
 def draw_checking(session: Session, look: Theme, area: Area) -> None:
@@ -52,11 +52,11 @@ def _bar(share: float, left: float, corner: ImVec2, look: Theme) -> None:
     paint.add_rect_filled(ImVec2(left, top), end, theme.packed(theme.WARM))
 
 
-def behind_text(done: int, wanted: int, source: str = "") -> str:
+def behind_text(done: int, total: int, source: str = "") -> str:
     """Return "computing frame 1,200 of 36,000 …", or of a source "making height … 34 %"."""
     if source:
-        return f"making {source} … {done * 100 // wanted} %"
-    return f"computing frame {done:,} of {wanted:,} …"
+        return f"making {source} … {done * 100 // total} %"
+    return f"computing frame {done:,} of {total:,} …"
 
 
 def checking_text(subject: str, seconds: float) -> str:
@@ -89,7 +89,7 @@ def _close_buttons() -> list[tuple[float, float, float, float]]:
 
 def _plate(
     text: str,
-    place: tuple[float, float],
+    corner: tuple[float, float],
     look: Theme,
     *,
     ink: theme.Rgb = theme.INK,
@@ -100,7 +100,7 @@ def _plate(
     return plate(
         imgui.get_foreground_draw_list(),
         text,
-        place,
+        corner,
         ink=theme.packed(ink, alpha),
         ground=theme.packed(theme.GROUND, 0.92 * alpha),
         padding=_PADDING * look.scale,

@@ -25,8 +25,8 @@ from playground.live.panel_rows import row
 from playground.live.pass_sections import Sections
 from playground.live.text_field import await_field
 from playground.live.theme import Theme
-from playground.live.widgets import Place, draw_value, explanation
-from playground.workbench.bench import Bench
+from playground.live.widgets import WidgetSlot, draw_value, explanation
+from playground.workbench.bench import Workbench
 from playground.workbench.inspect.toggles import Inspection
 from playground.workbench.session import Session
 
@@ -42,16 +42,16 @@ class Panel:
         self._sections = Sections(self.memory)
         self._keyframes = KeyframeList()
 
-    def draw(self, bench: Bench, look: Theme, left: float = 0.0) -> float:
+    def draw(self, bench: Workbench, look: Theme, left: float = 0.0) -> float:
         """Draw the panel over the window's left side; return the width it takes, in the window's units.
 
         ``left``: what is taken there already.
         """
         room = imgui.get_main_viewport().size
         widest = max(room.x - left - 160 * look.scale, 160.0)
-        wanted = min(self.width * look.scale, widest)
+        target = min(self.width * look.scale, widest)
         imgui.set_next_window_pos(ImVec2(left, 0))
-        imgui.set_next_window_size(ImVec2(wanted, room.y))
+        imgui.set_next_window_size(ImVec2(target, room.y))
         imgui.set_next_window_size_constraints(
             ImVec2(min(240 * look.scale, widest), room.y), ImVec2(min(620 * look.scale, widest), room.y)
         )
@@ -78,7 +78,7 @@ class Panel:
         _footer(footer, look)
         width = imgui.get_window_size().x
         imgui.end()
-        if abs(width - wanted) > 0.5:  # pulled; a narrow window alone makes it no narrower for good
+        if abs(width - target) > 0.5:  # pulled; a narrow window alone makes it no narrower for good
             self.width = width / look.scale
         return width
 
@@ -91,7 +91,7 @@ def _map(session: Session, inspection: Inspection, look: Theme) -> None:
     for parameter in shown.kernel.parameters:
         path, value = f"map.{parameter.name}", shown.value(parameter.name)
         with row(parameter.title, explanation(parameter, path)):
-            changed = draw_value(parameter, value, Place(f"##{path}", look.scale, Path()))
+            changed = draw_value(parameter, value, WidgetSlot(f"##{path}", look.scale, Path()))
         if changed is not None:
             session.view.set_map(parameter.name, changed)
     if imgui.button("Fit to the values"):

@@ -15,7 +15,7 @@ from playground.live.theme import Theme
 from playground.paths import shown
 from playground.shader.parameter import spell, write
 from playground.sketch.model import Preset, Sketch
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.commands import Commands
 from playground.workbench.edits import Edits
 from playground.workbench.history import in_words
@@ -31,7 +31,7 @@ _CLOSER = 2.5  # [units of scale 1]
 _LISTED = 14  # steps of the history that show without scrolling
 
 
-def draw_head(memory: Memory, bench: Bench, look: Theme) -> None:
+def draw_head(memory: Memory, bench: Workbench, look: Theme) -> None:
     """Draw what is above the passes."""
     session, sketch = bench.session, bench.session.sketch
     path = session.drafts.shown_path
@@ -55,7 +55,7 @@ def draw_head(memory: Memory, bench: Bench, look: Theme) -> None:
     _shown(session)
 
 
-def _buttons(memory: Memory, bench: Bench, look: Theme) -> None:
+def _buttons(memory: Memory, bench: Workbench, look: Theme) -> None:
     """Draw two lines of buttons, closer than elsewhere: so both fit."""
     style, closer = imgui.get_style(), _CLOSER * look.scale
     padding, spacing = style.frame_padding, style.item_spacing
@@ -134,14 +134,14 @@ def draw_history(memory: Memory, undo: Undo, look: Theme) -> None:
         undo.go_to(0)
 
     def name_of(path: str) -> str:
-        known = items.get(path)
-        return known.parameter.title if known else path
+        item = items.get(path)
+        return item.parameter.title if item else path
 
     def written(path: str, value: object) -> str:
         if value is None:
             return "the file's"
-        known = items.get(path)
-        return write(known.parameter, value) if known else spell(value)  # type: ignore[arg-type]
+        item = items.get(path)
+        return write(item.parameter, value) if item else spell(value)  # type: ignore[arg-type]
 
     for number, step in enumerate(history.steps, 1):
         text = fitting(in_words(step, name_of, written), wide - 20 * look.scale)

@@ -70,8 +70,8 @@ def cross(label: str, note: str, high: float = 0.0) -> bool:
     """Draw a row's reset where the cursor is, as high as the row; return whether it is clicked on."""
     clicked, hovered, middle = slot_button(label, note, high)
     size, ink = imgui.calc_text_size("×"), theme.INK if hovered else theme.WARM
-    place = ImVec2(middle.x - size.x / 2, middle.y - size.y / 2)
-    imgui.get_window_draw_list().add_text(place, theme.packed(ink), "×")
+    position = ImVec2(middle.x - size.x / 2, middle.y - size.y / 2)
+    imgui.get_window_draw_list().add_text(position, theme.packed(ink), "×")
     return clicked
 
 

@@ -14,7 +14,7 @@ from playground.live.panel_memory import Memory
 from playground.live.panel_rows import cross, row, slot, slot_button
 from playground.live.text_field import await_field, letters, with_typed_ahead
 from playground.live.theme import Theme
-from playground.live.widgets import Place, draw_value, explanation
+from playground.live.widgets import WidgetSlot, draw_value, explanation
 from playground.shader.parameter import write
 from playground.workbench.control.controllers import Controllers
 from playground.workbench.interface import TypedAhead
@@ -52,7 +52,7 @@ class Rows:
             if self.memory.entry == item.label:
                 self._entry(item)
             else:
-                new = draw_value(parameter, value, Place(item.label, self.look.scale, folder))
+                new = draw_value(parameter, value, WidgetSlot(item.label, self.look.scale, folder))
                 clicked = imgui.is_item_hovered() and imgui.is_mouse_clicked(0)
                 if parameter.widget.kind in TYPED and clicked and self._is_typing(item):
                     new = None

@@ -20,12 +20,12 @@ from playground.shader.parameter import label_of
 from playground.sketch.assign import values_of
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch
 
-_LEAST = 48.0  # [units of scale 1] a part that is narrower has no room for a name
-_WIDEST = 260.0
+_MIN_WIDTH = 48.0  # [units of scale 1] a part that is narrower has no room for a name
+_MAX_WIDTH = 260.0
 
 
 @dataclass(frozen=True)
-class Part:
+class PictureRegion:
     """One picture between two lines, or the whole where they are blended."""
 
     start: float  # share of the picture's width from its left
@@ -34,7 +34,7 @@ class Part:
     method: str
 
 
-def parts_of(sketch: Sketch) -> list[Part]:
+def parts_of(sketch: Sketch) -> list[PictureRegion]:
     """Return the parts of a sketch's picture, from the left; none where no line parts it."""
     view = sketch.graph.find("view")
     if view is None or not isinstance(view.technique, Graph):
@@ -47,22 +47,24 @@ def parts_of(sketch: Sketch) -> list[Part]:
         return []
     values = values_of(sketch)
     if any(values[f"view.{divide.name}.{menu}"] != 0 for menu in _menus(divide)):
-        return [Part(0.0, 1.0, " against ".join(names), "")]
+        return [PictureRegion(0.0, 1.0, " against ".join(names), "")]
     lines = [0.0]
     for name in _dividers(divide):
         value = values[f"view.{divide.name}.{name}"]
         assert isinstance(value, int | float)
         lines.append(min(max(float(value), lines[-1]), 1.0))
     spans = pairwise([*lines, 1.0])
-    return [Part(*span, name, method) for span, name, method in zip(spans, names, methods, strict=True)]
+    return [
+        PictureRegion(*span, name, method) for span, name, method in zip(spans, names, methods, strict=True)
+    ]
 
 
 def _dividers(spec: PassSpec) -> list[str]:
     kernel = spec.technique
     if not isinstance(kernel, Kernel):
         return []
-    found = [p.name for p in kernel.parameters if p.widget.kind == "divider"]
-    return found if found and len(kernel.inputs) == len(found) + 1 else []
+    names = [p.name for p in kernel.parameters if p.widget.kind == "divider"]
+    return names if names and len(kernel.inputs) == len(names) + 1 else []
 
 
 def _menus(spec: PassSpec) -> list[str]:
@@ -88,12 +90,12 @@ def _named(sketch: Sketch, view: PassSpec, graph: Graph, divide: PassSpec) -> tu
 
 def _own_sources(view: PassSpec, graph: Graph, inner: str) -> dict[str, str]:
     """Return what a pass inside the view reads through inputs of its own, by their names inside."""
-    outside, found = dict(view.inputs), {}
+    outside, sources = dict(view.inputs), {}
     for export in graph.inputs:
         ends = [target.partition(".") for target in export.targets]
         if len(ends) == 1 and ends[0][0] == inner:
-            found[ends[0][2]] = outside.get(export.name, export.name).partition(":")[0]
-    return found
+            sources[ends[0][2]] = outside.get(export.name, export.name).partition(":")[0]
+    return sources
 
 
 def _methods(sketch: Sketch, sources: list[str], texture: str) -> list[str]:
@@ -110,13 +112,13 @@ def _methods(sketch: Sketch, sources: list[str], texture: str) -> list[str]:
 
 def _titles(sketch: Sketch, source: str, texture: str) -> list[str]:
     """Return the title of the pass that makes a texture, and of each that it goes on from."""
-    found: list[str] = []
+    titles: list[str] = []
     spec = sketch.graph.find(source.partition(".")[0])
-    while spec is not None and len(found) < len(sketch.graph.passes):
-        found.append(spec.technique.title)
+    while spec is not None and len(titles) < len(sketch.graph.passes):
+        titles.append(spec.technique.title)
         before = dict(spec.inputs).get(texture, "")
         spec = sketch.graph.find(before.partition(":")[0].partition(".")[0]) if before else None
-    return found
+    return titles
 
 
 def draw_part_labels(sketch: Sketch, look: Theme, area: Area) -> None:
@@ -126,9 +128,9 @@ def draw_part_labels(sketch: Sketch, look: Theme, area: Area) -> None:
     draw = imgui.get_background_draw_list()
     for part in parts_of(sketch):
         room = (part.end - part.start) * wide - 2 * margin
-        if room < _LEAST * look.scale:
+        if room < _MIN_WIDTH * look.scale:
             continue
-        room = min(room, _WIDEST * look.scale) - 2 * padding
+        room = min(room, _MAX_WIDTH * look.scale) - 2 * padding
         lines = [
             (part.name, look.bold, theme.TEXT_SIZE, theme.INK),
             (part.method, look.text, theme.SMALL, theme.DIM),
@@ -147,6 +149,6 @@ def draw_part_labels(sketch: Sketch, look: Theme, area: Area) -> None:
         top = low.y + padding
         for (text, font, size, ink), extent in zip(lines, sizes, strict=True):
             if text:
-                place, points = ImVec2(low.x + padding, top), size * look.scale
-                draw.add_text(font, points, place, theme.packed(ink), text, room)
+                position, points = ImVec2(low.x + padding, top), size * look.scale
+                draw.add_text(font, points, position, theme.packed(ink), text, room)
             top += extent.y

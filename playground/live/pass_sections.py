@@ -20,7 +20,7 @@ from playground.live.theme import Theme
 from playground.shader.parameter import label_of
 from playground.sketch.model import PassSpec, Sketch, TexelKernel, kernels_of
 from playground.sketch.replace_technique import choices
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.channels import channels
 from playground.workbench.commands import Commands
 from playground.workbench.edits import Draft
@@ -43,14 +43,14 @@ class Sections:
     def __post_init__(self) -> None:
         self._channels = ChannelRows(self.memory.listing)
 
-    def draw(self, sketch: Sketch, bench: Bench, look: Theme) -> None:
+    def draw(self, sketch: Sketch, bench: Workbench, look: Theme) -> None:
         """Draw every pass, or what a search has found of them."""
         session, memory = bench.session, self.memory
         draft = session.shown
         if draft is None:
             return
-        values, found = memory.listing.values(draft), memory.listing.filtered(draft, memory.filter)
-        if memory.filter and not found:
+        values, sections = memory.listing.values(draft), memory.listing.filtered(draft, memory.filter)
+        if memory.filter and not sections:
             imgui.text_disabled("no parameter is like that")
         rows = Rows(session, bench.notices, memory, bench.interface.ahead, values, look, bench.controllers)
         drawing = _Drawing(Path(sketch.folder), rows, bench.commands, bench.files)
@@ -59,7 +59,7 @@ class Sections:
             drawing.main(main)
         feeders = {channel.feeder for channel in channels(draft.base) if channel.alone}
         for spec in sketch.graph.passes:
-            section = found.get(spec.name)
+            section = sections.get(spec.name)
             if memory.filter and section is None:
                 continue
             imgui.spacing()
@@ -79,7 +79,7 @@ class Sections:
                     if section is not None:
                         drawing.section(section)
         if memory.menu:
-            items = {item.label: item for section in found.values() for item in section.items}
+            items = {item.label: item for section in sections.values() for item in section.items}
             rows.draw_menu(items | {item.label: item for item in main})
 
     def _technique(self, spec: PassSpec, draft: Draft, session: Session) -> None:
@@ -146,8 +146,10 @@ class _Drawing:
             text = f"{spent:.1f} ms    {text}"
         size = imgui.calc_text_size(text)
         right = high.x - slot() - 8 * look.scale
-        place = ImVec2(right - size.x, (low.y + high.y - size.y) / 2)
-        imgui.get_window_draw_list().add_text(place, theme.packed(theme.ACCENT if ran else theme.DIM), text)
+        position = ImVec2(right - size.x, (low.y + high.y - size.y) / 2)
+        imgui.get_window_draw_list().add_text(
+            position, theme.packed(theme.ACCENT if ran else theme.DIM), text
+        )
         if imgui.is_item_hovered():
             imgui.set_tooltip(
                 "How often its kernels ran; green: for this very picture\nRight click: its files"
@@ -253,7 +255,7 @@ def _steps(spec: PassSpec, session: Session) -> None:
     if any(path in steps for path in mine) and any(
         isinstance(k, TexelKernel) and k.between for _, k in kernels_of(spec.technique)
     ):
-        with row("Interpolated", "The heights between those that are known; else what is not reached is 0"):
+        with row("Interpolated", "The heights between the known ones; otherwise texels not reached are 0"):
             changed, on = imgui.checkbox("##interpolated", session.view.interpolated)
             if changed:
                 session.view.interpolate(on)

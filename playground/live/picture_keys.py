@@ -13,7 +13,7 @@ from imgui_bundle import imgui
 from playground.live.keys import KEYS
 from playground.live.text_field import ctrl_held, keeps_keys
 from playground.sketch.traits import traits_of
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 
 _K = imgui.Key
 
@@ -49,8 +49,8 @@ _TYPED |= {str(digit): getattr(_K, f"_{digit}") for digit in range(10)}
 
 def _keys_of(*, brush: bool) -> set[imgui.Key]:
     """Return the keys of the shortcuts without Ctrl, of the brush or of all else."""
-    found = [key for key in KEYS if not key.ctrl and key.brush == brush]
-    return {_TYPED[key.letter] if key.letter else key.key for key in found}
+    keys = [key for key in KEYS if not key.ctrl and key.brush == brush]
+    return {_TYPED[key.letter] if key.letter else key.key for key in keys}
 
 
 _SHORTCUTS, _OF_BRUSH = _keys_of(brush=False), _keys_of(brush=True)
@@ -59,7 +59,7 @@ _SHORTCUTS, _OF_BRUSH = _keys_of(brush=False), _keys_of(brush=True)
 class PictureKeys:
     """What the picture of one bench's session gets of the keyboard."""
 
-    def __init__(self, bench: Bench) -> None:
+    def __init__(self, bench: Workbench) -> None:
         self.bench = bench
         self.has_keyboard = False  # all keys are its own
 

@@ -12,10 +12,10 @@ import math
 from imgui_bundle import imgui
 
 
-def before_release(place: tuple[float, float]) -> None:
+def before_release(position: tuple[float, float]) -> None:
     """Prepare imgui for a release at a place of the window, whose event follows."""
     io = imgui.get_io()
-    moved = (io.mouse_pos.x, io.mouse_pos.y) != tuple(map(math.floor, place))  # imgui has whole pixels
+    moved = (io.mouse_pos.x, io.mouse_pos.y) != tuple(map(math.floor, position))  # imgui has whole pixels
     io.add_mouse_source_event(imgui.MouseSource.touch_screen if moved else imgui.MouseSource.mouse)
 
 

@@ -42,7 +42,7 @@ def draw_numbers(parameter: Parameter, numbers: Sequence[float], label: str) -> 
     spacing = imgui.get_style().item_inner_spacing.x
     column = min(max(imgui.calc_text_size(name).x for name in names) + spacing, wide / 2)
     largest = max(abs(n) for n in numbers)
-    found: list[float] | None = None
+    values: list[float] | None = None
     imgui.begin_group()
     for at, name in enumerate(names):
         imgui.align_text_to_frame_padding()
@@ -52,21 +52,21 @@ def draw_numbers(parameter: Parameter, numbers: Sequence[float], label: str) -> 
         changed = _draw_one(parameter, numbers[at], largest, f"{label}.{name}")
         imgui.pop_item_width()
         if changed is not None:
-            found = [*numbers[:at], changed, *numbers[at + 1 :]]
+            values = [*numbers[:at], changed, *numbers[at + 1 :]]
     imgui.end_group()
-    return found
+    return values
 
 
 def _draw_one(parameter: Parameter, number: float, largest: float, label: str) -> float | None:
     """Draw one number; ``largest``: of its vector, which says how fast a drag without a range goes."""
     widget = parameter.widget
     if widget.low is not None and widget.high is not None:
-        found = _slide(parameter, number, widget.low, widget.high, label)
+        value = _slide(parameter, number, widget.low, widget.high, label)
     elif not isinstance(parameter.default, tuple) and is_whole(parameter.type):
         return _step(parameter, number, label)
     else:
-        found = _drag(parameter, number, largest, label)
-    return None if found is None else snapped(parameter, found)
+        value = _drag(parameter, number, largest, label)
+    return None if value is None else snapped(parameter, value)
 
 
 def _slide(parameter: Parameter, number: float, low: float, high: float, label: str) -> float | None:
@@ -140,10 +140,10 @@ def _write_number(text: str, share: float, values: int = 0) -> None:
     size, style = imgui.calc_text_size(text), imgui.get_style()
     knob = knob_of(share, right.x - left.x, style.grab_min_size, values)
     across = place_of_number(right.x - left.x, size.x, knob, style.item_inner_spacing.x / 2)
-    place = ImVec2(round(left.x + across), round((left.y + right.y - size.y) / 2))
+    position = ImVec2(round(left.x + across), round((left.y + right.y - size.y) / 2))
     draw = imgui.get_window_draw_list()
     draw.push_clip_rect(left, right, True)
-    draw.add_text(place, imgui.get_color_u32(imgui.Col_.text), text)
+    draw.add_text(position, imgui.get_color_u32(imgui.Col_.text), text)
     draw.pop_clip_rect()
 
 

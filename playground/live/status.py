@@ -19,7 +19,7 @@ from playground.engine.non_finite import NotFinite
 from playground.live.code_window import typing
 from playground.live.escape_layers import open_layers
 from playground.live.overlay import PATIENCE
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.session import Session
 from playground.workbench.text_file import unsaved
 
@@ -45,7 +45,7 @@ class Status:
         self._last: dict[str, Any] = {}
         self._hashed = (-1, "")  # the draw that was hashed, and its hash
 
-    def write(self, bench: Bench, not_finite: Sequence[NotFinite] = ()) -> None:
+    def write(self, bench: Workbench, not_finite: Sequence[NotFinite] = ()) -> None:
         """Add a line if anything is new."""
         if self.path is None:
             return
@@ -65,7 +65,7 @@ class Status:
             "steps": dict(session.view.steps),
             "saved": str(bench.captures.saved or ""),
             "reload_ms": round(session.last_reload.seconds * 1e3, 1) if session.last_reload else 0.0,
-            "not_finite": [str(found) for found in not_finite],
+            "not_finite": [str(number) for number in not_finite],
             "runs": dict(session.engine.runs),
             "edited": dict(session.shown.edits.values) if session.shown else {},
             "trying": checking[0] if checking[1] >= PATIENCE else "",

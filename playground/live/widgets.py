@@ -40,7 +40,7 @@ IMAGES = (".jpg", ".jpeg", ".webp", *ELEVATIONS)
 
 
 @dataclass(frozen=True)
-class Place:
+class WidgetSlot:
     """Where a widget is drawn."""
 
     label: str  # imgui's, unique in the panel
@@ -49,12 +49,12 @@ class Place:
     endings: tuple[str, ...] = IMAGES  # of the files
 
 
-Draw = Callable[[Parameter, Value, Place], "Value | None"]
+Draw = Callable[[Parameter, Value, WidgetSlot], "Value | None"]
 
 
-def draw_value(parameter: Parameter, value: Value, place: Place) -> Value | None:
+def draw_value(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
     """Draw the widget of a parameter over the width that is left; return a new value, or None."""
-    return CONTROLS[parameter.widget.kind](parameter, value, place)
+    return CONTROLS[parameter.widget.kind](parameter, value, slot)
 
 
 def explanation(parameter: Parameter, path: str) -> str:
@@ -77,42 +77,42 @@ def explanation(parameter: Parameter, path: str) -> str:
 # ── numbers ──────────────────────────────────────────────────────────────────
 
 
-def _slider(parameter: Parameter, value: Value, place: Place) -> Value | None:
-    found = draw_numbers(parameter, _as_list(value), place.label)
-    return None if found is None else _back(parameter, found)
+def _slider(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
+    data = draw_numbers(parameter, _as_list(value), slot.label)
+    return None if data is None else _back(parameter, data)
 
 
-def _checkbox(parameter: Parameter, value: Value, place: Place) -> Value | None:
-    changed, on = imgui.checkbox(place.label, bool(value))
+def _checkbox(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
+    changed, on = imgui.checkbox(slot.label, bool(value))
     return on if changed else None
 
 
-def _button(parameter: Parameter, value: Value, place: Place) -> Value | None:
-    pressed = imgui.button(f"{parameter.title}{place.label}", ImVec2(imgui.calc_item_width(), 0))
+def _button(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
+    pressed = imgui.button(f"{parameter.title}{slot.label}", ImVec2(imgui.calc_item_width(), 0))
     return True if pressed else None
 
 
-def _menu(parameter: Parameter, value: Value, place: Place) -> Value | None:
+def _menu(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
     choices = parameter.widget.choices
     now = int(value) if isinstance(value, int) and 0 <= value < len(choices) else 0
     shown = fitting_choice(choices[now])
-    chosen = choose(place.label, shown, range(len(choices)), now, name=choices.__getitem__)
+    chosen = choose(slot.label, shown, range(len(choices)), now, name=choices.__getitem__)
     return chosen if chosen != now else None
 
 
 # ── places and colours ───────────────────────────────────────────────────────
 
 
-def _colour(parameter: Parameter, value: Value, place: Place) -> Value | None:
+def _colour(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
     # Linear inside unless it is raw, display-encoded for the eye; alpha is not a light and stays as it is.
     linear, raw_one = _as_list(value), parameter.widget.raw
     flags = imgui.ColorEditFlags_.display_hex | imgui.ColorEditFlags_.picker_hue_wheel
     held = [min(max(c, 0.0), 1.0) for c in linear[:3]]
     seen = [*(held if raw_one else linear_to_srgb(held).tolist()), *linear[3:]]
     if len(linear) == 4:
-        changed, raw = imgui.color_edit4(place.label, seen, flags | imgui.ColorEditFlags_.alpha_bar)
+        changed, raw = imgui.color_edit4(slot.label, seen, flags | imgui.ColorEditFlags_.alpha_bar)
     else:
-        changed, raw = imgui.color_edit3(place.label, seen, flags)
+        changed, raw = imgui.color_edit3(slot.label, seen, flags)
     # Eight bits a channel, as the field shows it and a file can say it.
     picked = [round(c * 255) / 255 for c in _as_list(raw)]
     if not changed:
@@ -120,37 +120,35 @@ def _colour(parameter: Parameter, value: Value, place: Place) -> Value | None:
     return tuple(picked) if raw_one else (*srgb_to_linear(picked[:3]).tolist(), *picked[3:])
 
 
-def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None:
+def _direction(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
     azimuth, elevation = _as_list(value)
-    origin, side, field, dragged = _pad(place)
+    origin, side, field, dragged = _pad(slot)
     radius, draw = side / 2, imgui.get_window_draw_list()
     middle = ImVec2(origin.x + radius, origin.y + radius)
     draw.add_circle_filled(middle, radius - 1, theme.packed(theme.FIELD))
     for share in (1.0, 2 / 3, 1 / 3):  # the horizon, 30 and 60 degrees
-        draw.add_circle(middle, (radius - 1) * share, theme.packed(theme.LINE), 0, place.scale)
+        draw.add_circle(middle, (radius - 1) * share, theme.packed(theme.LINE), 0, slot.scale)
     north = imgui.calc_text_size("N")
-    draw.add_text(ImVec2(middle.x - north.x / 2, origin.y + place.scale), theme.packed(theme.DIM), "N")
+    draw.add_text(ImVec2(middle.x - north.x / 2, origin.y + slot.scale), theme.packed(theme.DIM), "N")
     right, up = dome.dot_of(azimuth, elevation)
     dot = ImVec2(middle.x + right * (radius - 1), middle.y - up * (radius - 1))
     below = elevation < 0
-    draw.add_line(middle, dot, theme.packed(theme.WARM, 0.5), place.scale)
-    draw.add_circle_filled(dot, 5 * place.scale, theme.packed(theme.DIM if below else theme.WARM))
+    draw.add_line(middle, dot, theme.packed(theme.WARM, 0.5), slot.scale)
+    draw.add_circle_filled(dot, 5 * slot.scale, theme.packed(theme.DIM if below else theme.WARM))
     result: Value | None = None
     if dragged is not None:
         across, down = dragged
-        found = dome.direction_at(2 * across - 1, 1 - 2 * down)
-        result = (round(found[0], 1), round(found[1], 1))
+        direction_picked = dome.direction_at(2 * across - 1, 1 - 2 * down)
+        result = (round(direction_picked[0], 1), round(direction_picked[1], 1))
     imgui.same_line()
     imgui.begin_group()
     _name("azimuth")
     imgui.set_next_item_width(field)
-    turned, azimuth = imgui.drag_float(f"{place.label}-azimuth", azimuth, 0.5, -720, 720, "%.1f°", _CLAMP)
+    turned, azimuth = imgui.drag_float(f"{slot.label}-azimuth", azimuth, 0.5, -720, 720, "%.1f°", _CLAMP)
     imgui.set_item_tooltip("Azimuth: clockwise from north")
     _name("elevation")
     imgui.set_next_item_width(field)
-    raised, elevation = imgui.drag_float(
-        f"{place.label}-elevation", elevation, 0.25, -90, 90, "%.1f°", _CLAMP
-    )
+    raised, elevation = imgui.drag_float(f"{slot.label}-elevation", elevation, 0.25, -90, 90, "%.1f°", _CLAMP)
     imgui.set_item_tooltip("Elevation above the horizon")
     imgui.end_group()
     return (tidied(azimuth), tidied(elevation)) if turned or raised else result
@@ -165,24 +163,24 @@ def _name(text: str) -> None:
     imgui.pop_style_var()
 
 
-def _point(parameter: Parameter, value: Value, place: Place) -> Value | None:
+def _point(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
     x, y = _as_list(value)
     axes = [(low or 0.0, 1.0 if high is None else high) for low, high in map(parameter.widget.ends, range(2))]
     (west, east), (south, north) = axes
     across, up = (x - west) / (east - west), (y - south) / (north - south)
-    origin, side, field, dragged = _pad(place)
+    origin, side, field, dragged = _pad(slot)
     draw = imgui.get_window_draw_list()
     corner = ImVec2(origin.x + side, origin.y + side)
-    draw.add_rect_filled(origin, corner, theme.packed(theme.FIELD), 5 * place.scale)
+    draw.add_rect_filled(origin, corner, theme.packed(theme.FIELD), 5 * slot.scale)
     dot = ImVec2(origin.x + across * side, origin.y + (1 - up) * side)
-    draw.add_line(ImVec2(dot.x, origin.y), ImVec2(dot.x, corner.y), theme.packed(theme.LINE), place.scale)
-    draw.add_line(ImVec2(origin.x, dot.y), ImVec2(corner.x, dot.y), theme.packed(theme.LINE), place.scale)
-    draw.add_circle_filled(dot, 5 * place.scale, theme.packed(theme.WARM))
+    draw.add_line(ImVec2(dot.x, origin.y), ImVec2(dot.x, corner.y), theme.packed(theme.LINE), slot.scale)
+    draw.add_line(ImVec2(origin.x, dot.y), ImVec2(corner.x, dot.y), theme.packed(theme.LINE), slot.scale)
+    draw.add_circle_filled(dot, 5 * slot.scale, theme.packed(theme.WARM))
     result: Value | None = None
     if dragged is not None:
         shares = (dragged[0], 1 - dragged[1])
-        found = [low + (high - low) * part for (low, high), part in zip(axes, shares, strict=True)]
-        result = (_rounded(found[0], axes[0]), _rounded(found[1], axes[1]))
+        point_picked = [low + (high - low) * part for (low, high), part in zip(axes, shares, strict=True)]
+        result = (_rounded(point_picked[0], axes[0]), _rounded(point_picked[1], axes[1]))
     imgui.same_line()
     imgui.begin_group()
     changed = False
@@ -190,7 +188,7 @@ def _point(parameter: Parameter, value: Value, place: Place) -> Value | None:
         imgui.set_next_item_width(field)
         speed, digits = (high - low) / 500, max(_places(axes[0]), _places(axes[1])) - 1
         moved, number = imgui.drag_float(
-            f"{place.label}-{name}", number, speed, low, high, f"%.{digits}f {unit}", _CLAMP
+            f"{slot.label}-{name}", number, speed, low, high, f"%.{digits}f {unit}", _CLAMP
         )
         changed = changed or moved
         x, y = (number, y) if name == "x" else (x, number)
@@ -208,16 +206,16 @@ def _rounded(number: float, axis: tuple[float, float]) -> float:
     return min(max(round(number, _places(axis)), axis[0]), axis[1])
 
 
-def _pad(place: Place) -> tuple[ImVec2, float, float, tuple[float, float] | None]:
+def _pad(slot: WidgetSlot) -> tuple[ImVec2, float, float, tuple[float, float] | None]:
     """Make a square to drag in.
 
     Return its upper left corner, its side, the width that is left for fields, and while it is dragged
     the mouse's share of it, right and down.
     """
     origin, wide = imgui.get_cursor_screen_pos(), imgui.calc_item_width()
-    side = min(_PAD * place.scale, wide)
+    side = min(_PAD * slot.scale, wide)
     field = wide - side - imgui.get_style().item_spacing.x
-    imgui.invisible_button(place.label, ImVec2(side, side))
+    imgui.invisible_button(slot.label, ImVec2(side, side))
     if not imgui.is_item_active():
         return origin, side, field, None
     mouse = imgui.get_io().mouse_pos
@@ -228,28 +226,28 @@ def _pad(place: Place) -> tuple[ImVec2, float, float, tuple[float, float] | None
 _PATH = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.elide_left  # its end is the name
 
 
-def _file(parameter: Parameter, value: Value, place: Place) -> Value | None:
+def _file(parameter: Parameter, value: Value, path: WidgetSlot) -> Value | None:
     """Draw a path to type, and a list of the images and elevation files in the sketch's folder."""
     text = str(value)
     button = imgui.get_frame_height()
     imgui.set_next_item_width(max(imgui.calc_item_width() - button, button))
-    changed, typed = imgui.input_text(place.label, text, _PATH)
+    changed, typed = imgui.input_text(path.label, text, _PATH)
     if not changed and imgui.is_item_deactivated_after_edit():
         changed = True
     if text and imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
-        imgui.set_tooltip(_whole_path(text, parameter, place))
+        imgui.set_tooltip(_whole_path(text, parameter, path))
     imgui.same_line(0, 0)
     chosen: str | None = None
     imgui.set_next_item_width(button)
     if imgui.begin_combo(
-        f"{place.label}-files", "", imgui.ComboFlags_.no_preview | imgui.ComboFlags_.popup_align_left
+        f"{path.label}-files", "", imgui.ComboFlags_.no_preview | imgui.ComboFlags_.popup_align_left
     ):
-        names = _files_in(place.folder, place.endings)
+        names = _files_in(path.folder, path.endings)
         for name in names:
             if imgui.selectable(name, name == text)[0]:
                 chosen = name
         if not names:
-            none = "images or elevation files" if place.endings == IMAGES else ", ".join(place.endings)
+            none = "images or elevation files" if path.endings == IMAGES else ", ".join(path.endings)
             imgui.text_disabled(f"no {none} next to the sketch")
         imgui.end_combo()
     if chosen is not None:
@@ -257,9 +255,9 @@ def _file(parameter: Parameter, value: Value, place: Place) -> Value | None:
     return typed if changed and typed != text else None
 
 
-def _whole_path(text: str, parameter: Parameter, place: Place) -> str:
+def _whole_path(text: str, parameter: Parameter, slot: WidgetSlot) -> str:
     try:
-        return str(find_file(text, str(place.folder), parameter.file, parameter.name))
+        return str(find_file(text, str(slot.folder), parameter.file, parameter.name))
     except DataError as error:
         return str(error)
 
@@ -279,8 +277,8 @@ def _as_list(value: object) -> list[float]:
 
 
 def _back(parameter: Parameter, numbers: Sequence[float]) -> Value:
-    found: tuple[float, ...] = tuple(round(n) if is_whole(parameter.type) else tidied(n) for n in numbers)
-    return found[0] if length_of(parameter.type) == 1 else found
+    values: tuple[float, ...] = tuple(round(n) if is_whole(parameter.type) else tidied(n) for n in numbers)
+    return values[0] if length_of(parameter.type) == 1 else values
 
 
 CONTROLS: dict[str, Draw] = {

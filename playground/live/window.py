@@ -39,7 +39,7 @@ _HINTS = {
     glfw.STENCIL_BITS: 0,
     glfw.CONTEXT_ROBUSTNESS: glfw.LOSE_CONTEXT_ON_RESET,
 }
-_SMALLEST = (480, 320)
+_MIN_SIZE = (480, 320)
 _SIGNS = {"+": "+", "=": "+", "-": "-"}  # what a key's own name asks for; + is over = on many keyboards
 _SIGN_KEYS = (glfw.KEY_EQUAL, glfw.KEY_MINUS, glfw.KEY_RIGHT_BRACKET, glfw.KEY_SLASH, glfw.KEY_BACKSLASH)
 _ATTEMPTS, _BETWEEN = 20, 0.5  # a driver that was reset may take some seconds to come back [s]
@@ -49,7 +49,7 @@ class Window:
     """An open window. Use it with ``with``, or call ``close()``."""
 
     def __init__(self, title: str, size: tuple[int, int]) -> None:
-        glfw.ERROR_REPORTING = "ignore"  # errors are read below, and reported in a sentence
+        glfw.ERROR_REPORTING = "ignore"  # errors are read below, and reported in a message
         if not glfw.init():
             raise _refused("glfw.init failed")
         self._title = title
@@ -180,7 +180,7 @@ class Window:
         All that was made in the old context is gone; what the interface shows stays as it is.
         Raises ``ContextError`` where the driver gives no context any more.
         """
-        place, size = glfw.get_window_pos(self._handle), glfw.get_window_size(self._handle)
+        position, size = glfw.get_window_pos(self._handle), glfw.get_window_size(self._handle)
         imgui.backends.opengl3_shutdown()
         imgui.backends.glfw_shutdown()
         abandon(self.ctx)
@@ -193,14 +193,14 @@ class Window:
                 if attempt == _ATTEMPTS - 1:
                     raise
                 time.sleep(_BETWEEN)
-        glfw.set_window_pos(self._handle, *place)
+        glfw.set_window_pos(self._handle, *position)
         self._start_backends()
 
     def _open(self, size: tuple[int, int]) -> None:
         self._handle = _create(self._title, size)
         glfw.make_context_current(self._handle)
         glfw.swap_interval(1)
-        glfw.set_window_size_limits(self._handle, *_SMALLEST, glfw.DONT_CARE, glfw.DONT_CARE)
+        glfw.set_window_size_limits(self._handle, *_MIN_SIZE, glfw.DONT_CARE, glfw.DONT_CARE)
         self.ctx: moderngl.Context = _adopt()
         self._reset_status = _reset_status(self._handle)
         self._screen_size, self._screen = (0, 0), None

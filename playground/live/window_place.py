@@ -27,7 +27,7 @@ class Geometry:
     maximised: bool = False
 
 
-class Place:
+class WindowPlacement:
     """The place of one window; ``handle`` gives its current GLFW window."""
 
     def __init__(self, handle: Callable[[], Any]) -> None:
@@ -70,14 +70,14 @@ class Place:
             if back.maximised:
                 glfw.maximize_window(handle)
             return
-        place = self.geometry()
+        geometry = self.geometry()
         monitors = glfw.get_monitors()
         if not monitors:
             return
-        shares = [_shared(place, area) for area in screens()]
+        shares = [_shared(geometry, area) for area in screens()]
         monitor = monitors[shares.index(max(shares))]
         mode = glfw.get_video_mode(monitor)
-        self._before = place
+        self._before = geometry
         glfw.set_window_monitor(handle, monitor, 0, 0, mode.size.width, mode.size.height, mode.refresh_rate)
 
     def dropped(self) -> list[Path]:
@@ -87,8 +87,8 @@ class Place:
             took: Any = self.drop
             glfw.set_drop_callback(handle, took)
             self._listening = handle
-        found, self._dropped = self._dropped, []
-        return found
+        paths, self._dropped = self._dropped, []
+        return paths
 
     def drop(self, _: object, names: Iterable[str]) -> None:
         """Store the names of dropped files; GLFW's callback."""
@@ -97,11 +97,11 @@ class Place:
 
 def screens() -> list[Rectangle]:
     """Return the screens that there are."""
-    found = []
+    rectangles = []
     for monitor in glfw.get_monitors():
         (x, y), mode = glfw.get_monitor_pos(monitor), glfw.get_video_mode(monitor)
-        found.append((x, y, mode.size.width, mode.size.height))
-    return found
+        rectangles.append((x, y, mode.size.width, mode.size.height))
+    return rectangles
 
 
 def on_screen(window: Rectangle, areas: list[Rectangle]) -> tuple[int, int]:
@@ -110,17 +110,17 @@ def on_screen(window: Rectangle, areas: list[Rectangle]) -> tuple[int, int]:
     It stays where they do, also across several; else it goes into the one that shows most of it.
     """
     x, y, width, height = window
-    place = Geometry(x, y, width, height)
-    shares = [_shared(place, area) for area in areas]
+    geometry = Geometry(x, y, width, height)
+    shares = [_shared(geometry, area) for area in areas]
     if not areas or sum(shares) >= width * height:
         return x, y
     left, top, wide, high = areas[shares.index(max(shares))]
     return max(min(x, left + wide - width), left), max(min(y, top + high - height), top)
 
 
-def _shared(place: Geometry, area: Rectangle) -> int:
+def _shared(geometry: Geometry, area: Rectangle) -> int:
     """Return how much of a window is on a screen."""
     x, y, width, height = area
-    across = min(place.x + place.width, x + width) - max(place.x, x)
-    down = min(place.y + place.height, y + height) - max(place.y, y)
+    across = min(geometry.x + geometry.width, x + width) - max(geometry.x, x)
+    down = min(geometry.y + geometry.height, y + height) - max(geometry.y, y)
     return max(across, 0) * max(down, 0)

@@ -33,7 +33,7 @@ class _Result:
     """What one text's check found."""
 
     version: int | None = None
-    found: Found = field(default_factory=dict)
+    diagnostics: Found = field(default_factory=dict)
     places: frozenset[Path] = frozenset()  # where files were looked for
 
 
@@ -53,7 +53,7 @@ class Checker:
         """Make it; ``start`` starts it.
 
         ``lock`` is held while texts are read, not while the sandbox draws. ``publish`` gets all that is
-        wrong in a file whenever that changes; ``tell`` gets a sentence for the user. Both are called in
+        wrong in a file whenever that changes; ``tell`` gets a message for the user. Both are called in
         the checker's thread.
         """
         self._documents = documents
@@ -99,7 +99,7 @@ class Checker:
         with self._news:
             self._wanted.pop(document.uri, None)
             result = self._results.pop(document.uri, None)
-        for path in result.found if result is not None else ():
+        for path in result.diagnostics if result is not None else ():
             self._publish_of(path)
         self.files_changed({document.path})
 
@@ -138,13 +138,13 @@ class Checker:
                 for other, its in self._results.items():
                     if other != document.uri and document.path in its.places:
                         self._wanted.setdefault(other)
-        for path in dict.fromkeys([document.path, *old.found, *result.found]):
+        for path in dict.fromkeys([document.path, *old.diagnostics, *result.diagnostics]):
             self._publish_of(path)
 
     def _checked(self, document: Document) -> _Result:
         if not document.is_ours:
             return _Result(document.version)
-        found: dict[Path, list[Diagnostic]] = {}
+        result: dict[Path, list[Diagnostic]] = {}
         with self._lock, self._documents.reading(), noting_places() as places:
             try:
                 report = check_file(document.path, self._sandbox)
@@ -157,9 +157,9 @@ class Checker:
                 diagnostics = [Diagnostic(f"cannot be checked: {summary_of(error)}")]
             for diagnostic in diagnostics:
                 path = self.file_named(diagnostic.file) or document.path
-                found.setdefault(path, []).append(diagnostic)
+                result.setdefault(path, []).append(diagnostic)
         return _Result(
-            document.version, {path: tuple(some) for path, some in found.items()}, frozenset(places)
+            document.version, {path: tuple(some) for path, some in result.items()}, frozenset(places)
         )
 
     def file_named(self, name: str) -> Path | None:
@@ -168,8 +168,8 @@ class Checker:
         places = [Path(name)] if Path(name).is_absolute() else [current_folder() / name]
         if name.startswith("glsl/"):
             places.append(GLSL / name.removeprefix("glsl/"))
-        for place in places if name else ():
-            path = place.resolve()
+        for position in places if name else ():
+            path = position.resolve()
             if self._documents.at(path) is not None or path.is_file():
                 return path
         return None
@@ -177,8 +177,8 @@ class Checker:
     def _publish_of(self, path: Path) -> None:
         """Publish all that is wrong in a file, whichever texts' checks have found it."""
         with self._news:
-            found = [d for result in self._results.values() for d in result.found.get(path, ())]
-        once = {(d.line, d.column, d.message): d for d in found}
+            diagnostics = [d for result in self._results.values() for d in result.diagnostics.get(path, ())]
+        once = {(d.line, d.column, d.message): d for d in diagnostics}
         self._publish(path, list(once.values()))
 
     def _give_up_if_stale(self) -> None:

@@ -24,13 +24,13 @@ _LIST = re.compile(r"\[([^\[\]]*)\]")
 
 def colours_of_shader(document: Document, documents: Documents) -> list[types.ColorInformation]:
     """Return the colours that a shader's own colour parameters have as defaults."""
-    found = []
+    colours = []
     for parameter in shader_of(document, documents).parameters:
-        place = _literal(document, parameter)
-        if place is not None and isinstance(parameter.default, tuple):
+        literal = _literal(document, parameter)
+        if literal is not None and isinstance(parameter.default, tuple):
             shown = _encoded(parameter.default, parameter.widget.raw)
-            found.append(types.ColorInformation(document.range(*place), shown))
-    return found
+            colours.append(types.ColorInformation(document.range(*literal), shown))
+    return colours
 
 
 def present_in_shader(
@@ -38,8 +38,8 @@ def present_in_shader(
 ) -> list[types.ColorPresentation]:
     """Return how a colour is written as the default of the parameter whose colour is at a place."""
     for parameter in shader_of(document, documents).parameters:
-        place = _literal(document, parameter)
-        if place is not None and document.range(*place) == where:
+        literal = _literal(document, parameter)
+        if literal is not None and document.range(*literal) == where:
             numbers = _decoded(colour, parameter.widget.raw)[: 3 if parameter.type == "vec3" else 4]
             text = f"{parameter.type}({', '.join(_number(n) for n in numbers)})"
             return [types.ColorPresentation(text, types.TextEdit(where, text))]
@@ -61,19 +61,19 @@ def present_in_sketch(
     for start, end, numbers, raw, is_text in _values(document, documents):
         if document.range(start, end) != where:
             continue
-        given = _decoded(colour, raw)[: len(numbers)]
+        encoded = _decoded(colour, raw)[: len(numbers)]
         if is_text and (colour.alpha >= 1.0 or len(numbers) == 4):
             quote = document.text[start]
-            text = f"{quote}{to_hex(given[:3] if colour.alpha >= 1.0 else given, raw=raw)}{quote}"
+            text = f"{quote}{to_hex(encoded[:3] if colour.alpha >= 1.0 else encoded, raw=raw)}{quote}"
         else:
-            text = f"[{', '.join(_number(n) for n in given)}]"
+            text = f"[{', '.join(_number(n) for n in encoded)}]"
         return [types.ColorPresentation(text, types.TextEdit(where, text))]
     return []
 
 
 def _values(document: Document, documents: Documents) -> list[tuple[int, int, tuple[float, ...], bool, bool]]:
     """Return each colour that is set: where, its linear numbers, whether raw, whether in hexadecimal."""
-    found = []
+    values = []
     with documents.reading():
         sketch = SketchText(document)
         for table, path, pair in sketch.settings():
@@ -87,12 +87,12 @@ def _values(document: Document, documents: Documents) -> list[tuple[int, int, tu
                     numbers = parse_hex(match[2], raw=raw)
                 except DataError:
                     continue
-                found.append((pair.value, pair.value + match.end(), numbers, raw, True))
+                values.append((pair.value, pair.value + match.end(), numbers, raw, True))
             elif match := _LIST.match(text):
                 numbers = _numbers(match[1])
                 if len(numbers) in (3, 4):
-                    found.append((pair.value, pair.value + match.end(), numbers, raw, False))
-    return found
+                    values.append((pair.value, pair.value + match.end(), numbers, raw, False))
+    return values
 
 
 def _literal(document: Document, parameter: Parameter) -> tuple[int, int] | None:
@@ -115,8 +115,8 @@ def _encoded(linear: Sequence[float], raw: bool) -> types.Color:
 
 def _decoded(colour: types.Color, raw: bool) -> tuple[float, ...]:
     """Return an editor's colour as the playground has it, with its alpha."""
-    given = to_hex((colour.red, colour.green, colour.blue), raw=True)
-    return (*parse_hex(given, raw=raw), colour.alpha)
+    hex_text = to_hex((colour.red, colour.green, colour.blue), raw=True)
+    return (*parse_hex(hex_text, raw=raw), colour.alpha)
 
 
 def _numbers(text: str) -> tuple[float, ...]:

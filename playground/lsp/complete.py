@@ -68,13 +68,13 @@ def item(
     )
 
 
-def replacing(found: Iterable[types.CompletionItem], text: Text, start: int, end: int) -> None:
+def replacing(items: Iterable[types.CompletionItem], text: Text, start: int, end: int) -> None:
     """Have completions replace a part of the text: what is typed may hold dots and slashes."""
-    place = text.range(start, end)
-    for one in found:
-        one.text_edit = types.TextEdit(place, one.insert_text or one.label)
-        one.filter_text = one.label
-        one.insert_text = None
+    edit_range = text.range(start, end)
+    for entry in items:
+        entry.text_edit = types.TextEdit(edit_range, entry.insert_text or entry.label)
+        entry.filter_text = entry.label
+        entry.insert_text = None
 
 
 def _includes(document: Document, typed: str, at: int) -> list[types.CompletionItem]:
@@ -91,14 +91,14 @@ def _includes(document: Document, typed: str, at: int) -> list[types.CompletionI
                 (f"{library}/{name}" for name in names_below((folder,), (".glsl",))), library
             )
     names |= dict.fromkeys((f"{name}/" for name in libraries()), "library")
-    found = [item(name, Kind.File, origin) for name, origin in names.items()]
-    replacing(found, document, at - len(typed), at)
-    return found
+    items = [item(name, Kind.File, origin) for name, origin in names.items()]
+    replacing(items, document, at - len(typed), at)
+    return items
 
 
 def _pragma(match: re.Match[str]) -> list[types.CompletionItem]:
-    kind, inside, begun = match.groups()
-    if begun is not None:
+    kind, inside, is_started = match.groups()
+    if is_started is not None:
         return [item(name, Kind.Keyword) for name in PRAGMAS]
     if kind not in PRAGMAS:
         return []
@@ -107,9 +107,9 @@ def _pragma(match: re.Match[str]) -> list[types.CompletionItem]:
         return _choices(rows.get(value[1]))
     if inside.count('"') % 2:  # one that may stand without its name
         return _choices(next((row for row in rows.values() if row.positional), None))
-    given = re.findall(r"(\w+)\s*=", inside)
-    found = [row for name, row in rows.items() if name not in given]
-    return [item(row.name, Kind.Property, f"#pragma {kind}", row.about) for row in found]
+    options = re.findall(r"(\w+)\s*=", inside)
+    result = [row for name, row in rows.items() if name not in options]
+    return [item(row.name, Kind.Property, f"#pragma {kind}", row.about) for row in result]
 
 
 def _choices(row: Option | None) -> list[types.CompletionItem]:
@@ -138,19 +138,19 @@ def _annotation(before: str, glsl_type: str) -> list[types.CompletionItem]:
         word = re.findall(r"(\w+)\s*\(", written)[-1:]
         if word in (["input"], ["file"]):
             words = (*_SAMPLING, *(FALLBACKS if word == ["input"] else ("paint",)))
-            return [item(one, Kind.EnumMember) for one in words]
+            return [item(choice, Kind.EnumMember) for choice in words]
         return []
-    found = []
+    items = []
     if not re.search(r"\w", written.replace(re.split(r"\W", written)[-1], "", 1)):
-        found = [
+        items = [
             item(name, Kind.Keyword, kind.takes, order=1)
             for name, kind in WIDGETS.items()
             if name != "number" and glsl_type in kind.types
         ]
         if glsl_type == "sampler2D":
-            found.append(item("input", Kind.Keyword, order=1))
+            items.append(item("input", Kind.Keyword, order=1))
     used = set(re.findall(r"\w+", written))
-    return found + [item(f"{name}()", Kind.Keyword, order=2) for name in sorted(MODIFIERS - used)]
+    return items + [item(f"{name}()", Kind.Keyword, order=2) for name in sorted(MODIFIERS - used)]
 
 
 def _names(document: Document, documents: Documents, at: int) -> list[types.CompletionItem]:
@@ -158,55 +158,60 @@ def _names(document: Document, documents: Documents, at: int) -> list[types.Comp
     start = word_at(document.text, at)[1]
     if start and document.text[start - 1] == ".":  # a component or a member
         return _members(shader)
-    found: dict[str, types.CompletionItem] = {}
+    items: dict[str, types.CompletionItem] = {}
     function = shader.function_at(at)
     for local in locals_of(document.text, function) if function is not None else ():
         if local.seen <= start < local.end:
-            found[local.name] = item(local.name, Kind.Variable, order=1)
+            items[local.name] = item(local.name, Kind.Variable, order=1)
     for parameter in shader.parameters:
         about = describe.parameter(parameter)
-        found.setdefault(parameter.name, item(parameter.name, Kind.Variable, parameter.type, about, 2))
+        items.setdefault(parameter.name, item(parameter.name, Kind.Variable, parameter.type, about, 2))
     if shader.is_kernel:
-        for name, (glsl_type, meaning) in shader.given.items():
-            found.setdefault(name, item(name, Kind.Variable, glsl_type, meaning, 2))
-    for path, _, one in shader.declared():
-        if not (path == document.path and one.at == start):
-            about = describe.declared(one, path)
-            found.setdefault(one.name, item(one.name, _KINDS[one.kind], one.signature, about, 3))
+        for name, (glsl_type, meaning) in shader.engine_names.items():
+            items.setdefault(name, item(name, Kind.Variable, glsl_type, meaning, 2))
+    for path, _, declaration in shader.declared():
+        if not (path == document.path and declaration.at == start):
+            about = describe.declared(declaration, path)
+            items.setdefault(
+                declaration.name,
+                item(declaration.name, _KINDS[declaration.kind], declaration.signature, about, 3),
+            )
     typed = document.text[start:at]
     if typed:
         for name, places in library_declared().items():
-            if name not in found and name[:1].lower() == typed[:1].lower():
-                file, one = places[0]
-                found[name] = _from_library(
-                    document, file, one.signature, describe.declared(one, GLSL / file), name
+            if name not in items and name[:1].lower() == typed[:1].lower():
+                file, declaration = places[0]
+                items[name] = _from_library(
+                    document, file, declaration.signature, describe.declared(declaration, GLSL / file), name
                 )
         for name in GLSL_WORDS:
             if name[:1].lower() == typed[:1].lower():
-                found.setdefault(name, item(name, Kind.Keyword, order=6))
-    found.pop("", None)
-    return list(found.values())
+                items.setdefault(name, item(name, Kind.Keyword, order=6))
+    items.pop("", None)
+    return list(items.values())
 
 
 def _members(shader: Shader) -> list[types.CompletionItem]:
     """Return the members of every struct that the text knows."""
-    found: dict[str, types.CompletionItem] = {}
-    for _, _, one in shader.declared():
-        if one.kind == "struct":
-            for glsl_type, name in re.findall(r"(\w+)\s+(\w+)\s*(?:\[[^\]]*\])?;", one.signature):
-                found.setdefault(name, item(name, Kind.Field, f"{glsl_type} of {one.name}"))
-    return list(found.values())
+    items: dict[str, types.CompletionItem] = {}
+    for _, _, declaration in shader.declared():
+        if declaration.kind == "struct":
+            for glsl_type, name in re.findall(r"(\w+)\s+(\w+)\s*(?:\[[^\]]*\])?;", declaration.signature):
+                items.setdefault(name, item(name, Kind.Field, f"{glsl_type} of {declaration.name}"))
+    return list(items.values())
 
 
 def _from_library(
     document: Document, file: str, signature: str, about: str, name: str
 ) -> types.CompletionItem:
     """Return a function of the library, and the include that it needs."""
-    found = item(name, Kind.Function, signature, f'{about}\n\nadds `#include "{file}"`', 4)
+    from_library = item(name, Kind.Function, signature, f'{about}\n\nadds `#include "{file}"`', 4)
     row = include_row(document)
-    place = types.Position(row, 0)
-    found.additional_text_edits = [types.TextEdit(types.Range(place, place), f'#include "{file}"\n')]
-    return found
+    position = types.Position(row, 0)
+    from_library.additional_text_edits = [
+        types.TextEdit(types.Range(position, position), f'#include "{file}"\n')
+    ]
+    return from_library
 
 
 def include_row(text: Text) -> int:

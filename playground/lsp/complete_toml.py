@@ -35,9 +35,9 @@ def complete_sketch(document: Document, documents: Documents, at: int) -> list[t
     end = end if end >= 0 else len(document.text)
     with documents.reading():
         whole = SketchText(document, f"{document.text[:row]}{' ' * (end - row)}{document.text[end:]}")
-        found = _Completion(whole, cursor, SketchText(document)).items()
-    replacing(found, document, cursor.start, at)
-    return found
+        items = _Completion(whole, cursor, SketchText(document)).items()
+    replacing(items, document, cursor.start, at)
+    return items
 
 
 class _Completion:
@@ -58,8 +58,8 @@ class _Completion:
 
     def _headers(self) -> list[types.CompletionItem]:
         names = [*toml_table.LISTS, "view", *TECHNIQUE_KEYS]
-        known = toml_table.SKETCH | toml_table.TECHNIQUE
-        return [item(name, Kind.Module, "", known[name]) for name in names]
+        sketch = toml_table.SKETCH | toml_table.TECHNIQUE
+        return [item(name, Kind.Module, "", sketch[name]) for name in names]
 
     # ── keys ─────────────────────────────────────────────────────────────────
 
@@ -89,21 +89,21 @@ class _Completion:
         if head in ("pass", "view"):
             technique = self._technique(head)
             return self._parameters(technique, "") if technique is not None else []
-        found = []
+        items = []
         for name in (*self.sketch.names("pass"), "view"):
             technique = self.sketch.technique_of(name)
-            found += self._parameters(technique, f"{name}.") if technique is not None else []
-        return found
+            items += self._parameters(technique, f"{name}.") if technique is not None else []
+        return items
 
     def _parameters(self, technique: Technique, prefix: str) -> list[types.CompletionItem]:
-        found = []
+        items = []
         for path in all_paths(technique):
             for target in find_targets(technique, path)[:1]:
                 about = describe.parameter(target.parameter)
                 order = 2 if "." in path else 1
                 label = self._key(f"{prefix}{path}")
-                found.append(item(label, Kind.Variable, target.parameter.type, about, order))
-        return found
+                items.append(item(label, Kind.Variable, target.parameter.type, about, order))
+        return items
 
     def _key(self, name: str) -> str:
         """Return a key as it is written where the cursor is: one with dots has quotes."""
@@ -124,45 +124,49 @@ class _Completion:
         if key == "preset" and head == "shot":
             return [self._text(name, Kind.EnumMember) for name in self.whole.names("preset")]
         if key == "main" and not head:
-            found = []
+            items = []
             for name in (*self.sketch.names("pass"), "view"):
                 technique = self.sketch.technique_of(name)
                 for path in all_paths(technique) if technique is not None else ():
-                    found.append(self._text(f"{name}.{path}", Kind.Variable, 2 if "." in path else 1))
-            return found
+                    items.append(self._text(f"{name}.{path}", Kind.Variable, 2 if "." in path else 1))
+            return items
         if key == "set" and len(keys) > 1:
             parameter = self._parameter(head, ".".join(keys[1:]))
             return self._of_parameter(parameter) if parameter is not None else []
         if head in ("parameters", "outputs"):
             return self._inside(head)
-        return [self._choice(one) for one in _CHOICES.get(key, ())]
+        return [self._choice(entry) for entry in _CHOICES.get(key, ())]
 
-    def _choice(self, one: object) -> types.CompletionItem:
-        return self._text(one, Kind.EnumMember) if isinstance(one, str) else item(spell(one), Kind.EnumMember)
+    def _choice(self, value: object) -> types.CompletionItem:
+        return (
+            self._text(value, Kind.EnumMember)
+            if isinstance(value, str)
+            else item(spell(value), Kind.EnumMember)
+        )
 
     def _sources(self) -> list[types.CompletionItem]:
-        found = []
+        result = []
         for name, table in self.sketch.names("pass").items():
             if table == self.cursor.table:
                 continue
             technique = self.sketch.technique(table)
-            found.append(self._text(name, Kind.Module))
+            result.append(self._text(name, Kind.Module))
             outputs = output_names(technique) if technique is not None else ()
             if len(outputs) > 1:
-                found += [self._text(f"{name}:{output}", Kind.Field, 6) for output in outputs]
-        inputs = [str(place[-1]) for place in self.sketch.places.pairs if place[:1] == ("inputs",)]
-        return [*found, *(self._text(name, Kind.Field) for name in inputs)]
+                result += [self._text(f"{name}:{output}", Kind.Field, 6) for output in outputs]
+        inputs = [str(position[-1]) for position in self.sketch.places.pairs if position[:1] == ("inputs",)]
+        return [*result, *(self._text(name, Kind.Field) for name in inputs)]
 
     def _inside(self, head: str) -> list[types.CompletionItem]:
         """Return what a technique shows outside: paths of parameters, or outputs, of its passes."""
-        found = []
+        items = []
         for name in self.sketch.names("pass"):
             technique = self.sketch.technique_of(name)
             if technique is not None and head == "parameters":
-                found += [self._text(f"{name}.{path}", Kind.Variable) for path in all_paths(technique)]
+                items += [self._text(f"{name}.{path}", Kind.Variable) for path in all_paths(technique)]
             elif technique is not None:
-                found += [self._text(f"{name}:{output}", Kind.Field) for output in output_names(technique)]
-        return found
+                items += [self._text(f"{name}:{output}", Kind.Field) for output in output_names(technique)]
+        return items
 
     def _of_parameter(self, parameter: Parameter) -> list[types.CompletionItem]:
         if parameter.widget.choices:

@@ -17,37 +17,37 @@ def code(text: str, language: str = "glsl") -> str:
     return f"```{language}\n{text}\n```"
 
 
-def declared(one: Declared, path: Path) -> str:
+def declared(declaration: Declared, path: Path) -> str:
     """Return a declaration with its comment and its file."""
-    parts = [code(one.signature), one.comment, f"*{shown(path)}*"]
+    parts = [code(declaration.signature), declaration.comment, f"*{shown(path)}*"]
     return "\n\n".join(filter(None, parts))
 
 
-def parameter(one: Parameter) -> str:
+def parameter(item: Parameter) -> str:
     """Return what a parameter is: type, default, range, tooltip, where it is declared."""
-    choice = Choice(one.name, one, one.default, exported=True)
-    unit = f" {one.unit}" if one.unit else ""
-    facts = [f"default `{write(one, one.default)}`{unit}"] if one.widget.kind != "file" else []
+    choice = Choice(item.name, item, item.default, exported=True)
+    unit = f" {item.unit}" if item.unit else ""
+    facts = [f"default `{write(item, item.default)}`{unit}"] if item.widget.kind != "file" else []
     if choice.range:
         facts.append(choice.range + unit)
     parts = [
-        code(f"uniform {one.type} {one.name}"),
-        f"**{one.title}**: {one.widget.kind}; {'; '.join(facts) or expected(one)}",
-        one.tooltip,
-        f"*{shown(one.file)}:{one.line}*" if one.file else "",
+        code(f"uniform {item.type} {item.name}"),
+        f"**{item.title}**: {item.widget.kind}; {'; '.join(facts) or expected(item)}",
+        item.tooltip,
+        f"*{shown(item.file)}:{item.line}*" if item.file else "",
     ]
     return "\n\n".join(filter(None, parts))
 
 
-def technique(use: str, one: Technique) -> str:
+def technique(use: str, item: Technique) -> str:
     """Return what a technique is: title, inputs, outputs, parameters."""
-    kind = f"{one.kind}" if isinstance(one, Kernel) else "several passes"
-    names = ", ".join(f"`{p.name}`" for p in one.parameters)
+    kind = f"{item.kind}" if isinstance(item, Kernel) else "several passes"
+    names = ", ".join(f"`{p.name}`" for p in item.parameters)
     parts = [
-        f"**{one.title or use}** ({kind})",
-        f"inputs: {', '.join(f'`{name}`' for name in input_names(one)) or 'none'}",
-        f"outputs: {', '.join(f'`{name}`' for name in output_names(one))}",
+        f"**{item.title or use}** ({kind})",
+        f"inputs: {', '.join(f'`{name}`' for name in input_names(item)) or 'none'}",
+        f"outputs: {', '.join(f'`{name}`' for name in output_names(item))}",
         f"parameters: {names or 'none'}",
-        f"*{shown(one.path)}*",
+        f"*{shown(item.path)}*",
     ]
     return "\n\n".join(parts)

@@ -111,10 +111,10 @@ class Documents:
 
     def put(self, uri: str, text: str, version: int | None = None, language: str = "") -> Document:
         """Add or replace an open text."""
-        known = self._open.get(uri)
-        path = known.path if known is not None else self._path(uri, language)
-        found = self._open[uri] = Document(normalised(text), self.units, uri, path, version)
-        return found
+        cached = self._open.get(uri)
+        path = cached.path if cached is not None else self._path(uri, language)
+        document = self._open[uri] = Document(normalised(text), self.units, uri, path, version)
+        return document
 
     def remove(self, uri: str) -> Document | None:
         """Forget a text that was closed."""
@@ -152,9 +152,9 @@ class Documents:
         parts = urlsplit(uri)
         if parts.scheme == "file":
             return Path(str(uris.to_fs_path(uri))).absolute().resolve()
-        given = Path(unquote(parts.path))
-        name = re.sub(r"[^\w.-]", "_", given.name) or "untitled"
-        if not given.suffix:
+        path = Path(unquote(parts.path))
+        name = re.sub(r"[^\w.-]", "_", path.name) or "untitled"
+        if not path.suffix:
             name += ".toml" if "toml" in language else ".glsl"
-        folder = given.parent if given.is_absolute() and given.parent.is_dir() else None
+        folder = path.parent if path.is_absolute() and path.parent.is_dir() else None
         return (folder or next(iter(self.folders), Path.cwd())).resolve() / name

@@ -18,7 +18,7 @@ from playground.shader.outline import local_at, locals_of, outline
 from playground.shader.reserved_names import DRIVER_BOUND, RESERVED
 from playground.shader.source import find_include, read_source, read_text
 from playground.sketch import toml_table
-from playground.sketch.toml_text import Pair, Place
+from playground.sketch.toml_text import KeyPath, Pair
 from playground.sketch.wiring import inner
 
 _SYMBOLS = {
@@ -46,14 +46,14 @@ def hover_shader(document: Document, documents: Documents, at: int) -> str:
     """Return what is known of what stands at a place of a shader, as Markdown; "" for nothing."""
     if include := include_at(document.text, at):
         with documents.reading():
-            found = find_include(include.name, document.path, (document.root,))
-            if found is None:
+            include_path = find_include(include.name, document.path, (document.root,))
+            if include_path is None:
                 return ""
             try:
-                title = title_of(read_source(found, (document.root,)))
+                title = title_of(read_source(include_path, (document.root,)))
             except PlaygroundError:
                 title = ""
-            return "\n\n".join(filter(None, [f"*{shown(found)}*", title]))
+            return "\n\n".join(filter(None, [f"*{shown(include_path)}*", title]))
     word, start = word_at(document.text, at)
     if not word:
         return ""
@@ -67,18 +67,22 @@ def hover_shader(document: Document, documents: Documents, at: int) -> str:
         return describe.code(document.lines[row].strip())
     if (parameter := shader.parameter(word)) is not None:
         return describe.parameter(parameter)
-    if shader.is_kernel and word in (given := shader.given):
-        glsl_type, meaning = given[word]
+    if shader.is_kernel and word in (names := shader.engine_names):
+        glsl_type, meaning = names[word]
         brackets = "()" if word in RESERVED or word.startswith("previous") else ""
         return f"{describe.code(f'{glsl_type} {word}{brackets}')}\n\n{meaning}"
-    found_here = [(path, one) for path, _, one in shader.declared() if one.name == word]
+    found_here = [
+        (path, declaration) for path, _, declaration in shader.declared() if declaration.name == word
+    ]
     found_here.sort(key=lambda item: item[1].is_prototype)
     if found_here:
-        return "\n\n---\n\n".join(describe.declared(one, path) for path, one in found_here[:4])
+        return "\n\n---\n\n".join(
+            describe.declared(declaration, path) for path, declaration in found_here[:4]
+        )
     if word in DRIVER_BOUND and shader.is_kernel:
         return f"A kernel may not use `{word}`: {DRIVER_BOUND[word]}"
-    for file, one in library_declared().get(word, ())[:1]:
-        return f'{describe.declared(one, GLSL / file)}\n\nneeds `#include "{file}"`'
+    for file, declaration in library_declared().get(word, ())[:1]:
+        return f'{describe.declared(declaration, GLSL / file)}\n\nneeds `#include "{file}"`'
     return ""
 
 
@@ -86,25 +90,29 @@ def define_shader(document: Document, documents: Documents, at: int) -> Target |
     """Return where what stands at a place of a shader is declared: a file, or a name in one."""
     if include := include_at(document.text, at):
         with documents.reading():
-            found = find_include(include.name, document.path, (document.root,))
-        return Target(found, 0, 0) if found is not None else None
+            include_path = find_include(include.name, document.path, (document.root,))
+        return Target(include_path, 0, 0) if include_path is not None else None
     word, start = word_at(document.text, at)
     if not word or not is_code(document.text, start):
         return None
-    place = shader_of(document, documents).find(word, start)
-    return Target(place.path, place.at, place.at + place.length) if place is not None else None
+    location = shader_of(document, documents).find(word, start)
+    return Target(location.path, location.at, location.at + location.length) if location is not None else None
 
 
 def symbols_of_shader(document: Document) -> list[types.DocumentSymbol]:
     """Return what a shader declares."""
-    found = []
-    for one in outline(document.text):
-        whole = document.range(one.start, max(one.end, one.at + len(one.name)))
-        name = document.range(one.at, one.at + len(one.name))
-        found.append(
-            types.DocumentSymbol(one.name, _SYMBOLS[one.kind], whole, name, detail=one.signature[:120])
+    symbols = []
+    for declaration in outline(document.text):
+        whole = document.range(
+            declaration.start, max(declaration.end, declaration.at + len(declaration.name))
         )
-    return found
+        name = document.range(declaration.at, declaration.at + len(declaration.name))
+        symbols.append(
+            types.DocumentSymbol(
+                declaration.name, _SYMBOLS[declaration.kind], whole, name, detail=declaration.signature[:120]
+            )
+        )
+    return symbols
 
 
 # ── sketches ─────────────────────────────────────────────────────────────────
@@ -114,48 +122,48 @@ def hover_sketch(document: Document, documents: Documents, at: int) -> str:
     """Return what is known of what stands at a place of a sketch, as Markdown; "" for nothing."""
     with documents.reading():
         sketch = SketchText(document)
-        place, pair = _pair_at(sketch, at)
+        key_path, pair = _pair_at(sketch, at)
         if pair is None:
             name = _header_at(document, sketch, at)
             return (toml_table.SKETCH | toml_table.TECHNIQUE).get(name, "")
-        table, keys = _parted(place)
+        table, keys = _parted(key_path)
         if keys[:1] == ("set",) and len(keys) > 1:
             parameter = sketch.parameter(table, ".".join(keys[1:]))
             return describe.parameter(parameter) if parameter is not None else ""
         if keys == ("use",) and at >= pair.value:
             technique = sketch.technique(table)
-            return describe.technique(sketch.value(place), technique) if technique is not None else ""
+            return describe.technique(sketch.value(key_path), technique) if technique is not None else ""
         if keys[:1] == ("inputs",) and len(keys) > 1 and at >= pair.value:
-            name = sketch.value(place).partition(":")[0].partition(".")[0]
+            name = sketch.value(key_path).partition(":")[0].partition(".")[0]
             technique = sketch.technique_of(name)
             return describe.technique(name, technique) if technique is not None else ""
         head = str(table[0]) if table else ""
-        known = toml_table.TABLES.get(head, {}) if head else toml_table.SKETCH | toml_table.TECHNIQUE
+        keys_of_table = toml_table.TABLES.get(head, {}) if head else toml_table.SKETCH | toml_table.TECHNIQUE
         if keys[:1] == ("camera",) and len(keys) > 1:
             return toml_table.CAMERA.get(keys[1], "")
-        return known.get(keys[0], "") if len(keys) == 1 else ""
+        return keys_of_table.get(keys[0], "") if len(keys) == 1 else ""
 
 
 def define_sketch(document: Document, documents: Documents, at: int) -> Target | None:
     """Return where what stands at a place of a sketch is: a technique's file, a pass, a parameter."""
     with documents.reading():
         sketch = SketchText(document)
-        place, pair = _pair_at(sketch, at)
+        key_path, pair = _pair_at(sketch, at)
         if pair is None:
             return None
-        table, keys = _parted(place)
+        table, keys = _parted(key_path)
         if keys == ("use",):
             technique = sketch.technique(table)
             return Target(Path(technique.path), 0, 0) if technique is not None else None
         if keys[:1] == ("inputs",) and len(keys) > 1 and at >= pair.value:
-            where = sketch.value(place).partition(":")[0]
+            where = sketch.value(key_path).partition(":")[0]
             head, _, rest = where.partition(".")
             if rest and (technique := sketch.technique_of(head)) is not None:
-                found = inner(technique, rest)
-                return Target(Path(found.path), 0, 0) if found is not None else None
+                technique_inside = inner(technique, rest)
+                return Target(Path(technique_inside.path), 0, 0) if technique_inside is not None else None
             return _table_target(document, sketch, sketch.names("pass").get(head))
         if keys == ("preset",):
-            return _table_target(document, sketch, sketch.names("preset").get(sketch.value(place)))
+            return _table_target(document, sketch, sketch.names("preset").get(sketch.value(key_path)))
         if keys[:1] == ("set",) and len(keys) > 1:
             parameter = sketch.parameter(table, ".".join(keys[1:]))
             if parameter is not None and parameter.file:
@@ -166,35 +174,37 @@ def define_sketch(document: Document, documents: Documents, at: int) -> Target |
 def symbols_of_sketch(document: Document) -> list[types.DocumentSymbol]:
     """Return the tables of a sketch by their names."""
     sketch = SketchText(document)
-    found = []
+    symbols = []
     headers = sketch.places.headers
-    tables = [place for place in sketch.places.bodies if place]
-    for header, place in zip(headers, tables, strict=False):
-        end = sketch.places.bodies[place]
-        name = sketch.value((*place, "name"))
+    tables = [table_path for table_path in sketch.places.bodies if table_path]
+    for header, table_path in zip(headers, tables, strict=False):
+        end = sketch.places.bodies[table_path]
+        name = sketch.value((*table_path, "name"))
         title = f"{header.keys[0]} {name}".strip()
         start = header.start
         line = document.text.find("\n", start)
         whole = document.range(start, max(end, start + 1))
         head = document.range(start, min(line if line >= 0 else len(document.text), max(end, start + 1)))
-        found.append(types.DocumentSymbol(title, types.SymbolKind.Object, whole, head))
-    return found
+        symbols.append(types.DocumentSymbol(title, types.SymbolKind.Object, whole, head))
+    return symbols
 
 
-def _pair_at(sketch: SketchText, at: int) -> tuple[Place, Pair | None]:
+def _pair_at(sketch: SketchText, at: int) -> tuple[KeyPath, Pair | None]:
     """Return the innermost key and value that a place is in."""
-    around = [(place, pair) for place, pair in sketch.places.pairs.items() if pair.key <= at <= pair.end]
+    around = [
+        (key_path, pair) for key_path, pair in sketch.places.pairs.items() if pair.key <= at <= pair.end
+    ]
     return max(around, key=lambda item: item[1].key, default=((), None))
 
 
-def _parted(place: Place) -> tuple[Place, tuple[str, ...]]:
+def _parted(key_path: KeyPath) -> tuple[KeyPath, tuple[str, ...]]:
     """Return a place's table, one with a header, and the keys in it."""
     size = 0
-    if place and place[0] in toml_table.LISTS:
+    if key_path and key_path[0] in toml_table.LISTS:
         size = 2
-    elif len(place) > 1 and place[0] == "view":
+    elif len(key_path) > 1 and key_path[0] == "view":
         size = 1
-    return place[:size], tuple(str(key) for key in place[size:])
+    return key_path[:size], tuple(str(key) for key in key_path[size:])
 
 
 def _header_at(document: Document, sketch: SketchText, at: int) -> str:
@@ -203,7 +213,7 @@ def _header_at(document: Document, sketch: SketchText, at: int) -> str:
     return rows.get(row, "")
 
 
-def _table_target(document: Document, sketch: SketchText, table: Place | None) -> Target | None:
+def _table_target(document: Document, sketch: SketchText, table: KeyPath | None) -> Target | None:
     pair = sketch.places.pairs.get((*table, "name")) if table is not None else None
     return Target(document.path, pair.key, pair.end) if pair is not None else None
 
@@ -212,5 +222,5 @@ def _line_target(path: Path, line: int, name: str) -> Target:
     """Return a name on a line of a file, counted from 1."""
     text = Text(read_text(path), len)
     start = text.line_start(line - 1)
-    found = text.text.find(name, start)
-    return Target(path, max(found, start), max(found, start) + len(name))
+    index = text.text.find(name, start)
+    return Target(path, max(index, start), max(index, start) + len(name))

@@ -47,7 +47,7 @@ _FOLLOWS = re.compile(r"//![^\n]*\bfollows\(([^)\n]*)\)")
 
 
 class Refused(Exception):
-    """Why a name is not renamed, in a sentence."""
+    """Why a name is not renamed, in a message."""
 
 
 def prepare(document: Document, documents: Documents, at: int) -> types.Range:
@@ -74,10 +74,10 @@ def rename(document: Document, documents: Documents, at: int, new: str) -> dict[
         inside |= {word for used in _macros_in(shader, function) for word in used.words}
         if new in inside:
             raise Refused(f"'{new}' is a name of this function already")
-        return {document.path: [(place, place + len(name), new) for place in places]}
+        return {document.path: [(index, index + len(name), new) for index in places]}
     _top_level(shader, name)
-    found = _Everywhere(document, documents, shader, name, new).edits()
-    return {path: sorted(edits) for path, edits in found.items() if edits}
+    edits = _Everywhere(document, documents, shader, name, new).edits()
+    return {path: sorted(edits) for path, edits in edits.items() if edits}
 
 
 def _word(document: Document, at: int) -> tuple[str, int]:
@@ -88,7 +88,9 @@ def _word(document: Document, at: int) -> tuple[str, int]:
         raise Refused(f"'{name}' is a word of GLSL itself")
     if start and document.text[start - 1] == ".":
         raise Refused(f"'{name}' is a component or a struct's member; those are not renamed")
-    if any(one.start <= start < one.end and name in one.parameters for one in macros_of(document.text)):
+    if any(
+        macro.start <= start < macro.end and name in macro.parameters for macro in macros_of(document.text)
+    ):
         raise Refused(f"'{name}' is a macro's parameter; those are not renamed")
     return name, start
 
@@ -109,27 +111,29 @@ def _local(shader: Shader, name: str, start: int) -> list[int] | None:
     function = shader.function_at(start)
     if function is None or start == function.at:
         return None
-    found = locals_of(shader.text, function)
-    local = local_at(found, name, start)
+    locals_ = locals_of(shader.text, function)
+    local = local_at(locals_, name, start)
     if local is None:
         return None
-    for path, text, one in shader.declared():
-        if one.name == name:
-            line = text.count("\n", 0, one.at) + 1
+    for path, text, declaration in shader.declared():
+        if declaration.name == name:
+            line = text.count("\n", 0, declaration.at) + 1
             raise Refused(f"'{name}' is also declared at {shown(path)}:{line}, which this function hides")
     for used in _macros_in(shader, function):
         if name in used.words:
-            raise Refused(f"'{name}' is in the macro {used.name} at {used.place}, which this function uses")
+            raise Refused(
+                f"'{name}' is in the macro {used.name} at {used.location}, which this function uses"
+            )
     # Parts that exclude each other may declare it each for themselves, and close blocks that others open.
     branches = has_branches(shader.text, function)
     return [
-        place
-        for word, place in words(shader.text)
+        index
+        for word, index in words(shader.text)
         if word == name
-        and function.start <= place < function.end
-        and not _is_member(shader.text, place)
-        and not any(one.start <= place < one.end for one in macros_of(shader.text))
-        and (other := local_at(found, name, place)) is not None
+        and function.start <= index < function.end
+        and not _is_member(shader.text, index)
+        and not any(declaration.start <= index < declaration.end for declaration in macros_of(shader.text))
+        and (other := local_at(locals_, name, index)) is not None
         and (branches or other.end == local.end)
     ]
 
@@ -140,37 +144,37 @@ class _Used:
 
     name: str
     words: frozenset[str]  # in its body, without its parameters
-    place: str  # as a user would name it
+    location: str  # as a user would name it
 
 
 def _macros_in(shader: Shader, function: Declared) -> list[_Used]:
     """Return the macros that a function's text names, and those that they name."""
-    known: dict[str, list[_Used]] = {}
+    macros_by_name: dict[str, list[_Used]] = {}
     for path, text in shader.files:
         inside = [(word, at) for word, at in words(text) if not _is_member(text, at)]
-        for one in macros_of(text):
-            body = frozenset(word for word, at in inside if one.body <= at < one.end)
-            line = text.count("\n", 0, one.start) + 1
-            known.setdefault(one.name, []).append(_Used(one.name, body, f"{shown(path)}:{line}"))
+        for macro in macros_of(text):
+            body = frozenset(word for word, at in inside if macro.body <= at < macro.end)
+            line = text.count("\n", 0, macro.start) + 1
+            macros_by_name.setdefault(macro.name, []).append(_Used(macro.name, body, f"{shown(path)}:{line}"))
     new = {word for word, at in words(shader.text) if function.start <= at < function.end}
-    found: dict[str, list[_Used]] = {}
-    while new := {word for word in new if word in known and word not in found}:
-        found |= {word: known[word] for word in new}
-        new = {word for name in new for used in known[name] for word in used.words}
-    return [used for several in found.values() for used in several]
+    macros: dict[str, list[_Used]] = {}
+    while new := {word for word in new if word in macros_by_name and word not in macros}:
+        macros |= {word: macros_by_name[word] for word in new}
+        new = {word for name in new for used in macros_by_name[name] for word in used.words}
+    return [used for several in macros.values() for used in several]
 
 
-def _is_member(text: str, place: int) -> bool:
-    return code_of(text)[:place].rstrip().endswith(".")
+def _is_member(text: str, index: int) -> bool:
+    return code_of(text)[:index].rstrip().endswith(".")
 
 
 def _top_level(shader: Shader, name: str) -> None:
     """Raise ``Refused`` for a name that no text of the shader declares, or that is not its to change."""
     if is_given(name) or name in _ENTRIES:
         raise Refused(f"'{name}' is what the playground gives or calls; its name is fixed")
-    if any(one.name == name for one in shader.inputs):
+    if any(declaration.name == name for declaration in shader.inputs):
         raise Refused(f"'{name}' is an input: sketches that wire it name it, so it is not renamed here")
-    if not any(one.name == name for _, _, one in shader.declared()):
+    if not any(declaration.name == name for _, _, declaration in shader.declared()):
         raise Refused(f"no file that this one includes declares '{name}'")
 
 
@@ -191,9 +195,9 @@ class _Everywhere:
         texts: dict[Path, str] = {}
         for user in users:
             texts |= dict(user.files)
-        found = {path: self._in_shader(path, text) for path, text in texts.items()}
-        found = {path: edits for path, edits in found.items() if edits}
-        for path, edits in found.items():
+        edits_by_file = {path: self._in_shader(path, text) for path, text in texts.items()}
+        edits_by_file = {path: edits for path, edits in edits_by_file.items() if edits}
+        for path, edits in edits_by_file.items():
             if not self._is_ours(path):
                 what = "is declared" if self._declares(texts[path]) else "is used"
                 raise Refused(f"'{self.name}' {what} in {shown(path)}, which is not in the open folder")
@@ -203,10 +207,10 @@ class _Everywhere:
                 if any(word == self.new for word, _ in words(text)):
                     raise Refused(f"'{self.new}' is a name in {shown(path)} already")
         if self.parameter is not None:
-            for path, edits in self._in_sketches(found).items():
-                found[path] = edits
-        self._verify(found, users)
-        return found
+            for path, edits in self._in_sketches(edits_by_file).items():
+                edits_by_file[path] = edits
+        self._verify(edits_by_file, users)
+        return edits_by_file
 
     def _users(self) -> list[Shader]:
         """Return every shader that reads a file in which the name would change."""
@@ -231,8 +235,8 @@ class _Everywhere:
 
     def _files(self, endings: tuple[str, ...]) -> list[Path]:
         names = names_below((self.folder,), endings)
-        known = {self.folder / name for name in names} | {one.path for one in self.documents}
-        return sorted(path for path in known if path.name.endswith(endings) and path != self.shader.path)
+        folders = {self.folder / name for name in names} | {document.path for document in self.documents}
+        return sorted(path for path in folders if path.name.endswith(endings) and path != self.shader.path)
 
     def _is_ours(self, path: Path) -> bool:
         return path.is_relative_to(self.folder) or self.documents.is_open_folder(path)
@@ -243,43 +247,49 @@ class _Everywhere:
     @property
     def _old(self) -> dict[str, str]:
         """What changes: name → new name; of a parameter that is a direction, the vector towards it too."""
-        found = {self.name: self.new}
+        names = {self.name: self.new}
         if self.parameter is not None:
-            found |= {f"{prefix}{self.name}": f"{prefix}{self.new}" for prefix in (TOWARDS, WIRED, MATCHES)}
-        return found
+            names |= {f"{prefix}{self.name}": f"{prefix}{self.new}" for prefix in (TOWARDS, WIRED, MATCHES)}
+        return names
 
     def _declares(self, text: str) -> bool:
-        return any(one.name == self.name for one in outline(text))
+        return any(declaration.name == self.name for declaration in outline(text))
 
     def _in_shader(self, path: Path, text: str) -> list[Edit]:
-        members = [one for one in outline(text) if one.kind == "struct"]
+        members = [declaration for declaration in outline(text) if declaration.kind == "struct"]
         code = code_of(text)
-        found = []
-        for word, place in words(text):
+        edits = []
+        for word, index in words(text):
             new = self._old.get(word)
-            if new is None or _is_member(text, place):
+            if new is None or _is_member(text, index):
                 continue
-            after = code[place + len(word) :].lstrip()[:1]
-            if after in tuple(";,[") and any(one.body < place < one.end for one in members):
+            after = code[index + len(word) :].lstrip()[:1]
+            if after in tuple(";,[") and any(
+                declaration.body < index < declaration.end for declaration in members
+            ):
                 continue  # a struct's member of that name
-            found.append((place, place + len(word), new))
+            edits.append((index, index + len(word), new))
         if self.parameter is not None:
-            found += self._in_texts(text)
-        return found
+            edits += self._in_texts(text)
+        return edits
 
     def _in_texts(self, text: str) -> list[Edit]:
         """Return the edits in a pragma's expressions, and in annotations that follow the parameter."""
-        found = []
+        edits = []
         for match in (*_PRAGMA.finditer(text), *_FOLLOWS.finditer(text)):
             for word in re.finditer(rf"(?<![\w.]){self.name}\b(?!\s*[:=])", match[0]):
                 if match[0].count('"', 0, word.start()) % 2:
                     start = match.start() + word.start()
-                    found.append((start, start + len(self.name), self.new))
-        return found
+                    edits.append((start, start + len(self.name), self.new))
+        return edits
 
     def _check(self, path: Path, text: str, is_changed: bool) -> None:
-        for one in outline(text):
-            inside = locals_of(text, one) if one.kind == "function" and one.body >= 0 else ()
+        for declaration in outline(text):
+            inside = (
+                locals_of(text, declaration)
+                if declaration.kind == "function" and declaration.body >= 0
+                else ()
+            )
             at = next((local.at for local in inside if local.name == self.name), None)
             if at is not None:
                 line = text.count("\n", 0, at) + 1
@@ -294,7 +304,7 @@ class _Everywhere:
 
     def _in_sketches(self, changed: Iterable[Path]) -> dict[Path, list[Edit]]:
         assert self.parameter is not None
-        found: dict[Path, list[Edit]] = {}
+        edits_by_file: dict[Path, list[Edit]] = {}
         files = set(changed)
         with self.documents.reading():
             for path in self._files((".toml",)):
@@ -305,17 +315,17 @@ class _Everywhere:
                 if document.is_ours and (
                     edits := edits_in_toml(document, self.parameter, files, self.name, self.new)
                 ):
-                    found[path] = edits
-        return found
+                    edits_by_file[path] = edits
+        return edits_by_file
 
     def _unopened(self, path: Path) -> Document:
         return Document(read_text(path), self.documents.units, "", path, None)
 
-    def _verify(self, found: Mapping[Path, list[Edit]], users: list[Shader]) -> None:
+    def _verify(self, edits_by_file: Mapping[Path, list[Edit]], users: list[Shader]) -> None:
         """Raise ``Refused`` where something that can be read now could not be read with the edits."""
         open_texts = {document.path: document.text for document in self.documents}
         with self.documents.reading():
-            new = {path: _edited(read_text(path), edits) for path, edits in found.items()}
+            new = {path: _edited(read_text(path), edits) for path, edits in edits_by_file.items()}
         tomls = self._files((".toml",)) if self.parameter is not None else []
         before = {path: why for path in tomls if (why := _load(path, open_texts)) is not None}
         for path in tomls:

@@ -28,7 +28,7 @@ def edits_in_toml(
     ``files`` are those that declare it or read it; ``name`` is what it is called, ``new`` what it will be.
     """
     sketch = SketchText(document)
-    found: list[Edit] = []
+    edits: list[Edit] = []
 
     def is_meant(technique: Technique | None, path: str) -> bool:
         """Return whether the last part of a path is the parameter's own name."""
@@ -52,16 +52,16 @@ def edits_in_toml(
         if is_meant(sketch.technique(table), path) if own else is_meant_in_sketch(path):
             key = document.text[pair.key : pair.value]
             at = [match.start() for match in re.finditer(rf"(?<!\w){name}(?!\w)", key)][-1]
-            found.append((pair.key + at, pair.key + at + len(name), new))
-    for place, pair in sketch.places.pairs.items():
-        if place != ("main",) and place[:1] != ("parameters",):
+            edits.append((pair.key + at, pair.key + at + len(name), new))
+    for key_path, pair in sketch.places.pairs.items():
+        if key_path != ("main",) and key_path[:1] != ("parameters",):
             continue
         for match in _QUOTED.finditer(document.text, pair.value, pair.end):
             text = match[1] if match[1] is not None else match[2]
             if is_meant_in_sketch(text):
                 end = match.end() - 1
-                found.append((end - len(name), end, new))
-    return found
+                edits.append((end - len(name), end, new))
+    return edits
 
 
 def _exports_by_name(technique: Graph, name: str) -> bool:

@@ -60,7 +60,7 @@ class Server(LanguageServer):
         self.log(f"{type(error).__name__}: {str(error).partition(chr(10))[0][:300]}")
 
     def log(self, sentence: str) -> None:
-        """Write a sentence to the editor's log."""
+        """Write a message to the editor's log."""
         with suppress(Exception):  # the editor is gone
             self.window_log_message(types.LogMessageParams(types.MessageType.Warning, sentence))
 
@@ -70,7 +70,7 @@ class Server(LanguageServer):
             with suppress(RuntimeError):  # it has ended
                 self.loop.call_soon_threadsafe(call)
 
-    def _publish(self, path: Path, found: list[Diagnostic]) -> None:
+    def _publish(self, path: Path, diagnostics: list[Diagnostic]) -> None:
         with self.lock:
             document = self.documents.at(path)
             uri = self.documents.uri_of(path)
@@ -79,7 +79,7 @@ class Server(LanguageServer):
             except PlaygroundError:
                 text = Text("", self.documents.units)
             sent = types.PublishDiagnosticsParams(
-                uri, [self._diagnostic(d, text) for d in found], document.version if document else None
+                uri, [self._diagnostic(d, text) for d in diagnostics], document.version if document else None
             )
             before = self._published.get(path, uri)
             self._published[path] = uri
@@ -92,30 +92,30 @@ class Server(LanguageServer):
         message = types.ShowMessageParams(types.MessageType.Warning, sentence)
         self.on_loop(lambda: self.window_show_message(message))
 
-    def _diagnostic(self, found: Diagnostic, text: Text) -> types.Diagnostic:
-        row = min(max(found.line - 1, 0), len(text.lines) - 1)
+    def _diagnostic(self, diagnostic: Diagnostic, text: Text) -> types.Diagnostic:
+        row = min(max(diagnostic.line - 1, 0), len(text.lines) - 1)
         line = text.lines[row]
         start, end = len(line) - len(line.lstrip()), len(line.rstrip())
-        if found.line and found.column:
-            start = min(found.column - 1, len(line))
+        if diagnostic.line and diagnostic.column:
+            start = min(diagnostic.column - 1, len(line))
             word = WORD.match(line, start)
             end = word.end() if word else min(start + 1, len(line))
         base = text.line_start(row)
         return types.Diagnostic(
             text.range(base + start, base + max(start, end)),
-            found.message,
+            diagnostic.message,
             severity=types.DiagnosticSeverity.Error
-            if found.severity == "error"
+            if diagnostic.severity == "error"
             else types.DiagnosticSeverity.Warning,
             source="playground",
-            related_information=self._chain(found) or None,
+            related_information=self._chain(diagnostic) or None,
         )
 
-    def _chain(self, found: Diagnostic) -> list[types.DiagnosticRelatedInformation]:
+    def _chain(self, diagnostic: Diagnostic) -> list[types.DiagnosticRelatedInformation]:
         """Return the includes that lead to a diagnostic."""
         related = []
-        for place in reversed(found.chain):
-            name, _, line = place.rpartition(":")
+        for location in reversed(diagnostic.chain):
+            name, _, line = location.rpartition(":")
             path = self.checker.file_named(name)
             if path is not None and line.isdecimal():
                 at = types.Position(max(int(line) - 1, 0), 0)
@@ -186,8 +186,10 @@ def _initialized(server: Server, params: types.InitializedParams) -> None:
 
 
 def _opened(server: Server, params: types.DidOpenTextDocumentParams) -> None:
-    given = params.text_document
-    server.checker.changed(server.documents.put(given.uri, given.text, given.version, given.language_id))
+    document = params.text_document
+    server.checker.changed(
+        server.documents.put(document.uri, document.text, document.version, document.language_id)
+    )
 
 
 def _changed(server: Server, params: types.DidChangeTextDocumentParams) -> None:
@@ -245,26 +247,26 @@ def _at(server: Server, params: _Params) -> tuple[Document, int] | None:
 
 
 def _completion(server: Server, params: types.CompletionParams) -> types.CompletionList | None:
-    if (found := _at(server, params)) is None:
+    if (opened := _at(server, params)) is None:
         return None
-    document, at = found
+    document, at = opened
     complete = complete_sketch if document.is_toml else complete_shader
     return types.CompletionList(is_incomplete=True, items=complete(document, server.documents, at))
 
 
 def _hover(server: Server, params: types.HoverParams) -> types.Hover | None:
-    if (found := _at(server, params)) is None:
+    if (opened := _at(server, params)) is None:
         return None
-    document, at = found
+    document, at = opened
     hover = explain.hover_sketch if document.is_toml else explain.hover_shader
     text = hover(document, server.documents, at)
     return types.Hover(types.MarkupContent(types.MarkupKind.Markdown, text)) if text else None
 
 
 def _definition(server: Server, params: types.DefinitionParams) -> types.Location | None:
-    if (found := _at(server, params)) is None:
+    if (opened := _at(server, params)) is None:
         return None
-    document, at = found
+    document, at = opened
     define = explain.define_sketch if document.is_toml else explain.define_shader
     target = define(document, server.documents, at)
     if target is None:
@@ -297,8 +299,8 @@ def _presentations(server: Server, params: types.ColorPresentationParams) -> lis
 
 
 def _prepare_rename(server: Server, params: types.PrepareRenameParams) -> types.Range | None:
-    found = _shader_to_rename(server, params)
-    return prepare(found[0], server.documents, found[1])
+    shader = _shader_to_rename(server, params)
+    return prepare(shader[0], server.documents, shader[1])
 
 
 def _rename(server: Server, params: types.RenameParams) -> types.WorkspaceEdit:
@@ -313,10 +315,10 @@ def _rename(server: Server, params: types.RenameParams) -> types.WorkspaceEdit:
 
 
 def _shader_to_rename(server: Server, params: _Params) -> tuple[Document, int]:
-    found = _at(server, params)
-    if found is None or found[0].is_toml:
+    opened = _at(server, params)
+    if opened is None or opened[0].is_toml:
         raise Refused("names are renamed in a shader: a parameter is renamed where it is declared")
-    return found
+    return opened
 
 
 _FILES = types.FileOperationRegistrationOptions(

@@ -35,7 +35,7 @@ class Include:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class DeclarationSite:
     """A name's declaration."""
 
     path: Path
@@ -62,58 +62,67 @@ class Shader:
         return bool(_PRAGMA.search(self.text))
 
     @property
-    def given(self) -> dict[str, tuple[str, str]]:
+    def engine_names(self) -> dict[str, tuple[str, str]]:
         """What a kernel is given: name → (type, meaning)."""
-        found = dict(GIVEN)
-        for one in self.inputs:
-            found[f"{WIRED}{one.name}"] = ("bool", f"whether anything is wired to the input '{one.name}'")
-            meaning = f"whether the input '{one.name}' is wired and has the size of this pass"
-            found[f"{MATCHES}{one.name}"] = ("bool", meaning)
+        names = dict(GIVEN)
+        for declared in self.inputs:
+            names[f"{WIRED}{declared.name}"] = (
+                "bool",
+                f"whether anything is wired to the input '{declared.name}'",
+            )
+            meaning = f"whether the input '{declared.name}' is wired and has the size of this pass"
+            names[f"{MATCHES}{declared.name}"] = ("bool", meaning)
         for parameter in self.parameters:
             if parameter.widget.kind == "direction":
                 meaning = f"the unit vector towards '{parameter.name}': east, north, up"
-                found[f"{TOWARDS}{parameter.name}"] = ("vec3", meaning)
+                names[f"{TOWARDS}{parameter.name}"] = ("vec3", meaning)
         outputs = self.kernel.outputs if self.kernel is not None else ()
         for output in outputs if isinstance(self.kernel, TexelKernel) else ():
             name = "previous" if len(outputs) == 1 else f"previous_{output.name}"
             meaning = "the texel of the step before, clamped to the edge: a function of ivec2"
-            found[name] = (output.glsl, meaning)
-        found[SKIPS] = ("bool", "a function: true in what a software renderer draws first of a kernel")
-        return found
+            names[name] = (output.glsl, meaning)
+        names[SKIPS] = ("bool", "a function: true in what a software renderer draws first of a kernel")
+        return names
 
     def declared(self) -> Iterator[tuple[Path, str, Declared]]:
         """Yield what its files declare at their top level: file, its text, what is declared."""
         for path, text in self.files:
-            for one in outline(text):
-                yield path, text, one
+            for declaration in outline(text):
+                yield path, text, declaration
 
     def parameter(self, name: str) -> Parameter | None:
         """Return a parameter by its name."""
-        return next((one for one in self.parameters if one.name == name), None)
+        return next((parameter for parameter in self.parameters if parameter.name == name), None)
 
-    def find(self, name: str, at: int) -> Place | None:
+    def find(self, name: str, at: int) -> DeclarationSite | None:
         """Return where a name is declared that the text has at a place; None where it is not known."""
         function = self.function_at(at)
         if function is not None:
             local = local_at(locals_of(self.text, function), name, at)
             if local is not None:
-                return Place(self.path, self.text, local.at, len(name))
+                return DeclarationSite(self.path, self.text, local.at, len(name))
         for prefix in (WIRED, MATCHES, TOWARDS):
-            if name.startswith(prefix) and name in self.given:
+            if name.startswith(prefix) and name in self.engine_names:
                 name = name.removeprefix(prefix)
-        found = [(path, text, one) for path, text, one in self.declared() if one.name == name]
-        found.sort(key=lambda item: item[2].is_prototype)
-        if found:
-            path, text, one = found[0]
-            return Place(path, text, one.at, len(name))
-        for file, one in library_declared().get(name, ()):
-            return Place(GLSL / file, read_text(GLSL / file), one.at, len(name))
+        declarations = [
+            (path, text, declaration)
+            for path, text, declaration in self.declared()
+            if declaration.name == name
+        ]
+        declarations.sort(key=lambda item: item[2].is_prototype)
+        if declarations:
+            path, text, declaration = declarations[0]
+            return DeclarationSite(path, text, declaration.at, len(name))
+        for file, declaration in library_declared().get(name, ()):
+            return DeclarationSite(GLSL / file, read_text(GLSL / file), declaration.at, len(name))
         return None
 
     def function_at(self, at: int) -> Declared | None:
         """Return the function that a place of the text is in."""
-        own = (one for one in outline(self.text) if one.kind == "function" and one.body >= 0)
-        return next((one for one in own if one.start <= at <= one.end), None)
+        own = (
+            function for function in outline(self.text) if function.kind == "function" and function.body >= 0
+        )
+        return next((function for function in own if function.start <= at <= function.end), None)
 
 
 def shader_of(document: Document, documents: Documents) -> Shader:
@@ -154,11 +163,11 @@ def _reached(path: Path, text: str, root: Path) -> Iterator[tuple[Path, str]]:
         path, text = rest.pop(0)
         yield path, text
         for include in includes(text):
-            found = find_include(include.name, path, (root,))
-            if found is not None and found not in seen:
-                seen.add(found)
+            include_path = find_include(include.name, path, (root,))
+            if include_path is not None and include_path not in seen:
+                seen.add(include_path)
                 try:
-                    rest.append((found, read_text(found)))
+                    rest.append((include_path, read_text(include_path)))
                 except PlaygroundError:
                     continue
 
@@ -170,7 +179,7 @@ def includes(text: str) -> list[Include]:
 
 def include_at(text: str, at: int) -> Include | None:
     """Return the include whose name a place is in."""
-    return next((one for one in includes(text) if one.start <= at <= one.end), None)
+    return next((include for include in includes(text) if include.start <= at <= include.end), None)
 
 
 def word_at(text: str, at: int) -> tuple[str, int]:
@@ -191,15 +200,19 @@ def is_code(text: str, at: int) -> bool:
 @cache
 def library_declared() -> dict[str, tuple[tuple[str, Declared], ...]]:
     """Return the functions of the library: name → the files to include, and how each declares it."""
-    found: dict[str, list[tuple[str, Declared]]] = {}
+    declared: dict[str, list[tuple[str, Declared]]] = {}
     for name, files in library().items():
         for file in files:
             try:
                 own = outline(read_text(GLSL / file))
             except PlaygroundError:
                 continue
-            for one in own:
-                if one.name == name and one.kind == "function" and not one.is_prototype:
-                    found.setdefault(name, []).append((file, one))
+            for declaration in own:
+                if (
+                    declaration.name == name
+                    and declaration.kind == "function"
+                    and not declaration.is_prototype
+                ):
+                    declared.setdefault(name, []).append((file, declaration))
                     break
-    return {name: tuple(places) for name, places in found.items()}
+    return {name: tuple(places) for name, places in declared.items()}

@@ -18,7 +18,7 @@ from playground.sketch.model import Graph, Parameter, Sketch, Technique
 from playground.sketch.techniques import Techniques
 from playground.sketch.toml_sketch import DEFAULT_VIEW
 from playground.sketch.toml_table import LISTS
-from playground.sketch.toml_text import Pair, Place, TomlPlaces
+from playground.sketch.toml_text import KeyPath, Pair, TomlPlaces
 
 _KEY = re.compile(r"[\w.-]|\"")
 _TEXT = re.compile(r"\"((?:[^\"\\\n]|\\.)*)\"|'([^'\n]*)'")
@@ -29,7 +29,7 @@ _PAIR = re.compile(r"\s*((?:\"[^\"]*\"|[\w.-])+)\s*=\s*(.*)$", re.DOTALL)
 class Cursor:
     """A place in a TOML text."""
 
-    table: Place  # the table with a header that it is in: ("pass", 0); () at the head
+    table: KeyPath  # the table with a header that it is in: ("pass", 0); () at the head
     keys: tuple[str, ...]  # of the inline tables around it: ("set",); with it the key of a value
     is_value: bool  # whether a value is typed there, else a key
     is_header: bool  # whether it is in the brackets of a table's header
@@ -45,7 +45,7 @@ def cursor_at(text: str, at: int) -> Cursor:
     before = text[line:at]
     others = text[:line] + " " * ((end if end >= 0 else len(text)) - line) + (text[end:] if end >= 0 else "")
     places = TomlPlaces(others)
-    table: Place = ()
+    table: KeyPath = ()
     counts: dict[str, int] = {}
     for header in places.headers:
         name = header.keys[0]
@@ -124,23 +124,25 @@ class SketchText:
         self.places = TomlPlaces(self.text)
         self._techniques = Techniques()
 
-    def value(self, place: Place) -> str:
+    def value(self, key_path: KeyPath) -> str:
         """Return a text that a key has; "" for none, and for what is no text."""
-        pair = self.places.pairs.get(place)
+        pair = self.places.pairs.get(key_path)
         match = _TEXT.match(self.text, pair.value, pair.end) if pair is not None else None
         return (match[1] if match[1] is not None else match[2]) if match else ""
 
-    def tables(self, key: str) -> list[Place]:
+    def tables(self, key: str) -> list[KeyPath]:
         """Return the tables of a list: ("pass", 0), ("pass", 1)."""
-        return [place for place in self.places.bodies if len(place) == 2 and place[0] == key]
+        return [
+            table_path for table_path in self.places.bodies if len(table_path) == 2 and table_path[0] == key
+        ]
 
-    def names(self, key: str) -> dict[str, Place]:
+    def names(self, key: str) -> dict[str, KeyPath]:
         """Return the names that the tables of a list have, and the place of each table."""
-        found = {self.value((*place, "name")): place for place in self.tables(key)}
-        found.pop("", None)
-        return found
+        tables_by_name = {self.value((*table_path, "name")): table_path for table_path in self.tables(key)}
+        tables_by_name.pop("", None)
+        return tables_by_name
 
-    def technique(self, table: Place) -> Technique | None:
+    def technique(self, table: KeyPath) -> Technique | None:
         """Return what fills the pass of a table, or the view; None where it cannot be read."""
         use = self.value((*table, "use"))
         if not use and table == ("view",):
@@ -155,7 +157,7 @@ class SketchText:
         table = ("view",) if name == "view" else self.names("pass").get(name)
         return self.technique(table) if table is not None else None
 
-    def parameter(self, table: Place, path: str) -> Parameter | None:
+    def parameter(self, table: KeyPath, path: str) -> Parameter | None:
         """Return the parameter that a path means in a table's ``set``: of its technique, or of the sketch."""
         technique: Technique | None
         if table[:1] in (("pass",), ("view",)):
@@ -163,8 +165,8 @@ class SketchText:
         else:
             head, _, path = path.partition(".")
             technique = self.technique_of(head)
-        found = find_targets(technique, path) if technique is not None and path else ()
-        return found[0].parameter if found else None
+        targets = find_targets(technique, path) if technique is not None and path else ()
+        return targets[0].parameter if targets else None
 
     def loaded(self) -> Sketch | None:
         """Return the sketch, where its text is one."""
@@ -173,14 +175,14 @@ class SketchText:
         except PlaygroundError:
             return None
 
-    def settings(self) -> Iterator[tuple[Place, str, Pair]]:
+    def settings(self) -> Iterator[tuple[KeyPath, str, Pair]]:
         """Yield what is set: the table, the parameter's path there, and where that is in the text."""
-        for place, pair in self.places.pairs.items():
-            if place[:1] and place[0] in (*LISTS, "view"):
-                size = 1 if place[0] == "view" else 2
-                rest = place[size:]
+        for key_path, pair in self.places.pairs.items():
+            if key_path[:1] and key_path[0] in (*LISTS, "view"):
+                size = 1 if key_path[0] == "view" else 2
+                rest = key_path[size:]
                 if len(rest) >= 2 and rest[0] == "set":
-                    yield place[:size], ".".join(map(str, rest[1:])), pair
+                    yield key_path[:size], ".".join(map(str, rest[1:])), pair
 
 
 def inner_passes(technique: Technique) -> list[str]:
@@ -193,5 +195,5 @@ def own_techniques(folder: Path) -> list[str]:
     endings = (".glsl", ".toml", ".frag", ".fs")
     if not folder.is_dir():
         return []
-    found = {path.name.rpartition(".")[0] for path in folder.iterdir() if path.name.endswith(endings)}
-    return sorted(f"./{name}" for name in found if name and not name.endswith(".fast"))
+    names = {path.name.rpartition(".")[0] for path in folder.iterdir() if path.name.endswith(endings)}
+    return sorted(f"./{name}" for name in names if name and not name.endswith(".fast"))

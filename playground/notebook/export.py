@@ -65,13 +65,13 @@ class LiveFigures(Preprocessor):  # type: ignore[misc]
                 html = _text(data["text/html"])
                 data["text/html"] = without_runtime(html, held)
                 held |= runtimes_in(html)
-        others = {model: one for model, one in saved.items() if not _is_figure(one)}
+        others = {model: model_state for model, model_state in saved.items() if not _is_figure(model_state)}
         if not any(map(_shown, others.values())):
             nb.metadata.pop("widgets", None)
         else:
-            told = json.dumps(others)  # a figure in another widget is shown by that
+            models_text = json.dumps(others)  # a figure in another widget is shown by that
             for model in saved.keys() - others.keys():
-                if f'"IPY_MODEL_{model}"' not in told:
+                if f'"IPY_MODEL_{model}"' not in models_text:
                     del saved[model]
         left = [number for number, output in _outputs(nb) if {_VIEW, *_SCRIPTED} & output["data"].keys()]
         if left:
@@ -83,7 +83,7 @@ class LiveFigures(Preprocessor):  # type: ignore[misc]
         """Put a figure as it was saved into the data of an output."""
         data.pop(_VIEW)
         state = model["state"]
-        pictures = [one["data"] for one in model.get("buffers", []) if one["path"] == ["picture"]]
+        pictures = [buffer["data"] for buffer in model.get("buffers", []) if buffer["path"] == ["picture"]]
         try:
             png = base64.b64decode((pictures or [_text(data["image/png"])])[0])
             runtime = runtime_of(state["_esm"], state["_css"])

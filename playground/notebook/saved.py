@@ -97,7 +97,7 @@ def runtimes_in(html: str) -> set[str]:
 
 def without_runtime(html: str, keys: set[str]) -> str:
     """Return HTML without the runtimes that a page has already."""
-    return _RUNTIME.sub(lambda found: "" if found[1] in keys else found[0], html)
+    return _RUNTIME.sub(lambda match: "" if match[1] in keys else match[0], html)
 
 
 @cache

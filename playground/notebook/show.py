@@ -15,7 +15,7 @@ from playground.sketch.model import Sketch
 if TYPE_CHECKING:
     from playground.notebook.sketch_widget import CompareWidget, SketchWidget
 
-_FEW = 2  # values that name a picture
+_MAX_VALUES = 2  # values that name a picture
 
 
 def widget(
@@ -42,8 +42,8 @@ def widget(
         from playground.notebook.sketch_widget import SketchWidget
     except ModuleNotFoundError as error:
         raise _needed(error) from None
-    given = [opened(sketch)]
-    return SketchWidget(given, size=size, sliders=sliders, draws=draws, time=time, language=language)
+    sketches = [opened(sketch)]
+    return SketchWidget(sketches, size=size, sliders=sliders, draws=draws, time=time, language=language)
 
 
 def compare(
@@ -77,7 +77,7 @@ def compare(
     except ModuleNotFoundError as error:
         raise _needed(error) from None
     sketches = [
-        opened(sketch).with_values(one) if isinstance(one, Mapping) else opened(one) for one in (a, b)
+        opened(sketch).with_values(side) if isinstance(side, Mapping) else opened(side) for side in (a, b)
     ]
     named = [_name(*of) for of in zip((a, b), sketches, ("A", "B"), strict=True)]
     return CompareWidget(
@@ -92,10 +92,10 @@ def compare(
     )
 
 
-def _name(given: object, sketch: Sketch, letter: str) -> str:
-    if isinstance(given, Mapping):
-        found = ", ".join(f"{path} = {spell(value)}" for path, value in given.items())
-        return found if 0 < len(given) <= _FEW else letter
+def _name(settings_or_sketch: object, sketch: Sketch, letter: str) -> str:
+    if isinstance(settings_or_sketch, Mapping):
+        settings = ", ".join(f"{path} = {spell(value)}" for path, value in settings_or_sketch.items())
+        return settings if 0 < len(settings_or_sketch) <= _MAX_VALUES else letter
     return f"{letter}: {sketch.title or sketch.name}"
 
 

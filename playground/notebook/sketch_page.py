@@ -20,7 +20,7 @@ from playground.web.page_data import page_data
 from playground.web.plan import FORMAT
 from playground.web.shown import presets_data, shown_data, tracks_data
 
-LARGEST = 24 * 2**20
+MAX_PAGE_LETTERS = 24 * 2**20
 """Letters of a page that a notebook is given: it is sent to the browser, and saved in the notebook."""
 
 
@@ -34,12 +34,12 @@ def browser_page(
     """
     data = page_data(sketches, frame=size, engine=engine)
     page = packed_json(data)
-    if len(page) > LARGEST:
-        millions = [round(number / 2**20) for number in (len(page), LARGEST)]
+    if len(page) > MAX_PAGE_LETTERS:
+        millions = [round(number / 2**20) for number in (len(page), MAX_PAGE_LETTERS)]
         raise PlaygroundError(f"its data take {millions[0]} MB; a notebook is given {millions[1]} at most")
     fixed = [
-        frozenset(row["path"] for row in one["shown"] if row["locked"] or row["widget"] == "file")
-        for one in data["sketches"]
+        frozenset(row["path"] for row in sketch_data["shown"] if row["locked"] or row["widget"] == "file")
+        for sketch_data in data["sketches"]
     ]
     return page, fixed
 

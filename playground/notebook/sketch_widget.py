@@ -34,7 +34,7 @@ DRAWERS = (AUTO, BROWSER, KERNEL)
 _SIDE = (16, 4096)  # pixels a side of a picture, least and most
 _MAX_SECONDS = 1e9
 _JPEG = 85  # quality while something moves; at rest it is a PNG
-_FEW = 8  # sliders of a sketch that does not name its main parameters
+_MAX_SLIDERS = 8  # sliders of a sketch that does not name its main parameters
 
 Values = Mapping[str, Value]
 
@@ -146,14 +146,14 @@ class SketchesWidget(LiveWidget):
 
     # ── values ─────────────────────────────────────────────────────────────────
 
-    def taken(self, side: str, given: Mapping[str, object]) -> Values:
+    def taken(self, side: str, values: Mapping[str, object]) -> Values:
         """Set values of a side's sketch and return all of them, by path; raise ``ParameterError``."""
         at = self.SIDES.index(side)
         sketch, now = self._now[at], self._values[at]
-        if terrain := [path for path in given if path in TERRAIN_KEYS]:
+        if terrain := [path for path in values if path in TERRAIN_KEYS]:
             change = f"widget.sketch.with_values({{'{terrain[0]}': …}})"
             raise ParameterError(f"{terrain[0]} is the terrain's own, no slider: widget.sketch = {change}")
-        checked = {path: check_value(sketch, path, value) for path, value in given.items()}
+        checked = {path: check_value(sketch, path, value) for path, value in values.items()}
         news = {path: value for path, value in checked.items() if path not in now or value != now[path]}
         if news:
             self._now[at] = sketch.with_values(news)
@@ -186,12 +186,12 @@ class SketchesWidget(LiveWidget):
     def _show(self, sketches: Callable[[], Sequence[Sketch]]) -> None:
         """Show other sketches; what is wrong with one is said, and the last good picture stays."""
         try:
-            found = sketches()
-            made = self._made(found, self.size, self.draws)
+            sketches_shown = sketches()
+            made = self._made(sketches_shown, self.size, self.draws)
         except PlaygroundError as error:
             self.mistake = str(error)
             return
-        self._take(found)
+        self._take(sketches_shown)
         with self.hold_sync():
             self.mistake, self.camera = "", None
             for name, value in made.items():
@@ -226,17 +226,19 @@ class SketchesWidget(LiveWidget):
         return {"alt": alt, "rows": rows, **{side: {} for side in self.SIDES}, **on_engine(work)}
 
     def _rows_of(self, sketch: Sketch) -> Sequence[str]:
-        known = parameters(sketch)
+        shown_parameters = parameters(sketch)
         if self._sliders is None:
-            main = [path for path in sketch.main if path in known]
-            return main or [path for path in known if path.count(".") == 1][:_FEW]
+            main = [path for path in sketch.main if path in shown_parameters]
+            return main or [path for path in shown_parameters if path.count(".") == 1][:_MAX_SLIDERS]
         for path in self._sliders:
-            if path not in known:
-                raise ParameterError(f"no parameter '{path}' in sketch {sketch.name}{nearest(path, known)}")
+            if path not in shown_parameters:
+                raise ParameterError(
+                    f"no parameter '{path}' in sketch {sketch.name}{nearest(path, shown_parameters)}"
+                )
         return self._sliders
 
     def _remade(self, change: Any) -> None:
-        """Make the page anew where what has changed is fixed in it: what a source gives, for one."""
+        """Make the page again where what has changed is fixed in it: what a source gives, for one."""
         old, new = change["old"], change["new"]
         fixed = self._fixed[self.SIDES.index(change["name"])]
         if any(old.get(path) != new[path] for path in fixed):
@@ -291,15 +293,15 @@ class SketchWidget(SketchesWidget):
         return self._as_shown(0)
 
     @sketch.setter
-    def sketch(self, given: Sketch | str | Path) -> None:
+    def sketch(self, sketch: Sketch | str | Path) -> None:
         """Show another sketch; a mistake in it is said in ``mistake``, and the last good picture stays."""
-        self._show(lambda: [opened(given)])
+        self._show(lambda: [opened(sketch)])
 
     def __getitem__(self, path: str) -> Value:
-        found: Values = self.values
-        if path not in found:
-            raise ParameterError(f"no parameter '{path}'{nearest(path, found)}")
-        return found[path]
+        values: Values = self.values
+        if path not in values:
+            raise ParameterError(f"no parameter '{path}'{nearest(path, values)}")
+        return values[path]
 
     def __setitem__(self, path: str, value: object) -> None:
         self.values = {path: value}
@@ -319,19 +321,19 @@ class CompareWidget(SketchesWidget):
         return self._as_shown(0), self._as_shown(1)
 
     @sketches.setter
-    def sketches(self, given: tuple[Sketch | str | Path, Sketch | str | Path]) -> None:
+    def sketches(self, sketches: tuple[Sketch | str | Path, Sketch | str | Path]) -> None:
         """Show two others; a mistake in one is said in ``mistake``, and the last good pictures stay."""
-        self._show(lambda: [opened(one) for one in given])
+        self._show(lambda: [opened(side) for side in sketches])
 
 
 def _all_values(sketch: Sketch) -> dict[str, Value]:
     return {path: value for path, (_, value) in parameters(sketch).items()}
 
 
-def _camera(given: object) -> Camera:
-    values = asdict(given) if isinstance(given, Camera) else given
+def _camera(value: object) -> Camera:
+    values = asdict(value) if isinstance(value, Camera) else value
     if not isinstance(values, Mapping):
-        raise ParameterError(f"camera = {spell(given)}: expected a Camera or its values by name")
+        raise ParameterError(f"camera = {spell(value)}: expected a Camera or its values by name")
     for key in values:
         if key not in CAMERA:
             raise ParameterError(f"camera: no '{key}'{nearest(str(key), CAMERA)}")
@@ -340,18 +342,18 @@ def _camera(given: object) -> Camera:
     return camera_of(values, Camera(), lambda _, message: ParameterError(f"camera: {message}"))
 
 
-def _pixels(given: object) -> tuple[int, int]:
+def _pixels(pixels: object) -> tuple[int, int]:
     low, high = _SIDE
-    sides = given if isinstance(given, list | tuple) else ()
+    sides = pixels if isinstance(pixels, list | tuple) else ()
     if len(sides) != 2 or not all(type(side) is int and low <= side <= high for side in sides):
-        raise DataError(f"size = {spell(given)}: expected two whole numbers of pixels from {low} to {high}")
+        raise DataError(f"size = {spell(pixels)}: expected two whole numbers of pixels from {low} to {high}")
     return sides[0], sides[1]
 
 
-def _seconds(given: object) -> float:
-    if type(given) not in (int, float) or not 0 <= given <= _MAX_SECONDS:  # type: ignore[operator]
-        raise ParameterError(f"time = {spell(given)}: expected seconds from 0 to {_MAX_SECONDS:g}")
-    return float(given)  # type: ignore[arg-type]
+def _seconds(value: object) -> float:
+    if type(value) not in (int, float) or not 0 <= value <= _MAX_SECONDS:  # type: ignore[operator]
+        raise ParameterError(f"time = {spell(value)}: expected seconds from 0 to {_MAX_SECONDS:g}")
+    return float(value)  # type: ignore[arg-type]
 
 
 def _sent(picture: NDArray[np.uint8], *, moving: bool) -> bytes:

@@ -19,7 +19,7 @@ class LiveWidget(anywidget.AnyWidget):
     """A figure that the browser's runtime draws, or else the kernel; both have the same values.
 
     ``page`` is what the runtime needs (gzip in base64), "" where no page can run the figure. ``picture`` is
-    a PNG: what is shown until something is drawn, and where there are no widgets. ``mistake`` is a sentence
+    a PNG: what is shown until something is drawn, and where there are no widgets. ``mistake`` is a message
     under the picture, "" for none. ``drawn_by`` is "browser" or "kernel" once the figure is shown, and
     ``why`` says why it is the kernel.
     """
@@ -38,10 +38,10 @@ class LiveWidget(anywidget.AnyWidget):
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """Show the figure, or its picture, where no widgets can be: in a saved notebook, on a page."""
-        found = super()._repr_mimebundle_(**kwargs)
-        if found is None:
+        bundle = super()._repr_mimebundle_(**kwargs)
+        if bundle is None:
             return None
-        data, metadata = found if isinstance(found, tuple) else (found, {})
+        data, metadata = bundle if isinstance(bundle, tuple) else (bundle, {})
         shown = {**data, "image/png": b64encode(self.picture).decode()}
         if self.page:
             state = self.get_state([name for name in STATE if name in self.keys])

@@ -88,23 +88,23 @@ class Case:
     @cached_property
     def live(self) -> tuple[Pass, ...]:
         """The passes that lead to the target, in order, the target last."""
-        wanted = {self.target}
-        found = []
-        for one in reversed(self.passes):
-            if one.name in wanted:
-                found.append(one)
-                wanted |= {source.partition(":")[0] for _, source in one.live_inputs}
-        return tuple(found[::-1])
+        names = {self.target}
+        passes = []
+        for pass_ in reversed(self.passes):
+            if pass_.name in names:
+                passes.append(pass_)
+                names |= {source.partition(":")[0] for _, source in pass_.live_inputs}
+        return tuple(passes[::-1])
 
     @property
     def lines(self) -> int:
         """Lines of GLSL, blank ones apart."""
-        return sum(one.text.count("\n") + one.variant.count("\n") for one in self.live)
+        return sum(pass_.text.count("\n") + pass_.variant.count("\n") for pass_ in self.live)
 
     @property
     def settings(self) -> int:
         """How many parameters there are."""
-        return sum(len(one.declared - {name for name, _ in one.inputs}) for one in self.live)
+        return sum(len(pass_.declared - {name for name, _ in pass_.inputs}) for pass_ in self.live)
 
     def with_pass(self, changed: Pass) -> Case:
         """Return the case with one pass replaced by another of its name."""
@@ -112,23 +112,23 @@ class Case:
 
     def looking_at(self, name: str) -> Case:
         """Return the case with another pass looked at, and what comes after that left out."""
-        index = next(i for i, one in enumerate(self.passes) if one.name == name)
+        index = next(i for i, pass_ in enumerate(self.passes) if pass_.name == name)
         return replace(self, passes=self.passes[: index + 1], target=name)
 
     def texts(self) -> dict[str, str]:
         """Return the files of the sketch by name: ``sketch.toml`` and one or two for each pass."""
-        found: dict[str, str] = {}
-        for one in self.live:
-            found[f"{one.name}{one.suffix}"] = one.head + one.text
-            found |= {f"{one.name}{suffix}": text for suffix, text in one.beside}
-            if one.variant:
-                found[f"{one.name}.comp"] = one.variant
-        variants = {f"{one.name}.comp": (one.text, one.variant) for one in self.live if one.variant}
+        texts: dict[str, str] = {}
+        for pass_ in self.live:
+            texts[f"{pass_.name}{pass_.suffix}"] = pass_.head + pass_.text
+            texts |= {f"{pass_.name}{suffix}": text for suffix, text in pass_.beside}
+            if pass_.variant:
+                texts[f"{pass_.name}.comp"] = pass_.variant
+        variants = {f"{pass_.name}.comp": (pass_.text, pass_.variant) for pass_ in self.live if pass_.variant}
         if variants:
-            found[NAME] = record_text(variants)
+            texts[NAME] = record_text(variants)
         if self.file == "sketch.toml":
-            found["sketch.toml"] = self._toml()
-        return found
+            texts["sketch.toml"] = self._toml()
+        return texts
 
     def _toml(self) -> str:
         lines = ["format = 1", f"size = {_numbers(self.size)}"]
@@ -137,9 +137,9 @@ class Case:
         for key in ("relief", "base_elevation"):
             if (value := getattr(self, key)) is not None:
                 lines.append(f"{key} = {spelt(value)}")
-        for one in self.live:
-            if one.name != "view":
-                lines += ["", "[[pass]]", f'name = "{one.name}"', *_pass(one)]
+        for pass_ in self.live:
+            if pass_.name != "view":
+                lines += ["", "[[pass]]", f'name = "{pass_.name}"', *_pass(pass_)]
         if self.target == "view":
             lines += ["", "[view]", *_pass(self.live[-1])]
         else:
@@ -156,34 +156,34 @@ class Case:
         lines += ["", "[[shot]]", f'name = "{SHOT}"', f"size = {_numbers(self.frame)}"]
         if self.time:
             lines.append(f"time = {spelt(self.time)}")
-        names = {one.name for one in self.live}
+        names = {pass_.name for pass_ in self.live}
         steps = [f"{path} = {steps}" for path, steps in self.steps if path in names]
         if steps:
             lines.append(f"steps = {{ {', '.join(steps)} }}")
         return "\n".join(lines) + "\n"
 
 
-def _pass(one: Pass) -> list[str]:
-    lines = [f'use = "./{one.name}"']
-    if one.live_inputs:
-        wires = ", ".join(f'{name} = "{source}"' for name, source in one.live_inputs)
+def _pass(pass_: Pass) -> list[str]:
+    lines = [f'use = "./{pass_.name}"']
+    if pass_.live_inputs:
+        wires = ", ".join(f'{name} = "{source}"' for name, source in pass_.live_inputs)
         lines.append(f"inputs = {{ {wires} }}")
-    if one.live_values:
+    if pass_.live_values:
         lines.append(
-            f"set = {{ {', '.join(f'{name} = {spelt(value)}' for name, value in one.live_values)} }}"
+            f"set = {{ {', '.join(f'{name} = {spelt(value)}' for name, value in pass_.live_values)} }}"
         )
-    if one.size is not None and one.name != "view":
-        lines.append(f"size = {_numbers(one.size)}")
-    if one.repeat:
-        fed = ", ".join(f'{name} = "{output}"' for name, output in one.feedback)
-        lines += [f"repeat = {one.repeat}", f"feedback = {{ {fed} }}"]
+    if pass_.size is not None and pass_.name != "view":
+        lines.append(f"size = {_numbers(pass_.size)}")
+    if pass_.repeat:
+        fed = ", ".join(f'{name} = "{output}"' for name, output in pass_.feedback)
+        lines += [f"repeat = {pass_.repeat}", f"feedback = {{ {fed} }}"]
     return lines
 
 
 def spelt(value: Value) -> str:
     """Return a value as TOML takes it."""
     if isinstance(value, tuple):
-        return f"[{', '.join(spelt(one) for one in value)}]"
+        return f"[{', '.join(spelt(element) for element in value)}]"
     return json.dumps(value)
 
 
@@ -197,7 +197,7 @@ def glsl_of(kind: str, value: Value) -> str:
         return ""
     if isinstance(value, tuple):
         inner = "int" if kind[0] == "i" else "uint" if kind[0] == "u" else "float"
-        return f"{kind}({', '.join(glsl_of(inner, one) for one in value)})"
+        return f"{kind}({', '.join(glsl_of(inner, element) for element in value)})"
     if kind == "bool":
         return "true" if value else "false"
     if kind in ("int", "uint"):

@@ -57,16 +57,16 @@ def in_both(text: str, other: str, literals: Sequence[str] = LITERALS) -> Iterat
     """
     tokens, others = tokens_of(text), tokens_of(other)
     for low, high, instead in _in_order(tokens, literals):
-        place = _only_place(others, tokens[low:high])
-        if place is not None and _only_place(tokens, tokens[low:high]) == low:
-            changed = [*others[:place], *instead, *others[place + high - low :]]
+        index = _only_place(others, tokens[low:high])
+        if index is not None and _only_place(tokens, tokens[low:high]) == low:
+            changed = [*others[:index], *instead, *others[index + high - low :]]
             yield print_tokens([*tokens[:low], *instead, *tokens[high:]]), print_tokens(changed)
 
 
 def _only_place(tokens: list[str], part: list[str]) -> int | None:
     """Return where some tokens occur in others, if they do so once."""
-    found = [i for i in range(len(tokens) - len(part) + 1) if tokens[i : i + len(part)] == part]
-    return found[0] if len(found) == 1 else None
+    indices = [i for i in range(len(tokens) - len(part) + 1) if tokens[i : i + len(part)] == part]
+    return indices[0] if len(indices) == 1 else None
 
 
 def _in_order(tokens: list[str], literals: Sequence[str]) -> list[Edit]:
@@ -112,10 +112,10 @@ def inlined(text: str) -> Iterator[str]:
         bare = len(value) == 1 or _end_of_primary(tokens, index + 2, pairs)[-1] == end
         instead = value if bare else ["(", *value, ")"]
         rest: list[str] = []
-        for place, token in enumerate(tokens):
-            if place in uses:
+        for position, token in enumerate(tokens):
+            if position in uses:
                 rest += instead
-            elif not first <= place <= end:
+            elif not first <= position <= end:
                 rest.append(token)
         yield print_tokens(rest)
 
@@ -220,18 +220,18 @@ def _of_primary(
 def _arguments(tokens: list[str], bracket: int, pairs: dict[int, int]) -> list[tuple[int, int]]:
     """Return from which token to which each argument in a pair of brackets goes."""
     close = pairs[bracket]
-    found: list[tuple[int, int]] = []
+    arguments: list[tuple[int, int]] = []
     low = index = bracket + 1
     while index < close:
         if index in pairs and pairs[index] > index:
             index = pairs[index]
         elif tokens[index] == ",":
-            found.append((low, index))
+            arguments.append((low, index))
             low = index + 1
         index += 1
     if close > low:
-        found.append((low, close))
-    return found
+        arguments.append((low, close))
+    return arguments
 
 
 def stubs(text: str, number: str = "0.0") -> Iterator[str]:
@@ -273,13 +273,13 @@ def parameters_of_functions(text: str) -> Iterator[str]:
             continue
         count = len(_arguments(tokens, index + 1, pairs))
         places = [i for i in range(len(tokens) - 1) if tokens[i] == name and tokens[i + 1] == "("]
-        lists = [_arguments(tokens, place + 1, pairs) for place in places if place + 1 in pairs]
-        if any(len(found) != count for found in lists):
+        lists = [_arguments(tokens, index + 1, pairs) for index in places if index + 1 in pairs]
+        if any(len(argument_list) != count for argument_list in lists):
             continue  # overloaded
         for number in range(count):
             gone = set()
-            for found in lists:
-                low, high = found[number]
+            for argument_list in lists:
+                low, high = argument_list[number]
                 gone |= set(range(low - (number > 0), high + (number == 0 and count > 1)))
             yield print_tokens([token for i, token in enumerate(tokens) if i not in gone])
 
@@ -300,10 +300,10 @@ def _shorter_header(line: str) -> Iterator[str]:
             if match.group(1) == "repeat" and match.group(2) not in ('"1"', '"2"'):
                 for steps in ("1", "2"):
                     yield f'{line[: match.start(2)]}"{steps}"{line[match.end(2) :]}'
-    found = _UNIFORM.match(line)
-    if found is None:
+    result = _UNIFORM.match(line)
+    if result is None:
         return
-    declared, note = line[: found.start(4)], found.group(4).strip().removeprefix("//!").strip()
+    declared, note = line[: result.start(4)], result.group(4).strip().removeprefix("//!").strip()
     if not note:
         return
     yield declared
@@ -322,10 +322,10 @@ def constants(text: str, values: dict[str, str]) -> Iterator[str]:
     """
     lines = text.split("\n")
     for number, line in enumerate(lines):
-        found = _UNIFORM.match(line)
-        if found is None or found.group(1).startswith("sampler"):
+        match = _UNIFORM.match(line)
+        if match is None or match.group(1).startswith("sampler"):
             continue
-        kind, name, default = found.group(1), found.group(2), found.group(3)
+        kind, name, default = match.group(1), match.group(2), match.group(3)
         value = values.get(name, default)
         if value:
             yield tidy("\n".join([*lines[:number], f"const {kind} {name} = {value};", *lines[number + 1 :]]))
@@ -339,7 +339,7 @@ def undefined(text: str) -> frozenset[str]:
     """
     tokens = tokens_of(text)
     pairs = partners(tokens)
-    found: set[str] = set()
+    names: set[str] = set()
     depth = 0
     for index, token in enumerate(tokens[:-2]):
         depth += (token == "{") - (token == "}")
@@ -347,18 +347,18 @@ def undefined(text: str) -> frozenset[str]:
         if is_line(token) or not is_word(token) or token in CONTROL or not is_word(name):
             continue
         if depth and following in (";", ",") and not _is_set(tokens, name, index + 2, pairs):
-            found.add(name)
+            names.add(name)
         close = pairs.get(index + 2, -1)
         if not depth and following == "(" and tokens[close + 1 : close + 2] == ["{"]:
             body = tokens[close + 1 : pairs.get(close + 1, len(tokens))]
             if token != "void" and not _returns(body):
-                found.add(f"{name}()")
+                names.add(f"{name}()")
             arguments = tokens[index + 3 : close]
-            for place, word in enumerate(arguments[:-2]):
-                called = arguments[place + 2]
+            for position, word in enumerate(arguments[:-2]):
+                called = arguments[position + 2]
                 if word == "out" and not _is_set(tokens, called, close + 1, pairs):
-                    found.add(called)
-    return frozenset(found)
+                    names.add(called)
+    return frozenset(names)
 
 
 def _is_outermost(tokens: list[str], index: int) -> bool:

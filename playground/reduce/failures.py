@@ -24,7 +24,7 @@ _ROUNDING = 1e-5  # relative: what rounding explains; what lies beyond is anothe
 
 @dataclass(frozen=True, eq=False)
 class Finding:
-    """A failure: its kind, in words that stay the same from candidate to candidate, and where it is."""
+    """A failure: its kind, as text that stay the same from candidate to candidate, and where it is."""
 
     kind: str
     details: str = ""  # more of it, for a person
@@ -48,7 +48,7 @@ class FailureKind(ABC):
     as_picture = False  # whether the picture's bytes are looked at, not a pass's values
 
     @abstractmethod
-    def found(self, results: Sequence[DrawResult]) -> Finding | None:
+    def finding(self, results: Sequence[DrawResult]) -> Finding | None:
         """Return what is wrong with a candidate; None where nothing of this kind is."""
 
     def same(self, before: Finding, after: Finding) -> bool:
@@ -67,7 +67,7 @@ class Refused(FailureKind):
         self.sides = (Side(driver=driver),)
         self._pattern = re.compile(pattern)
 
-    def found(self, results: Sequence[DrawResult]) -> Finding | None:
+    def finding(self, results: Sequence[DrawResult]) -> Finding | None:
         """Return what is wrong; None where nothing of this kind is."""
         if results[0].kind != "shader":
             return None
@@ -87,7 +87,7 @@ class Died(FailureKind):
         self.sides = (Side(driver=driver),)
         self._kinds = (kind,) if kind else ("crash", "hang")
 
-    def found(self, results: Sequence[DrawResult]) -> Finding | None:
+    def finding(self, results: Sequence[DrawResult]) -> Finding | None:
         """Return how it died; None where it did not."""
         return Finding(results[0].kind, results[0].details) if results[0].kind in self._kinds else None
 
@@ -106,7 +106,7 @@ class NotFinite(FailureKind):
         self.sides = (Side(driver=driver),)
         self._anywhere = anywhere
 
-    def found(self, results: Sequence[DrawResult]) -> Finding | None:
+    def finding(self, results: Sequence[DrawResult]) -> Finding | None:
         """Return what is wrong; None where nothing of this kind is."""
         values = results[0].values
         if results[0].kind != "drawn" or values is None or values.dtype.kind != "f":
@@ -135,24 +135,24 @@ class Differs(FailureKind):
         self._names = names
         self._tolerance = tolerance
 
-    def found(self, results: Sequence[DrawResult]) -> Finding | None:
+    def finding(self, results: Sequence[DrawResult]) -> Finding | None:
         """Return how far they are apart; None where they are not."""
-        one, other = results
-        if one.kind != "drawn" or other.kind != "drawn":
-            if one.kind == other.kind:
+        left, other = results
+        if left.kind != "drawn" or other.kind != "drawn":
+            if left.kind == other.kind:
                 return None
-            bad, name = (one, self._names[0]) if one.kind != "drawn" else (other, self._names[1])
-            if bad.kind == "refused" or "drawn" not in (one.kind, other.kind):
+            bad, name = (left, self._names[0]) if left.kind != "drawn" else (other, self._names[1])
+            if bad.kind == "refused" or "drawn" not in (left.kind, other.kind):
                 return None
             message = _short(bad.messages[0]) if bad.messages else bad.details
             return Finding(f"only by {name}: {bad.kind} {message}", bad.details)
-        assert one.values is not None and other.values is not None
-        if one.values.shape != other.values.shape:
+        assert left.values is not None and other.values is not None
+        if left.values.shape != other.values.shape:
             return None
-        return self._compared(one.values, other.values)
+        return self._compared(left.values, other.values)
 
-    def _compared(self, one: NDArray[Any], other: NDArray[Any]) -> Finding | None:
-        first, second = one.astype(np.float64), other.astype(np.float64)
+    def _compared(self, left: NDArray[Any], other: NDArray[Any]) -> Finding | None:
+        first, second = left.astype(np.float64), other.astype(np.float64)
         good = np.isfinite(first) & np.isfinite(second)
         # NaN equals NaN, with any bits; an infinity is itself.
         with np.errstate(invalid="ignore"):
@@ -203,7 +203,7 @@ class OffReference(FailureKind):
                 wrong &= (apart > tolerance).any(axis=2)
         self.wrong = wrong
 
-    def found(self, results: Sequence[DrawResult]) -> Finding | None:
+    def finding(self, results: Sequence[DrawResult]) -> Finding | None:
         """Return what is wrong; None where nothing of this kind is."""
         values = results[0].values
         if results[0].kind != "drawn" or values is None or values.shape != self._picture.shape:
@@ -224,7 +224,7 @@ class Commanded(FailureKind):
     def __init__(self, command: str) -> None:
         self.command = command
 
-    def found(self, results: Sequence[DrawResult]) -> Finding | None:
+    def finding(self, results: Sequence[DrawResult]) -> Finding | None:
         """Return None: nothing is drawn, and the command's exit status tells."""
         return None
 

@@ -132,22 +132,26 @@ class CandidateBench:
             yield self._off_reference(), case
         elif question.kind:
             for failure in self._failures(question.kind):
-                yield from ((failure, one) for one in self._chosen(case))
+                yield from ((failure, candidate) for candidate in self._chosen(case))
         else:
             # A pass may fail in any way before the next is drawn, which may take long.
             failures = [failure for kind in ("error", "crash", "nan") for failure in self._failures(kind)]
-            yield from ((failure, one) for one in self._chosen(case) for failure in failures)
-            yield from ((failure, one) for failure in self._failures("drivers") for one in self._chosen(case))
+            yield from ((failure, candidate) for candidate in self._chosen(case) for failure in failures)
+            yield from (
+                (failure, candidate)
+                for failure in self._failures("drivers")
+                for candidate in self._chosen(case)
+            )
 
     def _chosen(self, case: Case) -> list[Case]:
         """Return the case looking at each pass, or at the one that was named."""
-        names = [one.name for one in case.passes]
+        names = [pass_.name for pass_ in case.passes]
         if not self.question.path:
             return [case.looking_at(name) for name in names]
-        wanted = self.question.path.replace(".", "_")
-        inside = [name for name in names if name == wanted or name.startswith(f"{wanted}_")]
+        target_name = self.question.path.replace(".", "_")
+        inside = [name for name in names if name == target_name or name.startswith(f"{target_name}_")]
         if not inside:
-            raise ParameterError(f"--pass {self.question.path}: no such pass{nearest(wanted, names)}")
+            raise ParameterError(f"--pass {self.question.path}: no such pass{nearest(target_name, names)}")
         return [case.looking_at(name) for name in inside]
 
     def _failures(self, kind: str) -> list[FailureKind]:

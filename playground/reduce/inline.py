@@ -34,7 +34,7 @@ def inline_sketch(
     """
     plan = make_plan(sketch, PlanRequest(frame_size=frame, time=time, steps=steps or {}))
     leaves = list(plan.walk())
-    alone = len(leaves) == 1 or Path(sketch.file).suffix != ".toml"  # the rest stands in for its channels
+    alone = len(leaves) == 1 or Path(sketch.file).suffix != ".toml"  # the rest replaces its channels
     own = [leaf.kernel for leaf in leaves if isinstance(leaf.kernel, ForeignShader)]
     foreign = {_words(_whole_source(kernel, plan), as_written=True) for kernel in own}
     if alone and len(foreign) > 1:
@@ -75,7 +75,7 @@ def _plain(step: Step, plan: Plan) -> Case:
     name = "shader" if isinstance(kernel, PlainFragment) else "compute"
     vertex = foreign.vertex_source if foreign else None
     is_isf = foreign is not None and foreign.dialect == "isf"
-    one = Pass(
+    pass_ = Pass(
         name=name,
         text=_words(_whole_source(kernel, plan), as_written=foreign is not None),
         suffix=".frag" if suffix in _OF_SHADERS else suffix,
@@ -83,8 +83,8 @@ def _plain(step: Step, plan: Plan) -> Case:
         beside=((Path(vertex.path).suffix, _words(vertex, as_written=True)),) if vertex else (),
     )
     named = [(p.default, step.values[p.name]) for p in kernel.file_parameters]
-    files = tuple((str(written), str(found)) for written, found in named if foreign)
-    return Case(passes=(one,), target=name, frame=plan.frame_size, time=plan.time, samples=1, files=files)
+    files = tuple((str(written), str(parts)) for written, parts in named if foreign)
+    return Case(passes=(pass_,), target=name, frame=plan.frame_size, time=plan.time, samples=1, files=files)
 
 
 def _whole_source(kernel: Kernel, plan: Plan) -> SourceText:
@@ -158,12 +158,12 @@ class _Inliner:
         parameter = kernel.parameter(name)
         if parameter is None or parameter.widget.kind != "file":
             return value if parameter is None else parameter.widget.chosen(value)
-        place = Path(str(value))
-        known = {source: short for short, source in self.files.items()}
-        if str(place) in known:
-            return known[str(place)]
-        short = place.name if place.name not in self.files else f"{len(self.files)}-{place.name}"
-        self.files[short] = str(place)
+        path = Path(str(value))
+        short_names = {source: short for short, source in self.files.items()}
+        if str(path) in short_names:
+            return short_names[str(path)]
+        short = path.name if path.name not in self.files else f"{len(self.files)}-{path.name}"
+        self.files[short] = str(path)
         return short
 
 
@@ -174,17 +174,17 @@ def written(kernel: Kernel) -> str:
 
 
 def _lines(source: SourceText) -> list[str]:
-    found = []
+    lines_of_text = []
     for index, line in enumerate(source.lines):
         if line.pragma:
             if not line.chain:
-                found.append(line.pragma)
+                lines_of_text.append(line.pragma)
         elif line.code.strip():
             note = (
                 note_at(source.lines, index).text.strip() if line.code.lstrip().startswith("uniform") else ""
             )
-            found.append(f"{line.code}  //! {note}" if note else line.code)
-    return found
+            lines_of_text.append(f"{line.code}  //! {note}" if note else line.code)
+    return lines_of_text
 
 
 def unwired(text: str, name: str) -> str:
@@ -193,4 +193,4 @@ def unwired(text: str, name: str) -> str:
     An input that nothing is wired to would else take the latest earlier output of its name.
     """
     fresh = name if name.startswith("no_") else f"no_{name}"
-    return re.sub(rf"(?<![\w.])({WIRED}|{MATCHES}|){name}\b", lambda found: f"{found.group(1)}{fresh}", text)
+    return re.sub(rf"(?<![\w.])({WIRED}|{MATCHES}|){name}\b", lambda match: f"{match.group(1)}{fresh}", text)

@@ -125,11 +125,11 @@ def to_reproduce(question: Question, folder: Path, case: Case, failure: FailureK
     name = quoted(folder.name)
     if isinstance(failure, Commanded):
         return (f"cd {name}", failure.command)
-    place = name if case.file == "sketch.toml" else f"{name}/{case.file}"
+    path = name if case.file == "sketch.toml" else f"{name}/{case.file}"
     shot = f" --shot {SHOT}" if case.file == "sketch.toml" else ""
     look = "" if failure.as_picture or not shot else f" --texture {case.target}"
     ending = ".npy" if look else ".png"
-    found = []
+    lines = []
     for index, side in enumerate(failure.sides):
         other = index > 0 and question.kind == "against"
         pairs = question.environment.items() if other else ()
@@ -139,9 +139,9 @@ def to_reproduce(question: Question, folder: Path, case: Case, failure: FailureK
         options += " --software" if question.software else ""
         options += f" --device {device}" if device is not None else ""
         number = "" if len(failure.sides) == 1 else f"-{index + 1}"
-        command = f"playground render {place}{shot}{look}{options} -o {SHOT}{number}{ending}"
-        found.append(before + command)
-    return tuple(found)
+        command = f"playground render {path}{shot}{look}{options} -o {SHOT}{number}{ending}"
+        lines.append(before + command)
+    return tuple(lines)
 
 
 def plain_texts(case: Case, probe: Probe, finding: Finding, process: CandidateProcess) -> dict[str, str]:
@@ -165,5 +165,5 @@ def plain_texts(case: Case, probe: Probe, finding: Finding, process: CandidatePr
     result = process.draw(
         DrawTask(sketch=str(probe.folder / opened), ref="", driver=driver, frame=case.frame, time=case.time)
     )
-    after = failure.found([result])
+    after = failure.finding([result])
     return texts if after is not None and after.kind == finding.kind else {}

@@ -43,7 +43,7 @@ class Probe:
             if results[-1].kind == "refused":
                 self.refused = results[-1].details
                 return None
-        return self.failure.found(results)
+        return self.failure.finding(results)
 
     def renew(self) -> None:
         """End the processes, so that the next case gets new ones."""
@@ -95,7 +95,7 @@ class Probe:
 
 def task_of(case: Case, sketch: str, driver: str, as_picture: bool = False) -> DrawTask:
     """Return the task to draw a case that is in a file."""
-    names = {one.name for one in case.live}
+    names = {pass_.name for pass_ in case.live}
     steps = tuple((path, steps) for path, steps in case.steps if path in names)
     ref = "" if as_picture else "view" if case.file != "sketch.toml" else case.target
     return DrawTask(sketch=sketch, ref=ref, driver=driver, frame=case.frame, time=case.time, steps=steps)

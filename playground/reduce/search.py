@@ -36,7 +36,7 @@ _PLAIN = {
     "base_elevation": None,
 }
 _BETWEEN = 8  # edits that held between two looks at the lines
-_SMALLEST = 2  # texels or pixels a side
+_MIN_SIDE = 2  # texels or pixels a side
 
 
 @dataclass(frozen=True)
@@ -99,16 +99,16 @@ class Search:
     def holds(self, case: Case, *, resized: bool = False) -> bool:
         """Return whether a case fails as the best one does, and let it be the best if so.
 
-        ``resized``: its texels are others, so what is wrong is known by its place anew.
+        ``resized``: its texels are others, so what is wrong is known by its place again.
         """
         key = hashlib.blake2b("\0".join(f"{k}\0{v}" for k, v in case.texts().items()).encode()).digest()
-        known = self._known.get(key)
-        if known is not None:
+        cached = self._known.get(key)
+        if cached is not None:
             self.repeated += 1
             # What held may have been taken back by no one: it is a former best, or the best itself.
-            if known:
+            if cached:
                 self.best = case
-            return known
+            return cached
         if self._limit and time.monotonic() - self._start > self._limit:
             raise Enough
         if self._most and self.tries >= self._most:
@@ -144,9 +144,9 @@ class Search:
         self._simplify_inputs()
         self._begin("settings")
         self._settings()
-        for name in [one.name for one in reversed(self.best.live)]:
+        for name in [pass_.name for pass_ in reversed(self.best.live)]:
             for what, shrink in (("lines", self._lines), ("expressions", self._expressions)):
-                if any(one.name == name for one in self.best.live):
+                if any(pass_.name == name for pass_ in self.best.live):
                     self._begin(f"{what} of {name}")
                     shrink(name)
 
@@ -156,38 +156,38 @@ class Search:
 
     def _simplify_inputs(self) -> None:
         """Put something plain in the place of each pass that the target reads, the nearest first."""
-        for one in reversed(self.best.live[:-1]):
-            if any(live.name == one.name for live in self.best.live):
-                for text in _plain_texts(one, "0.0" in self._probe.failure.literals):
-                    plain = replace(one, text=text, variant="", inputs=(), values=(), repeat=0, feedback=())
-                    if len(tokens_of(text)) >= len(tokens_of(one.text)):
+        for pass_ in reversed(self.best.live[:-1]):
+            if any(live.name == pass_.name for live in self.best.live):
+                for text in _plain_texts(pass_, "0.0" in self._probe.failure.literals):
+                    plain = replace(pass_, text=text, variant="", inputs=(), values=(), repeat=0, feedback=())
+                    if len(tokens_of(text)) >= len(tokens_of(pass_.text)):
                         break  # it is as plain already
                     if self.holds(self.best.with_pass(plain)):
                         break
-        for one in reversed(self.best.live):
-            for name, _ in one.live_inputs:
-                fewer = tuple(pair for pair in one.inputs if pair[0] != name)
+        for pass_ in reversed(self.best.live):
+            for name, _ in pass_.live_inputs:
+                fewer = tuple(pair for pair in pass_.inputs if pair[0] != name)
                 if name.startswith("initial"):
-                    self.holds(self.best.with_pass(replace(one, inputs=fewer)))
-            if one.variant:
-                current = next(p for p in self.best.live if p.name == one.name)
+                    self.holds(self.best.with_pass(replace(pass_, inputs=fewer)))
+            if pass_.variant:
+                current = next(p for p in self.best.live if p.name == pass_.name)
                 self.holds(self.best.with_pass(replace(current, variant="")))
 
     def _settings(self) -> None:
         """Remove what is set: all of it at once if that goes, then one after the other."""
         start = self.best
         terrain = [name for name, plain in _PLAIN.items() if getattr(start, name) != plain]
-        given = [(one.name, name) for one in start.live for name, _ in one.live_values]
-        settings = [("", name) for name in terrain] + given
+        value = [(pass_.name, name) for pass_ in start.live for name, _ in pass_.live_values]
+        settings = [("", name) for name in terrain] + value
         if settings:
             ddmin(settings, lambda some: self.holds(_with_settings(start, frozenset(some))))
-        for name in [one.name for one in self.best.live]:
+        for name in [pass_.name for pass_ in self.best.live]:
             self._first_of(name, self._folded)
 
-    def _folded(self, one: Pass) -> Iterator[str]:
-        kinds = {name: kind for kind, name in _UNIFORM.findall(one.text)}
-        values = {name: glsl_of(kinds[name], value) for name, value in one.live_values}
-        return edits.constants(one.text, values)
+    def _folded(self, pass_: Pass) -> Iterator[str]:
+        kinds = {name: kind for kind, name in _UNIFORM.findall(pass_.text)}
+        values = {name: glsl_of(kinds[name], value) for name, value in pass_.live_values}
+        return edits.constants(pass_.text, values)
 
     def _sizes(self) -> None:
         """Halve the terrain, the passes of other sizes with it, then the picture, as often as it goes."""
@@ -216,10 +216,10 @@ class Search:
         literals = self._probe.failure.literals
         again = bool(self._pass(name).variant)
         while again:
-            one = self._pass(name)
-            pairs = edits.in_both(one.text, one.variant, literals)
-            both = (replace(one, text=text, variant=other) for text, other in pairs)
-            again = any(self.holds(self.best.with_pass(pair)) for pair in both if pair != one)
+            pass_ = self._pass(name)
+            pairs = edits.in_both(pass_.text, pass_.variant, literals)
+            both = (replace(pass_, text=text, variant=other) for text, other in pairs)
+            again = any(self.holds(self.best.with_pass(pair)) for pair in both if pair != pass_)
 
         def smaller(text: str) -> Iterable[str]:
             yield from edits.headers(text)
@@ -227,9 +227,9 @@ class Search:
             yield from edits.inlined(text)
             yield from edits.expressions(text, literals)
 
-        self._first_of(name, lambda one: smaller(one.text), between=True)
+        self._first_of(name, lambda pass_: smaller(pass_.text), between=True)
         if self._pass(name).variant:
-            self._first_of(name, lambda one: smaller(one.variant), "variant")
+            self._first_of(name, lambda pass_: smaller(pass_.variant), "variant")
 
     def _first_of(
         self,
@@ -246,9 +246,9 @@ class Search:
         while begin >= 0:
             before, start = getattr(self._pass(name), kind), begin
             begin = -1
-            for place, text in enumerate(candidates(self._pass(name))):
-                if place >= start and text != before and self._try(name, kind, text):
-                    begin = place
+            for index, text in enumerate(candidates(self._pass(name))):
+                if index >= start and text != before and self._try(name, kind, text):
+                    begin = index
                     held += 1
                     break
             if between and held % _BETWEEN == _BETWEEN - 1 and begin >= 0:
@@ -256,20 +256,20 @@ class Search:
                 held += 1
 
     def _pass(self, name: str) -> Pass:
-        return next(one for one in self.best.passes if one.name == name)
+        return next(pass_ for pass_ in self.best.passes if pass_.name == name)
 
     def _try_lines(self, name: str, kind: str, text: str) -> bool:
         return self._try(name, kind, tidy(text))
 
     def _try(self, name: str, kind: str, text: str) -> bool:
-        one = self._pass(name)
-        changed = replace(one, **{kind: text})  # type: ignore[arg-type]
+        pass_ = self._pass(name)
+        changed = replace(pass_, **{kind: text})  # type: ignore[arg-type]
         return self.holds(self.best.with_pass(changed))
 
 
 def _undefined(case: Case) -> frozenset[str]:
     """Return what GLSL leaves undefined in each text."""
-    texts = ((one.name, text) for one in case.live for text in (one.text, one.variant) if text)
+    texts = ((pass_.name, text) for pass_ in case.live for text in (pass_.text, pass_.variant) if text)
     return frozenset(f"{name} {wrong}" for name, text in texts for wrong in _undefined_in(text))
 
 
@@ -281,23 +281,23 @@ def _undefined_in(text: str) -> frozenset[str]:
 def _with_settings(case: Case, settings: frozenset[tuple[str, str]]) -> Case:
     """Return the case with these settings alone: (pass, parameter), or the terrain's own as ("", name)."""
     passes = tuple(
-        replace(one, values=tuple(pair for pair in one.values if (one.name, pair[0]) in settings))
-        for one in case.passes
+        replace(pass_, values=tuple(pair for pair in pass_.values if (pass_.name, pair[0]) in settings))
+        for pass_ in case.passes
     )
     plain = {name: value for name, value in _PLAIN.items() if ("", name) not in settings}
     return replace(case, passes=passes, **plain)  # type: ignore[arg-type]
 
 
-def _stubs(one: Pass, kind: str, number: str) -> Iterator[str]:
-    return edits.stubs(getattr(one, kind), number)
+def _stubs(pass_: Pass, kind: str, number: str) -> Iterator[str]:
+    return edits.stubs(getattr(pass_, kind), number)
 
 
-def _plain_texts(one: Pass, zero: bool) -> Iterator[str]:
+def _plain_texts(pass_: Pass, zero: bool) -> Iterator[str]:
     """Yield texts that give the same outputs from nothing: a constant, then a ramp."""
-    found = _OUTPUTS.search(one.text)
-    if not one.text.startswith("#pragma") and "#pragma" not in one.text:
+    match = _OUTPUTS.search(pass_.text)
+    if not pass_.text.startswith("#pragma") and "#pragma" not in pass_.text:
         return
-    outputs = [part.partition(":") for part in (found.group(1) if found else "frame:rgba16f").split(",")]
+    outputs = [part.partition(":") for part in (match.group(1) if match else "frame:rgba16f").split(",")]
     declared = ", ".join(f"{name.strip()}:{form.strip()}" for name, _, form in outputs)
     kinds = ["vec4" if "rgba" in form else "vec2" if "rg" in form else "float" for _, _, form in outputs]
     ramp = "float(texel.x + 2 * texel.y) / float(size.x)"
@@ -319,7 +319,7 @@ def _plain_texts(one: Pass, zero: bool) -> Iterator[str]:
 
 def _half(number: int) -> int:
     """Halve a side; odd ones stay odd, so that 2**n + 1 stays of its form."""
-    if number <= _SMALLEST:
+    if number <= _MIN_SIDE:
         return number
     return (number - 1) // 2 + 1 if number % 2 else number // 2
 
@@ -327,10 +327,10 @@ def _half(number: int) -> int:
 def _smaller_terrain(case: Case) -> Case:
     size = (_half(case.size[0]), _half(case.size[1]))
     passes = tuple(
-        one
-        if one.size is None or one.size == case.frame
-        else replace(one, size=(_half(one.size[0]), _half(one.size[1])))
-        for one in case.passes
+        pass_
+        if pass_.size is None or pass_.size == case.frame
+        else replace(pass_, size=(_half(pass_.size[0]), _half(pass_.size[1])))
+        for pass_ in case.passes
     )
     return replace(case, size=size, passes=passes)
 
@@ -338,7 +338,7 @@ def _smaller_terrain(case: Case) -> Case:
 def _smaller_frame(case: Case) -> Case:
     frame = (_half(case.frame[0]), _half(case.frame[1]))
     passes = tuple(
-        replace(one, size=frame) if one.size is not None and one.size == case.frame else one
-        for one in case.passes
+        replace(pass_, size=frame) if pass_.size is not None and pass_.size == case.frame else pass_
+        for pass_ in case.passes
     )
     return replace(case, frame=frame, passes=passes)

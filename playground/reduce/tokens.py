@@ -32,11 +32,11 @@ _NO_SPACE_AFTER = frozenset("( [ . ! ~".split())
 
 def tokens_of(text: str) -> list[str]:
     """Split a text into tokens; a whole-line token keeps its inner blanks."""
-    found = []
+    tokens = []
     for match in _TOKEN.finditer(text):
         if match.lastgroup != "comment":
-            found.append(match.group().strip())
-    return found
+            tokens.append(match.group().strip())
+    return tokens
 
 
 def is_word(token: str) -> bool:
@@ -56,15 +56,15 @@ def is_line(token: str) -> bool:
 
 def partners(tokens: Sequence[str]) -> dict[int, int]:
     """Map each bracket's index to that of its partner, both ways; unpaired ones are left out."""
-    found: dict[int, int] = {}
+    partners_by_index: dict[int, int] = {}
     open_: list[int] = []
     for index, token in enumerate(tokens):
         if token in PAIRS:
             open_.append(index)
         elif token in PAIRS.values() and open_ and PAIRS[tokens[open_[-1]]] == token:
             start = open_.pop()
-            found[start], found[index] = index, start
-    return found
+            partners_by_index[start], partners_by_index[index] = index, start
+    return partners_by_index
 
 
 def print_tokens(tokens: Sequence[str]) -> str:

@@ -18,8 +18,8 @@ def record_text(pairs: Mapping[str, tuple[str, str]]) -> str:
 
     A text that is no kernel has no place in it.
     """
-    found = {name: _contents(name, *texts) for name, texts in pairs.items()}
-    return written({name: contents for name, contents in found.items() if contents is not None})
+    entries = {name: _contents(name, *texts) for name, texts in pairs.items()}
+    return written({name: contents for name, contents in entries.items() if contents is not None})
 
 
 def _contents(name: str, text: str, variant_text: str) -> Verified | None:

@@ -31,16 +31,16 @@ def check_token(token: str) -> str:
     return token
 
 
-def refusal(host: str | None, origin: str | None, token: str, *, wanted: str, port: int) -> str:
-    """Return why a request is refused, in a sentence; "" for one that is not.
+def refusal(host: str | None, origin: str | None, token: str, *, token_expected: str, port: int) -> str:
+    """Return why a request is refused, in a message; "" for one that is not.
 
-    ``host`` and ``origin`` are its headers, ``token`` what its address gives for ``wanted``.
+    ``host`` and ``origin`` are its headers, ``token`` what its address gives for ``token_expected``.
     """
     names = {f"127.0.0.1:{port}", f"localhost:{port}"}
     if host not in names:
         return f"this remote is http://127.0.0.1:{port}, and the request's Host is another"
     if origin is not None and origin not in {f"http://{name}" for name in names}:
         return "a page of another origin may not use this remote"
-    if not hmac.compare_digest(token.encode("utf-8", "surrogatepass"), wanted.encode()):
+    if not hmac.compare_digest(token.encode("utf-8", "surrogatepass"), token_expected.encode()):
         return "the address lacks the token that playground live prints"
     return ""

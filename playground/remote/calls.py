@@ -11,7 +11,7 @@ from typing import Any
 
 from playground.errors import PlaygroundError
 
-MOST = 1024
+MAX_WAITING = 1024
 """Requests that may wait."""
 BUDGET = 0.008
 """[s] that a frame spends on requests; one that takes longer is done alone."""
@@ -42,8 +42,8 @@ class Calls:
         with self._lock:
             if self._closed:
                 raise Busy("the window is closed")
-            if len(self._waiting) >= MOST:
-                raise Busy(f"more than {MOST} requests wait for the window")
+            if len(self._waiting) >= MAX_WAITING:
+                raise Busy(f"more than {MAX_WAITING} requests wait for the window")
             first = not self._waiting
             self._waiting.append((function, future))
         if first:

@@ -21,11 +21,11 @@ from playground.extras import needs
 from playground.workbench.control.controller_file import Source
 from playground.workbench.control.controllers import Move
 
-MOST = 1024
+MAX_WAITING = 1024
 """Notes that may wait for the window."""
 _EVERY = 0.004  # [s] between questions to the devices
 _LOOKS = 3.0  # [s] between looks for new devices
-_USUAL, _OTHER = "rtmidi", "pygame"  # what mido receives by
+_DEFAULT, _FALLBACK = "rtmidi", "pygame"  # what mido receives by
 
 
 class Midi:
@@ -111,7 +111,7 @@ class Midi:
                 source = Source(message.channel + 1, "control", message.control)
                 self._controls.pop(source, None)
                 self._controls[source] = message.value
-            elif message.type in ("note_on", "note_off") and len(self._notes) < MOST:
+            elif message.type in ("note_on", "note_off") and len(self._notes) < MAX_WAITING:
                 strength = message.velocity if message.type == "note_on" else 0
                 self._notes.append((Source(message.channel + 1, "note", message.note), strength))
             first = first and self.waits
@@ -122,6 +122,10 @@ class Midi:
 def _choose_backend() -> None:
     """Let mido receive by pygame where rtmidi is missing, unless another was chosen."""
     is_usual = mido.backend.name == "mido.backends.rtmidi"
-    if is_usual and importlib.util.find_spec(_USUAL) is None and importlib.util.find_spec(_OTHER) is not None:
+    if (
+        is_usual
+        and importlib.util.find_spec(_DEFAULT) is None
+        and importlib.util.find_spec(_FALLBACK) is not None
+    ):
         os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
         mido.set_backend("mido.backends.pygame")

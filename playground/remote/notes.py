@@ -25,11 +25,11 @@ from playground.local_server import LocalServer
 from playground.remote.access import new_token, refusal
 from playground.remote.calls import Busy, Calls
 
-LARGEST_REQUEST = 2**12
+MAX_REQUEST_BYTES = 2**12
 """[bytes] of what a page may send."""
 WAITS = 10.0
 """[s] that a request for news waits."""
-_MOST_WAITING = 16  # requests at a time
+_MAX_WAITING = 16  # requests at a time
 _PATIENCE = 5.0  # [s] for the window to do what is asked
 
 _FILES = {
@@ -110,7 +110,7 @@ class Notes:
 class _Server(LocalServer):
     def __init__(self, address: tuple[str, int], notes: Notes) -> None:
         self.notes = notes
-        self.room = threading.Semaphore(_MOST_WAITING)
+        self.room = threading.Semaphore(_MAX_WAITING)
         super().__init__(address, _Handler)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
@@ -139,7 +139,7 @@ class _Handler(BaseHTTPRequestHandler):
         notes = self.server.notes
         _, token, *rest = (*urlsplit(self.path).path.split("/", 2), "")
         host, origin = self.headers.get("Host"), self.headers.get("Origin")
-        why = refusal(host, origin, token, wanted=notes.token, port=notes.port)
+        why = refusal(host, origin, token, token_expected=notes.token, port=notes.port)
         if why:
             self._send(403, "application/json", _error(why))
             return
@@ -148,14 +148,14 @@ class _Handler(BaseHTTPRequestHandler):
             self._send(503, "application/json", _error("too many requests at a time"))
         else:
             try:
-                found = make(rest[0])
+                response = make(rest[0])
             except (PlaygroundError, ValueError) as error:
-                found = (503 if isinstance(error, Busy) else 400), "application/json", _error(str(error))
+                response = (503 if isinstance(error, Busy) else 400), "application/json", _error(str(error))
             except TimeoutError:
-                found = 504, "application/json", _error(f"the window has not answered for {_PATIENCE:g} s")
+                response = 504, "application/json", _error(f"the window has not answered for {_PATIENCE:g} s")
             finally:
                 self.server.room.release()
-            self._send(*found)
+            self._send(*response)
 
     def _get(self, name: str) -> tuple[int, str, bytes]:
         if name == "state":
@@ -168,9 +168,9 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _post(self, name: str) -> tuple[int, str, bytes]:
         length = self.headers.get("Content-Length", "")
-        if name != "do" or not length.isdecimal() or int(length) > LARGEST_REQUEST:
+        if name != "do" or not length.isdecimal() or int(length) > MAX_REQUEST_BYTES:
             self.close_connection = True  # what it sends is not read
-            return 400, "application/json", _error(f"expected at most {LARGEST_REQUEST} bytes for do")
+            return 400, "application/json", _error(f"expected at most {MAX_REQUEST_BYTES} bytes for do")
         wishes = read_json(self.rfile.read(int(length)))
         if not isinstance(wishes, dict):
             raise ValueError('expected a JSON object, as {"go": "next"}')

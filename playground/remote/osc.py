@@ -17,9 +17,9 @@ from playground.errors import DataError
 from playground.sketch.model import Value
 from playground.workbench.control.addresses import OWN, Addresses, Message
 
-MOST = 1024
+MAX_WAITING = 1024
 """Addresses that may wait for the window, and as many messages that are no parameter's."""
-_LARGEST = 2**16  # [bytes] no datagram is larger
+_MAX_BYTES = 2**16  # [bytes] no datagram is larger
 _OWN = OWN.encode()
 
 Address = tuple[str, int]
@@ -80,13 +80,13 @@ class Osc:
         if unread:
             self._addresses.report_once("unread", "OSC: a packet came in that is no OSC")
         if lost:
-            self._addresses.report_once("lost", f"OSC: more than {MOST} addresses came in at once")
+            self._addresses.report_once("lost", f"OSC: more than {MAX_WAITING} addresses came in at once")
 
     def tell(self, changed: Mapping[str, Value], *, everything: bool) -> None:
         """Send new values; ``everything`` where the sketch is another now."""
         if self._addresses is not None and self._out is not None:
-            told = self._addresses.told(changed)
-            self.send(self._addresses.everything() if everything else told)
+            messages = self._addresses.messages_for(changed)
+            self.send(self._addresses.everything() if everything else messages)
 
     def send(self, messages: list[Message]) -> None:
         """Send messages, where there is somebody to send them to."""
@@ -94,8 +94,8 @@ class Osc:
             return
         for address, arguments in messages:
             builder = OscMessageBuilder(address)
-            for one in arguments:
-                builder.add_arg(one)
+            for argument in arguments:
+                builder.add_arg(argument)
             try:
                 self._out.sendto(builder.build().dgram, self._target)
             except OSError as error:  # nobody listens, or the buffer is full: the next value says it again
@@ -120,7 +120,7 @@ class Osc:
         assert self._in is not None
         while not self._closed:
             try:
-                data = self._in.recv(_LARGEST)
+                data = self._in.recv(_MAX_BYTES)
             except OSError:  # on Windows also where a packet that was sent found nobody
                 continue
             if data:
@@ -129,19 +129,19 @@ class Osc:
     def _put(self, data: bytes) -> None:
         """Keep a datagram; of a single message only its address is read here."""
         end = data.find(b"\0")
-        found: list[tuple[bytes, Datagram]] = [(data[:end], data)]
+        messages: list[tuple[bytes, Datagram]] = [(data[:end], data)]
         if end < 0 or not data.startswith(b"/"):
-            found = [(message[0].encode("utf-8", "replace"), message) for message in messages_of(data)]
+            messages = [(message[0].encode("utf-8", "replace"), message) for message in messages_of(data)]
         with self._lock:
             first = not self.waits
-            self._unread += not found
-            for address, message in found:
+            self._unread += not messages
+            for address, message in messages:
                 if address.startswith(_OWN):
-                    if len(self._acts) < MOST:
+                    if len(self._acts) < MAX_WAITING:
                         self._acts.append(message)
                     else:
                         self._lost += 1
-                elif address in self._waiting or len(self._waiting) < MOST:
+                elif address in self._waiting or len(self._waiting) < MAX_WAITING:
                     self._waiting.pop(address, None)  # what came last is done last
                     self._waiting[address] = message
                 else:
@@ -173,9 +173,9 @@ def _bound(source: Address) -> socket.socket:
 
 def _resolved(target: Address) -> Address:
     try:
-        found = socket.getaddrinfo(*target, socket.AF_INET, socket.SOCK_DGRAM)
+        addresses = socket.getaddrinfo(*target, socket.AF_INET, socket.SOCK_DGRAM)
     except (OSError, UnicodeError) as error:
         why = getattr(error, "strerror", None) or error
         raise DataError(f"OSC cannot be sent to {target[0]}:{target[1]}: {why}") from None
-    host, port = found[0][4][:2]
+    host, port = addresses[0][4][:2]
     return str(host), int(port)

@@ -11,7 +11,7 @@ from playground.errors import ContextError, PlaygroundError
 from playground.extras import needs
 from playground.remote.access import check_token, new_token
 from playground.remote.calls import Calls
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.control.addresses import Addresses
 from playground.workbench.control.changes import Changes
 from playground.workbench.control.controls import Controls
@@ -67,10 +67,10 @@ class Remotes:
     @property
     def sentences(self) -> list[str]:
         """Where it can be reached, for the terminal."""
-        found = [f"remote: {self.server.url}"] if self.server is not None else []
+        sentences_found = [f"remote: {self.server.url}"] if self.server is not None else []
         if self.osc is not None and self.osc.source is not None:
-            found.append("OSC: received at {}:{}".format(*self.osc.source))
-        return found
+            sentences_found.append("OSC: received at {}:{}".format(*self.osc.source))
+        return sentences_found
 
     @property
     def waits(self) -> bool:
@@ -78,7 +78,7 @@ class Remotes:
         asked = len(self.calls) > 0 or (self.osc is not None and self.osc.waits)
         return asked or (self.midi is not None and self.midi.waits) or self._settles
 
-    def attach(self, bench: Bench, wake: Callable[[], None]) -> None:
+    def attach(self, bench: Workbench, wake: Callable[[], None]) -> None:
         """Drive a session from now on; ``wake`` ends the window's sleep, from any thread."""
         self.calls.wake = wake
         self._controls, self._changes = Controls(bench), Changes(bench)
@@ -107,7 +107,7 @@ class Remotes:
             self.server.tell(events)
         if self.osc is not None:
             is_new = any(event["event"] == "sketch" for event in events)
-            self.osc.tell(self._changes.changed if self._changes.begun else {}, everything=is_new)
+            self.osc.tell(self._changes.changed if self._changes.started else {}, everything=is_new)
 
     def close(self) -> None:
         """Close everything; requests that wait are refused."""

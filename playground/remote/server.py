@@ -38,15 +38,15 @@ from playground.local_server import BACKLOG, MAX_SILENCE, Unauthenticated
 from playground.remote.access import refusal
 from playground.remote.calls import Busy, Calls
 from playground.web.bundle import read_bundle
-from playground.workbench.control.controls import LARGEST_PICTURE, Behind, Controls
+from playground.workbench.control.controls import MAX_REMOTE_SIDE, Behind, Controls
 
-LARGEST_REQUEST = 2**16
+MAX_REQUEST_BYTES = 2**16
 """[bytes] of a request's body, or of one message."""
-MOST_CLIENTS = 8
+MAX_CLIENTS = 8
 """WebSockets at a time."""
-MOST_CONNECTIONS = 64
+MAX_CONNECTIONS = 64
 """Connections at a time that have shown the token; see ``local_server`` for others."""
-MOST_REQUESTS = 32
+MAX_REQUESTS = 32
 """Requests by HTTP that are being answered at a time."""
 IN_FLIGHT = 100
 """Messages of one client that may wait for the window; more are not read until then."""
@@ -117,7 +117,7 @@ class Server:
 
     async def _serve(self) -> None:
         self._ended, self._drawing = asyncio.Event(), asyncio.Lock()
-        app = web.Application(middlewares=[self._guard], client_max_size=LARGEST_REQUEST)
+        app = web.Application(middlewares=[self._guard], client_max_size=MAX_REQUEST_BYTES)
         app.router.add_get("/{token}/state", self._state)
         app.router.add_get("/{token}/parameters", self._parameters)
         app.router.add_get("/{token}/picture.png", self._picture)
@@ -149,15 +149,15 @@ class Server:
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: _Handler) -> web.StreamResponse:
-        """Refuse who may not ask, bound how many do, and turn every mistake into a sentence."""
+        """Refuse who may not ask, bound how many do, and turn every mistake into a message."""
         token = request.path.split("/", 2)[1]
         host, origin = request.headers.get("Host"), request.headers.get("Origin")
-        if why := refusal(host, origin, token, wanted=self.token, port=self.port):
+        if why := refusal(host, origin, token, token_expected=self.token, port=self.port):
             return _error(403, why)
         self._unauthenticated.discard(request.protocol)
         connections = self._runner.server.connections if self._runner and self._runner.server else []
         self._authenticated = {request.protocol, *self._authenticated.intersection(connections)}
-        if len(self._authenticated) > MOST_CONNECTIONS or self._busy >= MOST_REQUESTS:
+        if len(self._authenticated) > MAX_CONNECTIONS or self._busy >= MAX_REQUESTS:
             return _error(503, "too many requests at a time")
         counts = not request.path.endswith("/events")
         self._busy += counts
@@ -230,9 +230,9 @@ class Server:
                 await asyncio.sleep(_PAUSE)
 
     async def _events(self, request: web.Request) -> web.StreamResponse:
-        if len(self._clients) >= MOST_CLIENTS:
-            return _error(503, f"{MOST_CLIENTS} clients listen already")
-        client = _Client(web.WebSocketResponse(max_msg_size=LARGEST_REQUEST, heartbeat=20.0))
+        if len(self._clients) >= MAX_CLIENTS:
+            return _error(503, f"{MAX_CLIENTS} clients listen already")
+        client = _Client(web.WebSocketResponse(max_msg_size=MAX_REQUEST_BYTES, heartbeat=20.0))
         self._clients.add(client)
         try:
             await client.socket.prepare(request)
@@ -345,12 +345,12 @@ def _listening(port: int) -> socket.socket:
 def _object(text: str | bytes) -> Mapping[str, Any]:
     """Return the JSON object of a message; raise ``ParameterError``."""
     try:
-        found = read_json(text, constant=_no_constant)
+        values = read_json(text, constant=_no_constant)
     except (ValueError, UnicodeDecodeError) as error:
         raise ParameterError(f"{_WANTED}: {error}") from None
-    if not isinstance(found, dict):
-        raise ParameterError(f"{_WANTED}; found {type(found).__name__}")
-    return found
+    if not isinstance(values, dict):
+        raise ParameterError(f"{_WANTED}; found {type(values).__name__}")
+    return values
 
 
 def _no_constant(text: str) -> Any:
@@ -361,17 +361,17 @@ def _size(text: str) -> tuple[int, int] | None:
     if not text:
         return None
     sides = [int(side) if side.isdecimal() and len(side) < 6 else 0 for side in text.lower().split("x")]
-    if len(sides) != 2 or not all(1 <= side <= LARGEST_PICTURE for side in sides):
-        wanted = f"expected width and height, 1 to {LARGEST_PICTURE} pixels, as 640x360"
-        raise ParameterError(f"size={text[:40]}: {wanted}")
+    if len(sides) != 2 or not all(1 <= side <= MAX_REMOTE_SIDE for side in sides):
+        expected = f"expected width and height, 1 to {MAX_REMOTE_SIDE} pixels, as 640x360"
+        raise ParameterError(f"size={text[:40]}: {expected}")
     return sides[0], sides[1]
 
 
 def _width(text: str) -> int:
     if not text:
         return 0
-    if not text.isdecimal() or len(text) > 5 or not 1 <= int(text) <= LARGEST_PICTURE:
-        raise ParameterError(f"width={text[:40]}: expected 1 to {LARGEST_PICTURE} pixels, as 480")
+    if not text.isdecimal() or len(text) > 5 or not 1 <= int(text) <= MAX_REMOTE_SIDE:
+        raise ParameterError(f"width={text[:40]}: expected 1 to {MAX_REMOTE_SIDE} pixels, as 480")
     return int(text)
 
 

@@ -129,10 +129,13 @@ class Declarations:
 
         The kind is global, local, called (a function or a struct) or member.
         """
-        yield from ((one.name, "global" if one.is_global else "local", one.at) for one in self.variables)
+        yield from (
+            (variable.name, "global" if variable.is_global else "local", variable.at)
+            for variable in self.variables
+        )
         for function in (*self.functions, *self.prototypes):
             yield function.name, "called", function.opens - 1
-            yield from ((one.name, "local", one.at) for one in function.parameters)
+            yield from ((variable.name, "local", variable.at) for variable in function.parameters)
         for struct in self.structs.values():
             yield struct.name, "called", -1
             yield from ((name, "member", -1) for name, _ in struct.members)
@@ -209,13 +212,13 @@ class Declarations:
         if not stack and self._text(index + 1) == "(":
             return self._function(type_, index)
         in_header = bool(stack) and stack[-1].header != ""
-        found: list[Variable] = []
+        variables: list[Variable] = []
         while name:
             sizes, last = self._sizes(index + 1)
             close = self.end_of_value(last + 1)
             own = Type(type_.name, (*sizes, *type_.sizes), type_.members)
-            found.append(Variable(name, own, qualifiers, index, last, self._text(last + 1) == "=", close))
-            self._note_number(found[-1])
+            variables.append(Variable(name, own, qualifiers, index, last, self._text(last + 1) == "=", close))
+            self._note_number(variables[-1])
             if self._text(close) != ",":
                 break
             index = close + 1
@@ -225,23 +228,27 @@ class Declarations:
         follows = not single and not in_header
         self.variables += [
             replace(
-                one,
+                variable,
                 close=close,
                 is_global=not stack,
                 may_follow=follows,
                 block=stack[-1].at if stack else -1,
             )
-            for one in found
+            for variable in variables
         ]
         return close
 
-    def _note_number(self, one: Variable) -> None:
+    def _note_number(self, variable: Variable) -> None:
         """Note the value of a constant that a size may name."""
-        if "const" in one.qualifiers and one.has_value and one.type in (Type("int"), Type("uint")):
-            number = self.count(tuple(self._texts[one.end + 2 : one.close]))
+        if (
+            "const" in variable.qualifiers
+            and variable.has_value
+            and variable.type in (Type("int"), Type("uint"))
+        ):
+            number = self.count(tuple(self._texts[variable.end + 2 : variable.close]))
             if number is not None:  # one of two with a name counts for none of them
-                known = self.numbers.setdefault(one.name, str(number))
-                self.numbers[one.name] = known if known == str(number) else one.name
+                text_known = self.numbers.setdefault(variable.name, str(number))
+                self.numbers[variable.name] = text_known if text_known == str(number) else variable.name
 
     def _function(self, type_: Type, at: int) -> int | None:
         closing = self.closing(at + 1)
@@ -267,13 +274,13 @@ class Declarations:
         return closing + 1 if self._text(closing + 1) == ";" else None
 
     def _qualifiers(self, index: int) -> tuple[frozenset[str], int]:
-        found = set()
+        qualifiers = set()
         while (text := self._text(index)) in _QUALIFIERS:
-            found.add(text)
+            qualifiers.add(text)
             index += 1
             if text == "layout" and self._text(index) == "(":
                 index = (self.closing(index) or index) + 1
-        return frozenset(found), index
+        return frozenset(qualifiers), index
 
     def _type(self, index: int) -> tuple[Type, int] | None:
         """Return a type and the index behind it; None where none stands there that a variable may have."""
@@ -315,14 +322,14 @@ class Declarations:
 
     def _sizes(self, index: int) -> tuple[tuple[Size, ...], int]:
         """Return the sizes in the brackets that follow, and the index of the last token of them."""
-        found = []
+        sizes = []
         while self._text(index) == "[":
             closing = self.closing(index)
             if closing is None:
                 break
-            found.append(tuple(self._texts[index + 1 : closing]))
+            sizes.append(tuple(self._texts[index + 1 : closing]))
             index = closing + 1
-        return tuple(found), index - 1
+        return tuple(sizes), index - 1
 
     def end_of_value(self, index: int) -> int:
         """Return the index of the comma, semicolon or bracket that ends what begins at an index."""
@@ -395,14 +402,16 @@ class Declared:
 def uniforms(code: str) -> Mapping[str, Declared]:
     """Return the uniforms that a text declares, by name; of one in two branches, the first."""
     code = expanded(code)
-    found: dict[str, Declared] = {}
+    declarations: dict[str, Declared] = {}
     for match in _UNIFORM.finditer(code):
         of_type = match.group(2).strip()  # the array of "float[3] a"
         for name, array, at, written in _names(match.group(3)):
             line = code.count("\n", 0, match.start(3) + at)
             written = written.replace(name, f"{name}{of_type}", 1)
-            found.setdefault(name, Declared(name, match.group(1), bool(array or of_type), line, written))
-    return found
+            declarations.setdefault(
+                name, Declared(name, match.group(1), bool(array or of_type), line, written)
+            )
+    return declarations
 
 
 def expanded(code: str) -> str:
@@ -416,11 +425,11 @@ def expanded(code: str) -> str:
     return "\n".join(lines)
 
 
-def takes(kind: str, given: str) -> bool:
+def takes(kind: str, kind_given: str) -> bool:
     """Return whether a uniform of a type can be given what another type is given."""
     kinds = [
-        next((n for n, sign in _KINDS.items() if sign.fullmatch(one.partition("[")[0])), one)
-        for one in (kind, given)
+        next((n for n, sign in _KINDS.items() if sign.fullmatch(type_name.partition("[")[0])), type_name)
+        for type_name in (kind, kind_given)
     ]
     return kinds[0] == kinds[1]
 
@@ -434,18 +443,18 @@ def is_declared(code: str, name: str, *, anywhere: bool) -> bool:
 @TEXTS.cached()
 def declared_names(code: str) -> Mapping[str, frozenset[str]]:
     """Return the names that a text declares, its macros expanded, with their kinds: see ``Declarations``."""
-    found: dict[str, frozenset[str]] = {}
+    names: dict[str, frozenset[str]] = {}
     for tokens in readings(code):
         for name, kind, _ in Declarations(tokens).names():
-            found[name] = found.get(name, frozenset()) | {kind}
-    return found
+            names[name] = names.get(name, frozenset()) | {kind}
+    return names
 
 
 @TEXTS.cached()
 def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
     """Return what the vertex shader gives a fragment shader: declarations, and statements that set them."""
     code = expanded(code)
-    found: dict[str, tuple[str, str]] = {}
+    outputs: dict[str, tuple[str, str]] = {}
     for block in _BLOCK.finditer(code):
         members = " ".join(block.group(2).split())
         instance = block.group(3)
@@ -455,15 +464,15 @@ def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
             for name, array, _, _ in _names(member.group(3))
         ]
         declaration = f"out {block.group(1)} {{ {members} }} {instance};"
-        found.setdefault(block.group(1), (declaration, " ".join(statements)))
+        outputs.setdefault(block.group(1), (declaration, " ".join(statements)))
     for match in _IN.finditer(code):
         layout, before, after, kind, names = match.groups()
         for name, array, _, _ in _names(names):
             if not name.startswith("gl_"):
                 ways = " ".join(f"{before}{after}".split())
                 declaration = " ".join(f"{layout or ''} {ways} out {kind} {name}{array};".split())
-                found.setdefault(name, (declaration, _set(name, name, kind, array)))
-    return tuple(found.values())
+                outputs.setdefault(name, (declaration, _set(name, name, kind, array)))
+    return tuple(outputs.values())
 
 
 def _names(text: str) -> Iterator[tuple[str, str, int, str]]:
@@ -479,12 +488,12 @@ def _names(text: str) -> Iterator[tuple[str, str, int, str]]:
         start += len(part) + 1
 
 
-def _set(place: str, name: str, kind: str, array: str) -> str:
+def _set(target: str, name: str, kind: str, array: str) -> str:
     """Return the statement that sets one output."""
     value = _value(name.lower(), kind)
     if array:
-        return f"for (int k_i = 0; k_i < {place}.length(); ++k_i) {place}[k_i] = {value};"
-    return f"{place} = {value};"
+        return f"for (int k_i = 0; k_i < {target}.length(); ++k_i) {target}[k_i] = {value};"
+    return f"{target} = {value};"
 
 
 def _value(name: str, kind: str) -> str:

@@ -141,7 +141,7 @@ class _Draft:
     severity: Severity
     head: str
     code: str = ""
-    known: bool = True  # a format recognised it
+    recognised: bool = True  # a format recognised it
     more: list[str] = field(default_factory=list)
 
     def entry(self) -> LogEntry:
@@ -175,10 +175,10 @@ def _take(drafts: list[_Draft], line: str, indented: bool) -> None:
     draft = _recognise(line)
     if draft is None:
         head = _clean(line)
-        if last is None or (last.known and not indented) or SUMMARY.fullmatch(head):
-            drafts.append(_Draft(0, 0, "error", head, known=False))
+        if last is None or (last.recognised and not indented) or SUMMARY.fullmatch(head):
+            drafts.append(_Draft(0, 0, "error", head, recognised=False))
         elif SUMMARY.fullmatch(last.head):
-            drafts.append(_Draft(0, 0, "error", head, known=False))
+            drafts.append(_Draft(0, 0, "error", head, recognised=False))
         else:
             last.more.append(head)
     elif last is not None and _continues(last, draft, line):
@@ -192,10 +192,10 @@ def _take(drafts: list[_Draft], line: str, indented: bool) -> None:
 
 def _recognise(line: str) -> _Draft | None:
     for pattern in FORMATS:
-        found = pattern.fullmatch(line)
-        if found is None:
+        match = pattern.fullmatch(line)
+        if match is None:
             continue
-        parts = found.groupdict()
+        parts = match.groupdict()
         kind = (parts.get("kind") or "error").lower()
         return _Draft(
             line=max(0, int(parts.get("line") or 0)),
@@ -230,11 +230,11 @@ def source_column(line: str, column: int) -> int:
     Exact unless a macro or a comment that was not blanked is before it on the line.
     """
     counted, blank = 0, False
-    for place, character in enumerate(line, start=1):
+    for index, character in enumerate(line, start=1):
         counted += not (blank and character in " \t")
         blank = character in " \t"
         if counted == column and not blank:
-            return place
+            return index
     return 0
 
 
@@ -421,12 +421,12 @@ def folded(message: str) -> str:
 
 
 def hint(message: str) -> str:
-    """Return in one sentence what a message usually means, or "" where nothing useful is known."""
+    """Return in one message what a message usually means, or "" where nothing useful is known."""
     head = message.split("\n", 1)[0][:600]
     for pattern, sentence in HINTS:
-        found = pattern.search(head)
-        if found:
-            name = next((group for group in found.groups() if group), "")
+        match = pattern.search(head)
+        if match:
+            name = next((group for group in match.groups() if group), "")
             return sentence.format(name, name.lower())
     # Mesa's type "error" marks what follows from a mistake already reported.
     if MISFIT.search(head) and not re.search(r"\berror\b", head):
@@ -438,9 +438,9 @@ def _misfit(head: str) -> str:
     """Explain types that do not fit together."""
     call = CALL.search(head)
     if call is not None:
-        name, given = call[1] or call[3], call[2] or ""
-        if any(base in ("int", "uint") for base, _ in _types(given)):
-            return MISFITS["whole call"].format(name, given)
+        name, type_name = call[1] or call[3], call[2] or ""
+        if any(base in ("int", "uint") for base, _ in _types(type_name)):
+            return MISFITS["whole call"].format(name, type_name)
         return MISFITS["call"].format(name)
     types = _types(head)
     bases = {base for base, _ in types}
@@ -455,7 +455,7 @@ def _misfit(head: str) -> str:
 
 def _types(text: str) -> list[tuple[str, str]]:
     """Find the types named in a text, as (kind of number, size)."""
-    found: list[tuple[str, str]] = []
+    types: list[tuple[str, str]] = []
     for match in TYPE.finditer(text):
         word = match["word"]
         if "mat" in word:
@@ -464,8 +464,8 @@ def _types(text: str) -> list[tuple[str, str]]:
             size = word[-1]
         else:
             size = match["size"] or "1"
-        found.append((BASES["u" if word.startswith("uns") else word[0]], size))
-    return found
+        types.append((BASES["u" if word.startswith("uns") else word[0]], size))
+    return types
 
 
 UNKNOWN = re.compile(
@@ -526,11 +526,11 @@ def without_consequences(entries: Iterable[LogEntry]) -> Iterator[LogEntry]:
     seen: set[str] = set()
     cause = (0, 0)  # line and column
     for entry in entries:
-        head, place = _head(entry.message), (entry.line, entry.column)
-        follows = 0 < entry.line and place <= cause and FOLLOWS.search(head) is not None
+        head, position = _head(entry.message), (entry.line, entry.column)
+        follows = 0 < entry.line and position <= cause and FOLLOWS.search(head) is not None
         name = "" if follows else _unknown(head)
         if name or (UNFIT.search(head) and not follows):
-            cause = place
+            cause = position
         if entry.severity != "error" or not (follows or name in seen):
             yield entry
         if name:
@@ -541,23 +541,23 @@ def names_given(kernel: Kernel) -> frozenset[str]:
     """Return the names that a kernel, or the tool of another shader, is given without declaring them."""
     if isinstance(kernel, ForeignShader):
         helpers = "\n".join(own_part(part) for part in kernel.helpers)
-        found = [*FUNCTION.finditer(helpers), *DEFINE.finditer(helpers)]
-        return frozenset({*(name for name, _ in kernel.tool_names), *(match[1] for match in found)})
+        matches = [*FUNCTION.finditer(helpers), *DEFINE.finditer(helpers)]
+        return frozenset({*(name for name, _ in kernel.tool_names), *(match[1] for match in matches)})
     return frozenset(GIVEN) if _is_own(kernel) else frozenset()
 
 
 def whereabouts(message: str, source: SourceText, line: Line | None, kernel: Kernel) -> str:
-    """Return in one sentence where an unknown name is declared, or who is given it; "" where nobody is."""
+    """Return in one message where an unknown name is declared, or who is given it; "" where nobody is."""
     name = _unknown(message)
     if not name or line is None:
         return ""
-    here = next((number for number, one in enumerate(source.lines) if one is line), 0)
+    here = next((number for number, entry in enumerate(source.lines) if entry is line), 0)
     places = _places(source)
     for kind, number in sorted(places.get(name, ())):
-        place = f"{shown(source.lines[number].file)}:{source.lines[number].number}"
+        location = f"{shown(source.lines[number].file)}:{source.lines[number].number}"
         if kind == "called" or (kind == "global" and number <= here):
             return ""  # ``guess`` knows functions
-        return (GUESSES["below"] if kind == "global" else WHEREABOUTS["block"]).format(name, place)
+        return (GUESSES["below"] if kind == "global" else WHEREABOUTS["block"]).format(name, location)
     return _given_elsewhere(name, kernel)
 
 
@@ -566,12 +566,12 @@ def _places(source: SourceText) -> dict[str, set[tuple[str, int]]]:
     from playground.shader.declarations import Declarations
     from playground.shader.preprocessor import readings
 
-    found: dict[str, set[tuple[str, int]]] = defaultdict(set)
+    places: dict[str, set[tuple[str, int]]] = defaultdict(set)
     for tokens in readings(source.code):
         for name, kind, at in Declarations(tokens).names():
             if kind != "member":
-                found[name].add((kind, tokens[at].line))
-    return found
+                places[name].add((kind, tokens[at].line))
+    return places
 
 
 def _given_elsewhere(name: str, kernel: Kernel) -> str:
@@ -580,17 +580,17 @@ def _given_elsewhere(name: str, kernel: Kernel) -> str:
 
     kinds = {**isf.NAMES, **main.NAMES}
     if isinstance(kernel, ForeignShader):
-        given = kernel.tool_names
+        names = kernel.tool_names
     else:
-        given = tuple(_MEANINGS.items()) if _is_own(kernel) else ()
+        names = tuple(_MEANINGS.items()) if _is_own(kernel) else ()
     if isinstance(kernel, PlainFragment) and not isinstance(kernel, ForeignShader) and name in _PLAIN:
         return WHEREABOUTS["undeclared"].format(name, kinds[name][0])
-    if name in dict(given) or (_is_own(kernel) and name in GIVEN_INSTEAD):
+    if name in dict(names) or (_is_own(kernel) and name in GIVEN_INSTEAD):
         return ""
     meaning = _MEANINGS.get(name) or _ALIKE.get(kinds.get(name, ("", ""))[1], "")
     if not meaning and name not in GIVEN:
         return ""
-    same = next((own for own, means in given if meaning and _ALIKE.get(means) == meaning), "")
+    same = next((own for own, means in names if meaning and _ALIKE.get(means) == meaning), "")
     if same:
         return WHEREABOUTS["same"].format(name, same)
     return WHEREABOUTS["kernels"].format(name) if name in GIVEN and not _is_own(kernel) else ""
@@ -607,8 +607,8 @@ def _head(message: str) -> str:
 
 def _unknown(message: str) -> str:
     """Return the name that a message calls unknown; "" for any other."""
-    found = UNKNOWN.search(_head(message))
-    return next(group for group in found.groups() if group) if found else ""
+    match = UNKNOWN.search(_head(message))
+    return next(group for group in match.groups() if group) if match else ""
 
 
 WHEREABOUTS = {
@@ -631,12 +631,12 @@ _PLAIN = frozenset(name for names in PLAIN_UNIFORMS.values() for name in names)
 
 
 def guess(
-    message: str, source: SourceText, line: Line | None, given: Collection[str] = frozenset(GIVEN)
+    message: str, source: SourceText, line: Line | None, names: Collection[str] = frozenset(GIVEN)
 ) -> str:
-    """Return in one sentence what an unknown name was meant to be; "" where that is not sure.
+    """Return in one message what an unknown name was meant to be; "" where that is not sure.
 
     ``message`` is a driver's, of any maker; ``line`` is where it points, None where it points nowhere.
-    ``given`` are names that need no declaration.
+    ``names`` are names that need no declaration.
     """
     name = _unknown(message)
     if not name:
@@ -658,8 +658,8 @@ def guess(
     if files:
         which = " or ".join(f'`#include "{file}"`' for file in files[:3])
         return GUESSES["library"].format(name, which)
-    known = {*functions, *given, *(GLSL_WORDS if called else variables)}
-    near = _nearest(name, known - {name})
+    existing = {*functions, *names, *(GLSL_WORDS if called else variables)}
+    near = _nearest(name, existing - {name})
     return GUESSES["near"].format(name, near) if near else ""
 
 
@@ -682,7 +682,7 @@ def _unread(source: SourceText, line: Line) -> str:
 @cache
 def library() -> dict[str, tuple[str, ...]]:
     """Return the files to include, from ``glsl/``, that define each function of the library."""
-    found: dict[str, list[str]] = {}
+    files: dict[str, list[str]] = {}
     for path in sorted(GLSL.rglob("*.glsl")):
         if path.is_relative_to(SKETCHES):
             continue
@@ -693,8 +693,8 @@ def library() -> dict[str, tuple[str, ...]]:
         if RUNS.search(text):
             continue
         for name in {match[1] for match in DEFINITION.finditer(text)}:
-            found.setdefault(name, []).append(path.relative_to(GLSL).as_posix())
-    return {name: tuple(files) for name, files in found.items()}
+            files.setdefault(name, []).append(path.relative_to(GLSL).as_posix())
+    return {name: tuple(files) for name, files in files.items()}
 
 
 def _declared(source: SourceText) -> tuple[dict[str, Line], set[str]]:
@@ -720,21 +720,21 @@ def _below(name: str, functions: dict[str, Line], source: SourceText, line: Line
     there = functions.get(name)
     if there is None or line is None:
         return ""
-    order = {id(text): place for place, text in enumerate(source.lines)}
+    order = {id(text): index for index, text in enumerate(source.lines)}
     if order.get(id(there), 0) <= order.get(id(line), 0):
         return ""
     where = f"{shown(there.file)}:{there.number}"
     return GUESSES["below"].format(name, where)
 
 
-def _nearest(name: str, known: set[str]) -> str:
+def _nearest(name: str, names: set[str]) -> str:
     """Return the one known name that is like this one; "" where there is none, or two are as near."""
-    folded = [other for other in known if other.lower() == name.lower()]
+    folded = [other for other in names if other.lower() == name.lower()]
     if len(folded) == 1 and folded[0] != name:
         return folded[0]
     if len(name) < 3:
         return ""
-    near = difflib.get_close_matches(name, sorted(known), n=2, cutoff=NEAR)
+    near = difflib.get_close_matches(name, sorted(names), n=2, cutoff=NEAR)
     if len(near) == 2:
         first, second = (difflib.SequenceMatcher(None, name, other).ratio() for other in near)
         if first == second:

@@ -19,17 +19,17 @@ from typing import cast
 
 from playground.errors import nearest
 from playground.memo import NUMBERS
-from playground.shader.parameter import LARGEST_SIDE
+from playground.shader.parameter import MAX_SIDE
 
 Number = int | float | Fraction
 _LIMIT = 2**62
-LONGEST = 500
+MAX_LETTERS = 500
 FRAME_RATE = 60  # frames of a sketch's state in a second
 CLOCKS = ("time", "frames")
 """Names that follow the time: seconds, and the frames that are to run: see ``frames_at``."""
 ITERATION, ITERATIONS = COUNTERS = "iteration", "iterations"
 """Names that are a loop's: its step, from 0, and its steps in all."""
-_DEEPEST = 100
+_MAX_DEPTH = 100
 TWO_FRAMES = "is the number of frames at a time; give the parameter of that name another one"
 
 
@@ -41,20 +41,20 @@ def evaluate(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -
     """Evaluate an expression to an integer.
 
     ``names`` maps a dotted name to its number, or is a function that does so and
-    raises ``KeyError``. Raises ``ExpressionError`` in a sentence.
+    raises ``KeyError``. Raises ``ExpressionError`` in a message.
     """
     if callable(names):
         return _evaluated(text, names, ())
-    found = [(name, type(names[name]), names[name]) for name in _names(text) if name in names]
-    if len(found) < len(_names(text)):
+    names_and_values = [(name, type(names[name]), names[name]) for name in _names(text) if name in names]
+    if len(names_and_values) < len(_names(text)):
         return _evaluated(text, names.__getitem__, tuple(names))
-    return _cached(text, tuple(found))
+    return _cached(text, tuple(names_and_values))
 
 
 @NUMBERS.cached()
-def _cached(text: str, found: tuple[tuple[str, type, Number], ...]) -> int:
+def _cached(text: str, names_and_values: tuple[tuple[str, type, Number], ...]) -> int:
     """Evaluate once for the same names: steps repeat them. Types count: 1 is not 1.0 in 1 / 3."""
-    return _evaluated(text, {name: number for name, _, number in found}.__getitem__, ())
+    return _evaluated(text, {name: number for name, _, number in names_and_values}.__getitem__, ())
 
 
 @NUMBERS.cached()
@@ -62,8 +62,8 @@ def _names(text: str) -> tuple[str, ...]:
     return tuple(sorted(names_in(text)))
 
 
-def _evaluated(text: str, look_up: Callable[[str], Number], known: tuple[str, ...]) -> int:
-    value = _value_of(parsed(text), text, look_up, known)
+def _evaluated(text: str, look_up: Callable[[str], Number], valid: tuple[str, ...]) -> int:
+    value = _value_of(parsed(text), text, look_up, valid)
     if isinstance(value, float) and value.is_integer():
         value = int(value)
     if not isinstance(value, int):
@@ -72,12 +72,12 @@ def _evaluated(text: str, look_up: Callable[[str], Number], known: tuple[str, ..
 
 
 def evaluate_number(text: str, names: Mapping[str, Number]) -> float:
-    """Evaluate an expression to a number, whole or not. Raises ``ExpressionError`` in a sentence."""
+    """Evaluate an expression to a number, whole or not. Raises ``ExpressionError`` in a message."""
     return float(_value_of(parsed(text), text, names.__getitem__, tuple(names)))
 
 
 def evaluate_numbers(text: str, names: Mapping[str, Number]) -> list[float]:
-    """Return the numbers of expressions separated by commas. Raises ``ExpressionError`` in a sentence."""
+    """Return the numbers of expressions separated by commas. Raises ``ExpressionError`` in a message."""
     return [evaluate_number(part, names) for part in split_at_commas(text)]
 
 
@@ -89,27 +89,27 @@ def evaluate_pair(text: str, names: Mapping[str, Number] | Callable[[str], Numbe
     return evaluate(parts[0], names), evaluate(parts[1], names)
 
 
-def check(text: str, known: Collection[str], *, count: int = 1) -> None:
-    """Raise ``ExpressionError`` where ``text`` is not ``count`` expressions of the names ``known``."""
+def check(text: str, valid: Collection[str], *, count: int = 1) -> None:
+    """Raise ``ExpressionError`` where ``text`` is not ``count`` expressions of the names ``valid``."""
     parts = split_at_commas(text)
     if len(parts) != count:
         what = "one expression" if count == 1 else f"{count} expressions separated by a comma"
         raise ExpressionError(f"'{text}' should be {what}")
     for part in parts:
-        _value_of(parsed(part), part, dict.fromkeys(known, 1).__getitem__, tuple(known), dry=True)
+        _value_of(parsed(part), part, dict.fromkeys(valid, 1).__getitem__, tuple(valid), dry=True)
 
 
 def names_in(text: str) -> frozenset[str]:
     """Return the dotted names that an expression, or several separated by commas, reads."""
-    found: set[str] = set()
+    names: set[str] = set()
 
     def look_up(name: str) -> int:
-        found.add(name)
+        names.add(name)
         return 1
 
     for part in split_at_commas(text):
         _value_of(parsed(part), part, look_up, (), dry=True)
-    return frozenset(found)
+    return frozenset(names)
 
 
 @NUMBERS.cached()
@@ -134,7 +134,7 @@ def last_frame_at(time: float) -> int:
     return math.floor(FRAME_RATE * time + 1e-6)  # n / 60 is frame n, however it was rounded
 
 
-def accepted_sizes(accepts: str, limit: int = LARGEST_SIDE) -> tuple[tuple[int, ...], tuple[int, ...]]:
+def accepted_sizes(accepts: str, limit: int = MAX_SIDE) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """List the sizes up to ``limit`` that ``accepts`` allows along x and along y, smallest first.
 
     ``"2**n + 1"`` allows square sizes; ``"2**n, 2**m"`` allows each axis its own. The
@@ -181,19 +181,19 @@ def split_at_commas(text: str) -> tuple[str, ...]:
 
 
 def _either(text: str, variable: str, limit: int) -> tuple[int, ...]:
-    found: set[int] = set()
+    numbers: set[int] = set()
     for part in text.split(" or "):
         expression, _, most = part.partition(" up to ")
-        if most and not (most.strip().isdecimal() and len(most) < LONGEST):
+        if most and not (most.strip().isdecimal() and len(most) < MAX_LETTERS):
             raise ExpressionError(f"'{part}': expected a whole number after 'up to'")
-        found.update(_values(expression, variable, min(limit, int(most)) if most else limit))
-    return tuple(sorted(found))
+        numbers.update(_values(expression, variable, min(limit, int(most)) if most else limit))
+    return tuple(sorted(numbers))
 
 
 @NUMBERS.cached()
 def _values(text: str, variable: str, limit: int) -> tuple[int, ...]:
     check(text, (variable,))
-    found: list[int] = []
+    values: list[int] = []
     for n in range(limit + 1):
         try:
             value = _evaluated(text, {variable: n}.__getitem__, ())  # thousands: none is asked for again
@@ -201,18 +201,18 @@ def _values(text: str, variable: str, limit: int) -> tuple[int, ...]:
             continue
         if value > limit:
             break
-        if value >= 1 and value not in found[-1:]:
-            found.append(value)
-    if not found:
+        if value >= 1 and value not in values[-1:]:
+            values.append(value)
+    if not values:
         raise ExpressionError(f"'{text}' allows no size")
-    return tuple(sorted(set(found)))
+    return tuple(sorted(set(values)))
 
 
 @NUMBERS.cached()
 def parsed(text: str) -> ast.expr:
     """Parse an expression, which may be no expression of these; raise ``ExpressionError``."""
-    if len(text) > LONGEST:
-        raise ExpressionError(f"an expression may not be longer than {LONGEST} characters")
+    if len(text) > MAX_LETTERS:
+        raise ExpressionError(f"an expression may not be longer than {MAX_LETTERS} characters")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # "1 if 2else 3" is deprecated: no line on the console for it
@@ -220,11 +220,11 @@ def parsed(text: str) -> ast.expr:
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise ExpressionError(f"'{text}' is not an expression") from None
     level: list[ast.AST] = [tree]
-    for _ in range(_DEEPEST):
+    for _ in range(_MAX_DEPTH):
         level = [child for node in level for child in ast.iter_child_nodes(node)]
         if not level:
             return tree
-    raise ExpressionError(f"'{text}' is nested more than {_DEEPEST} deep")
+    raise ExpressionError(f"'{text}' is nested more than {_MAX_DEPTH} deep")
 
 
 def _dotted(node: ast.expr, text: str) -> str:
@@ -297,12 +297,12 @@ _FUNCTIONS: dict[str, Callable[..., Number]] = {
 
 
 def _value_of(
-    node: ast.expr, text: str, look_up: Callable[[str], Number], known: tuple[str, ...], *, dry: bool = False
+    node: ast.expr, text: str, look_up: Callable[[str], Number], valid: tuple[str, ...], *, dry: bool = False
 ) -> Number:
     """Return the value of a node; ``dry`` looks at names and kinds only, in both branches of an ``if``."""
 
     def go(inner: ast.expr) -> Number:
-        return _value_of(inner, text, look_up, known, dry=dry)
+        return _value_of(inner, text, look_up, valid, dry=dry)
 
     value: Number
     if isinstance(node, ast.Constant) and type(node.value) in (int, float):
@@ -312,7 +312,7 @@ def _value_of(
         try:
             value = look_up(name)
         except KeyError:
-            message = f"'{text}' names '{name}', which is not known here{nearest(name, known)}"
+            message = f"'{text}' names '{name}', which is not known here{nearest(name, valid)}"
             raise ExpressionError(message) from None
     elif isinstance(node, ast.BinOp) and type(node.op) in _BINARY:
         left, right = go(node.left), go(node.right)

@@ -75,20 +75,20 @@ class Note:
 
 def note_at(lines: Sequence[Line], index: int) -> Note:
     """Return the annotation that begins on a line, with the lines after it that hold ``//!`` alone."""
-    text, found = "", list[tuple[int, Line]]()
+    text, comments = "", list[tuple[int, Line]]()
     for line in lines[index:]:
         goes_on = not line.code and line.file == lines[index].file and line.chain == lines[index].chain
-        if not line.comment.startswith("!") or (found and not goes_on):
+        if not line.comment.startswith("!") or (comments and not goes_on):
             break
-        text += " " if found else ""
-        found.append((len(text), line))
+        text += " " if comments else ""
+        comments.append((len(text), line))
         text += line.comment[1:].strip()
-    return Note(text, tuple(found) or ((0, lines[index]),))
+    return Note(text, tuple(comments) or ((0, lines[index]),))
 
 
 def arguments(text: str, line: Line) -> list[Argument]:
     """Split the text in brackets at its commas; texts lose their quotes. Raises ``ShaderError``."""
-    found: list[Argument] = []
+    result: list[Argument] = []
     position, end = 0, len(text.rstrip())
     while position < end:
         match = _ARGUMENT.match(text, position, end)
@@ -98,9 +98,9 @@ def arguments(text: str, line: Line) -> list[Argument]:
         raw = match.group(2).strip()
         if raw.startswith('"'):
             raw = re.sub(r"\\(.)", r"\1", raw[1:-1])
-        found.append((match.group(1) or "", raw))
+        result.append((match.group(1) or "", raw))
         position = match.end()
-    return found
+    return result
 
 
 def annotation_calls(
@@ -111,7 +111,7 @@ def annotation_calls(
     ``words`` may be called; those of ``bare`` need no brackets as the first word.
     Raises ``ShaderError`` for a word in brackets that is nearly one of ``words``.
     """
-    found: dict[str, list[str]] = {}
+    names: dict[str, list[str]] = {}
     position = 0
     while match := _WORD.match(note.text, position):
         word, opens, start = match.group(1), bool(match.group(2)), match.start(1)
@@ -123,10 +123,10 @@ def annotation_calls(
         if not opens:
             if position or word not in bare:
                 break
-            found[word] = []
+            names[word] = []
             position = match.end()
             continue
-        if word in found:
+        if word in names:
             raise note.error(f"'{word}' appears twice", word, start)
         end = _closing(note.text, match.end())
         if end < 0:
@@ -135,9 +135,9 @@ def annotation_calls(
         for name, _ in pairs:
             if name:
                 raise note.error(f"{word}() takes no '{name} ='", word, start)
-        found[word] = [value for _, value in pairs]
+        names[word] = [value for _, value in pairs]
         position = end + 1
-    return found, note.text[position:].strip()
+    return names, note.text[position:].strip()
 
 
 def _closing(text: str, position: int) -> int:
@@ -163,7 +163,7 @@ _IMAGE = re.compile(r"\b[iu]?image[123]D\b")
 _FLOAT = re.compile(r"[-+]?(?:\d+\.\d*|\.\d+|\d+(?=[eEfF]))(?:[eE][-+]?\d+)?[fF]?")
 _WHOLE = re.compile(r"([-+]?)(?:0[xX]([0-9a-fA-F]+)|(\d+))[uU]?")
 _VECTOR = re.compile(r"([iu]?vec[234])\s*\((.*)\)", re.DOTALL)
-_LONGEST_LITERAL = 64
+_MAX_LITERAL = 64
 
 _TYPES = frozenset(SCALARS + VECTORS)
 _ROLES = WIDGETS.keys() - {"number"} | {"input"}
@@ -228,28 +228,28 @@ def read_uniforms(
         else:
             raise line.error(f"a parameter may not be a {glsl_type}; scalars, vectors and sampler2D may")
     for number, words, line in following:
-        found = read_follows(parameters[number], words, parameters, line)
-        parameters[number] = replace(parameters[number], follows=found)
+        rule = read_follows(parameters[number], words, parameters, line)
+        parameters[number] = replace(parameters[number], follows=rule)
     return tuple(parameters), tuple(inputs)
 
 
 def unfed_samplers(source: SourceText) -> tuple[Diagnostic, ...]:
     """Return a warning for each sampler of a plain shader that no image file feeds: it reads black."""
     fed = {p.name for p in read_uniforms(source, plain=True)[0] if p.type == "sampler2D"}
-    found: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     for line in source.lines:
         for match in _SAMPLERS.finditer(line.code):
             kind, names = match.groups()
-            for one in re.finditer(r"([A-Za-z_]\w*)\s*(?:\[[^\]]*\]\s*)?(?:,|$)", names):
-                name, column = one.group(1), match.start(2) + one.start() + 1
+            for item in re.finditer(r"([A-Za-z_]\w*)\s*(?:\[[^\]]*\]\s*)?(?:,|$)", names):
+                name, column = item.group(1), match.start(2) + item.start() + 1
                 example = f'uniform sampler2D {name};  //! file("picture.png")'
                 more = f"an image file does: {example}"
                 if kind != "sampler2D":
                     more = "only a sampler2D may be fed"
                 if name not in fed:
                     message = f"nothing feeds '{name}', so it reads black; {more}"
-                    found.append(line.diagnostic(message, column, "warning"))
-    return tuple(dict.fromkeys(found))
+                    diagnostics.append(line.diagnostic(message, column, "warning"))
+    return tuple(dict.fromkeys(diagnostics))
 
 
 def is_given(name: str) -> bool:
@@ -267,8 +267,8 @@ def check_name(name: str, line: Line, what: str) -> None:
         message = f"'{name}' is a word of GLSL itself; name the {what} something else"
     else:
         return
-    found = re.search(rf"\b{re.escape(name)}\b", line.code)
-    raise line.error(message, found.start() + 1 if found else 0)
+    match = re.search(rf"\b{re.escape(name)}\b", line.code)
+    raise line.error(message, match.start() + 1 if match else 0)
 
 
 def _refuse_given_elsewhere(name: str, initial: str | None, line: Line) -> None:
@@ -282,8 +282,8 @@ def _refuse_given_elsewhere(name: str, initial: str | None, line: Line) -> None:
     column = line.code.index(name) + 1
     wrong = f"'{name}' is given to plain shaders only, and here nothing would set it"
     if name in GIVEN_INSTEAD:
-        given = GIVEN_INSTEAD[name]
-        raise line.error(f"{wrong}; did you mean '{given}'? It is given: take this line out", column)
+        replacement = GIVEN_INSTEAD[name]
+        raise line.error(f"{wrong}; did you mean '{replacement}'? It is given: take this line out", column)
     raise line.error(f"{wrong}; an annotation makes it a parameter, as //! point for a vec2", column)
 
 
@@ -356,8 +356,8 @@ def _parameter(
         raise line.error(f"{kind} is for a sampler2D; '{name}' is a {glsl_type}")
     fits = WIDGETS[kind].types
     if glsl_type not in fits:
-        wanted = " or ".join(fits) if len(fits) <= 3 else "numbers"
-        raise line.error(f"{kind} is for {wanted}; '{name}' is a {glsl_type}")
+        expected = " or ".join(fits) if len(fits) <= 3 else "numbers"
+        raise line.error(f"{kind} is for {expected}; '{name}' is a {glsl_type}")
     step = _numbers(name, "step", calls["step"], 1, line)[0] if "step" in calls else None
     if step is not None and step <= 0:
         raise line.error(f"step of '{name}': expected a number above 0")
@@ -389,29 +389,29 @@ def _parameter(
 
 def _parts(name: str, glsl_type: str, kind: str, calls: Calls, line: Line) -> tuple[str, ...]:
     """Return the names of a vector's components, one each."""
-    found = tuple(calls.get("parts", ()))
+    parts_given = tuple(calls.get("parts", ()))
     count = values.length_of(glsl_type)
-    if not found:
+    if not parts_given:
         return ()
     if kind not in ("slider", "number"):
         raise line.error(f"parts is for a vector of numbers; '{name}' is a {kind}")
-    if count == 1 or len(found) != count or len(set(found)) < count or not all(found):
+    if count == 1 or len(parts_given) != count or len(set(parts_given)) < count or not all(parts_given):
         example = ", ".join(f'"{part}"' for part in ("west", "east", "south", "north")[:count])
-        wanted = f"{count} different names, as parts({example})" if count > 1 else "a vector"
-        raise line.error(f"parts of '{name}', a {glsl_type}: expected {wanted}")
-    return found
+        expected = f"{count} different names, as parts({example})" if count > 1 else "a vector"
+        raise line.error(f"parts of '{name}', a {glsl_type}: expected {expected}")
+    return parts_given
 
 
 def _preview(parameter: Parameter, calls: Calls, line: Line) -> Value | None:
     """Return the choice of a menu, or the number, that previews have; None for what is the same there."""
     if "preview" not in calls:
         return None
-    found = calls["preview"]
-    if parameter.widget.kind not in ("menu", "slider", "log_slider") or len(found) != 1:
+    result = calls["preview"]
+    if parameter.widget.kind not in ("menu", "slider", "log_slider") or len(result) != 1:
         example = 'preview("fast"), or a slider\'s number'
         raise line.error(f"preview of '{parameter.name}': expected one choice of a menu, as {example}")
     try:
-        return values.coerce(parameter, found[0])
+        return values.coerce(parameter, result[0])
     except ParameterError as error:
         raise line.error(f"the preview of {error.diagnostics[0].message}") from None
 
@@ -420,11 +420,11 @@ def _menu_values(name: str, widget: Widget, calls: Calls, line: Line) -> tuple[i
     """Return what the uniform gets for each choice of a menu; nothing where that is the choice's number."""
     if "values" not in calls:
         return ()
-    found = [_number(word, fractions=False) for word in calls["values"]]
-    numbers = tuple(n for n in found if isinstance(n, int) and -(2**31) <= n < 2**31)
-    if widget.kind != "menu" or len(numbers) != len(widget.choices) or len(found) != len(numbers):
-        wanted = f"{len(widget.choices)} whole numbers" if widget.choices else "a menu before it"
-        raise line.error(f'values of \'{name}\': expected {wanted}, as menu("soft", "hard") values(1, 4)')
+    numbers_read = [_number(word, fractions=False) for word in calls["values"]]
+    numbers = tuple(n for n in numbers_read if isinstance(n, int) and -(2**31) <= n < 2**31)
+    if widget.kind != "menu" or len(numbers) != len(widget.choices) or len(numbers_read) != len(numbers):
+        expected = f"{len(widget.choices)} whole numbers" if widget.choices else "a menu before it"
+        raise line.error(f'values of \'{name}\': expected {expected}, as menu("soft", "hard") values(1, 4)')
     return numbers
 
 
@@ -507,15 +507,15 @@ def _literal(name: str, glsl_type: str, initial: str | None, line: Line) -> Valu
     fractions = length > 1 or not values.is_whole(glsl_type)
     numbers = [_number(part, fractions=fractions) for part in parts]
     if len(parts) != length or any(number is None for number in numbers):
-        wanted = "" if fractions else "whole "
-        raise line.error(f"the initialiser of '{name}' must be a {wanted}literal, found {text}", column)
-    found = [math.trunc(n) if values.is_whole(glsl_type) else n for n in numbers if n is not None]
-    return found if length > 1 else found[0]
+        expected = "" if fractions else "whole "
+        raise line.error(f"the initialiser of '{name}' must be a {expected}literal, found {text}", column)
+    numbers_read = [math.trunc(n) if values.is_whole(glsl_type) else n for n in numbers if n is not None]
+    return numbers_read if length > 1 else numbers_read[0]
 
 
 def _number(text: str, *, fractions: bool) -> float | int | None:
     """Read a number as GLSL writes it: 0x1F and 017 have the bases 16 and 8."""
-    if len(text) > _LONGEST_LITERAL:
+    if len(text) > _MAX_LITERAL:
         return None
     if whole := _WHOLE.fullmatch(text):
         sign, sixteen, digits = whole.groups()
@@ -531,7 +531,7 @@ def _number(text: str, *, fractions: bool) -> float | int | None:
 
 
 def read_follows(
-    parameter: Parameter, words: Sequence[str], known: Iterable[Parameter], line: Line
+    parameter: Parameter, words: Sequence[str], parameters: Iterable[Parameter], line: Line
 ) -> Follows:
     """Return what an annotation's ``follows(…)`` says; raise ``ShaderError`` where it cannot be."""
 
@@ -543,7 +543,7 @@ def read_follows(
             'an angle follows a direction, as follows("sun"), '
             'or while a menu has a choice, as follows("sun", "form", "near")'
         )
-    by_name = {p.name: p for p in known}
+    by_name = {p.name: p for p in parameters}
     directions = [name for name, p in by_name.items() if p.widget.kind == "direction"]
     if words[0] not in directions:
         raise wrong(f"no direction '{words[0]}' here{nearest(words[0], directions)}")
@@ -565,7 +565,7 @@ _UNIFORM_STATEMENT = re.compile(r"uniform\b[^;]*;$")
 _VERSION = re.compile(r"^\s*#\s*version\b")
 _MAIN = re.compile(r"\bvoid\s+main\s*\(")
 _OWN_NAME = re.compile(rf"^\S+(?:{'|'.join(map(re.escape, SHADERS))})\s*(?:--|—|–|:)\s*")
-_LONGEST_TITLE = 72
+_MAX_TITLE = 72
 _IMAGE_DECLARATION = re.compile(
     r"layout\s*\(([^)]*)\)\s*(?:(?:writeonly|readonly|restrict|coherent|volatile)\s+)*"
     r"uniform\s+(?:\w+\s+)*image2D\s+(\w+)"
@@ -582,20 +582,20 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
     Raises ``ShaderError`` naming file and line for each mistake in the header.
     """
     outermost = [line for line in source.lines if not line.chain]
-    found = [line for line in outermost if line.pragma]
+    lines = [line for line in outermost if line.pragma]
     versions = [line for line in outermost if _VERSION.match(line.code)]
-    if versions and not found:
+    if versions and not lines:
         return _plain(name, source, versions[0])
     _refuse_misspelt(outermost)
-    if not found:
+    if not lines:
         return None
     if versions:
         raise versions[0].error(
             "a kernel has no #version of its own; only a plain shader, without #pragma, has one"
         )
-    if len(found) > 1:
-        raise found[1].error("a second #pragma; a file is one kernel, one source or one draw")
-    line = found[0]
+    if len(lines) > 1:
+        raise lines[1].error("a second #pragma; a file is one kernel, one source or one draw")
+    line = lines[0]
     match = _PRAGMA.match(line.pragma)
     assert match is not None  # or source.py would not have taken it for a pragma
     kind = PRAGMAS[match.group(1)]
@@ -608,8 +608,8 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
         for parameter in parameters:
             if parameter.name == output.name:
                 at = parameter.file, parameter.line
-                place = next(x for x in source.lines if (x.file, x.number) == at)
-                raise place.error(f"'{output.name}' is both an output and a parameter")
+                position = next(x for x in source.lines if (x.file, x.number) == at)
+                raise position.error(f"'{output.name}' is both an output and a parameter")
     numbers = tuple(p.name for p in parameters if p.type in _NUMBERS)
     values = _values(kind, texts, Scope(numbers, tuple(declared.name for declared in inputs)), line)
     kernel = kind(name, source, outputs, parameters, inputs, title_of(source), **values)
@@ -625,7 +625,7 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
 
 def _values(kind: type[Kernel], texts: Mapping[str, str], scope: Scope, line: Line) -> dict[str, Any]:
     """Return the values of a pragma's options, by the fields of its kernel."""
-    found: dict[str, Any] = {}
+    result: dict[str, Any] = {}
     records: dict[str, dict[str, Any]] = {}  # field with a record → the fields in it
     for name, row in options_of(kind).items():
         if not row.attribute or name not in texts:
@@ -635,8 +635,8 @@ def _values(kind: type[Kernel], texts: Mapping[str, str], scope: Scope, line: Li
         except ValueError as error:
             raise line.error(str(error)) from None
         record, _, attribute = row.attribute.rpartition(".")
-        (records.setdefault(record, {}) if record else found)[attribute] = value
-    return found | {record: RECORDS[record](**fields) for record, fields in records.items()}
+        (records.setdefault(record, {}) if record else result)[attribute] = value
+    return result | {record: RECORDS[record](**fields) for record, fields in records.items()}
 
 
 def title_of(source: SourceText) -> str:
@@ -653,8 +653,8 @@ def title_of(source: SourceText) -> str:
 
 
 def _titled(text: str) -> str:
-    """Return a sentence as a heading: no full stop, a capital, of a long one the part before its colon."""
-    if len(text) > _LONGEST_TITLE:
+    """Return a message as a heading: no full stop, a capital, of a long one the part before its colon."""
+    if len(text) > _MAX_TITLE:
         text = text.partition(": ")[0]
     text = text.removesuffix(".")
     # Not sRGB or iTime, which are spelt so.
@@ -689,25 +689,25 @@ def _texts(kind: type[Kernel], text: str, line: Line) -> dict[str, str]:
     pragma, text, rows = f"#pragma {kind.kind}", text.strip(), options_of(kind)
     if not text.startswith("(") or not text.endswith(")"):
         raise line.error(f"{pragma} needs its options in brackets, as {pragma}{kind.example}")
-    found: dict[str, str] = {}
+    plan: dict[str, str] = {}
     for key, value in arguments(text[1:-1], line):
         if not key:
-            key = next((name for name, row in rows.items() if row.positional and name not in found), "")
+            key = next((name for name, row in rows.items() if row.positional and name not in plan), "")
         if key not in rows:
             what = f"has no option '{key}'" if key else f"cannot tell what '{value}' is for"
             raise line.error(f"{pragma} {what}{nearest(key, rows)}")
-        if key in found:
+        if key in plan:
             raise line.error(f"{pragma} gives '{key}' twice")
-        found[key] = value
+        plan[key] = value
     for name, row in rows.items():
-        for other in row.excludes if name in found else ():
-            if other in found:
+        for other in row.excludes if name in plan else ():
+            if other in plan:
                 raise line.error(f"{name} and {other}: a kernel has one or the other; leave {other} out")
-        if row.required and not found.get(name):
+        if row.required and not plan.get(name):
             raise line.error(f"{pragma} needs {row.required}")
         if not row.attribute and row.default:
-            found.setdefault(name, row.default)
-    return found
+            plan.setdefault(name, row.default)
+    return plan
 
 
 def _with_names_replaced(
@@ -716,18 +716,18 @@ def _with_names_replaced(
     """Replace the names that ``where`` gives to expressions, in the options that are expressions."""
     names = [parameter.name for parameter in parameters]
     numbers = [parameter.name for parameter in parameters if parameter.type in _NUMBERS]
-    known = (*SIZE, *expressions.COUNTERS, *expressions.CLOCKS, *numbers)
+    valid = (*SIZE, *expressions.COUNTERS, *expressions.CLOCKS, *numbers)
     meant: dict[str, str] = {}
     for part in filter(None, (p.strip() for p in texts.get("where", "").split(";"))):
         name, equals, text = (piece.strip() for piece in part.partition("="))
         if not equals or not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
             example = "half = size.x // 2 (several separated by ;)"
             raise line.error(f"where '{part}': expected name = expression, as {example}")
-        if name in known or name in meant or name in _NOT_IN_WHERE or name in names:
+        if name in valid or name in meant or name in _NOT_IN_WHERE or name in names:
             raise line.error(f"where: the name '{name}' is taken")
         text = _replaced(text, meant)
         try:
-            check_expression(f"where '{name}'", text, known)
+            check_expression(f"where '{name}'", text, valid)
         except ValueError as error:
             raise line.error(str(error)) from None
         meant[name] = f"({text})"
@@ -741,20 +741,20 @@ def _replaced(text: str, meant: dict[str, str]) -> str:
 
 
 def _outputs(text: str, line: Line) -> tuple[Output, ...]:
-    found: list[Output] = []
+    outputs: list[Output] = []
     for part in text.split(","):
         name, _, form = (piece.strip() for piece in part.partition(":"))
         if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
             raise line.error(f"output '{part.strip()}': expected name:format, as height:r32f")
         if form not in FORMATS:
             raise line.error(f"output '{name}' has no format '{form}'{nearest(form, FORMATS)}")
-        if name in [o.name for o in found]:
+        if name in [o.name for o in outputs]:
             raise line.error(f"output '{name}' appears twice")
         check_name(name, line, "output")
-        found.append(Output(name, form))
-    if len(found) > 8:
-        raise line.error(f"{len(found)} outputs; OpenGL promises no more than 8")
-    return tuple(found)
+        outputs.append(Output(name, form))
+    if len(outputs) > 8:
+        raise line.error(f"{len(outputs)} outputs; OpenGL promises no more than 8")
+    return tuple(outputs)
 
 
 def _refuse_misspelt(lines: list[Line]) -> None:

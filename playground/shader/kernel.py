@@ -201,7 +201,7 @@ class Kernel:
         return tuple(dict.fromkeys((*self.source.files, *(f for v in self.variants for f in v.files))))
 
     @cached_property
-    def given(self) -> tuple[str, ...]:
+    def engine_uniforms(self) -> tuple[str, ...]:
         """Which names the text reads of those that the engine gives: see ``reserved_names.GIVEN``."""
         return tuple(name for name in GIVEN if self.reads(name))
 
@@ -246,9 +246,9 @@ class Kernel:
     def _parameters_by_name(self) -> dict[str, Parameter]:
         return {parameter.name: parameter for parameter in reversed(self.parameters)}
 
-    def reads(self, given: str) -> bool:
+    def reads(self, name: str) -> bool:
         """Return whether the text names something that the engine gives, or depends on it all the same."""
-        return given in self.source.names or given in self.depends
+        return name in self.source.names or name in self.depends
 
     @property
     def needs_inputs(self) -> tuple[str, ...]:
@@ -546,13 +546,13 @@ class ForeignShader(PlainFragment):
         vertex = self.vertex_source.files if self.vertex_source else ()
         return tuple(dict.fromkeys((*super().files, *vertex)))
 
-    def reads(self, given: str) -> bool:
+    def reads(self, text: str) -> bool:
         """Return whether one of its texts names something."""
-        return super().reads(given) or (self.vertex_source is not None and given in self.vertex_source.names)
+        return super().reads(text) or (self.vertex_source is not None and text in self.vertex_source.names)
 
 
 PRAGMAS: Mapping[str, type[Kernel]] = {
-    one.kind: one for one in (TexelKernel, CpuSource, Draw, ComputeVariant)
+    texel_kernel.kind: texel_kernel for texel_kernel in (TexelKernel, CpuSource, Draw, ComputeVariant)
 }
 """Word behind ``#pragma`` → kind of kernel."""
 
@@ -561,11 +561,11 @@ RECORDS: Mapping[str, type[Any]] = {"storage": Storage}
 
 
 def _rows(record: type[Any], path: str) -> Iterator[Option]:
-    for one in fields(record):
-        if row := one.metadata.get("option"):
-            yield replace(row, name=row.name or one.name, attribute=f"{path}{one.name}")
-        elif one.metadata.get("record"):
-            yield from _rows(RECORDS[one.name], f"{one.name}.")
+    for element in fields(record):
+        if row := element.metadata.get("option"):
+            yield replace(row, name=row.name or element.name, attribute=f"{path}{element.name}")
+        elif element.metadata.get("record"):
+            yield from _rows(RECORDS[element.name], f"{element.name}.")
 
 
 _KINDS: tuple[type[Kernel], ...] = (*PRAGMAS.values(), PlainFragment, PlainCompute, ForeignShader)
@@ -688,7 +688,7 @@ class Variant:
 
     technique: ComputeVariant | Graph  # of a .fast.toml
     verified: tuple[str, str] | None = None  # contents that were found to agree: canonical, its own
-    record: str = ""  # absolute path of the user's file that says so; "" where there is none
+    record: str = ""  # absolute path of the user's file that reports it; "" where there is none
 
     @property
     def kind(self) -> str:

@@ -1,6 +1,6 @@
 """Cache parsed kernels for as long as the files that they were made of stay the same.
 
-A live session reads its sketch anew at every save, and most of its kernels have not
+A live session reads its sketch again at every save, and most of its kernels have not
 changed; parsing them all again would take longer than drawing. A cached kernel is
 also the same object, by whose identity other caches go.
 """
@@ -23,28 +23,28 @@ _AnyKernel = TypeVar("_AnyKernel", bound=Kernel)
 def parsed_kernel(name: str, path: Path, roots: Sequence[Path]) -> Kernel | None:
     """Return what ``parse_kernel`` makes of a file, parsed again only if anything it is made of changed."""
     key = (parsed_kernel, name, path, tuple(roots))
-    known: tuple[Kernel | None, Origin] | None = FILES.get(key)
-    if known is None or not known[1].holds():
+    cached: tuple[Kernel | None, Origin] | None = FILES.get(key)
+    if cached is None or not cached[1].holds():
         source, origin = read_source_and_origin(path, roots)
-        known = FILES.put(key, (parse_kernel(name, source), origin))
-    return known[0]
+        cached = FILES.put(key, (parse_kernel(name, source), origin))
+    return cached[0]
 
 
 def replaced(kernel: _AnyKernel, **changes: Any) -> _AnyKernel:
     """Return a kernel with some fields replaced: the same object for the same kernel and changes."""
     key = (replaced, id(kernel), *((name, _identity(value)) for name, value in changes.items()))
-    known: _AnyKernel | None = GRAPHS.get(key)
+    cached: _AnyKernel | None = GRAPHS.get(key)
     # What it is made of is held too, so that its identity is not given to another object.
-    return known or cast(_AnyKernel, GRAPHS.put(key, replace(kernel, **changes), 1, kernel, changes))
+    return cached or cast(_AnyKernel, GRAPHS.put(key, replace(kernel, **changes), 1, kernel, changes))
 
 
 def _identity(value: Any) -> Any:
     """Return what a value is known by: kernels are large, so those of fast variants by which they are.
 
-    Passes of a variant are read anew with each sketch, so they are known by what they are made of.
+    Passes of a variant are read again with each sketch, so they are known by what they are made of.
     """
     if isinstance(value, tuple):
-        return tuple(_identity(one) for one in value)
+        return tuple(_identity(element) for element in value)
     if not isinstance(value, Variant):
         return value
     technique = id(value.technique) if isinstance(value.technique, Kernel) else value.technique

@@ -24,7 +24,7 @@ from playground.regular_file import read_regular
 VARIABLE = "PLAYGROUND_LIBRARIES"
 ENDINGS = (".glsl", ".frag", ".vert", ".hlsl", ".fs", ".h")
 FORMAT = 1
-_LARGEST = 2**16  # [bytes]
+_MAX_BYTES = 2**16  # [bytes]
 _NAME = re.compile(r"[A-Za-z_][\w.-]{0,39}")
 
 
@@ -47,8 +47,8 @@ def remembered() -> dict[str, Path]:
     path = libraries_file()
     note(path)
     try:
-        if path.stat().st_size > _LARGEST:
-            raise ValueError(f"it is larger than {_LARGEST} bytes")
+        if path.stat().st_size > _MAX_BYTES:
+            raise ValueError(f"it is larger than {_MAX_BYTES} bytes")
         table = read_json(read_regular(path).decode())
         if table["format"] != FORMAT:
             raise ValueError(f"it has format {table['format']}, and this version knows {FORMAT}")
@@ -67,39 +67,39 @@ def add_library(name: str, folder: str | Path) -> Path:
     """
     if not _NAME.fullmatch(name):
         raise ParameterError(f"'{name}' is no name of a library: expected letters, digits, '_' and '-'")
-    place = Path(folder).expanduser().absolute()
-    if not place.is_dir():
+    path = Path(folder).expanduser().absolute()
+    if not path.is_dir():
         raise DataError("there is no such folder", file=folder)
-    if not names_below((place,), ENDINGS):
+    if not names_below((path,), ENDINGS):
         raise DataError(f"holds no shader ({', '.join(ENDINGS)}), so it is no library", file=folder)
-    if (place / name).is_dir() and not any(place.glob("*.glsl")):
-        raise DataError(f"holds a folder '{name}'; name that one, {place / name}", file=folder)
-    _remember({**remembered(), name: place})
-    return place
+    if (path / name).is_dir() and not any(path.glob("*.glsl")):
+        raise DataError(f"holds a folder '{name}'; name that one, {path / name}", file=folder)
+    _remember({**remembered(), name: path})
+    return path
 
 
 def remove_library(name: str) -> None:
     """Forget a library; its folder stays. Raises ``ParameterError`` for one that was never named."""
-    known = remembered()
-    if name not in known:
-        raise ParameterError(f"no library '{name}' was named{nearest(name, known)}")
-    _remember({one: folder for one, folder in known.items() if one != name})
+    known_names = remembered()
+    if name not in known_names:
+        raise ParameterError(f"no library '{name}' was named{nearest(name, known_names)}")
+    _remember({library_name: folder for library_name, folder in known_names.items() if library_name != name})
 
 
 def libraries_of(files: Iterable[str | Path]) -> dict[str, list[Path]]:
     """Return those of some files that lie in a named library, by its name."""
-    found: dict[str, list[Path]] = {}
+    paths: dict[str, list[Path]] = {}
     for file in map(Path, files):
         name = library_around(file, libraries())
         if name:
-            found.setdefault(name, []).append(file)
-    return found
+            paths.setdefault(name, []).append(file)
+    return paths
 
 
-def library_around(file: Path, known: Mapping[str, Path]) -> str:
+def library_around(file: Path, paths: Mapping[str, Path]) -> str:
     """Return the library that a file lies in, the innermost of several; "" for none."""
-    around = [name for name, folder in known.items() if is_inside(file, (folder,))]
-    return max(around, key=lambda name: len(known[name].parts), default="")
+    around = [name for name, folder in paths.items() if is_inside(file, (folder,))]
+    return max(around, key=lambda name: len(paths[name].parts), default="")
 
 
 def how_to_name(name: str) -> str:
@@ -107,9 +107,9 @@ def how_to_name(name: str) -> str:
     return f"{program()} library add {name} FOLDER"
 
 
-def _remember(known: Mapping[str, Path]) -> None:
+def _remember(paths: Mapping[str, Path]) -> None:
     path = libraries_file()
-    table = {"format": FORMAT, "libraries": {name: str(known[name]) for name in sorted(known)}}
+    table = {"format": FORMAT, "libraries": {name: str(paths[name]) for name in sorted(paths)}}
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with partial_file(path) as partial:
@@ -120,10 +120,10 @@ def _remember(known: Mapping[str, Path]) -> None:
 
 
 def _in_environment(text: str) -> dict[str, Path]:
-    found: dict[str, Path] = {}
+    paths: dict[str, Path] = {}
     for part in filter(str.strip, text.split(os.pathsep)):
         name, equals, folder = (piece.strip() for piece in part.partition("="))
         if not equals or not folder or not _NAME.fullmatch(name):
             raise ParameterError(f"{VARIABLE}: expected NAME=FOLDER, found '{part}'")
-        found[name] = Path(folder).expanduser().absolute()
-    return found
+        paths[name] = Path(folder).expanduser().absolute()
+    return paths

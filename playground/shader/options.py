@@ -1,7 +1,7 @@
 """What an option of a pragma is, and how its text is read; ``kernel`` has the table of them, by kind.
 
 Functions that read a text take the option's name, the text, and what it may name; they raise ``ValueError``
-in a sentence.
+in a message.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Option:
 
     help: str  # Markdown
     default: Any = ""
-    # Its name, its text and what that may name → its value; raises ``ValueError`` in a sentence.
+    # Its name, its text and what that may name → its value; raises ``ValueError`` in a message.
     parse: Callable[[str, str, Scope], Any] = lambda name, text, scope: text
     # The kernel with all its options → what is wrong with this one; "" for nothing.
     check: Callable[[Any], str] = lambda kernel: ""
@@ -78,7 +78,7 @@ class Option:
     @property
     def about(self) -> str:
         """What it says, with its choices and its default, as Markdown."""
-        choices = f": {', '.join(f'`{one}`' for one in self.choices)}" if self.choices else ""
+        choices = f": {', '.join(f'`{item}`' for item in self.choices)}" if self.choices else ""
         default = ", ".join(map(str, self.default)) if isinstance(self.default, tuple) else self.default
         return f"{self.help}{choices}{f' (`{default}`)' if default not in ('', 0) else ''}"
 
@@ -100,13 +100,13 @@ def expression(
     """Declare an option with ``count`` expressions of sizes, parameters, ``names``, and parts of inputs."""
 
     def parse(name: str, text: str, scope: Scope) -> str:
-        known = (
+        existing = (
             *SIZE,
             *names,
             *scope.numbers,
-            *(f"{one}{part}" for one in scope.inputs for part in of_inputs),
+            *(f"{item}{part}" for item in scope.inputs for part in of_inputs),
         )
-        check_expression(name, text, known, count)
+        check_expression(name, text, existing, count)
         if expressions.counts_frames(text) and "frames" in names and "frames" in scope.numbers:
             raise ValueError(f"{name} '{text}': 'frames' {expressions.TWO_FRAMES}")
         return text
@@ -114,10 +114,10 @@ def expression(
     return option(help, default, parse=parse, expressions=lambda text: (text,), **more)
 
 
-def check_expression(name: str, text: str, known: tuple[str, ...], count: int = 1) -> None:
+def check_expression(name: str, text: str, names: tuple[str, ...], count: int = 1) -> None:
     """Raise ``ValueError`` for an expression that is none, or names something else than what is known."""
     try:
-        expressions.check(text, known, count=count)
+        expressions.check(text, names, count=count)
     except ExpressionError as error:
         raise ValueError(f"{name}: {error}") from None
 
@@ -145,24 +145,24 @@ def read_accepts(name: str, text: str, scope: Scope) -> str:
 
 def read_warnings(name: str, text: str, scope: Scope) -> tuple[tuple[str, str], ...]:
     """Return conditions, and what is warned of where one holds."""
-    found: list[tuple[str, str]] = []
+    warnings: list[tuple[str, str]] = []
     for part in parts_of(text, ";"):
         condition, colon, message = (piece.strip() for piece in part.partition(":"))
         if not colon or not message:
             example = "frequency <= tiles: no detail is left (several are separated by ;)"
             raise ValueError(f"{name} '{part}': expected condition: message, as {example}")
         check_expression(name, condition, (*SIZE, *scope.numbers))
-        found.append((condition, " ".join(message.split())))
-    return tuple(found)
+        warnings.append((condition, " ".join(message.split())))
+    return tuple(warnings)
 
 
 def read_reads(name: str, text: str, scope: Scope) -> tuple[str, ...]:
     """Return what a source depends on."""
-    found = parts_of(text, ",")
-    for one in found:
-        if one not in SOURCE_READS:
-            raise ValueError(f"{name} = '{text}': a source cannot read '{one}'{nearest(one, SOURCE_READS)}")
-    return found
+    parts = parts_of(text, ",")
+    for item in parts:
+        if item not in SOURCE_READS:
+            raise ValueError(f"{name} = '{text}': a source cannot read '{item}'{nearest(item, SOURCE_READS)}")
+    return parts
 
 
 def read_samples(name: str, text: str, scope: Scope) -> int:
@@ -189,7 +189,7 @@ def read_local(name: str, text: str, scope: Scope) -> tuple[int, int]:
 
 def read_buffers(name: str, text: str, scope: Scope) -> tuple[Buffer, ...]:
     """Return storage buffers."""
-    found: list[Buffer] = []
+    buffers: list[Buffer] = []
     for part in parts_of(text, ";"):
         pieces = [piece.strip() for piece in part.split(":", 2)]
         if len(pieces) != 3 or not re.fullmatch(r"[A-Za-z_]\w*", pieces[0], re.ASCII):
@@ -199,8 +199,8 @@ def read_buffers(name: str, text: str, scope: Scope) -> tuple[Buffer, ...]:
             hint = nearest(pieces[1], _BUFFER_TYPES)
             raise ValueError(f"buffer '{pieces[0]}' has no type '{pieces[1]}'{hint}")
         check_expression(f"buffer '{pieces[0]}'", pieces[2], (*SIZE, *scope.numbers))
-        found.append(Buffer(*pieces))
-    return tuple(found)
+        buffers.append(Buffer(*pieces))
+    return tuple(buffers)
 
 
 def read_stages(name: str, text: str, scope: Scope) -> tuple[int, ...]:
@@ -251,17 +251,17 @@ def read_agreement(text: str) -> tuple[Bound, ...]:
     ``rms`` bounds the root of the mean square of the differences, ``degrees`` compares tangents as angles. A
     bound without a name is for all outputs that have none of their own.
     """
-    found: list[Bound] = []
+    bounds: list[Bound] = []
     for part in (part.strip() for part in text.split(";")):
         match = _BOUND.fullmatch(part)
         if match is None or (match["most"] and not 0.0 < float(match["most"]) < math.inf):
             raise ValueError(f"'{part}' states no bound; expected {EXAMPLE}")
         for name in [n.strip() for n in (match["names"] or "").split(",")]:
-            if name in [bound.output for bound in found]:
+            if name in [bound.output for bound in bounds]:
                 raise ValueError(f"'{part}': {name or 'all other outputs'} appears twice")
             most = float(match["most"] or 0.0)
-            found.append(Bound(name, most, bool(match["degrees"]), bool(match["rms"])))
-    return tuple(found)
+            bounds.append(Bound(name, most, bool(match["degrees"]), bool(match["rms"])))
+    return tuple(bounds)
 
 
 def bound_of(bounds: tuple[Bound, ...], output: str) -> Bound | None:

@@ -59,7 +59,7 @@ class Declared:
 @TEXTS.cached()
 def outline(text: str) -> tuple[Declared, ...]:
     """Return what a text declares at its top level, in its order; lines end in LF."""
-    return tuple(sorted((*_macros(text), *_statements(text)), key=lambda one: one.start))
+    return tuple(sorted((*_macros(text), *_statements(text)), key=lambda declaration: declaration.start))
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,20 +131,20 @@ def _without_directives(text: str) -> str:
 @TEXTS.cached()
 def macros_of(text: str) -> tuple[Macro, ...]:
     """Return the macros of a text, in its order."""
-    found = []
+    macros = []
     for directive in _DIRECTIVE.finditer(code_of(text)):
         if match := _MACRO.match(directive[0]):
             parameters = frozenset(word for word, _ in identifiers(match[2] or ""))
             start = directive.start()
-            found.append(Macro(match[1], parameters, start, start + match.end(), directive.end()))
-    return tuple(found)
+            macros.append(Macro(match[1], parameters, start, start + match.end(), directive.end()))
+    return tuple(macros)
 
 
 @TEXTS.cached()
 def locals_of(text: str, function: Declared) -> tuple[Local, ...]:
     """Return the names that a function declares, its own arguments too, in their order."""
     code = _without_directives(text)[: max(function.end, function.start)]
-    found: list[Local] = []
+    locals_found: list[Local] = []
     for match in _LOCAL.finditer(code, function.start):
         if match[1] in _NOT_TYPES or match.start(2) <= function.at:
             continue
@@ -152,12 +152,12 @@ def locals_of(text: str, function: Declared) -> tuple[Local, ...]:
         name, at = match[2], match.start(2)
         while True:
             behind = _declarator_end(code, at + len(name))
-            found.append(Local(name, at, behind, end))
+            locals_found.append(Local(name, at, behind, end))
             following = _NEXT_IN_LIST.match(code, behind)
             if following is None:
                 break
             name, at = following[1], following.start(1)
-    return tuple(found)
+    return tuple(locals_found)
 
 
 def has_branches(text: str, function: Declared) -> bool:
@@ -166,10 +166,16 @@ def has_branches(text: str, function: Declared) -> bool:
     return any(re.match(r"\s*#\s*el", directive[0]) for directive in inside)
 
 
-def local_at(found: Iterable[Local], name: str, at: int) -> Local | None:
+def local_at(candidates: Iterable[Local], name: str, at: int) -> Local | None:
     """Return the local that a name at a place stands for, or declares; None for a name of the top level."""
-    there = [one for one in found if one.name == name and (one.at == at or one.seen <= at < one.end)]
-    return next((one for one in there if one.at == at), max(there, key=lambda one: one.at, default=None))
+    there = [
+        local
+        for local in candidates
+        if local.name == name and (local.at == at or local.seen <= at < local.end)
+    ]
+    return next(
+        (local for local in there if local.at == at), max(there, key=lambda local: local.at, default=None)
+    )
 
 
 def _declarator_end(code: str, at: int) -> int:
@@ -249,18 +255,18 @@ def _statements(text: str) -> Iterator[Declared]:
         elif mark == "}" and depth:
             depth -= 1
             if depth == 0:
-                found = _block(text, head, start, body, at + 1)
-                if found is not None:
-                    yield found
+                block = _block(text, head, start, body, at + 1)
+                if block is not None:
+                    yield block
                     # What follows a struct's bracket is a variable or the semicolon alone.
                 start = at + 1
         elif mark == ";" and depth == 0:
-            found = _plain(text, code[start:at], start, at + 1)
-            if found is not None:
-                yield found
+            block = _plain(text, code[start:at], start, at + 1)
+            if block is not None:
+                yield block
             start = at + 1
-    if depth and (found := _block(text, head, start, body, len(code))) is not None:
-        yield found
+    if depth and (block := _block(text, head, start, body, len(code))) is not None:
+        yield block
 
 
 def _block(text: str, head: str, start: int, body: int, end: int) -> Declared | None:
@@ -293,7 +299,7 @@ def _plain(text: str, code: str, start: int, end: int) -> Declared | None:
 
 def _comment_above(text: str, start: int) -> str:
     """Return the lines of ``//`` right above a place, without their marks, their line ends kept."""
-    found: list[str] = []
+    lines: list[str] = []
     end = text.rfind("\n", 0, start)
     while end >= 0:
         begins = text.rfind("\n", 0, end) + 1
@@ -301,6 +307,6 @@ def _comment_above(text: str, start: int) -> str:
         if not line.startswith("//") or line.startswith("//!"):
             break
         if not re.match(r"//\s*(?:anchor|end):", line):
-            found.append(line[2:].removeprefix(" "))
+            lines.append(line[2:].removeprefix(" "))
         end = begins - 1
-    return "\n".join(reversed(found)).strip()
+    return "\n".join(reversed(lines)).strip()

@@ -46,7 +46,7 @@ class Kind:
     takes: str = ""
     """In brackets: "" nothing, range, "range or nothing", ranges, "raw or nothing", choices, sampling."""
     range: tuple[float, float] | None = None  # of each number, where the brackets give none
-    expects: str = ""  # a value, in words; "": numbers of the type, in the range
+    expects: str = ""  # a value, as text; "": numbers of the type, in the range
     listed: str = ""  # a value, in a word or two of a table; "": its range
     unit: str = ""  # where the annotation gives none
 
@@ -64,7 +64,7 @@ WIDGETS: dict[str, Kind] = {
     "divider": Kind(
         ("float",),
         range=(0.0, 1.0),
-        expects="a share of the picture's width, from 0 to 1",
+        expects="a fraction of the picture's width, from 0 to 1",
         listed="0 to 1",
     ),
     "direction": Kind(
@@ -118,10 +118,10 @@ def parse_hex(text: str, *, raw: bool = False) -> tuple[float, ...]:
     Raises:
         DataError: the text is not such a colour.
     """
-    found = text.strip() if isinstance(text, str) else ""
-    if not _HEX.fullmatch(found):
+    number = text.strip() if isinstance(text, str) else ""
+    if not _HEX.fullmatch(number):
         raise DataError(f"{text!r} is not a colour; expected '#rrggbb', '#rgb' or '#rrggbbaa', as '#87a96b'")
-    digits = found[1:]
+    digits = number[1:]
     if len(digits) == 3:
         digits = "".join(2 * d for d in digits)
     values = [byte / 255.0 for byte in bytes.fromhex(digits)]
@@ -156,7 +156,7 @@ def _encoded(c: float) -> float:
 Value = float | int | bool | str | tuple[float, ...] | tuple[int, ...]
 """A parameter's value: a scalar, a tuple for a vector, or a path for a file."""
 
-LARGEST_SIDE = 16_384
+MAX_SIDE = 16_384
 """Texels or pixels that a side may have: what common graphics cards take."""
 
 
@@ -176,13 +176,13 @@ class Widget:
         """Return the range of one of a vector's numbers; None where it is unbounded."""
         return self.axes[axis] if self.axes else (self.low, self.high)
 
-    def given(self, value: Value) -> Value:
+    def uniform_value(self, value: Value) -> Value:
         """Return what the uniform gets: of a menu with values the chosen one."""
         return self.values[value] if self.values and isinstance(value, int) else value
 
-    def chosen(self, given: Value) -> Value:
-        """Return the value that gives a uniform what it has: the inverse of ``given``."""
-        return self.values.index(given) if self.values and isinstance(given, int) else given
+    def chosen(self, uniform: Value) -> Value:
+        """Return the value that gives a uniform what it has: the inverse of ``uniform_value``."""
+        return self.values.index(uniform) if self.values and isinstance(uniform, int) else uniform
 
 
 @dataclass(frozen=True, slots=True)
@@ -280,49 +280,51 @@ def is_whole(glsl_type: str) -> bool:
     return glsl_type in ("int", "uint") or glsl_type.startswith(("ivec", "uvec"))
 
 
-def coerce(parameter: Parameter, given: object, path: str = "") -> Value:
-    """Return ``given`` as a value of the parameter.
+def coerce(parameter: Parameter, direction: object, path: str = "") -> Value:
+    """Return ``direction`` as a value of the parameter.
 
     Takes numbers, sequences, arrays, ``{azimuth, elevation}``, ``"#rrggbb"`` (sRGB, becomes
     linear), menu names, and text as on the command line (``"135,25"``). Raises
-    ``ParameterError`` in one sentence that says what was expected.
+    ``ParameterError`` in one message that says what was expected.
     """
     name = path or parameter.name
     kind = parameter.widget.kind
-    if hasattr(given, "tolist"):  # a NumPy scalar or array
-        given = given.tolist()
+    if hasattr(direction, "tolist"):  # a NumPy scalar or array
+        direction = direction.tolist()
     if kind == "file" or parameter.type == "sampler2D":
-        if isinstance(given, os.PathLike):
-            given = os.fspath(given)
-        if isinstance(given, str) and "\0" not in given:
-            return given
-        raise _wrong(name, given, WIDGETS["file"].expects)
+        if isinstance(direction, os.PathLike):
+            direction = os.fspath(direction)
+        if isinstance(direction, str) and "\0" not in direction:
+            return direction
+        raise _wrong(name, direction, WIDGETS["file"].expects)
     if kind == "menu":
-        return _menu(parameter, given, name)
+        return _menu(parameter, direction, name)
     if parameter.type == "bool":
-        if isinstance(given, bool):
-            return given
-        if isinstance(given, str) and given.strip().lower() in _TRUE:
-            return _TRUE[given.strip().lower()]
-        raise _wrong(name, given, WIDGETS["checkbox"].expects)
-    if kind == "direction" and isinstance(given, Mapping):
-        given = _direction(given, name)
-    if kind == "colour" and isinstance(given, str) and given.strip().startswith("#"):
+        if isinstance(direction, bool):
+            return direction
+        if isinstance(direction, str) and direction.strip().lower() in _TRUE:
+            return _TRUE[direction.strip().lower()]
+        raise _wrong(name, direction, WIDGETS["checkbox"].expects)
+    if kind == "direction" and isinstance(direction, Mapping):
+        direction = _direction(direction, name)
+    if kind == "colour" and isinstance(direction, str) and direction.strip().startswith("#"):
         try:
-            given = (*parse_hex(given.strip(), raw=parameter.widget.raw), 1.0)[: length_of(parameter.type)]
+            direction = (*parse_hex(direction.strip(), raw=parameter.widget.raw), 1.0)[
+                : length_of(parameter.type)
+            ]
         except DataError as error:
             raise ParameterError(f"{name}: {error}") from None
-    if isinstance(given, str):
-        given = _numbers(given, name, expected(parameter))
+    if isinstance(direction, str):
+        direction = _numbers(direction, name, expected(parameter))
     count = length_of(parameter.type)
     if count == 1:
-        if isinstance(given, Sequence) and len(given) == 1:
-            given = given[0]
-        value: Value = _number(parameter, given, name)
+        if isinstance(direction, Sequence) and len(direction) == 1:
+            direction = direction[0]
+        value: Value = _number(parameter, direction, name)
     else:
-        if not isinstance(given, Sequence) or isinstance(given, str) or len(given) != count:
-            raise _wrong(name, given, expected(parameter))
-        value = tuple(_number(parameter, item, name) for item in given)
+        if not isinstance(direction, Sequence) or isinstance(direction, str) or len(direction) != count:
+            raise _wrong(name, direction, expected(parameter))
+        value = tuple(_number(parameter, item, name) for item in direction)
     _check_range(parameter, value, name)
     return value
 
@@ -419,54 +421,54 @@ def _digits(value: float | int | bool) -> str:
     return short if float(short) == value and abs(value) < 1e6 else repr(value)
 
 
-def _menu(parameter: Parameter, given: object, name: str) -> int:
+def _menu(parameter: Parameter, value: object, name: str) -> int:
     choices = parameter.widget.choices
-    if isinstance(given, str):
-        if given in choices:
-            return choices.index(given)
+    if isinstance(value, str):
+        if value in choices:
+            return choices.index(value)
         raise ParameterError(
-            f"{name} = {spell(given)}: expected {expected(parameter)}{_meant(given, choices)}"
+            f"{name} = {spell(value)}: expected {expected(parameter)}{_meant(value, choices)}"
         )
-    if isinstance(given, float) and given.is_integer():
-        given = int(given)
-    if isinstance(given, int) and not isinstance(given, bool) and 0 <= given < len(choices):
-        return given
-    raise _wrong(name, given, expected(parameter))
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
+    if isinstance(value, int) and not isinstance(value, bool) and 0 <= value < len(choices):
+        return value
+    raise _wrong(name, value, expected(parameter))
 
 
-def _meant(given: str, choices: Sequence[str]) -> str:
-    hint = nearest(given, choices)
+def _meant(text: str, choices: Sequence[str]) -> str:
+    hint = nearest(text, choices)
     return hint if "did you mean" in hint else ""
 
 
-def _direction(given: Mapping[str, object], name: str) -> list[object]:
-    extra = set(given) - {"azimuth", "elevation"}
-    if extra or len(given) != 2:
+def _direction(angles: Mapping[str, object], name: str) -> list[object]:
+    extra = set(angles) - {"azimuth", "elevation"}
+    if extra or len(angles) != 2:
         raise ParameterError(
-            f"{name}: expected {{ azimuth, elevation }}, found {{ {', '.join(map(str, given))} }}"
+            f"{name}: expected {{ azimuth, elevation }}, found {{ {', '.join(map(str, angles))} }}"
         )
-    return [given["azimuth"], given["elevation"]]
+    return [angles["azimuth"], angles["elevation"]]
 
 
-def _numbers(text: str, name: str, wanted: str) -> list[float]:
+def _numbers(text: str, name: str, names_needed: str) -> list[float]:
     try:
         return [float(part) for part in text.split(",")]
     except ValueError:
-        raise _wrong(name, text, wanted) from None
+        raise _wrong(name, text, names_needed) from None
 
 
-def _number(parameter: Parameter, given: object, name: str) -> float | int:
-    if isinstance(given, bool) or not isinstance(given, int | float):
-        raise _wrong(name, given, expected(parameter))
-    if isinstance(given, int) and abs(given) > 2**64:
-        raise ParameterError(f"{name} = {spell(given)}: expected {expected(parameter)}")
-    if not math.isfinite(given):
-        raise ParameterError(f"{name} = {given}: expected a finite number")
+def _number(parameter: Parameter, value: object, name: str) -> float | int:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise _wrong(name, value, expected(parameter))
+    if isinstance(value, int) and abs(value) > 2**64:
+        raise ParameterError(f"{name} = {spell(value)}: expected {expected(parameter)}")
+    if not math.isfinite(value):
+        raise ParameterError(f"{name} = {value}: expected a finite number")
     if not is_whole(parameter.type):
-        return float(given)
-    if given != int(given):
-        raise _wrong(name, given, expected(parameter))
-    whole = int(given)
+        return float(value)
+    if value != int(value):
+        raise _wrong(name, value, expected(parameter))
+    whole = int(value)
     low, high = (0, 2**32 - 1) if parameter.type.startswith("u") else (-(2**31), 2**31 - 1)
     if not low <= whole <= high:
         raise ParameterError(f"{name} = {whole}: expected a whole number from {low} to {high}")
@@ -492,5 +494,5 @@ def _check_range(parameter: Parameter, value: Value, name: str) -> None:
             raise ParameterError(f"{name} = {item:g} is outside its range {low:g} to {high:g}")
 
 
-def _wrong(name: str, given: object, wanted: str) -> ParameterError:
-    return ParameterError(f"{name} = {spell(given)}: expected {wanted}")
+def _wrong(name: str, value: object, target: str) -> ParameterError:
+    return ParameterError(f"{name} = {spell(value)}: expected {target}")

@@ -39,7 +39,7 @@ _LEVELS: tuple[tuple[str, ...], ...] = (
     ("*", "/", "%"),
 )
 """Operators of two numbers, those that bind least first."""
-_DEEPEST = 32
+_MAX_DEPTH = 32
 _MAX_CONDITION_TOKENS = 4_096  # of one expression, its macros expanded: they may double without end
 _MAX_SHIFT = 62
 
@@ -100,13 +100,13 @@ class Conditions:
         """
         if self._items is None:
             return self.codes
-        return _Judge(self.codes, self._directives, defined, unsure, unknown).lines(self._items)
+        return _ConditionEvaluator(self.codes, self._directives, defined, unsure, unknown).lines(self._items)
 
     def _parsed(self) -> list[_Item] | None:
         """Return lines and groups in order; None where conditions do not close, or nest too deeply."""
-        found: list[_Item] = []
+        items_found: list[_Item] = []
         open_groups: list[_Group] = []
-        items = found
+        items = items_found
         for index in range(len(self.codes)):
             match = self._directives.get(index)
             kind = match[1] if match else ""
@@ -114,7 +114,7 @@ class Conditions:
                 group = _Group([_Branch(index, kind, match[2])])
                 items.append(group)
                 open_groups.append(group)
-                if len(open_groups) > _DEEPEST:
+                if len(open_groups) > _MAX_DEPTH:
                     return None
                 items = group.branches[-1].items
             elif match and kind in ("elif", "else"):
@@ -126,10 +126,10 @@ class Conditions:
                 if not open_groups:
                     return None
                 open_groups.pop().end = index
-                items = open_groups[-1].branches[-1].items if open_groups else found
+                items = open_groups[-1].branches[-1].items if open_groups else items_found
             else:
                 items.append(index)
-        return None if open_groups else found
+        return None if open_groups else items_found
 
 
 def macros_of(lines: Iterable[str]) -> dict[str, str]:
@@ -168,7 +168,7 @@ def live_code(text: str, defined: Mapping[str, str]) -> str:
     return "\n".join(Conditions(code_of(text).split("\n")).live(defined, unsure=unsure))
 
 
-class _Judge:
+class _ConditionEvaluator:
     """One judgement of a text."""
 
     def __init__(
@@ -195,8 +195,8 @@ class _Judge:
                 if match := self.directives.get(item):
                     self._define(match, certain=certain)
                 continue
-            chosen, known = self._choice(item)
-            if not known:
+            chosen, is_certain = self._choice(item)
+            if not is_certain:
                 for branch in item.branches:
                     self._walk(branch.items, certain=False)
                 continue
@@ -211,10 +211,10 @@ class _Judge:
     def _choice(self, group: _Group) -> tuple[_Branch | None, bool]:
         """Return the branch that stays, and whether that can be known."""
         for branch in group.branches:
-            found = self._holds(branch)
-            if found is None:
+            is_true = self._holds(branch)
+            if is_true is None:
                 return None, False
-            if found:
+            if is_true:
                 return branch, True
         return None, True
 
@@ -223,8 +223,8 @@ class _Judge:
             return True
         if branch.kind in ("ifdef", "ifndef"):
             name = re.match(r"\w+", branch.condition)
-            found = self._is_defined(name[0]) if name else None
-            return found if found is None or branch.kind == "ifdef" else not found
+            is_defined = self._is_defined(name[0]) if name else None
+            return is_defined if is_defined is None or branch.kind == "ifdef" else not is_defined
         number = _Expression(self, branch.condition).value()
         return None if number is None else bool(number)
 
@@ -241,21 +241,21 @@ class _Judge:
 
     def is_defined(self, name: str) -> int | None:
         """Return 1 or 0, None where it cannot be known."""
-        found = self._is_defined(name)
-        return None if found is None else int(found)
+        is_macro = self._is_defined(name)
+        return None if is_macro is None else int(is_macro)
 
     def _define(self, match: re.Match[str], *, certain: bool) -> None:
-        found = _DEFINE.match(match[2]) if match[1] in ("define", "undef") else None
-        if found is None:
+        result = _DEFINE.match(match[2]) if match[1] in ("define", "undef") else None
+        if result is None:
             return
         if not certain:
-            self.unsure.add(found[1])
+            self.unsure.add(result[1])
         elif match[1] == "define":
-            self.macros[found[1]] = None if found[2] else found[3].strip()
-            self.unsure.discard(found[1])
+            self.macros[result[1]] = None if result[2] else result[3].strip()
+            self.unsure.discard(result[1])
         else:
-            self.macros.pop(found[1], None)
-            self.unsure.discard(found[1])
+            self.macros.pop(result[1], None)
+            self.unsure.discard(result[1])
 
     def _blank(self, items: Sequence[_Item]) -> None:
         for item in items:
@@ -275,7 +275,7 @@ class _Wrong(Exception):
 class _Expression:
     """The expression of one ``#if``."""
 
-    def __init__(self, judge: _Judge, text: str) -> None:
+    def __init__(self, judge: _ConditionEvaluator, text: str) -> None:
         self.judge = judge
         self.tokens: list[str | None] = []  # None: what cannot be known
         self.left = _MAX_CONDITION_TOKENS
@@ -291,14 +291,14 @@ class _Expression:
         if self.is_wrong or not self.tokens:
             return None
         try:
-            found = self._level(0)
+            value = self._level(0)
         except _Wrong:
             return None
-        return found if self.at == len(self.tokens) else None
+        return value if self.at == len(self.tokens) else None
 
     def _expanded(self, text: str, inside: frozenset[str]) -> Iterator[str | None]:
         """Yield the tokens of a text with its macros replaced, ``defined`` answered."""
-        if len(inside) > _DEEPEST:
+        if len(inside) > _MAX_DEPTH:
             raise _Wrong
         tokens = _tokens(text)
         index = 0
@@ -316,8 +316,8 @@ class _Expression:
                 )
                 index += len(names)
                 name = names[len(names) // 2] if names else ""
-                found = self.judge.is_defined(name)
-                yield None if found is None else str(found)
+                expanded = self.judge.is_defined(name)
+                yield None if expanded is None else str(expanded)
             elif token[0].isalpha() or token[0] == "_":
                 meaning = None if token in inside else self.judge.meaning(token)
                 if meaning is None:
@@ -328,7 +328,7 @@ class _Expression:
                 yield token
 
     def _level(self, level: int, depth: int = 0) -> int | None:
-        if depth > _DEEPEST:
+        if depth > _MAX_DEPTH:
             raise _Wrong
         if level == len(_LEVELS):
             return self._single(depth + 1)
@@ -339,7 +339,7 @@ class _Expression:
         return left
 
     def _single(self, depth: int) -> int | None:
-        if depth > _DEEPEST or self.at >= len(self.tokens):
+        if depth > _MAX_DEPTH or self.at >= len(self.tokens):
             raise _Wrong
         token = self.tokens[self.at]
         self.at += 1
@@ -366,15 +366,15 @@ class _Expression:
 
 
 def _tokens(text: str) -> list[str]:
-    found, at = [], 0
+    tokens, at = [], 0
     text = text.rstrip()
     while at < len(text):
         match = _TOKEN.match(text, at)
         if match is None:
             raise _Wrong
-        found.append(match[1])
+        tokens.append(match[1])
         at = match.end()
-    return found
+    return tokens
 
 
 def _worked_out(operator: str, left: int | None, right: int | None) -> int | None:
@@ -417,7 +417,7 @@ def _worked_out(operator: str, left: int | None, right: int | None) -> int | Non
 
 def value_of(text: str) -> int | None:
     """Return the number that an expression without names is; None for what is none."""
-    return _Expression(_Judge((), {}, {}), text).value()
+    return _Expression(_ConditionEvaluator((), {}, {}), text).value()
 
 
 _GLSL_TOKEN = re.compile(
@@ -474,7 +474,7 @@ def readings(code: str, version: int = 0) -> tuple[tuple[Token, ...], ...]:
     defined = {"__VERSION__": str(version)} if version else {}
     live = dict.fromkeys(conditions.live(defined, unknown=unknown) for unknown in (False, True))
     try:
-        return tuple(tuple(_Reader(one).tokens()) for one in live)
+        return tuple(tuple(_Reader(item).tokens()) for item in live)
     except TooLongError:
         return ()
 
@@ -535,7 +535,7 @@ class _Reader:
             return False
         call = token.call or Call(token.line, token.start, token.end)
         hidden = token.hidden | {token.text}
-        given: Mapping[str, list[Token]] = {}
+        tokens: Mapping[str, list[Token]] = {}
         if macro.parameters is not None:
             following = self._next()
             if following is None or following.text != "(":
@@ -544,55 +544,55 @@ class _Reader:
                 return False
             arguments, closing = self._arguments()
             if closing is None:
-                self.pending += reversed([following, *(t for one in arguments for t in one)])
+                self.pending += reversed([following, *(t for argument in arguments for t in argument)])
                 return False
             hidden = (token.hidden & closing.hidden) | {token.text}
             if closing.call is None:
                 call.end = closing.end
             call.is_whole &= closing.line == call.line and closing.call in (None, call)
-            given = dict(zip(macro.parameters, [*arguments, *[[] for _ in macro.parameters]], strict=False))
-        self.pending += reversed(list(self._substituted(macro, given, call, hidden)))
+            tokens = dict(zip(macro.parameters, [*arguments, *[[] for _ in macro.parameters]], strict=False))
+        self.pending += reversed(list(self._substituted(macro, tokens, call, hidden)))
         return True
 
     def _arguments(self) -> tuple[list[list[Token]], Token | None]:
         """Take the arguments of a call behind its bracket; return them and the closing bracket."""
-        found: list[list[Token]] = [[]]
+        tokens: list[list[Token]] = [[]]
         depth = 0
         while (token := self._next()) is not None:
             if token.text == ")" and depth == 0:
-                return found, token
+                return tokens, token
             depth += (token.text == "(") - (token.text == ")")
             if token.text == "," and depth == 0:
-                found.append([])
+                tokens.append([])
             else:
-                found[-1].append(token)
-        return found, None
+                tokens[-1].append(token)
+        return tokens, None
 
     def _substituted(
-        self, macro: _Macro, given: Mapping[str, list[Token]], call: Call, hidden: frozenset[str]
+        self, macro: _Macro, arguments: Mapping[str, list[Token]], call: Call, hidden: frozenset[str]
     ) -> Iterator[Token]:
         """Yield the tokens of a macro's body with its arguments in place, pasted where ``##`` says so."""
 
         def own(text: str, before: frozenset[str] = _NO_NAMES) -> Token:
             return Token(text, call.line, call.start, call.end, call, hidden | before)
 
-        found: list[Token] = []
+        result_tokens: list[Token] = []
         pastes = False
         for index, text in enumerate(macro.body):
             if text == "##":
-                pastes = bool(found)
+                pastes = bool(result_tokens)
                 continue
-            if text in given:
+            if text in arguments:
                 is_pasted = pastes or macro.body[index + 1 : index + 2] == ("##",)
-                some = given[text] if is_pasted else self._expanded(given[text])
+                some = arguments[text] if is_pasted else self._expanded(arguments[text])
                 new = [own(t.text, t.hidden) for t in some]
             else:
                 new = [own(text)]
             if pastes and new:
-                new[0] = own(found.pop().text + new[0].text)
+                new[0] = own(result_tokens.pop().text + new[0].text)
             pastes = False
-            found += new
-        yield from found
+            result_tokens += new
+        yield from result_tokens
 
     def _expanded(self, tokens: Sequence[Token]) -> list[Token]:
         """Return an argument with the macros in it expanded."""
@@ -600,6 +600,6 @@ class _Reader:
             return list(tokens)
         inner = _Reader(())
         inner.macros, inner.pending, inner.left = self.macros, list(reversed(tokens)), self.left
-        found = list(inner.tokens())
+        expanded = list(inner.tokens())
         self.left = inner.left
-        return found
+        return expanded

@@ -110,8 +110,8 @@ NEUTRAL: dict[str, tuple[float, ...]] = {
 """What other tools' shaders are given that never changes here, by meaning."""
 
 GIVEN_INSTEAD: dict[str, str] = {
-    name: given
-    for meaning, given in {"time": "time", "frame": "time", "delta": "time", "resolution": "size"}.items()
+    name: value
+    for meaning, value in {"time": "time", "frame": "time", "delta": "time", "resolution": "size"}.items()
     for name in PLAIN_UNIFORMS[meaning]
 }
 """Names that a plain shader is given, with what a kernel is given in their place; the rest has nothing."""

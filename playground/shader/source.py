@@ -44,26 +44,26 @@ _DEFINE = re.compile(r"\s*#\s*define\s+(\w+)(\(|\s+(\w+)\s*$)?")
 _DIRECTIVE = re.compile(r"\s*#")
 _NAME = re.compile(r"\b([A-Za-z_]\w*)\s*(\(?)")
 _BRACKET = re.compile(r"[()]")
-_MOST_LINES = 1_000  # that one call may span: an unclosed one must not swallow the file
+_MAX_CALL_LINES = 1_000  # that one call may span: an unclosed one must not swallow the file
 
 
 def with_calls_joined(codes: Sequence[str]) -> list[str]:
     """Return lines of code, comments blanked, with each macro call on one line; as many lines."""
-    found = list(codes)
-    if not any("define" in code for code in found):
-        return found
+    lines = list(codes)
+    if not any("define" in code for code in lines):
+        return lines
     macros: set[str] = set()
     index = 0
-    while index < len(found):
-        code = found[index]
+    while index < len(lines):
+        code = lines[index]
         if "define" in code and (define := _DEFINE.match(code)):
             name, bracket, meaning = define.groups()
             if bracket == "(" or meaning in macros:
                 macros.add(name)
         elif macros and not _DIRECTIVE.match(code):
-            index = _join(found, index, macros)
+            index = _join(lines, index, macros)
         index += 1
-    return found
+    return lines
 
 
 def _join(codes: list[str], index: int, macros: set[str]) -> int:
@@ -75,7 +75,7 @@ def _join(codes: list[str], index: int, macros: set[str]) -> int:
     taken, end = joined, index  # as far as calls are whole
     while (is_open := _is_open(joined, macros)) != "no":
         last += 1
-        if last >= len(codes) or last - index > _MOST_LINES or _DIRECTIVE.match(codes[last]):
+        if last >= len(codes) or last - index > _MAX_CALL_LINES or _DIRECTIVE.match(codes[last]):
             break
         code = codes[last].strip()
         if is_open == "maybe" and code and not code.startswith("("):
@@ -208,7 +208,7 @@ class Origin:
             named = libraries() if self.libraries else {}
             return (
                 all(named.get(name) == folder for name, folder in self.libraries)
-                and all(_file_at(place) == found for place, found in self.places)
+                and all(_file_at(path) == resolved for path, resolved in self.places)
                 and all(read_text(Path(path), any_encoding=True) == text for path, text in self.texts)
             )
         except PlaygroundError:
@@ -267,19 +267,19 @@ class EncodingError(SketchError):
 
 
 def read_text(path: Path, *, any_encoding: bool = False) -> str:
-    """Read a UTF-8 file with any line ends; raise ``SketchError`` in a sentence if it cannot be read.
+    """Read a UTF-8 file with any line ends; raise ``SketchError`` in a message if it cannot be read.
 
     With ``any_encoding``, a text that is no UTF-8 is taken as Latin-1, where each byte is a character.
     """
     note(path)
     if (unsaved := unsaved_texts().get(path)) is not None:
         return normalised(unsaved)
-    known = texts_of_load()
-    if known is None:
+    texts = texts_of_load()
+    if texts is None:
         return _text(path, any_encoding)
-    if (path, any_encoding) not in known:
-        known[path, any_encoding] = _text(path, any_encoding)
-    return known[path, any_encoding]
+    if (path, any_encoding) not in texts:
+        texts[path, any_encoding] = _text(path, any_encoding)
+    return texts[path, any_encoding]
 
 
 def _text(path: Path, any_encoding: bool) -> str:
@@ -389,13 +389,13 @@ class _Reader:
             try:
                 self.texts[key] = self.read(target)
             except SketchError as error:
-                found = error.diagnostics[0]
-                if found.line:
+                diagnostic = error.diagnostics[0]
+                if diagnostic.line:
                     via = (*chain, f"{shown(path)}:{line.number}")
-                    raise ShaderError(diagnostics=[replace(found, chain=via)]) from None
-                raise line.error(f"'{name}': {found.message}") from None
-        place = f"{self.shown(path)}:{line.number}"
-        self.flatten(target, self.texts[key], (*chain, place), (*stack, key))
+                    raise ShaderError(diagnostics=[replace(diagnostic, chain=via)]) from None
+                raise line.error(f"'{name}': {diagnostic.message}") from None
+        location = f"{self.shown(path)}:{line.number}"
+        self.flatten(target, self.texts[key], (*chain, location), (*stack, key))
 
     def read(self, path: Path) -> str:
         if str(path) in self.instead:
@@ -406,8 +406,8 @@ class _Reader:
         allowed, climbs = self.allowed(includer)
         parents = [p for p in includer.parents if any(map(p.is_relative_to, allowed))] if climbs else ()
         places = [folder / name for folder in (includer.parent, *parents, *allowed)]
-        for place in places:
-            candidate = self.looked_at[place] = _file_at(place)
+        for path in places:
+            candidate = self.looked_at[path] = _file_at(path)
             if candidate is not None:
                 if not is_inside(candidate, allowed) and not library_around(candidate, self.libraries):
                     more = how_to_open(candidate, allowed[0]) if allowed != (self.library,) else ""
@@ -446,22 +446,22 @@ class _Reader:
     def in_library(self, library: str, name: str, line: Line) -> Path:
         """Return a file of a named library."""
         folder = self.libraries[library]
-        place = folder / name
-        found = self.looked_at[place] = _file_at(place)
-        if found is None:
+        path = folder / name
+        file = self.looked_at[path] = _file_at(path)
+        if file is None:
             near = nearest(name, names_below((folder,), (".glsl",))) if folder.is_dir() else ""
             gone = "" if folder.is_dir() else ", which is gone"
             raise line.error(f"no file '{name}' in the library {library} ({shown(folder)}){gone}{near}")
-        if not is_inside(found, (folder,)):
+        if not is_inside(file, (folder,)):
             raise line.error(f"'{name}' lies outside the library {library} ({shown(folder)})")
-        return found
+        return file
 
 
-def _file_at(place: Path) -> Path | None:
+def _file_at(path: Path) -> Path | None:
     """Return the file that a path leads to, its links followed; None if there is none."""
-    note(place)
-    found = real(place)
-    return found if found is not None and is_file(found) else None
+    note(path)
+    resolved = real(path)
+    return resolved if resolved is not None and is_file(resolved) else None
 
 
 class _Split(NamedTuple):
@@ -477,7 +477,7 @@ class _Split(NamedTuple):
 
 def _split(text: str) -> tuple[_Split, ...]:
     """Return what is in each line of a text: once, for many files include the same few."""
-    found = []
+    parts = []
     lines, index, in_block = text.split("\n"), 0, False
     while index < len(lines):
         joined, count = _joined(lines, index)
@@ -491,9 +491,9 @@ def _split(text: str) -> tuple[_Split, ...]:
             code = ""
         elif not (code.isascii() and code.isprintable()):
             code = _BEYOND_ASCII.sub("?", code.translate(_WHITE))
-        found.append(_Split(code, comment, include, pragma, left_out, count))
+        parts.append(_Split(code, comment, include, pragma, left_out, count))
         index += count
-    return tuple(found)
+    return tuple(parts)
 
 
 def _joined(lines: list[str], index: int) -> tuple[str, int]:
@@ -546,7 +546,7 @@ def without_guards(lines: Sequence[str]) -> list[int]:
 
     ``lines`` have no comments. A guard is ``#ifndef`` with a ``#define`` of its name in the next line.
     """
-    found: list[int] = []
+    numbers: list[int] = []
     guards: set[str] = set()
     stack: list[str] = []  # of each open condition: "guard", "twice" or "other"
     skip_define = ""
@@ -573,5 +573,5 @@ def without_guards(lines: Sequence[str]) -> list[int]:
             if kind != "other":
                 continue
         if "twice" not in stack:
-            found.append(index)
-    return found
+            numbers.append(index)
+    return numbers

@@ -19,7 +19,7 @@ _VERSION = re.compile(r"\s*#\s*version\b")
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class StagePart:
     """A text before a kernel's lines; with ``names``, only where these lines name one of them."""
 
     text: str  # without its last line's end
@@ -35,7 +35,7 @@ class Recipe:
     """How a stage is made: the parts before, each on its lines, the kernel's lines, what is after."""
 
     source: SourceText  # whose lines, and whose names
-    before: tuple[Part, ...] = ()
+    before: tuple[StagePart, ...] = ()
     after: str = ""
     without: str = ""  # a function of the lines that is blanked
     replaced: tuple[tuple[str, str], ...] = ()  # names of the lines, each by one as long

@@ -41,7 +41,7 @@ from playground.shader.reserved_names import (
     ZOOM,
 )
 from playground.shader.source import Line, SourceText
-from playground.shader.stage_recipe import SIGNATURE, VERSION_NUMBER, Part, Recipe, version_line
+from playground.shader.stage_recipe import SIGNATURE, VERSION_NUMBER, Recipe, StagePart, version_line
 
 _, FRAGMENT, COMPUTE = DRIVERS
 LOCAL = 8
@@ -192,7 +192,7 @@ def _foreign(kernel: ForeignShader, version_code: int) -> dict[str, Recipe]:
     expected = "void mainImage(out vec4, in vec2)" if kernel.epilogue else "void main()"
     if "mainCubemap" in kernel.source.names and "cubemap" in kernel.epilogue:
         expected = "void mainCubemap(out vec4, in vec2, in vec3, in vec3)"
-    fragment = Recipe(kernel.source, tuple(map(Part, before)), after, expected=expected)
+    fragment = Recipe(kernel.source, tuple(map(StagePart, before)), after, expected=expected)
     return {"vertex": vertex, "fragment": fragment}
 
 
@@ -200,7 +200,7 @@ def _own_vertex(vertex: VertexShader, begins: Sequence[str]) -> Recipe:
     """Return the vertex stage of another tool's shader whose author wrote one."""
     before = [*begins, *vertex.prelude]
     before += [own_part(part, shares=PART) for part in vertex.helpers]
-    return Recipe(vertex.source, tuple(map(Part, before)), expected="void main()")
+    return Recipe(vertex.source, tuple(map(StagePart, before)), expected="void main()")
 
 
 def reads_unwired(kernel: Kernel) -> bool:
@@ -209,15 +209,15 @@ def reads_unwired(kernel: Kernel) -> bool:
 
 
 def _recipe(
-    kernel: Kernel, before: Sequence[str | Part], after: Sequence[str], expected: str, without: str = ""
+    kernel: Kernel, before: Sequence[str | StagePart], after: Sequence[str], expected: str, without: str = ""
 ) -> Recipe:
     """Return the recipe of a kernel's stage; where an input may stay unwired, fetches ask for that."""
-    parts = [part if isinstance(part, Part) else Part(part) for part in before]
+    parts = [part if isinstance(part, StagePart) else StagePart(part) for part in before]
     replaced: tuple[tuple[str, str], ...] = ()
     if any(declared.fallback for declared in kernel.inputs):
         fetch, offset = FETCHES.values()
         text = own_part("fetch_unwired.glsl", unwired=UNWIRED, fetch=fetch, fetch_offset=offset)
-        parts.append(Part(text, tuple(FETCHES)))
+        parts.append(StagePart(text, tuple(FETCHES)))
         replaced = tuple(FETCHES.items())
     return Recipe(
         kernel.source,
@@ -229,19 +229,19 @@ def _recipe(
     )
 
 
-def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[Part]:
+def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[StagePart]:
     """Return the declarations of what the engine gives: each where the text names it, or ``always``."""
-    found = [(kind, name) for name, (kind, _) in GIVEN.items()]
-    found += [("bool", f"{begins}{i.name}") for i in kernel.inputs for begins in (WIRED, MATCHES)]
-    found += [("vec3", f"{TOWARDS}{p.name}") for p in kernel.parameters if p.widget.kind == "direction"]
-    found.append(("ivec2", WINDOW))
-    parts = [Part(f"uniform {kind} {name};", () if name in always else (name,)) for kind, name in found]
-    return [*parts, Part(NOTHING_SKIPPED, (SKIPS,))]
+    names = [(kind, name) for name, (kind, _) in GIVEN.items()]
+    names += [("bool", f"{begins}{i.name}") for i in kernel.inputs for begins in (WIRED, MATCHES)]
+    names += [("vec3", f"{TOWARDS}{p.name}") for p in kernel.parameters if p.widget.kind == "direction"]
+    names.append(("ivec2", WINDOW))
+    parts = [StagePart(f"uniform {kind} {name};", () if name in always else (name,)) for kind, name in names]
+    return [*parts, StagePart(NOTHING_SKIPPED, (SKIPS,))]
 
 
 def _fragment(kernel: TexelKernel) -> Recipe:
     lattice = kernel.fills_lattice
-    before: list[str | Part] = ["#version 330", *_given(kernel, ("size",) if lattice else ())]
+    before: list[str | StagePart] = ["#version 330", *_given(kernel, ("size",) if lattice else ())]
     if lattice:
         before.append("uniform int k_shift, k_previous_shift;")
     before += [_previous(kernel, output, "strided" if lattice else "sampler") for output in kernel.outputs]
@@ -251,13 +251,13 @@ def _fragment(kernel: TexelKernel) -> Recipe:
     return _recipe(kernel, before, after, signature(kernel))
 
 
-def _previous(kernel: Kernel, output: Output, where: str) -> Part:
+def _previous(kernel: Kernel, output: Output, where: str) -> StagePart:
     """Return the function that reads an output's texel of the iteration before, and what it reads."""
     name = previous_name(kernel, output)
     swizzle = {1: ".r", 2: ".rg", 4: ""}[output.components]
     part = f"previous_{where}.glsl"
     text = own_part(part, swizzle=swizzle, output=output.name, type=output.glsl, previous=name)
-    return Part(text, (name,))
+    return StagePart(text, (name,))
 
 
 def _call(kernel: Kernel) -> str:
@@ -267,7 +267,7 @@ def _call(kernel: Kernel) -> str:
 
 
 def _compute(kernel: TexelKernel) -> Recipe:
-    before: list[str | Part] = [
+    before: list[str | StagePart] = [
         "#version 430",
         f"layout(local_size_x = {LOCAL}, local_size_y = {LOCAL}) in;",
     ]
@@ -291,7 +291,7 @@ def _compute(kernel: TexelKernel) -> Recipe:
 
 
 def _variant(kernel: ComputeVariant) -> Recipe:
-    before: list[str | Part] = [
+    before: list[str | StagePart] = [
         "#version 430",
         "#define COMPUTE_STAGE",
         f"layout(local_size_x = {kernel.local[0]}, local_size_y = {kernel.local[1]}) in;",
@@ -304,7 +304,7 @@ def _variant(kernel: ComputeVariant) -> Recipe:
         block = f"buffer k_buffer_{buffer.name} {{ {buffer.type} {buffer.name}[]; }};"
         before.append(f"layout(std430, binding = {unit}) {block}")
     before += [
-        Part(f"{buffer.type} {READ}{buffer.name}(int place) {{ return {buffer.name}[place]; }}")
+        StagePart(f"{buffer.type} {READ}{buffer.name}(int place) {{ return {buffer.name}[place]; }}")
         for buffer in read_by_functions(kernel)
     ]
     return _recipe(kernel, before, [], "void main()")
@@ -313,9 +313,9 @@ def _variant(kernel: ComputeVariant) -> Recipe:
 def read_by_functions(kernel: ComputeVariant) -> list[Buffer]:
     """Return the buffers that a compute variant reads by ``read_NAME(place)``, unless it has its own."""
     buffers = kernel.storage.buffers
-    found = [b for b in buffers if b.type in _READABLE and kernel.reads(f"{READ}{b.name}")]
-    own = {one.name for one in outline(kernel.source.code)} if found else set()
-    return [buffer for buffer in found if f"{READ}{buffer.name}" not in own]
+    result = [b for b in buffers if b.type in _READABLE and kernel.reads(f"{READ}{b.name}")]
+    own = {item.name for item in outline(kernel.source.code)} if result else set()
+    return [buffer for buffer in result if f"{READ}{buffer.name}" not in own]
 
 
 def _draw(kernel: Draw) -> dict[str, Recipe]:
@@ -329,11 +329,11 @@ def _draw(kernel: Draw) -> dict[str, Recipe]:
     for _, kind, name in fragment:
         if varyings.get(name) != kind:
             line = _line_of(kernel, "fragment")
-            given = ", ".join(f"{k} {n}" for n, k in varyings.items()) or "nothing"
-            raise line.error(f"fragment takes {kind} {name}, which vertex does not give; it gives {given}")
+            outputs = ", ".join(f"{k} {n}" for n, k in varyings.items()) or "nothing"
+            raise line.error(f"fragment takes {kind} {name}, which vertex does not give; it gives {outputs}")
     expected = "vec4 vertex(…) and vec4 fragment(…)"
     # Draws of one mesh by several programs must agree to the last bit where depths are equal.
-    before: list[str | Part] = ["#version 330", "#define VERTEX_STAGE", "invariant gl_Position;"]
+    before: list[str | StagePart] = ["#version 330", "#define VERTEX_STAGE", "invariant gl_Position;"]
     before += _given(kernel)
     after = [f"in {kind} k_in_{name};" for kind, name in attributes]
     after += [f"{_flat(kind)}out {kind} k_to_{name};" for name, kind in varyings.items()]
@@ -367,12 +367,12 @@ def _function(kernel: Kernel, name: str, example: str) -> list[tuple[str, str, s
         raise _line_of(kernel, name).error(f"fragment must be {_fragment_signature(kernel)}")
     if not match or match.group(1) != ("void" if several else "vec4"):
         raise _unsigned(kernel, f"a draw needs a function {example}")
-    found = [_argument(part) for part in match.group(2).split(",") if part.strip()]
-    for (way, kind, called), part in zip(found, match.group(2).split(","), strict=False):
+    arguments = [_argument(part) for part in match.group(2).split(",") if part.strip()]
+    for (way, kind, called), part in zip(arguments, match.group(2).split(","), strict=False):
         if not called or way == "inout" or not kind.isidentifier():
             message = f"cannot read the argument '{part.strip()}' of {name}; expected {example}"
             raise _line_of(kernel, name).error(message)
-    return found
+    return arguments
 
 
 def _fragment_signature(kernel: Kernel) -> str:
@@ -383,8 +383,8 @@ def _fragment_signature(kernel: Kernel) -> str:
 def _without_outputs(kernel: Kernel, arguments: list[tuple[str, str, str]]) -> list[tuple[str, str, str]]:
     """Return the arguments of a fragment function that are not outputs; refuse other outputs than wanted."""
     first = len(arguments) - len(kernel.outputs)
-    wanted = [("out", "vec4", output.name) for output in kernel.outputs]
-    if arguments[max(first, 0) :] != wanted or any(way == "out" for way, _, _ in arguments[:first]):
+    outputs = [("out", "vec4", output.name) for output in kernel.outputs]
+    if arguments[max(first, 0) :] != outputs or any(way == "out" for way, _, _ in arguments[:first]):
         message = (
             f"fragment must be {_fragment_signature(kernel)}: its outputs last, in the order of the pragma"
         )
@@ -403,12 +403,12 @@ def _check_signature(kernel: TexelKernel) -> None:
     if not match:
         raise _unsigned(kernel, f"there is no function {signature(kernel)}")
     single = len(kernel.outputs) == 1
-    found = [_argument(part) for part in match.group(2).split(",")]
-    wanted = [("in", "ivec2")] if single else [("in", "ivec2"), *(("out", o.glsl) for o in kernel.outputs)]
+    arguments = [_argument(part) for part in match.group(2).split(",")]
+    expected = [("in", "ivec2")] if single else [("in", "ivec2"), *(("out", o.glsl) for o in kernel.outputs)]
     result = kernel.outputs[0].glsl if single else "void"
-    if match.group(1) != result or [(way, kind) for way, kind, _ in found] != wanted:
+    if match.group(1) != result or [(way, kind) for way, kind, _ in arguments] != expected:
         raise _unsigned(kernel, f"kernel must be {signature(kernel)}", match.start(1))
-    names = [name for _, _, name in found[1:]]
+    names = [name for _, _, name in arguments[1:]]
     if not single and names != [o.name for o in kernel.outputs]:
         message = f"kernel must be {signature(kernel)}: its outputs in the order of the pragma"
         raise _unsigned(kernel, message, match.start(1))

@@ -40,8 +40,8 @@ def zeroed(text: str) -> str:
     version = VERSION_NUMBER.search(text)
     edits: dict[tuple[int, int, int], str] = {}
     for tokens in readings(text, int(version[1]) if version else 0):
-        for place, new in _Zeros(tokens).edits():
-            edits.setdefault(place, new)
+        for index, new in _Zeros(tokens).edits():
+            edits.setdefault(index, new)
     lines = text.split("\n")
     for (line, start, end), new in sorted(edits.items(), reverse=True):
         lines[line] = f"{lines[line][:start]}{new}{lines[line][end:]}"
@@ -63,10 +63,10 @@ class _Zeros:
         globals_ = "".join(map(self._begin, self.declared.variables))
         last_uses = {token.text: index for index, token in enumerate(self.tokens)}
         for block, colon in self.declared.entries:  # a jump there passes the declarations above
-            for one in self.declared.variables:
-                is_read = one.block == block and one.at < colon < last_uses[one.name]
-                if is_read and not one.qualifiers & _OUTSIDE:
-                    self._insert(colon, self._statements(one.name, one.type))
+            for variable in self.declared.variables:
+                is_read = variable.block == block and variable.at < colon < last_uses[variable.name]
+                if is_read and not variable.qualifiers & _OUTSIDE:
+                    self._insert(colon, self._statements(variable.name, variable.type))
         for function in self.declared.functions:
             if function.closes >= 0:
                 self._frame(function, globals_ if function.name == "main" else "")
@@ -81,26 +81,28 @@ class _Zeros:
                 yield (token.line, end, end), new
         yield from self._written_out(calls)
 
-    def _begin(self, one: Variable) -> str:
+    def _begin(self, variable: Variable) -> str:
         """Insert a variable's value; return the statements that set it at the beginning of ``main``."""
-        if one.has_value or one.qualifiers & _OUTSIDE:
+        if variable.has_value or variable.qualifiers & _OUTSIDE:
             return ""
-        if "out" in one.qualifiers:
-            return self._statements(one.name, one.type)
-        can_loop = one.is_global or one.may_follow
-        value = self._value(one.type, _MAX_WRITTEN if can_loop else _MAX_WRITTEN_AT_ALL)
+        if "out" in variable.qualifiers:
+            return self._statements(variable.name, variable.type)
+        can_loop = variable.is_global or variable.may_follow
+        value = self._value(variable.type, _MAX_WRITTEN if can_loop else _MAX_WRITTEN_AT_ALL)
         if value:
-            self._insert(one.end, f" = {value}")
-        elif one.is_global:
-            return self._statements(one.name, one.type)
-        elif one.may_follow:
-            self._insert(one.close, self._statements(one.name, one.type))
+            self._insert(variable.end, f" = {value}")
+        elif variable.is_global:
+            return self._statements(variable.name, variable.type)
+        elif variable.may_follow:
+            self._insert(variable.close, self._statements(variable.name, variable.type))
         return ""
 
     def _frame(self, function: Function, first: str) -> None:
         """Insert what a function begins with, and what it returns at its end."""
-        outs = [one for one in function.parameters if one.name and "out" in one.qualifiers]
-        first += "".join(self._statements(one.name, one.type) for one in outs)
+        outs = [
+            parameter for parameter in function.parameters if parameter.name and "out" in parameter.qualifiers
+        ]
+        first += "".join(self._statements(item.name, item.type) for item in outs)
         if first:
             self._insert(function.opens, first)
         is_open = function.returns and self.tokens[function.last].text != "return"
@@ -126,17 +128,17 @@ class _Zeros:
         values = [self._value(member, most) for _, member in type_.members]
         return f"{type_.name}({', '.join(values)})" if type_.name and values and all(values) else ""
 
-    def _statements(self, place: str, type_: Type, depth: int = 0) -> str:
+    def _statements(self, target: str, type_: Type, depth: int = 0) -> str:
         """Return the statements that set a place to zero."""
         value = self._value(type_, _MAX_WRITTEN)
         if value:
-            return f" {place} = {value};"
+            return f" {target} = {value};"
         if type_.sizes:
             index = f"{_INDEX}{depth}"
-            inner = self._statements(f"{place}[{index}]", replace(type_, sizes=type_.sizes[1:]), depth + 1)
-            head = f" for (int {index} = 0; {index} < {place}.length(); ++{index})"
+            inner = self._statements(f"{target}[{index}]", replace(type_, sizes=type_.sizes[1:]), depth + 1)
+            head = f" for (int {index} = 0; {index} < {target}.length(); ++{index})"
             return f"{head} {{{inner} }}" if inner else ""
-        return "".join(self._statements(f"{place}.{name}", member, depth) for name, member in type_.members)
+        return "".join(self._statements(f"{target}.{name}", member, depth) for name, member in type_.members)
 
     def _written_out(self, calls: Collection[int]) -> Iterator[tuple[tuple[int, int, int], str]]:
         """Yield the calls of macros within which something is inserted, expanded.

@@ -23,7 +23,7 @@
     collect.py, fixture.py      tests from sketches; the ``shot`` fixture of tests in Python
     mask_of_test.py             the masks that those give
     properties.py, step_summary.py    what a test tells ``--junitxml``, and the page of a workflow's run
-    fallbacks.py    whose references stand in for which renderer's
+    fallbacks.py    whose references replace which renderer's
     unused_references.py    references of tests in Python that none uses any more
     plugin.py       pytest: options, which sketches, the summary
     mutants/        images broken on purpose, that no comparison may let pass

@@ -1,7 +1,7 @@
 """Accept pictures of a folder of results as references, and undo that.
 
 A picture becomes a reference as it was looked at: its pixels, and the fingerprint of what
-drew it. Nothing is drawn again. It is refused, in a sentence, where it would be wrong: a
+drew it. Nothing is drawn again. It is refused, in a message, where it would be wrong: a
 broken picture, one that is not there any more, references that have changed since the
 shot was checked.
 
@@ -66,26 +66,26 @@ def accept(folder: Path, record: Record, *, also: bool = False) -> Change:
     must not, or cannot, be written; nothing is changed then.
     """
     if record.ok:
-        raise DataError(f"{record.name}: it passed, so there is nothing to accept")
+        raise DataError(f"{record.name}: it passed, so nothing to accept")
     if record.word in NEVER_ACCEPTED:
         raise DataError(f"{record.name}: no reference can be made of it ({record.sentence})")
     if also and record.word == "unreadable":
         raise DataError(f"{record.name}: its reference is damaged, so it cannot stay next to this one")
-    place = _place(record)
+    position = _place(record)
     pixels = _picture(folder, record)
-    there = accepted_in(place, record.shot)
+    there = accepted_in(position, record.shot)
     if digests_of(there) != record.references:
         if any(_shows(path, pixels) for path in there):
             return Change(record.name, None)
         raise DataError(f"{record.name}: {_changed(record, there)} since it was checked; run the tests again")
     before = {path: read_regular(path) for path in there}
-    written = _further(place, record.shot, there) if also and there else place / f"{record.shot}.png"
-    make_folder(place)
+    written = _further(position, record.shot, there) if also and there else position / f"{record.shot}.png"
+    make_folder(position)
     write_png(written, pixels, text=record.texts)
     removed = () if also else tuple(path for path in there if path != written)
     for path in removed:
         path.unlink()
-    return Change(record.name, written, removed, before, digests_of(accepted_in(place, record.shot)))
+    return Change(record.name, written, removed, before, digests_of(accepted_in(position, record.shot)))
 
 
 def undo(change: Change) -> list[str]:
@@ -95,8 +95,8 @@ def undo(change: Change) -> list[str]:
     """
     if change.written is None:
         return []
-    place, shot = change.written.parent, change.name.rpartition("/")[2]
-    if digests_of(accepted_in(place, shot)) != change.after:
+    folder, shot = change.written.parent, change.name.rpartition("/")[2]
+    if digests_of(accepted_in(folder, shot)) != change.after:
         raise DataError(
             f"{change.name}: its references have changed since it was accepted; nothing is undone"
         )
@@ -119,7 +119,7 @@ def choose(records: list[Record], patterns: list[str]) -> list[Record]:
     A pattern means only shots that failed; a name means itself. Raises ``ParameterError``
     for one that nothing has.
     """
-    found: dict[str, Record] = {}
+    cached: dict[str, Record] = {}
     for pattern in patterns:
         named = [record for record in records if record.name == pattern]
         if not named:
@@ -128,8 +128,8 @@ def choose(records: list[Record], patterns: list[str]) -> list[Record]:
             wild = any(mark in pattern for mark in "*?[")
             what = "no shot that failed matches" if wild else "there is no result of a shot"
             raise ParameterError(f"{what} '{pattern}'{nearest(pattern, [r.name for r in records])}")
-        found |= {record.name: record for record in named}
-    return list(found.values())
+        cached |= {record.name: record for record in named}
+    return list(cached.values())
 
 
 def _place(record: Record) -> Path:
@@ -171,8 +171,8 @@ def _changed(record: Record, there: list[Path]) -> str:
     return f"the reference {new[0]} has come" if new else "the reference has changed"
 
 
-def _further(place: Path, shot: str, there: list[Path]) -> Path:
+def _further(folder: Path, shot: str, there: list[Path]) -> Path:
     number = 2
-    while place / f"{shot}.{number}.png" in there:
+    while folder / f"{shot}.{number}.png" in there:
         number += 1
-    return place / f"{shot}.{number}.png"
+    return folder / f"{shot}.{number}.png"

@@ -49,9 +49,9 @@ class Taken:
 def taken(thing: object) -> Taken:
     """Return the picture that a thing holds; raise ``DataError`` for what holds none."""
     for adapter in ADAPTERS:
-        found = adapter(thing)
-        if found is not None:
-            return found
+        taken_picture = adapter(thing)
+        if taken_picture is not None:
+            return taken_picture
     raise AssertionError("the last adapter gives an array or raises")
 
 
@@ -137,15 +137,15 @@ def _of_rgba(thing: Any) -> Taken | None:
 
 def _of_arrays(thing: Any) -> Taken | None:
     try:
-        found = np.asarray(thing)
+        array = np.asarray(thing)
     except (TypeError, ValueError):  # lists of several lengths
-        found = np.asarray(None)
-    if found.dtype == object:
+        array = np.asarray(None)
+    if array.dtype == object:
         raise DataError(
             f"there is no picture in a {type(thing).__name__}: expected a frame, an array, an image, "
             "a framebuffer, a window or a figure"
         )
-    return Taken(found)
+    return Taken(array)
 
 
 ADAPTERS: tuple[Callable[[Any], Taken | None], ...] = (

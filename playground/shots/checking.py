@@ -126,7 +126,7 @@ class Checker:
         """
         outcome = _result_or_error(lambda: self._compare(node, case, frame, renderer))
         if isinstance(outcome, PlaygroundError):
-            return self.gave_none(node, case, outcome, start)
+            return self.record_missing(node, case, outcome, start)
         command = self.accepting(node, outcome)
         stands_in = self._stands_in(outcome)
         unrecorded = self.recorder.record(node, outcome, time.perf_counter() - start, command, stands_in)
@@ -146,13 +146,13 @@ class Checker:
     def renderer(self, node: pytest.Item, case: ShotCase) -> ContextInfo:
         """Return what draws in the child process, if it is expected; else skip the test, or fail it."""
         start = time.perf_counter()
-        found = _result_or_error(lambda: self.renderer_process.renderer)
-        if isinstance(found, ContextError):
-            self._without(node, case, str(found))
-        if isinstance(found, PlaygroundError):
+        result = _result_or_error(lambda: self.renderer_process.renderer)
+        if isinstance(result, ContextError):
+            self._without(node, case, str(result))
+        if isinstance(result, PlaygroundError):
             self.show_what_was_printed(node)
-            self._without_picture(node, case, found, start)
-        return self.expect(node, case, found)
+            self._without_picture(node, case, result, start)
+        return self.expect(node, case, result)
 
     def expect(self, node: pytest.Item, case: ShotCase, renderer: ContextInfo) -> ContextInfo:
         """Return a renderer whose pictures may be compared; else skip the test, or fail it."""
@@ -189,7 +189,7 @@ class Checker:
     # ── in words ─────────────────────────────────────────────────────────────
 
     def fail(self, node: pytest.Item, case: ShotCase, message: str) -> NoReturn:
-        """Fail a test in which no picture was compared, with a record that says so."""
+        """Fail a test in which no picture was compared, with a record that reports it."""
         unrecorded = self.recorder.record_none(node, case, "error", message, 0.0)
         pytest.fail(_joined(message, unrecorded), pytrace=False)
 
@@ -208,8 +208,8 @@ class Checker:
             self.recorder.forget_earlier(item, raised.case)
             self.recorder.record_none(item, raised.case, raised.word, raised.sentence, call.duration)
 
-    def _without(self, node: pytest.Item, case: ShotCase, found: str) -> NoReturn:
-        message = f"the expected renderer is missing: shots are compared on {self.expected}; {found}"
+    def _without(self, node: pytest.Item, case: ShotCase, text: str) -> NoReturn:
+        message = f"the expected renderer is missing: shots are compared on {self.expected}; {text}"
         if os.environ.get("CI", "").lower() not in ("", "0", "false"):
             self.fail(node, case, f"{message} (a failure, for CI is set)")
         node.user_properties.append((UNCOMPARED, message))
@@ -219,9 +219,9 @@ class Checker:
         self, node: pytest.Item, case: ShotCase, error: PlaygroundError, start: float
     ) -> NoReturn:
         """Fail the test for a shot of which there is no picture, or that cannot be compared."""
-        pytest.fail(self.gave_none(node, case, error, start), pytrace=False)
+        pytest.fail(self.record_missing(node, case, error, start), pytrace=False)
 
-    def gave_none(self, node: pytest.Item, case: ShotCase, error: PlaygroundError, start: float) -> str:
+    def record_missing(self, node: pytest.Item, case: ShotCase, error: PlaygroundError, start: float) -> str:
         """Record a shot of which there is no picture, or that cannot be compared, and say why."""
         word = word_of(error)
         unrecorded = self.recorder.record_none(node, case, word, str(error), time.perf_counter() - start)
@@ -282,9 +282,9 @@ class Checker:
             raise DataError(refusal, file=path)
         if path in self._written:
             return
-        found = outcome.fingerprint
+        fingerprint = outcome.fingerprint
         written, removed = write_reference(
-            case.sketch, case.shot.name, outcome.renderer, pixels, found.drawn, found.fonts
+            case.sketch, case.shot.name, outcome.renderer, pixels, fingerprint.drawn, fingerprint.fonts
         )
         self._written.add(written)
         node.user_properties.append((SUMMARY_LINE, f"wrote {shown(written)}  ({outcome.sentence})"))

@@ -61,24 +61,24 @@ class Claims:
         self._run = run
         self._known: dict[tuple[str, str, bool], Claim] = {}  # by folder of references, name, whether written
 
-    def refusal(self, claim: Claim, references: Path, place: Path | None) -> str:
+    def refusal(self, claim: Claim, references: Path, folder: Path | None) -> str:
         """Return why a test may not check, or write, a picture under a name; "" once it has claimed it.
 
-        ``references`` is the folder of the references, one for each renderer; ``place`` that of the
+        ``references`` is the folder of the references, one for each renderer; ``folder`` that of the
         records in the results, None where nothing can be written there.
         """
         key = (str(references), one_spelling(claim.name), bool(claim.digest))
         first = self._known.get(key)
         if first is None:
-            first = self._known[key] = self._first(claim, references.name, place)
+            first = self._known[key] = self._first(claim, references.name, folder)
         return _refusal(claim, first)
 
-    def _first(self, claim: Claim, renderer: str, place: Path | None) -> Claim:
+    def _first(self, claim: Claim, renderer: str, folder: Path | None) -> Claim:
         """Claim a name in all processes, or return the claim that was there before."""
-        if place is None:
+        if folder is None:
             return claim
         key = hashlib.sha256(one_spelling(claim.name).encode()).hexdigest()[:24]
-        file = place / _FOLDER / self._run / f"{renderer}.{key}{'.written' if claim.digest else ''}.json"
+        file = folder / _FOLDER / self._run / f"{renderer}.{key}{'.written' if claim.digest else ''}.json"
         draft = file.with_name(f"{secrets.token_hex(8)}.draft")
         try:
             make_folder(file.parent)
@@ -117,5 +117,5 @@ def _refusal(claim: Claim, first: Claim) -> str:
 
 def forget_claims(folder: Path) -> None:
     """Remove all claims from a folder of results, when its run is over."""
-    for place in folder.glob(f"*/{_FOLDER}"):
-        shutil.rmtree(place, ignore_errors=True)
+    for folder_path in folder.glob(f"*/{_FOLDER}"):
+        shutil.rmtree(folder_path, ignore_errors=True)

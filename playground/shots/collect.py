@@ -46,11 +46,11 @@ class SketchFile(pytest.File):
             )
         for shot in sketch.shots:
             item = ShotItem.from_parent(self, name=shot.name, case=ShotCase(sketch, shot))
-            known = _marks(self.config)
+            marks = _marks(self.config)
             for mark in shot.marks:
-                if mark not in known and self.config.getoption("strict_markers", False):
+                if mark not in marks and self.config.getoption("strict_markers", False):
                     item.trouble = f"{shown(self.path)}:{shot.line}: marks: there is no marker '{mark}'"
-                    item.trouble += nearest(mark, known)
+                    item.trouble += nearest(mark, marks)
                 else:
                     item.add_marker(mark)
             yield item

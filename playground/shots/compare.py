@@ -39,7 +39,7 @@ class Comparison:
     expected_size: tuple[int, int] | None = None  # [pixels] None: missing
     channels: Colour = (0, 0, 0, 0)  # [levels] largest difference in red, green, blue, alpha
     over: int = 0  # [pixels] with a channel beyond the tolerance
-    place: tuple[int, int] | None = None  # [pixels] x and y, from the top left, of the first worst one
+    position: tuple[int, int] | None = None  # [pixels] x and y, from the top left, of the first worst one
     actual: Colour | None = None  # what is at that place; of a blank picture, its colour
     expected: Colour | None = None  # what should be there
     hidden: int = 0  # [pixels] that are masked, and count as equal
@@ -51,7 +51,7 @@ class Comparison:
 
     @property
     def share(self) -> float:
-        """Share of the pixels that are compared that differ beyond the tolerance."""
+        """Fraction of the pixels that are compared that differ beyond the tolerance."""
         return self.over / (self.size[0] * self.size[1] - self.hidden)
 
     @property
@@ -68,11 +68,11 @@ class Comparison:
             return f"blank: all {width} × {height} pixels are {self.actual}{noise}"
         if self.verdict == "size":
             assert self.expected_size is not None
-            wanted = " × ".join(map(str, self.expected_size))
-            return f"size: {width} × {height} pixels where {wanted} were expected"
-        if self.place is None:
+            expected = " × ".join(map(str, self.expected_size))
+            return f"size: {width} × {height} pixels where {expected} were expected"
+        if self.position is None:
             return "same: every pixel"
-        x, y = self.place
+        x, y = self.position
         most = f"max difference {self.most} of 255, at x = {x}, y = {y} from the top left"
         if self.ok:
             return f"same: {most}"
@@ -92,7 +92,7 @@ def compare(
     """Compare two pictures, uint8 (height, width, 4), top row first.
 
     With ``expected`` None the verdict is "missing"; "blank" goes before that and before "size",
-    unless ``allow_blank``. ``hidden`` pixels are masked: the same in both, and no part of a share.
+    unless ``allow_blank``. ``hidden`` pixels are masked: the same in both, and no part of a fraction.
     Raises ``DataError`` for another dtype or shape.
     """
     actual = _picture(actual)
@@ -131,7 +131,7 @@ def compare(
         expected_size=expected_size,
         channels=_four(channels),
         over=over,
-        place=(x, y),
+        position=(x, y),
         actual=_colour(actual, x, y),
         expected=_colour(expected, x, y),
         hidden=hidden,
@@ -175,8 +175,8 @@ def _spread(actual: NDArray[np.uint8]) -> Colour | None:
 
 def _picture(array: NDArray[np.uint8]) -> NDArray[np.uint8]:
     if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] != 4 or 0 in array.shape:
-        found = f"{array.dtype} {array.shape}"
-        raise DataError(f"a picture to compare is uint8 (height, width, 4); found {found}")
+        description = f"{array.dtype} {array.shape}"
+        raise DataError(f"a picture to compare is uint8 (height, width, 4); found {description}")
     return np.ascontiguousarray(array)
 
 

@@ -1,4 +1,4 @@
-"""The table of whose references stand in for which renderer's, where that has none of its own.
+"""The table of whose references replace which renderer's, where that has none of its own.
 
     [tool.pytest.ini_options]
     shots_fallbacks = [
@@ -34,8 +34,8 @@ class Fallback:
 
 
 def read_fallbacks(lines: Iterable[str]) -> tuple[Fallback, ...]:
-    """Read the table; raise ``ValueError``, with a sentence, for a line that is not one of it."""
-    found = []
+    """Read the table; raise ``ValueError``, with a message, for a line that is not one of it."""
+    fallbacks = []
     for line in lines:
         renderers, equals, rest = (part.strip() for part in line.partition("="))
         references, comma, strictness = (part.strip() for part in rest.partition(","))
@@ -48,8 +48,8 @@ def read_fallbacks(lines: Iterable[str]) -> tuple[Fallback, ...]:
             raise ValueError(f"{line!r}: one renderer's references stand in; {references!r} is a pattern")
         if fnmatchcase(references, renderers):
             raise ValueError(f"{line!r}: a renderer's references do not stand in for its own")
-        found.append(Fallback(renderers, references, strictness))
-    return tuple(found)
+        fallbacks.append(Fallback(renderers, references, strictness))
+    return tuple(fallbacks)
 
 
 def fallbacks_of(table: Iterable[Fallback], renderer: str) -> list[Fallback]:

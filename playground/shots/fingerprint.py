@@ -81,31 +81,33 @@ class Fingerprint:
     def differs_in(self, other: Fingerprint) -> tuple[str, ...]:
         """Name the fields that both state and that differ; the processor's only where it drew both."""
         hardware = not (self.software and other.software)
-        found = []
+        names = []
         for name in (field.name for field in fields(self)):
             ours, theirs = getattr(self, name), getattr(other, name)
             if ours and theirs and ours != theirs and not (hardware and name in ("cpu", "simd")):
-                found.append(name)
-        return tuple(found)
+                names.append(name)
+        return tuple(names)
 
     def same_build(self, other: Fingerprint) -> bool:
         """Return whether the same build of a renderer drew both, as far as both say."""
         return not set(BUILD) & set(self.differs_in(other))
 
     def differences(self, reference: Fingerprint) -> tuple[str, ...]:
-        """Return, a sentence each, how this picture's origin differs from a reference's."""
+        """Return, a message each, how this picture's origin differs from a reference's."""
         names = self.differs_in(reference)
-        found = []
+        messages = []
         for name in names:
             ours, theirs = getattr(self, name), getattr(reference, name)
             if name == "drawn":
-                found.append("what is drawn has changed: the sketch, its shot, a kernel, a value or a file")
+                messages.append(
+                    "the drawn content has changed: the sketch, its shot, a kernel, a value or a file"
+                )
             elif name not in ("mesa", "llvm"):  # the version and the renderer say the same, and more
-                found.append(f"{_WORDS[name]}: {ours}; the reference's: {theirs}")
+                messages.append(f"{_WORDS[name]}: {ours}; the reference's: {theirs}")
         unknown = [_WORDS[name] for name in BUILD if getattr(self, name) and not getattr(reference, name)]
         if unknown:
-            found.append(f"the reference does not say its {', '.join(unknown)}")
-        return tuple(found)
+            messages.append(f"the reference does not say its {', '.join(unknown)}")
+        return tuple(messages)
 
 
 def fingerprint_of(

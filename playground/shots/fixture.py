@@ -82,22 +82,22 @@ class ShotFixture:
         own = self._case(Shot(name_of_test(self._node.nodeid)))
         mistake: PlaygroundError
         try:
-            found = sketch if isinstance(sketch, Sketch) else load(self._find(sketch))
-            begun = found.shot(shot) if shot else Shot(self._node.name)
-            prepared = found.for_shot(begun).with_values(values or {})
-            wanted = Shot(
+            loaded = sketch if isinstance(sketch, Sketch) else load(self._find(sketch))
+            base_shot = loaded.shot(shot) if shot else Shot(self._node.name)
+            prepared = loaded.for_shot(base_shot).with_values(values or {})
+            shot_wanted = Shot(
                 shot or "render",
-                size or begun.size,
-                begun.time if time is None else float(time),
-                steps=tuple({**dict(begun.steps), **(steps or {})}.items()),
+                size or base_shot.size,
+                base_shot.time if time is None else float(time),
+                steps=tuple({**dict(base_shot.steps), **(steps or {})}.items()),
             )
             renderer = self._checker.renderer(self._node, own)
             self._begin(own)
-            frame = self._checker.renderer_process.render(ShotCase(prepared, wanted))
+            frame = self._checker.renderer_process.render(ShotCase(prepared, shot_wanted))
         except PlaygroundError as error:
             mistake = error
         else:
-            self._drawn[id(frame)] = (frame, renderer, ShotCase(prepared, wanted))
+            self._drawn[id(frame)] = (frame, renderer, ShotCase(prepared, shot_wanted))
             return frame
         finally:
             self._checker.show_what_was_printed(self._node)
@@ -214,16 +214,16 @@ class ShotFixture:
     ) -> tuple[RenderedShot, ContextInfo]:
         """Return a picture with all that is known of how it was drawn, and what drew it."""
         __tracebackhide__ = True
-        found = None if isinstance(picture, Frame) else taken(picture)
-        info = self._renderer_of(case, picture, found, by)
-        drawer = by or (found.context if found else None)
-        return _drawn_by(picture, _rendered(picture, found, tone), drawer), info
+        taken_picture = None if isinstance(picture, Frame) else taken(picture)
+        info = self._renderer_of(case, picture, taken_picture, by)
+        drawer = by or (taken_picture.context if taken_picture else None)
+        return _drawn_by(picture, _rendered(picture, taken_picture, tone), drawer), info
 
     def _refuse_picture(self, case: ShotCase, error: DataError, start: float) -> bool:
         """Record for the test's end that what was given is no picture; return False."""
         self._begin(case)
         self._names[one_spelling(case.shot.name)] = case.shot.name
-        self._fail(self._checker.gave_none(self._node, case, error, start))
+        self._fail(self._checker.record_missing(self._node, case, error, start))
         return False
 
     def _hold(
@@ -304,10 +304,10 @@ class ShotFixture:
             self._checker.recorder.forget_earlier(self._node, case)
 
     def _renderer_of(
-        self, case: ShotCase, picture: object, found: Taken | None, by: By | None
+        self, case: ShotCase, picture: object, taken_picture: Taken | None, by: By | None
     ) -> ContextInfo:
         __tracebackhide__ = True
-        tool = found and found.tool
+        tool = taken_picture and taken_picture.tool
         if isinstance(by, str):  # a folder that is named is used with any OpenGL
             named = ContextInfo(0, by, "", tool.version if tool else "", 0)
             if not by or named.slug != by:
@@ -315,8 +315,8 @@ class ShotFixture:
             return named
         if by is None and tool:
             return tool
-        if by is None and found and found.context:
-            by = found.context
+        if by is None and taken_picture and taken_picture.context:
+            by = taken_picture.context
         if by is None:
             if id(picture) not in self._drawn:
                 raise TypeError(
@@ -368,14 +368,14 @@ def _error_left(by: By) -> str:
     return "" if error == "GL_NO_ERROR" else error
 
 
-def _rendered(picture: object, found: Taken | None, tone: str) -> RenderedShot:
+def _rendered(picture: object, parser_: Taken | None, tone: str) -> RenderedShot:
     """Return a picture as the renderer process gives it, with what is wrong with its numbers."""
-    if found is None:
+    if parser_ is None:
         assert isinstance(picture, Frame)
         if tone:
             raise DataError(f"tone = {tone!r} is for floats; a frame is of uint8")
         if isinstance(picture, RenderedShot):
             return picture
         return RenderedShot(picture.array, picture.sketch, picture.time)
-    pixels, wrong = levels_of(found.values, tone)
-    return RenderedShot(pixels, not_finite=wrong, fonts=found.fonts, tone=tone)
+    pixels, wrong = levels_of(parser_.values, tone)
+    return RenderedShot(pixels, not_finite=wrong, fonts=parser_.fonts, tone=tone)

@@ -40,7 +40,7 @@ _FEATURE_WIDTH = 0.082  # w [degrees]: of the edges and points that the eye find
 _FEATURE_EXPONENT = 0.5  # qf
 _STRIP = 32  # [pixels] along the axis that are filtered at once
 _ONE_THREAD = 2**18  # multiplications that OpenBLAS does not share: on a busy machine, waiting takes longer
-_SMALLEST = 1e-7  # weights below this share of the largest change nothing in float32
+_MIN_WEIGHT = 1e-7  # weights below this fraction of the largest change nothing in float32
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,8 +61,8 @@ class Flip:
 
     def worst_tile(self) -> tuple[float, tuple[int, int]]:
         """Return the worst tile's mean, and x and y [pixels] of its top left corner."""
-        total, place, (width, height) = worst_window(self.difference, TILE)
-        return max(total, 0.0) / (width * height), place
+        total, corner, (width, height) = worst_window(self.difference, TILE)
+        return max(total, 0.0) / (width * height), corner
 
 
 def flip(actual: NDArray[np.uint8], expected: NDArray[np.uint8]) -> Flip:
@@ -157,8 +157,8 @@ def _matrices() -> tuple[Floats, Floats, Floats]:
     white = np.array([0.3127 / 0.3290, 1.0, (1 - 0.3127 - 0.3290) / 0.3290])
     relative = primaries * np.linalg.solve(primaries, white) / white[:, None]
     opponent = np.array([[0, 116, 0], [500, -500, 0], [0, 200, -200]]) @ relative
-    found = relative, opponent, np.linalg.inv(opponent)
-    return tuple(array.astype(np.float32) for array in found)  # type: ignore[return-value]
+    matrices = relative, opponent, np.linalg.inv(opponent)
+    return tuple(array.astype(np.float32) for array in matrices)  # type: ignore[return-value]
 
 
 @cache
@@ -171,27 +171,27 @@ def _linear() -> Floats:
 def _opponent(picture: NDArray[np.uint8]) -> Floats:
     """Return YyCxCz of sRGB bytes, (3, height, width): lightness, red to green, blue to yellow."""
     _, opponent, _ = _matrices()
-    found = _mixed(opponent, np.moveaxis(np.take(_linear(), picture), 2, 0))
-    found[0] -= 16
-    return found
+    values = _mixed(opponent, np.moveaxis(np.take(_linear(), picture), 2, 0))
+    values[0] -= 16
+    return values
 
 
 def _mixed(matrix: Floats, channels: Floats) -> Floats:
     """Return a matrix times the three channels of each pixel, (3, height, width)."""
     values = channels.reshape(3, -1)
-    found = np.empty(values.shape, np.float32)
+    mixed = np.empty(values.shape, np.float32)
     most = _ONE_THREAD // matrix.size
     for start in range(0, values.shape[1], most):
         pixels = slice(start, start + most)
-        np.matmul(matrix, values[:, pixels], out=found[:, pixels])
-    return found.reshape(channels.shape)
+        np.matmul(matrix, values[:, pixels], out=mixed[:, pixels])
+    return mixed.reshape(channels.shape)
 
 
 def _perceived(opponent: Floats) -> Floats:
     """Return L*, a*, b* of what is left after the eye's blur, (3, height, width), chroma Hunt-adjusted."""
     blurred = np.empty_like(opponent)
-    for channel, kernels, found in zip(opponent, _blurs(), blurred, strict=True):
-        found[...] = sum(
+    for channel, kernels, channel_values in zip(opponent, _blurs(), blurred, strict=True):
+        channel_values[...] = sum(
             (_along(_along(channel, line, 0), line, 1) * share for line, share in kernels), _ZERO
         )
     blurred[0] += 16
@@ -223,7 +223,7 @@ def _blurs() -> tuple[tuple[tuple[Floats, np.float32], ...], ...]:
     widest = max(b for gaussians in _CONTRAST for _, b in gaussians)
     radius = math.ceil(3 * math.sqrt(widest / (2 * math.pi**2)) * PIXELS_PER_DEGREE)
     degrees = np.arange(-radius, radius + 1) / PIXELS_PER_DEGREE
-    found = []
+    kernels = []
     for gaussians in _CONTRAST:
         lines = [np.exp(-(math.pi**2) * degrees**2 / b) for _, b in gaussians]
         weights = [
@@ -231,8 +231,8 @@ def _blurs() -> tuple[tuple[tuple[Floats, np.float32], ...], ...]:
             for (a, b), line in zip(gaussians, lines, strict=True)
         ]
         shares = [np.float32(weight / sum(weights)) for weight in weights]
-        found.append(tuple((_trimmed(line / line.sum()), s) for line, s in zip(lines, shares, strict=True)))
-    return tuple(found)
+        kernels.append(tuple((_trimmed(line / line.sum()), s) for line, s in zip(lines, shares, strict=True)))
+    return tuple(kernels)
 
 
 def _colour_difference(ours: Floats, theirs: Floats) -> Floats:
@@ -251,7 +251,7 @@ def _largest_difference() -> float:
     """Return the difference of pure green and pure blue, than which none in sRGB is larger."""
     plain = np.array([[[0, 255, 0]], [[0, 0, 255]]], np.uint8)
     # Each alone in its picture, so that the blur finds nothing to mix it with.
-    (l1, a1, b1), (l2, a2, b2) = (_perceived(_opponent(one[None]))[:, 0, 0] for one in plain)
+    (l1, a1, b1), (l2, a2, b2) = (_perceived(_opponent(colour[None]))[:, 0, 0] for colour in plain)
     distance = abs(float(l1 - l2)) + math.hypot(float(a1 - a2), float(b1 - b2))
     return float(distance**_COLOUR_EXPONENT)
 
@@ -276,8 +276,8 @@ def _feature_lines() -> tuple[Floats, Floats, Floats]:
 def _feature_difference(edges: Floats, points: Floats) -> Floats:
     """Return how far two pictures' edges and points differ, 0..1, from the differences of their strengths."""
     difference = np.maximum(np.abs(edges), np.abs(points))
-    found = (difference * np.float32(1 / math.sqrt(2))) ** np.float32(_FEATURE_EXPONENT)
-    return np.asarray(np.clip(found, 0, 1), np.float32)
+    difference_found = (difference * np.float32(1 / math.sqrt(2))) ** np.float32(_FEATURE_EXPONENT)
+    return np.asarray(np.clip(difference_found, 0, 1), np.float32)
 
 
 def _features(lightness: Floats) -> tuple[Floats, Floats]:
@@ -300,7 +300,7 @@ def _length(x: Floats, y: Floats) -> Floats:
 
 def _trimmed(line: NDArray[np.float64]) -> Floats:
     """Return a symmetric line of weights without its ends that weigh nothing."""
-    used = np.flatnonzero(line > _SMALLEST * line.max())
+    used = np.flatnonzero(line > _MIN_WEIGHT * line.max())
     return line[used[0] : used[-1] + 1].astype(np.float32)
 
 
@@ -313,7 +313,7 @@ def _along(values: Floats, line: Floats, axis: int) -> Floats:
     radius = len(line) // 2
     pads = [(radius, radius) if axis == side else (0, 0) for side in (0, 1)]
     padded = np.pad(values, pads, mode="edge")
-    found = np.empty(values.shape, np.float32)
+    filtered = np.empty(values.shape, np.float32)
     size, other = values.shape[axis], values.shape[1 - axis]
     for start in range(0, size, _STRIP):
         matrix = _band(line.tobytes(), min(_STRIP, size - start))
@@ -322,17 +322,17 @@ def _along(values: Floats, line: Floats, axis: int) -> Floats:
         for begin in range(0, other, most):
             across = slice(begin, begin + most)
             if axis == 0:
-                np.matmul(matrix, padded[reached, across], out=found[inside, across])
+                np.matmul(matrix, padded[reached, across], out=filtered[inside, across])
             else:
-                np.matmul(padded[across, reached], matrix.T, out=found[across, inside])
-    return found
+                np.matmul(padded[across, reached], matrix.T, out=filtered[across, inside])
+    return filtered
 
 
 @NUMBERS.cached()
 def _band(line: bytes, count: int) -> Floats:
     """Return the matrix whose rows are a line of weights, each one further along than the last."""
     weights = np.frombuffer(line, np.float32)
-    found = np.zeros((count, count + len(weights) - 1), np.float32)
+    band = np.zeros((count, count + len(weights) - 1), np.float32)
     for row in range(count):
-        found[row, row : row + len(weights)] = weights
-    return found
+        band[row, row : row + len(weights)] = weights
+    return band

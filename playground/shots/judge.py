@@ -125,7 +125,7 @@ class Judgement:
     sentence: str  # what there is to say, beginning with the word
     tier: str = ""  # how strictly it was compared; "": it was not
     fingerprint: Fingerprint = field(default_factory=Fingerprint)  # the picture's
-    differences: tuple[str, ...] = ()  # how its origin differs from the reference's, in words
+    differences: tuple[str, ...] = ()  # how its origin differs from the reference's, as text
     crowd: Crowd | None = None  # of another build's picture, where pixels differ
     perceived: Perceived | None = None  # of another renderer's
     tolerance: Tolerance | None = None  # that the shot declares
@@ -194,8 +194,8 @@ def unreadable(actual: NDArray[np.uint8], fingerprint: Fingerprint, reason: str)
 
 def most_crowded(over: NDArray[np.bool_], side: int = WINDOW) -> Crowd:
     """Return the window of ``side`` × ``side`` pixels, at any place, in which the most of a mask are set."""
-    count, place, size = worst_window(over, side)
-    return Crowd(round(count), place, size)
+    count, corner, size = worst_window(over, side)
+    return Crowd(round(count), corner, size)
 
 
 def _nearest(
@@ -210,7 +210,7 @@ def _nearest(
         return Judgement(
             word="blank",
             comparison=alone,
-            sentence=f"{alone}, but for what is masked",
+            sentence=f"{alone}, except masked areas",
             fingerprint=fingerprint,
         ), next(iter((*references, *others)), None)
     if not references and others:
@@ -224,33 +224,33 @@ def _nearest(
     judged = []
     for reference, same in zip(references, own, strict=True):
         strict = same or any(own)
-        found = _judged(actual, fingerprint, reference, same, strict, rule)
-        judged.append((_with_tolerance(found, actual, reference, rule), reference))
+        judgement = _judged(actual, fingerprint, reference, same, strict, rule)
+        judged.append((_with_tolerance(judgement, actual, reference, rule), reference))
     return min(judged, key=lambda pair: _distance(pair[0]))
 
 
 def _distance(judgement: Judgement) -> tuple[bool, bool, float, int, int]:
-    found = judgement.comparison
+    comparison = judgement.comparison
     by_eye = judgement.perceived.mean if judgement.perceived else 0.0
-    return not judgement.ok, found.verdict == "size", by_eye, found.over, found.most
+    return not judgement.ok, comparison.verdict == "size", by_eye, comparison.over, comparison.most
 
 
 def _with_tolerance(
-    found: Judgement, actual: NDArray[np.uint8], reference: Reference, rule: Rule
+    judgement: Judgement, actual: NDArray[np.uint8], reference: Reference, rule: Rule
 ) -> Judgement:
     """Return a judgement by the tolerance that a shot declares, where the usual one lets it fail."""
-    if rule.tolerance is None or found.word not in ("differs", "crowded"):
-        return found
+    if rule.tolerance is None or judgement.word not in ("differs", "crowded"):
+        return judgement
     visible = hidden(actual, reference.pixels, rule.mask)
     bounds = (FLIP_MEAN, FLIP_TILE)
     result = tolerated(visible, reference.pixels, rule.tolerance, bounds, rule.hidden)
     if not result.why_not:
-        passed = replace(found.comparison, verdict="same")
-        return replace(found, word="same", comparison=passed, tolerated=True)
+        passed = replace(judgement.comparison, verdict="same")
+        return replace(judgement, word="same", comparison=passed, tolerated=True)
     if result.crowded:
-        sentence = found.sentence.replace("differs", "crowded", 1)
-        return replace(found, word="crowded", sentence=f"{sentence}; {result.why_not}")
-    return replace(found, sentence=f"{found.sentence}; {result.why_not}")
+        sentence = judgement.sentence.replace("differs", "crowded", 1)
+        return replace(judgement, word="crowded", sentence=f"{sentence}; {result.why_not}")
+    return replace(judgement, sentence=f"{judgement.sentence}; {result.why_not}")
 
 
 def _judged(
@@ -262,56 +262,58 @@ def _judged(
     rule: Rule,
 ) -> Judgement:
     """Judge by one reference of the same renderer; ``strict`` allows one level even of another build."""
-    found = _by_pixels(actual, fingerprint, reference, SAME_BUILD if same else OTHER_BUILD, rule)
-    comparison = found.comparison
+    judgement = _by_pixels(actual, fingerprint, reference, SAME_BUILD if same else OTHER_BUILD, rule)
+    comparison = judgement.comparison
     if strict or comparison.verdict in _FINAL:
-        return found
+        return judgement
     most = f"differs: max difference {comparison.most} of 255"
     if comparison.most > OTHER_TOLERANCE:
-        return replace(found, sentence=f"{found.sentence}; of another build, {OTHER_TOLERANCE} may")
+        return replace(judgement, sentence=f"{judgement.sentence}; of another build, {OTHER_TOLERANCE} may")
     crowd = most_crowded(_over(hidden(actual, reference.pixels, rule.mask), reference.pixels))
-    found = replace(found, crowd=crowd)
+    judgement = replace(judgement, crowd=crowd)
     share = comparison.share
     counted = f"{comparison.over} pixels ({100 * share:.3g} %) over {TOLERANCE}"
     if share > OTHER_SHARE:
-        return replace(found, sentence=f"{most}, {counted}; of another build, {100 * OTHER_SHARE:g} % may be")
-    place = f"at x = {crowd.place[0]}, y = {crowd.place[1]}"
+        return replace(
+            judgement, sentence=f"{most}, {counted}; of another build, {100 * OTHER_SHARE:g} % may be"
+        )
+    location = f"at x = {crowd.place[0]}, y = {crowd.place[1]}"
     window = (
-        f"{crowd.count} of them in the {crowd.size[0]} × {crowd.size[1]} pixels {place} from the top left"
+        f"{crowd.count} of them in the {crowd.size[0]} × {crowd.size[1]} pixels {location} from the top left"
     )
     if crowd.count > CROWD:
         return replace(
-            found, word="crowded", sentence=f"crowded: {counted}, {window}; at most {CROWD} may be"
+            judgement, word="crowded", sentence=f"crowded: {counted}, {window}; at most {CROWD} may be"
         )
     passed = replace(comparison, verdict="same")
     sentence = (
         f"same, as another build's: max difference {comparison.most} of 255, {counted}, at most {window}"
     )
-    return replace(found, word="same", comparison=passed, sentence=sentence)
+    return replace(judgement, word="same", comparison=passed, sentence=sentence)
 
 
 def _judged_by_eye(
     actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference, rule: Rule
 ) -> Judgement:
     """Judge by a reference of another renderer."""
-    found = _by_pixels(actual, fingerprint, reference, OTHER_RENDERER, rule)
-    comparison = found.comparison
+    judgement = _by_pixels(actual, fingerprint, reference, OTHER_RENDERER, rule)
+    comparison = judgement.comparison
     if comparison.verdict in _FINAL:
-        return found
+        return judgement
     difference = flip(hidden(actual, reference.pixels, rule.mask), reference.pixels)
-    tile, place = difference.worst_tile()
-    perceived = Perceived(difference.mean, tile, place)
+    tile, corner = difference.worst_tile()
+    perceived = Perceived(difference.mean, tile, corner)
     measured = (
-        f"FLIP {perceived.mean:.3f} on average, {tile:.3f} in the {TILE} × {TILE} pixels at x = {place[0]}, "
+        f"FLIP {perceived.mean:.3f} on average, {tile:.3f} in the {TILE} × {TILE} pixels at x = {corner[0]}, "
     )
-    measured += f"y = {place[1]} from the top left"
+    measured += f"y = {corner[1]} from the top left"
     if perceived.mean > FLIP_MEAN or tile > FLIP_TILE:
         bounds = f"at most {FLIP_MEAN:g} and {FLIP_TILE:g} may be between renderers"
         sentence = f"structure: {measured}; {bounds}"
-        return replace(found, word="structure", sentence=sentence, perceived=perceived)
+        return replace(judgement, word="structure", sentence=sentence, perceived=perceived)
     passed = replace(comparison, verdict="same")
     sentence = f"same in structure: {measured}. {STRUCTURE_ONLY}"
-    return replace(found, word="same", comparison=passed, sentence=sentence, perceived=perceived)
+    return replace(judgement, word="same", comparison=passed, sentence=sentence, perceived=perceived)
 
 
 _FINAL = ("blank", "size", "same")  # verdicts on the pixels that no tier changes

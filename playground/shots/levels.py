@@ -49,7 +49,7 @@ TONES: dict[str, Callable[[Numbers], Numbers]] = {"clip": _clip, "srgb": _srgb, 
 
 
 def levels_of(values: NDArray[Any], tone: str = "") -> tuple[NDArray[np.uint8], str]:
-    """Return a picture as uint8 (height, width, 4), and a sentence on numbers that are not finite, or "".
+    """Return a picture as uint8 (height, width, 4), and a message on numbers that are not finite, or "".
 
     Raises ``DataError`` for another shape or dtype, for numbers outside 0..1 without a tone, and
     for a tone that is not known or that has nothing to do.

@@ -45,25 +45,25 @@ def mask_of(items: Iterable[Sequence[int] | str | Light], size: tuple[int, int],
     no items.
     Raises ``DataError``, also where everything or nothing is hidden.
     """
-    found = np.zeros((size[1], size[0]), np.bool_)
+    mask = np.zeros((size[1], size[0]), np.bool_)
     none = True
     for item in items:
         none = False
-        before = np.count_nonzero(found)
+        before = np.count_nonzero(mask)
         if isinstance(item, Light):
-            found |= _of_array(item.values, size, item.name)
+            mask |= _of_array(item.values, size, item.name)
         elif isinstance(item, str):
             path = folder / item
-            found |= _of_array(read_png(path)[0], size, shown(path))
+            mask |= _of_array(read_png(path)[0], size, shown(path))
         else:
             x, y, width, height = item
-            found[max(y, 0) : max(y + height, 0), max(x, 0) : max(x + width, 0)] = True
-        if found.all():
+            mask[max(y, 0) : max(y + height, 0), max(x, 0) : max(x + width, 0)] = True
+        if mask.all():
             raise DataError(f"mask: it hides all {size[0]} × {size[1]} pixels, so nothing would be compared")
-        if np.count_nonzero(found) == before:
+        if np.count_nonzero(mask) == before:
             named = item.name if isinstance(item, Light) else item
             raise DataError(f"mask: {named} hides no pixel more of the {size[0]} × {size[1]}; leave it out")
-    return None if none else found
+    return None if none else mask
 
 
 def _of_array(values: NDArray[np.generic], size: tuple[int, int], what: str) -> Mask:
@@ -87,8 +87,8 @@ def hidden(actual: NDArray[np.uint8], expected: NDArray[np.uint8], mask: Mask | 
     return np.where(mask[..., None], expected, actual)
 
 
-def described(item: Sequence[int] | str | Light) -> str:
-    """Return in words what a part of a mask is."""
+def describe_item(item: Sequence[int] | str | Light) -> str:
+    """Describe what a part of a mask is."""
     if isinstance(item, str):
         return item
     if isinstance(item, Light):

@@ -14,7 +14,7 @@ import hashlib
 import re
 import unicodedata
 
-LONGEST = 80
+MAX_NAME = 80
 """[characters] Of a name: with folders and endings a path stays below what Windows takes."""
 
 _DEVICES = re.compile(r"(?i)(con|prn|aux|nul|com[0-9¹²³]|lpt[0-9¹²³])")
@@ -32,18 +32,18 @@ def name_of_test(node: str) -> str:
     whole = "-".join(words) + (f"-{parameters.removesuffix(']')}" if bracket else "")
     safe = re.sub(r"[^A-Za-z0-9_-]+", "-", whole)
     alone = safe == whole and parameters == parameters.lower()
-    if alone and len(whole) <= LONGEST and not _reserved(whole):
+    if alone and len(whole) <= MAX_NAME and not _reserved(whole):
         return whole
     digest = hashlib.sha256(whole.encode("utf-8", "surrogatepass")).hexdigest()[:6]
-    return f"{safe[: LONGEST - 7].rstrip('-')}-{digest}"
+    return f"{safe[: MAX_NAME - 7].rstrip('-')}-{digest}"
 
 
 def why_no_name(name: str) -> str:
     """Return why a picture cannot have a name; "" where it can."""
     if not re.fullmatch(r"[\w-]+", name):
         return "a picture needs a name of letters, digits, _ and -"
-    if len(name) > LONGEST:
-        return f"a picture's name has at most {LONGEST} characters; this one has {len(name)}"
+    if len(name) > MAX_NAME:
+        return f"a picture's name has at most {MAX_NAME} characters; this one has {len(name)}"
     if _DEVICES.fullmatch(name):
         return "Windows keeps that name for a device, so no file there can have it"
     return ""

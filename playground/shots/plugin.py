@@ -152,7 +152,7 @@ def pytest_configure(config: pytest.Config) -> None:
     listed = _listed(config)
     if config.args_source is config.ArgsSource.TESTPATHS:
         there = [config.invocation_params.dir / arg for arg in config.args]
-        more = [path for path in sorted(listed) if not any(path.is_relative_to(known) for known in there)]
+        more = [path for path in sorted(listed) if not any(path.is_relative_to(folder) for folder in there)]
         config.args += [str(path) for path in more]
 
 
@@ -160,10 +160,10 @@ def _listed(config: pytest.Config) -> frozenset[Path]:
     """Return the sketches that the configuration names."""
     if _LISTED not in config.stash:
         base = config.inipath.parent if config.inipath else config.rootpath
-        found: set[Path] = set()
+        items: set[Path] = set()
         for pattern in config.getini("shots"):
-            found.update(_matches(base, pattern))
-        config.stash[_LISTED] = frozenset(found)
+            items.update(_matches(base, pattern))
+        config.stash[_LISTED] = frozenset(items)
     return config.stash[_LISTED]
 
 
@@ -238,7 +238,9 @@ class Results:
         self.stood_in: Counter[str] = Counter()  # shots compared with another renderer's references, by how
         self.uncompared: Counter[str] = Counter()  # shots that were skipped, by why
         self.unrecorded: dict[str, None] = {}  # why results could not be recorded
-        self.told: list[dict[str, str]] = []  # what each checked shot tells of itself: see `properties`
+        self.properties_of_shots: list[
+            dict[str, str]
+        ] = []  # what each checked shot tells of itself: see `properties`
         self.checked = self.failed = False  # whether a shot was checked, and whether one failed
         self.uses = used.Uses(config.rootpath, config.getoption("--shots-renderer"))
 
@@ -262,9 +264,9 @@ class Results:
             self.checked = self.checked or name in (CHECKED, UNCOMPARED)
             self.failed = self.failed or (name == CHECKED and value != "same")
             if name == SHOT:
-                self.told.append({})
+                self.properties_of_shots.append({})
             if name == SHOT or name.startswith(f"{SHOT}."):
-                self.told[-1][name] = str(value)
+                self.properties_of_shots[-1][name] = str(value)
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, object, object]:
@@ -276,9 +278,9 @@ class Results:
 
                 path = self.config.rootpath / node.partition("::")[0]
                 properties = record_stale(self.config, path, message)
-                place = (node.partition("::")[0], None, "references")
+                location = (node.partition("::")[0], None, "references")
                 report = pytest.TestReport(
-                    node, place, {"shots": 1}, "failed", message, "call", user_properties=properties
+                    node, location, {"shots": 1}, "failed", message, "call", user_properties=properties
                 )
                 session.testscollected += 1  # or pytest's progress goes beyond 100 %
                 self.config.hook.pytest_runtest_logreport(report=report)
@@ -303,7 +305,9 @@ class Results:
         from playground.shots.step_summary import summarise
 
         folder = self.config.invocation_params.dir / self.config.getoption("--shots-output")
-        if message := summarise(self.told, folder, self.config.getoption("--shots-pictures-url")):
+        if message := summarise(
+            self.properties_of_shots, folder, self.config.getoption("--shots-pictures-url")
+        ):
             self.lines.append(message)
         self.lines += finish(
             self.config, self.uses.complete(), self.failed or self.config.getoption("--shots-report")

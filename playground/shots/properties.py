@@ -22,7 +22,7 @@ from playground.shots.results import Record
 def properties_of(folder: Path, record: Record) -> list[tuple[str, object]]:
     """Return the properties of a record that was written into the results folder ``folder``."""
     root = Path(record.root)
-    found = {
+    properties = {
         SHOT: f"{record.sketch}/{record.shot}",
         "shot.result": record.word,
         "shot.renderer": record.renderer,
@@ -36,4 +36,4 @@ def properties_of(folder: Path, record: Record) -> list[tuple[str, object]]:
             for word, name in record.pictures.items()
         },
     }
-    return [(name, value) for name, value in found.items() if value]
+    return [(name, value) for name, value in properties.items() if value]

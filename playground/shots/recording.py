@@ -59,9 +59,9 @@ class Recorder:
         """Write the record of a picture that was compared, with the pictures unless it passed.
 
         ``stands_in`` says whose references stood in for those of the picture's renderer.
-        Where it cannot be written, that is returned, a sentence, and goes to the summary; else "".
+        Where it cannot be written, that is returned, a message, and goes to the summary; else "".
         """
-        found, perceived, reference = outcome.comparison, outcome.perceived, outcome.reference
+        comparison, perceived, reference = outcome.comparison, outcome.perceived, outcome.reference
         name, own = outcome.case.shot.name, outcome.renderer.slug
         frame = outcome.frame if isinstance(outcome.frame, RenderedShot) else None
         record = self._begun(node, outcome.case, outcome.word, outcome.sentence, seconds)
@@ -82,9 +82,9 @@ class Recorder:
             reference=_from(self.root, reference.path) if reference else "",
             stands_in=stands_in,
             catches=_CATCHES.get(outcome.tier, ""),
-            size=found.size,
-            expected_size=found.expected_size,
-            place=perceived.place if perceived else found.place,
+            size=comparison.size,
+            expected_size=comparison.expected_size,
+            place=perceived.place if perceived else comparison.position,
             numbers=_numbers(outcome),
             texts=reference_texts(outcome.fingerprint, outcome.case.sketch.name, name),
             expected_texts=reference.text if reference else {},
@@ -123,14 +123,16 @@ class Recorder:
             pass
 
     def forget_earlier(self, node: pytest.Item, case: ShotCase) -> None:
-        """Remove what a test has left in earlier runs: it runs anew, and may check other pictures."""
+        """Remove what a test has left in earlier runs: it runs again, and may check other pictures."""
         try:
-            place = self._place(case)
-            own = [record for record in self._earlier[place] if record.node == typed(node)]
-            self._earlier[place] = [record for record in self._earlier[place] if record not in own]
+            folder_name = self._place(case)
+            own = [record for record in self._earlier[folder_name] if record.node == typed(node)]
+            self._earlier[folder_name] = [
+                record for record in self._earlier[folder_name] if record not in own
+            ]
             for record in own:
                 # Another test may have left one of that name meanwhile.
-                if record.root == str(self.root) and self._before(place, record.shot) == record:
+                if record.root == str(self.root) and self._before(folder_name, record.shot) == record:
                     drop(self.folder, record)
         except (DataError, OSError):
             pass
@@ -138,11 +140,11 @@ class Recorder:
     def pictures(self, case: ShotCase) -> Iterator[tuple[str, Path]]:
         """Yield word and file of each picture that a failed shot has left."""
         try:
-            place = self._place(case)
+            folder_name = self._place(case)
         except (DataError, OSError):
             return
         for word in PICTURES:
-            path = self.folder / place / f"{case.shot.name}.{word}.png"
+            path = self.folder / folder_name / f"{case.shot.name}.{word}.png"
             if path.exists():
                 yield word, path
 
@@ -158,9 +160,9 @@ class Recorder:
     ) -> str:
         node.user_properties.append((CHECKED, record.word))
         try:
-            place = self._place(case)
-            record = replace(record, folder="" if place == record.sketch else place)
-            before = self._before(place, record.shot)
+            folder_name = self._place(case)
+            record = replace(record, folder="" if folder_name == record.sketch else folder_name)
+            before = self._before(folder_name, record.shot)
             if before and before.run == record.run and before.node != record.node and not before.ok:
                 # Two tests check pictures of one name: what passed may not hide what failed.
                 if record.ok:
@@ -174,9 +176,9 @@ class Recorder:
             return message
         return ""
 
-    def _before(self, place: str, shot: str) -> Record | None:
+    def _before(self, folder_name: str, shot: str) -> Record | None:
         try:
-            return read_result(self.folder / place / f"{shot}.json")
+            return read_result(self.folder / folder_name / f"{shot}.json")
         except DataError:  # none, or one of another version
             return None
 
@@ -184,17 +186,17 @@ class Recorder:
         """Return the folder of a sketch's records; at the first look, remove those of shots that are gone."""
         home = _home(case, self.root)
         name = case.sketch.name
-        place = place_of(self.folder, name, self.root / home) if home else name
-        if place not in self._earlier:
-            there = list(records_in(self.folder, place))
+        folder_name = place_of(self.folder, name, self.root / home) if home else name
+        if folder_name not in self._earlier:
+            there = list(records_in(self.folder, folder_name))
             shots = {shot.name for shot in case.sketch.shots}
             shots |= {references_name(shots)} if shots else set()
             own = Path(case.sketch.file)
             gone = [r for r in there if shots and r.shot not in shots and file_of(r, self.root) == own]
             for record in gone:
                 drop(self.folder, record)
-            self._earlier[place] = [r for r in there if r.run != self.run and r not in gone]
-        return place
+            self._earlier[folder_name] = [r for r in there if r.run != self.run and r not in gone]
+        return folder_name
 
     def _begun(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> Record:
         return Record(
@@ -238,22 +240,22 @@ def _home(case: ShotCase, root: Path) -> str:
 
 
 def _numbers(outcome: Outcome) -> dict[str, float]:
-    found = outcome.comparison
-    if found.verdict in ("blank", "missing", "size"):
+    comparison = outcome.comparison
+    if comparison.verdict in ("blank", "missing", "size"):
         return {}
-    share, labels = found.share, getattr(outcome.frame, "labels", ())
+    share, labels = comparison.share, getattr(outcome.frame, "labels", ())
     if labels:  # of its frames, without the cells of the strip that are left over
         width, height = frame_size(outcome.frame.array, len(labels))
-        share = found.over / (width * height * len(labels) - found.hidden)
+        share = comparison.over / (width * height * len(labels) - comparison.hidden)
     numbers: dict[str, float] = {
-        "largest difference, levels of 255": found.most,
-        f"pixels over {found.tolerance}": found.over,
-        f"pixels over {found.tolerance}, %": 100.0 * share,
+        "largest difference, levels of 255": comparison.most,
+        f"pixels over {comparison.tolerance}": comparison.over,
+        f"pixels over {comparison.tolerance}, %": 100.0 * share,
     }
     if labels:
         numbers = {FRAMES: len(labels)} | numbers
-    if found.hidden:
-        numbers["pixels masked"] = found.hidden
+    if comparison.hidden:
+        numbers["pixels masked"] = comparison.hidden
     if outcome.crowd is not None:
         numbers["pixels in the most crowded window"] = outcome.crowd.count
     if outcome.perceived is not None:
@@ -267,7 +269,7 @@ def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[
     first, _, rest = message.partition("\n")
     try:
         home = path.parent / SCREENSHOTS
-        place = place_of(recorder.folder, path.name, home)
+        folder_name = place_of(recorder.folder, path.name, home)
         # Of the same run as what its tests have left, which may have run in other processes.
         runs = {record.when: record.run for record in records_in(recorder.folder)}
         record = Record(
@@ -281,7 +283,7 @@ def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[
             node=f"{_from(recorder.root, path)}::references",
             when=time.time(),
             run=runs[max(runs)] if runs else "",
-            folder="" if place == path.name else place,
+            folder="" if folder_name == path.name else folder_name,
         )
         write_result(recorder.folder, record, {})
     except (DataError, OSError) as error:
@@ -289,7 +291,7 @@ def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[
     return [(CHECKED, "error")]
 
 
-def finish(config: pytest.Config, complete: Mapping[Path, set[str]], wanted: bool) -> list[str]:
+def finish(config: pytest.Config, complete: Mapping[Path, set[str]], requested: bool) -> list[str]:
     """Remove the records that mean nothing any more, see that no page shows them, and report if it is wanted.
 
     ``complete`` has what was checked by test files of which every test ran and passed. Returns
@@ -300,7 +302,7 @@ def finish(config: pytest.Config, complete: Mapping[Path, set[str]], wanted: boo
     try:
         forget_claims(recorder.folder)
         clean(recorder.folder, recorder.root, complete)
-        if not wanted and not page.exists():
+        if not requested and not page.exists():
             return []
         if not any(recorder.folder.glob("*/*.json")):
             page.unlink(missing_ok=True)
@@ -308,7 +310,7 @@ def finish(config: pytest.Config, complete: Mapping[Path, set[str]], wanted: boo
     except OSError as error:
         return [_unrecorded(error)]
     lines = report(recorder.folder)
-    return lines if wanted else []
+    return lines if requested else []
 
 
 def _unrecorded(error: Exception) -> str:
@@ -321,5 +323,5 @@ def report(folder: Path) -> list[str]:
         lines = [f"report: {shown(write_report(folder))}"]
     except DataError as error:
         return [f"no report: {error}"]
-    given = "" if folder.name == FOLDER else f" {shlex.quote(shown(folder))}"
-    return [*lines, f"to look and accept: {program()} shots review{given}"]
+    suffix = "" if folder.name == FOLDER else f" {shlex.quote(shown(folder))}"
+    return [*lines, f"to look and accept: {program()} shots review{suffix}"]

@@ -70,12 +70,12 @@ def accepted(sketch: Sketch, shot: str, renderer: str) -> list[Path]:
 
 def accepted_in(folder: Path, shot: str) -> list[Path]:
     """List the reference files for a shot that are in a folder, ``<shot>.png`` first."""
-    found: list[tuple[int, Path]] = []
+    result: list[tuple[int, Path]] = []
     for path in folder.glob("*.png"):
         name = _NUMBERED.fullmatch(path.name)
         if name and name["shot"] == shot:
-            found.append((int(name["number"] or 1), path))
-    return [path for _, path in sorted(found)]
+            result.append((int(name["number"] or 1), path))
+    return [path for _, path in sorted(result)]
 
 
 def read_reference(path: Path) -> Reference:
@@ -134,14 +134,14 @@ def stale_references(sketches: Iterable[Sketch]) -> list[Path]:
         of_home = shots.setdefault(home_of(sketch), {})
         of_home.setdefault(sketch.name, set()).update(shot.name for shot in sketch.shots)
     stale: list[Path] = []
-    for home, known in shots.items():
-        others = _sketches_of(home) - known.keys()
+    for home, shot_names in shots.items():
+        others = _sketches_of(home) - shot_names.keys()
         for path in home.rglob("*.png"):
             folders = path.relative_to(home).parts[:-1]  # sketch and renderer, if it is where it should be
             if folders and folders[0] in others:
                 continue
             name = _NUMBERED.fullmatch(path.name)
-            if len(folders) != 2 or name is None or name["shot"] not in known.get(folders[0], ()):
+            if len(folders) != 2 or name is None or name["shot"] not in shot_names.get(folders[0], ()):
                 stale.append(path)
     return sorted(stale)
 

@@ -21,7 +21,7 @@ from playground.errors import counted
 from playground.paths import shown
 from playground.regular_file import read_regular
 from playground.shots.page.document import page
-from playground.shots.page.shot import Setting
+from playground.shots.page.shot import ShotPageContext
 from playground.shots.results import FOLDER, Record, read_results
 
 NAME = "index.html"
@@ -56,7 +56,7 @@ def report_html(records: Sequence[Record], folder: Path, links: Path = Path(), m
     """
     pictures = _Pictures(folder, most)
     prefix = "" if links == Path() else f"{links.as_posix()}/"
-    setting = Setting(shown(folder), pictures.source, prefix)
+    setting = ShotPageContext(shown(folder), pictures.source, prefix)
     failed = [record for record in records if not record.ok]
     for record in failed:  # in the order of the page: the first failures have their pictures
         pictures.take(record)
@@ -75,36 +75,36 @@ class _Pictures:
 
     def take(self, record: Record) -> None:
         """Embed a failure's pictures, all or none of them."""
-        found: dict[str, str] = {}
+        files: dict[str, str] = {}
         for name in record.pictures.values():
             try:
                 data = read_regular(self.folder / name)
             except OSError:
                 self.gone.append(name)
                 continue
-            found[name] = "data:image/png;base64," + base64.b64encode(data).decode()
-        size = sum(map(len, found.values()))
+            files[name] = "data:image/png;base64," + base64.b64encode(data).decode()
+        size = sum(map(len, files.values()))
         if size > self.left:
             self.left = 0  # else smaller ones further down would have theirs, for no reason that one sees
             self.linked += 1
             return
         self.left -= size
-        self.urls |= found
+        self.urls |= files
 
     def source(self, record: Record, kind: str) -> str:
         """Return a picture's data URL, or "" where the page has a link."""
         return self.urls.get(record.pictures[kind], "")
 
     def notes(self) -> list[str]:
-        """Return what is not inside, a sentence each."""
-        found = []
+        """Return what is not inside, a message each."""
+        notes = []
         if self.linked:
-            found.append(
+            notes.append(
                 f"The pictures of {counted(self.linked, 'failure')} are not in this file, which would be too"
                 " large to open; they are links to the files next to it."
             )
         if self.gone:
-            found.append(
+            notes.append(
                 f"{counted(len(self.gone), 'picture')} could not be read: {', '.join(self.gone[:8])}."
             )
-        return found
+        return notes

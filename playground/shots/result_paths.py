@@ -40,15 +40,17 @@ def place_of(folder: Path, sketch: str, home: Path) -> str:
 
 def drop(folder: Path, record: Record) -> None:
     """Remove a record and its pictures."""
-    place = folder / record.place_name
-    (place / f"{record.shot}.json").unlink(missing_ok=True)
+    folder_path = folder / record.place_name
+    (folder_path / f"{record.shot}.json").unlink(missing_ok=True)
     for word in PICTURES:
-        (place / f"{record.shot}.{word}.png").unlink(missing_ok=True)
+        (folder_path / f"{record.shot}.{word}.png").unlink(missing_ok=True)
 
 
-def records_in(folder: Path, place: str = "*") -> Iterator[Record]:
+def records_in(folder: Path, folder_name: str = "*") -> Iterator[Record]:
     """Yield the records of one folder of results, or of all; what cannot be read is passed over."""
-    for path in sorted(folder.glob("*/*.json") if place == "*" else (folder / place).glob("*.json")):
+    for path in sorted(
+        folder.glob("*/*.json") if folder_name == "*" else (folder / folder_name).glob("*.json")
+    ):
         try:
             yield read_result(path)
         except DataError:
@@ -73,10 +75,10 @@ def clean(folder: Path, root: Path, complete: Mapping[Path, Collection[str]]) ->
             continue
         if not file.exists() or record.shot not in complete.get(file, (record.shot,)):
             drop(folder, record)
-            place = folder / record.place_name
-            if [path.name for path in place.iterdir()] in ([], [_CLAIM]):
-                (place / _CLAIM).unlink(missing_ok=True)
-                place.rmdir()
+            folder_path = folder / record.place_name
+            if [path.name for path in folder_path.iterdir()] in ([], [_CLAIM]):
+                (folder_path / _CLAIM).unlink(missing_ok=True)
+                folder_path.rmdir()
 
 
 def _put(claim: Path, key: str) -> None:

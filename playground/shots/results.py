@@ -74,14 +74,14 @@ class Record:
     tone: str = ""  # how floats were shown; "" for bytes, and floats from 0 to 1
     reference: str = ""  # the file it was held against: from the root if it is inside, else whole
     stands_in: str = ""  # whose references stood in for its renderer's, and by what; "" for its own
-    catches: str = ""  # what that tier can catch and what it cannot, in a sentence
+    catches: str = ""  # what that tier can catch and what it cannot, in a message
     numbers: dict[str, float] = field(default_factory=dict)  # what was measured, by name with its unit
     size: tuple[int, int] | None = None  # [pixels] width and height of the actual picture
     expected_size: tuple[int, int] | None = None  # [pixels] of the reference
     place: tuple[int, int] | None = None  # [pixels] x and y, from the top left, of the worst one
     texts: dict[str, str] = field(default_factory=dict)  # the fingerprint of what drew it now
     expected_texts: dict[str, str] = field(default_factory=dict)  # the reference's fingerprint
-    fingerprint: tuple[str, ...] = ()  # how the two differ, a sentence each
+    fingerprint: tuple[str, ...] = ()  # how the two differ, a message each
     root: str = ""  # the folder that the tests were started in, whole
     home: str = ""  # the screenshots/ folder of its references: from the root if it is inside, else whole
     compared: str = ""  # file name of the reference it was held against; "" for none
@@ -131,21 +131,21 @@ def from_json(text: str, file: str | Path = "a record") -> Record:
     that is not known is a mistake too.
     """
     try:
-        found = read_json(text, constant=_no_constant)
+        result = read_json(text, constant=_no_constant)
     except ValueError as error:
         raise DataError(f"not the record of a shot: no JSON ({error})", file=file) from error
-    if not isinstance(found, dict) or "format" not in found:
+    if not isinstance(result, dict) or "format" not in result:
         raise DataError("not the record of a shot: expected an object with a 'format'", file=file)
-    if found.pop("format") != FORMAT:
+    if result.pop("format") != FORMAT:
         raise DataError(f"a record of another format; this version reads format {FORMAT}", file=file)
-    unknown = sorted(found.keys() - _TESTS.keys())
+    unknown = sorted(result.keys() - _TESTS.keys())
     if unknown:
         raise DataError(f"a record has no '{unknown[0]}'", file=file)
-    missing = sorted(_REQUIRED - found.keys())
+    missing = sorted(_REQUIRED - result.keys())
     if missing:
         raise DataError(f"a record without its '{missing[0]}'", file=file)
     values: dict[str, Any] = {}
-    for name, value in found.items():
+    for name, value in result.items():
         expected, is_valid = _TESTS[name]
         if not is_valid(value):
             text = json.dumps(value, ensure_ascii=False)
@@ -208,10 +208,10 @@ def read_results(folder: Path) -> list[Record]:
     """
     if not folder.is_dir():
         raise DataError("there is no such folder; pytest makes it when it checks shots", file=folder)
-    found = [read_result(path) for path in sorted(folder.glob("*/*.json"))]
-    if not found:
+    records = [read_result(path) for path in sorted(folder.glob("*/*.json"))]
+    if not records:
         raise DataError("no record of a shot is in it; pytest leaves them when it checks shots", file=folder)
-    return sorted(found, key=lambda record: (record.place_name, record.shot))
+    return sorted(records, key=lambda record: (record.place_name, record.shot))
 
 
 def read_result(path: Path) -> Record:
@@ -240,13 +240,13 @@ def digest_of(data: bytes) -> str:
 
 def digests_of(files: Iterable[Path]) -> dict[str, str]:
     """Return name → SHA-256 of files; raise ``DataError`` for one that cannot be read."""
-    found = {}
+    digests = {}
     for path in files:
         try:
-            found[path.name] = digest_of(read_regular(path))
+            digests[path.name] = digest_of(read_regular(path))
         except OSError as error:
             raise DataError(f"cannot be read: {error.strerror}", file=path) from error
-    return found
+    return digests
 
 
 def _picture_name(record: Record, word: str) -> str:

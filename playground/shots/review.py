@@ -35,9 +35,9 @@ from playground.errors import DataError, PlaygroundError
 from playground.json_text import read_json
 from playground.local_server import LocalServer
 from playground.shots.page.document import policy_of
-from playground.shots.review_session import Session
+from playground.shots.review_session import ReviewSession
 
-LARGEST_REQUEST = 2**20
+MAX_REQUEST_BYTES = 2**20
 """[bytes] What a request may hold: the names of thousands of shots."""
 
 _HTML, _JSON, _PNG, _TEXT = (
@@ -63,7 +63,7 @@ class Review:
 
     def __init__(self, folder: Path, port: int = 0) -> None:
         """Listen on 127.0.0.1; raise ``DataError`` for a folder without results, or a port that is taken."""
-        self.session = Session(folder)
+        self.session = ReviewSession(folder)
         self.token = secrets.token_urlsafe(24)
         review = self
 
@@ -190,7 +190,7 @@ class _Handler(BaseHTTPRequestHandler):
     def _too_long(self) -> Answer | None:
         """Refuse a request whose body has no length, or is larger than any that the page sends."""
         length = self.headers.get("Content-Length", "")
-        if len(length) > 9 or not length.isdecimal() or int(length) > LARGEST_REQUEST:
+        if len(length) > 9 or not length.isdecimal() or int(length) > MAX_REQUEST_BYTES:
             return _refusal(413, "expected a request of at most 1 MiB, with its length")
         return None
 

@@ -16,13 +16,13 @@ from playground.paths import shown
 from playground.regular_file import read_regular
 from playground.shots.accept import Change, accept, undo
 from playground.shots.page.document import page
-from playground.shots.page.shot import Setting
+from playground.shots.page.shot import ShotPageContext
 from playground.shots.results import Record, read_results
 
 _Result = tuple[str, str]  # a shot's "sketch/shot", and the stamp of its result
 
 
-class Session:
+class ReviewSession:
     """The results that are reviewed, and what was accepted so far."""
 
     def __init__(self, folder: Path) -> None:
@@ -35,18 +35,18 @@ class Session:
 
     def records(self) -> dict[str, Record]:
         """Return the records as they are now, by "sketch/shot"; raise ``DataError``."""
-        found = {record.name: record for record in read_results(self.folder)}
-        self._pictures = {name for record in found.values() for name in record.pictures.values()}
-        return found
+        records = {record.name: record for record in read_results(self.folder)}
+        self._pictures = {name for record in records.values() for name in record.pictures.values()}
+        return records
 
     def page(self) -> str:
         """Return the page on the results as they are now."""
         return page(list(self.records().values()), self.setting)
 
     @property
-    def setting(self) -> Setting:
+    def setting(self) -> ShotPageContext:
         """What the page is for: review."""
-        return Setting(shown(self.folder), _picture_url, review=True)
+        return ShotPageContext(shown(self.folder), _picture_url, review=True)
 
     def picture(self, name: str) -> bytes | None:
         """Return the file of a picture that a record names, as "hills/dawn.actual.png"; None for no other."""
@@ -90,7 +90,7 @@ class Session:
         change = self.changes.get(result)
         if action == "undo":
             if change is None:
-                raise DataError("there is nothing to undo")
+                raise DataError("nothing to undo")
             lines = undo(change)
             del self.changes[result]
             return "; ".join(lines) or "nothing was written, so nothing had to be undone"

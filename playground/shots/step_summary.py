@@ -22,7 +22,7 @@ from playground.shots.plugin_constants import REPORT
 
 FILE = "GITHUB_STEP_SUMMARY"
 URL = "SHOTS_PICTURES_URL"
-MOST_BYTES = 1_000_000  # of GitHub's 1 MiB, above which it shows nothing at all
+MAX_BYTES = 1_000_000  # of GitHub's 1 MiB, above which it shows nothing at all
 WIDTH = 200  # [CSS pixels] of a thumbnail
 
 Told = Mapping[str, str]
@@ -37,7 +37,7 @@ def summarise(
     """Append the summary to the file that ``GITHUB_STEP_SUMMARY`` names, if that is set.
 
     ``folder`` has the results, ``url`` is where that will be in the web, "" for ``SHOTS_PICTURES_URL``.
-    Returns why it could not be written, a sentence; else "".
+    Returns why it could not be written, a message; else "".
     """
     environment = os.environ if environment is None else environment
     name = environment.get(FILE, "")
@@ -46,7 +46,7 @@ def summarise(
     path = Path(name)
     try:
         there = path.stat().st_size if path.exists() else 0
-        text = text_of(shots, folder, url or environment.get(URL, ""), environment, MOST_BYTES - there)
+        text = text_of(shots, folder, url or environment.get(URL, ""), environment, MAX_BYTES - there)
         with path.open("a", encoding="utf-8", newline="\n") as handle:
             handle.write(text)
     except OSError as error:
@@ -55,7 +55,7 @@ def summarise(
 
 
 def text_of(
-    shots: Sequence[Told], folder: Path, url: str, environment: Mapping[str, str], room: int = MOST_BYTES
+    shots: Sequence[Told], folder: Path, url: str, environment: Mapping[str, str], room: int = MAX_BYTES
 ) -> str:
     """Return the summary as Markdown, of at most ``room`` bytes."""
     failed = [shot for shot in shots if shot["shot.result"] != "same"]
@@ -89,8 +89,8 @@ def _heading(failed: int, all_of_them: int) -> str:
 
 def _where(folder: Path, shown: bool) -> str:
     more = "" if shown else "The new pictures have no address that this page could show. "
-    given = "" if folder.name == REPORT else f" {folder.name}"
-    return f"{more}The report is in `{folder.name}`; to accept pictures: `playground shots review{given}`"
+    suffix = "" if folder.name == REPORT else f" {folder.name}"
+    return f"{more}The report is in `{folder.name}`; to accept pictures: `playground shots review{suffix}`"
 
 
 def _row(shot: Told, folder: Path, url: str, environment: Mapping[str, str]) -> str:

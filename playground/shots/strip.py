@@ -92,28 +92,28 @@ def judge_frames(
         judged.append(
             judge(picture, fingerprint, own, foreign, not_finite=not_finite, gl_error=gl_error, rule=rule)
         )
-    words = [found.word for found, _ in judged]
+    words = [judgement.word for judgement, _ in judged]
     # A blank frame comes first, even where the others only miss a reference: it may not be written.
     worst = next((i for i, word in enumerate(words) if word == "blank"), None)
     if worst is None:
         worst = next((i for i, word in enumerate(words) if word != "same"), None)
     if worst is None:
         worst = max(range(count), key=lambda i: judged[i][0].comparison.most)
-    found, cell_reference = judged[worst]
+    judgement, cell_reference = judged[worst]
     path = cell_reference.path if cell_reference else None
     reference = next((r for r in (*fitting, *alike) if r.path == path), None)
-    sentence = found.sentence
-    if found.word not in ("missing", "nan", "gl-error"):  # which are of no frame, or say of which
+    sentence = judgement.sentence
+    if judgement.word not in ("missing", "nan", "gl-error"):  # which are of no frame, or say of which
         word, _, rest = sentence.partition(": ")
         whose = f"frame {worst + 1} of {count}{labels[worst] and f', {labels[worst]}'}"
-        sentence = f"{word}: {f'all {count} frames; of ' if found.ok else ''}{whose}: {rest}"
+        sentence = f"{word}: {f'all {count} frames; of ' if judgement.ok else ''}{whose}: {rest}"
         failed = sum(word != "same" for word in words)
         sentence += f"; {failed} of the {count} frames fail" if failed > 1 else ""
     whole = _whole(strip, reference, count, rule)
     return (
         replace(
-            found,
-            comparison=replace(whole, verdict=found.comparison.verdict),
+            judgement,
+            comparison=replace(whole, verdict=judgement.comparison.verdict),
             sentence=sentence,
             crowd=None,
             perceived=None,

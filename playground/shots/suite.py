@@ -26,7 +26,7 @@ from playground.shots.compare import difference_picture
 from playground.shots.fingerprint import fingerprint_of
 from playground.shots.flip import flip_picture
 from playground.shots.judge import Judgement, Rule, judge, unreadable
-from playground.shots.masking import Light, Mask, Rectangle, described, hidden, mask_of, striped
+from playground.shots.masking import Light, Mask, Rectangle, describe_item, hidden, mask_of, striped
 from playground.shots.plugin_constants import REFERENCE_RENDERER
 from playground.shots.references import (
     Reference,
@@ -56,7 +56,7 @@ class RenderedShot(Frame):
     """A frame, with what is known of how it was drawn."""
 
     drawn: str = ""  # hash of what was drawn
-    not_finite: str = ""  # the first texture that went into it with a number that is not finite, in words
+    not_finite: str = ""  # the first texture that went into it with a number that is not finite, as text
     gl_error: str = ""  # what drawing it left behind
     fonts: str = ""  # the files of the fonts in it
     tone: str = ""  # how its floats were shown
@@ -74,7 +74,7 @@ class Outcome(Judgement):
     renderer: ContextInfo  # that drew the frame
     reference: Reference | None = None  # that it was judged by; None: missing or unreadable
     mask: Mask | None = None  # where it was not compared
-    masked: tuple[str, ...] = ()  # what that is made of, in words
+    masked: tuple[str, ...] = ()  # what that is made of, as text
 
     @property
     def own_path(self) -> Path:
@@ -87,7 +87,10 @@ def shots_of(sketches: Iterable[Sketch | str | Path]) -> list[ShotCase]:
 
     Raises ``SketchError`` or ``ShaderError`` for what cannot be loaded.
     """
-    loaded = [given if isinstance(given, Sketch) else load(given) for given in sketches]
+    loaded = [
+        sketch_or_path if isinstance(sketch_or_path, Sketch) else load(sketch_or_path)
+        for sketch_or_path in sketches
+    ]
     return [ShotCase(sketch, shot) for sketch in loaded for shot in sketch.shots]
 
 
@@ -103,7 +106,7 @@ def render_shot(engine: Engine, case: ShotCase) -> RenderedShot:
         sketch = case.sketch.for_shot(shot)
         frame = engine.render(sketch, size=shot.size, time=shot.time, steps=dict(shot.steps))
     error = engine.ctx.error
-    found, drawn = engine.not_finite(), engine.drawn()
+    not_finite, drawn = engine.not_finite(), engine.drawn()
     textures = [item for item in shot.mask if isinstance(item, str) and not item.endswith(MASK_ENDING)]
     masks = [
         Light(engine.read(sketch, name, size=shot.size, time=shot.time, steps=dict(shot.steps))[::-1], name)
@@ -114,7 +117,7 @@ def render_shot(engine: Engine, case: ShotCase) -> RenderedShot:
         frame.sketch,
         frame.time,
         drawn=drawn,
-        not_finite=str(found) if found else "",
+        not_finite=str(not_finite) if not_finite else "",
         gl_error="" if error == "GL_NO_ERROR" else error,
         masks=tuple(masks),
     )
@@ -190,7 +193,7 @@ def check(
         **vars(judgement),
         **origin,
         mask=mask,
-        masked=tuple(map(described, _parts(case, frame))),
+        masked=tuple(map(describe_item, _parts(case, frame))),
         path=reference.path if reference else path,
         reference=reference,
     )

@@ -27,7 +27,7 @@ from playground.sketch.model import Tolerance
 WINDOW = 32
 """[pixels] Side of the windows."""
 
-FEW = 20
+OUTLIER_WINDOW = 20
 """One pixel of so many in a window may differ in any way."""
 
 DEVIATIONS = 6.0
@@ -62,8 +62,8 @@ def tolerated(
     share = np.count_nonzero(over) / (over.size - hidden)
     if share > tolerance.share:
         return Tolerated(f"the tolerance allows {100 * tolerance.share:g} %")
-    if place := _biased(np.where(over[..., None], signed, 0), over):
-        x, y = place
+    if corner := _biased(np.where(over[..., None], signed, 0), over):
+        x, y = corner
         return Tolerated(
             f"it is no noise: in the {WINDOW} × {WINDOW} pixels at x = {x}, y = {y} from the top left many "
             "differ, and the same way, which no tolerance lets pass",
@@ -83,15 +83,15 @@ def _biased(signed: NDArray[np.int16], over: NDArray[np.bool_]) -> tuple[int, in
     """Return x and y of the window whose differences are the most biased, if that is too much."""
     counts = sums_of_windows(over, WINDOW)
     area = min(WINDOW, over.shape[0]) * min(WINDOW, over.shape[1])
-    many = counts > area // FEW
+    many = counts > area // OUTLIER_WINDOW
     if not many.any():
         return None
-    worst, place = 0.0, (0, 0)
+    worst, corner = 0.0, (0, 0)
     for channel in np.moveaxis(signed.astype(np.float64), 2, 0):
         sums, squares = sums_of_windows(channel, WINDOW), sums_of_windows(channel * channel, WINDOW)
         ratio = np.where(many, np.abs(sums) / np.sqrt(np.maximum(squares, 1.0)), 0.0)
         if float(ratio.max()) > worst:
             worst = float(ratio.max())
             y, x = divmod(int(ratio.argmax()), ratio.shape[1])
-            place = (x, y)
-    return place if worst > DEVIATIONS else None
+            corner = (x, y)
+    return corner if worst > DEVIATIONS else None

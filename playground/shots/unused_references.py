@@ -34,10 +34,10 @@ def count_tests(config: pytest.Config, items: list[pytest.Item]) -> None:
         getattr(config.option, name, False) for name in ("lf", "stepwise")
     )
     counts = config.stash.setdefault(_COUNTS, Counter())
-    known: dict[Path, bool] = {}
+    is_known: dict[Path, bool] = {}
     for item in items:
         uses = FIXTURE in getattr(item, "fixturenames", ())
-        if uses or known.setdefault(item.path, references_of(item.path).is_dir()):
+        if uses or is_known.setdefault(item.path, references_of(item.path).is_dir()):
             item.user_properties.append((TESTS, 0 if narrowed else counts[item.path]))
 
 
@@ -91,8 +91,8 @@ class Uses:
         }
 
     def stale(self) -> dict[str, str]:
-        """Return, by the node id of a test that would have found it, the unused references, as a sentence."""
-        found: dict[str, str] = {}
+        """Return, by the node id of a test that would have found it, the unused references, as a message."""
+        names: dict[str, str] = {}
         for name, file in self._files.items():
             if not file.tests or len(file.ended) != file.tests:
                 continue
@@ -112,10 +112,10 @@ class Uses:
                 from playground.paths import shown
 
                 files = "".join(f"\n    {shown(path)}" for path in stale)
-                found[f"{name}::references"] = (
+                names[f"{name}::references"] = (
                     f"no test uses {counted(len(stale), 'reference')}; remove:{files}"
                 )
-        return found
+        return names
 
 
 def _of_files_that_are_gone(home: Path) -> list[Path]:

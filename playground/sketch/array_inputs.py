@@ -18,22 +18,22 @@ _FORMATS = {1: "r32f", 2: "rg32f", 4: "rgba32f"}
 _PARAMETER = "array"
 
 
-def wired(graph: Graph, path: str, given: object) -> tuple[Graph, str, ArrayFile]:
+def wired(graph: Graph, path: str, value: object) -> tuple[Graph, str, ArrayFile]:
     """Return the graph with an array on an input, the path of the parameter that names it, and its value.
 
     ``path`` is ``pass.input``. Raises ``ParameterError`` where there is no such input, or no such array.
     """
-    name, _, wanted = path.partition(".")
+    name, _, input_name = path.partition(".")
     spec = graph.find(name)
-    if spec is None or not wanted or not takes_input(spec.technique, wanted):
-        there = [f"{one.name}.{each}" for one in graph.passes for each in _inputs(one)]
+    if spec is None or not input_name or not takes_input(spec.technique, input_name):
+        there = [f"{spec.name}.{each}" for spec in graph.passes for each in _inputs(spec)]
         raise ParameterError(f"no input '{path}'{nearest(path, there)}")
-    file, (ny, nx, channels) = texels(given, path)
-    own = _name(graph, path, dict(spec.inputs).get(wanted, ""))
+    file, (ny, nx, channels) = texels(value, path)
+    own = _name(graph, path, dict(spec.inputs).get(input_name, ""))
     array = PassSpec(own, ARRAY, _kernel(channels), size=(str(nx), str(ny)))
-    wires = {**dict(spec.inputs), wanted: own}
-    others = [one for one in graph.passes if one.name != own]
-    passes = [replace(one, inputs=tuple(wires.items())) if one is spec else one for one in others]
+    wires = {**dict(spec.inputs), input_name: own}
+    others = [spec for spec in graph.passes if spec.name != own]
+    passes = [replace(item, inputs=tuple(wires.items())) if item is spec else item for item in others]
     return replace(graph, passes=(array, *passes)), f"{own}.{_PARAMETER}", file
 
 

@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import ParameterError
-from playground.shader.parameter import LARGEST_SIDE, Parameter
+from playground.shader.parameter import MAX_SIDE, Parameter
 
 _EAST = ("x", "lon", "longitude", "easting", "projection_x_coordinate")
 _METRES = {"": 1.0, "m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0, "km": 1000.0}
@@ -51,39 +51,39 @@ class Coordinates:
 
     def arrays(self) -> dict[str, Any]:
         """Return what an ``.npz`` says of it, as ``terrain.arrays`` reads it."""
-        found: dict[str, Any] = {"height_units": self.height_units} if self.height_units else {}
+        arrays: dict[str, Any] = {"height_units": self.height_units} if self.height_units else {}
         if self.step is None or self.x is None or self.y is None:
-            return found
-        found |= {"dx": self.step[0], "dy": self.step[1]}
-        found |= {"xmin": self.x[0], "xmax": self.x[1], "ymin": self.y[0], "ymax": self.y[1]}
-        return found | {"units": self.units} | ({"crs": self.crs} if self.crs else {})
+            return arrays
+        arrays |= {"dx": self.step[0], "dy": self.step[1]}
+        arrays |= {"xmin": self.x[0], "xmax": self.x[1], "ymin": self.y[0], "ymax": self.y[1]}
+        return arrays | {"units": self.units} | ({"crs": self.crs} if self.crs else {})
 
 
-def is_labelled(given: object) -> bool:
+def is_labelled(value: object) -> bool:
     """Return whether an array has named dimensions and coordinates, as xarray's have."""
-    return hasattr(given, "dims") and hasattr(given, "coords")
+    return hasattr(value, "dims") and hasattr(value, "coords")
 
 
 def coordinates_of(
-    given: Any, values: NDArray[Any], name: str
+    value: Any, values: NDArray[Any], name: str
 ) -> tuple[NDArray[Any], Coordinates, float | None]:
     """Return (ny, nx) with row 0 in the south and column 0 in the west, where it lies, and its gaps' number.
 
     Raises ``ParameterError`` for coordinates that are not evenly spaced, or in a unit that is none of length.
     """
-    dims = [str(dim) for dim in given.dims]
+    dims = [str(dim) for dim in value.dims]
     single = [k for k, count in enumerate(values.shape) if count == 1 and values.ndim > 2]
     values = values.squeeze(tuple(single))
     dims = [dim for k, dim in enumerate(dims) if k not in single]
-    accessor = getattr(given, "rio", None)
+    accessor = getattr(value, "rio", None)
     gap = getattr(accessor, "nodata", None)
     gap = None if gap is None or np.isnan(gap) else float(gap)
-    unit = str(_attributes(given).get("units", "")).strip()[:_MAX_UNIT]
+    unit = str(_attributes(value).get("units", "")).strip()[:_MAX_UNIT]
     if values.ndim != 2:
         return values, Coordinates(), gap
     if dims[0].lower() in _EAST and dims[1].lower() not in _EAST:
         values, dims = values.T, dims[::-1]
-    x, y = (_along(given, dims[k], count, name) for k, count in ((1, values.shape[1]), (0, values.shape[0])))
+    x, y = (_along(value, dims[k], count, name) for k, count in ((1, values.shape[1]), (0, values.shape[0])))
     if x is not None and x[0] > x[1]:
         values, x = values[:, ::-1], x[::-1]
     if y is not None and y[0] > y[1]:
@@ -94,19 +94,19 @@ def coordinates_of(
     crs = getattr(accessor, "crs", None)
     if crs is not None:
         return values, Coordinates((x[0], x[1]), (y[0], y[1]), step, "", str(crs.to_wkt()), unit), gap
-    scale, degrees = _unit(given, dims, name)
+    scale, degrees = _unit(value, dims, name)
     x, y, step = ((pair[0] * scale, pair[1] * scale) for pair in (x, y, step))
     return values, Coordinates(x, y, step, "degrees" if degrees else "m", "", unit), gap
 
 
-def _along(given: Any, dim: str, count: int, name: str) -> tuple[float, float] | None:
+def _along(labelled: Any, dim: str, count: int, name: str) -> tuple[float, float] | None:
     """Return the first and last coordinate along a dimension; None where it has none that are numbers."""
-    if dim not in given.coords or count < 2:
+    if dim not in labelled.coords or count < 2:
         return None
-    found = np.asarray(given.coords[dim])
-    if found.dtype.kind not in "iuf" or found.shape != (count,):
+    filtered = np.asarray(labelled.coords[dim])
+    if filtered.dtype.kind not in "iuf" or filtered.shape != (count,):
         return None
-    places = found.astype(np.float64)
+    places = filtered.astype(np.float64)
     steps = np.diff(places)
     mean = (places[-1] - places[0]) / (count - 1)
     if not np.isfinite(mean) or mean == 0.0 or not (np.abs(steps - mean) <= _EVEN * abs(mean)).all():
@@ -118,20 +118,20 @@ def _along(given: Any, dim: str, count: int, name: str) -> tuple[float, float] |
     return float(places[0]), float(places[-1])
 
 
-def _unit(given: Any, dims: list[str], name: str) -> tuple[float, bool]:
+def _unit(labelled: Any, dims: list[str], name: str) -> tuple[float, bool]:
     """Return metres in a unit of the coordinates, and whether they are degrees instead."""
-    words = {str(_attributes(given.coords[dim]).get("units", "")).strip().lower() for dim in dims}
+    words = {str(_attributes(labelled.coords[dim]).get("units", "")).strip().lower() for dim in dims}
     if dims[1].lower() in ("lon", "longitude") or any(word.startswith(_DEGREES) for word in words):
         return 1.0, True
     if len(words) > 1 or not words <= set(_METRES):
-        found = " and ".join(sorted(words))
-        raise ParameterError(f"{name}: coordinates in '{found}'; expected m, km or degrees")
+        unit_text = " and ".join(sorted(words))
+        raise ParameterError(f"{name}: coordinates in '{unit_text}'; expected m, km or degrees")
     return _METRES[words.pop()], False
 
 
 def _attributes(labelled: Any) -> Mapping[str, Any]:
-    found = getattr(labelled, "attrs", {})
-    return found if isinstance(found, Mapping) else {}
+    attributes = getattr(labelled, "attrs", {})
+    return attributes if isinstance(attributes, Mapping) else {}
 
 
 GRIDS = ("elevation_file", "example_file", "numbers_file", "vector_file")
@@ -186,35 +186,35 @@ def holds_array(path: str | Path) -> bool:
     return str(path) in _folder.files
 
 
-def stored(given: object, parameter: Parameter, registry: str, name: str) -> ArrayFile:
+def stored(value: object, parameter: Parameter, registry: str, name: str) -> ArrayFile:
     """Return the path of a file that holds an array, for a ``parameter`` of a source of ``registry``.
 
     ``name`` is what messages call it. Raises ``ParameterError`` where it takes no array, or another one.
     """
     if registry in GRIDS and parameter.name != _VECTORS:
-        label, ending, data = _grid(given, name)
+        label, ending, data = _grid(value, name)
     elif registry in PICTURES:
-        label, ending, data = _picture(given, name)
+        label, ending, data = _picture(value, name)
     else:
         raise ParameterError(f"{name}: takes a file of its own kind, as {parameter.default}, and no array")
     return _stored(label, ending, data)
 
 
-def texels(given: object, name: str) -> tuple[ArrayFile, tuple[int, int, int]]:
+def texels(value: object, name: str) -> tuple[ArrayFile, tuple[int, int, int]]:
     """Return a file of a texture's numbers and their shape, (ny, nx, 1, 2 or 4), row 0 in the south.
 
     Of three numbers a texel the fourth is 1. Raises ``ParameterError`` for what is no texture.
     """
-    values = _values(given, name)
-    if is_labelled(given):
-        values, _, gap = coordinates_of(given, values, name)
+    values = _values(value, name)
+    if is_labelled(value):
+        values, _, gap = coordinates_of(value, values, name)
         values = values if gap is None else _without(values, values == gap)
     values = values[..., None] if values.ndim == 2 else values
     if (
         values.dtype.kind not in "iufb"
         or values.ndim != 3
         or values.shape[2] not in (1, 2, 3, 4)
-        or not all(1 <= side <= LARGEST_SIDE for side in values.shape[:2])
+        or not all(1 <= side <= MAX_SIDE for side in values.shape[:2])
     ):
         raise ParameterError(
             f"{name} = {_shape(values)}: expected numbers (ny, nx) or (ny, nx, 1 to 4), row 0 in the south"
@@ -233,15 +233,15 @@ def texels(given: object, name: str) -> tuple[ArrayFile, tuple[int, int, int]]:
 def _stored(label: str, ending: str, data: bytes) -> ArrayFile:
     digest = hashlib.blake2b(data, digest_size=16).hexdigest()
     path = _folder.path / f"{label}-{digest}{ending}"
-    if known := _folder.files.get(str(path)):
-        return known
+    if file := _folder.files.get(str(path)):
+        return file
     with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as handle:
         handle.write(data)
     Path(handle.name).chmod(0o444)
     Path(handle.name).replace(path)
-    found = _folder.files[str(path)] = ArrayFile(path)
-    weakref.finalize(found, _remove, str(path), os.getpid()).atexit = False
-    return found
+    array_file = _folder.files[str(path)] = ArrayFile(path)
+    weakref.finalize(array_file, _remove, str(path), os.getpid()).atexit = False
+    return array_file
 
 
 def _remove(path: str, owner: int) -> None:
@@ -250,14 +250,14 @@ def _remove(path: str, owner: int) -> None:
         Path(path).unlink(missing_ok=True)
 
 
-def _values(given: object, name: str) -> NDArray[Any]:
+def _values(value: object, name: str) -> NDArray[Any]:
     try:
-        if isinstance(given, np.ma.MaskedArray):
-            return _without(np.asarray(given.data), np.ma.getmaskarray(given))
-        return np.asarray(given)
+        if isinstance(value, np.ma.MaskedArray):
+            return _without(np.asarray(value.data), np.ma.getmaskarray(value))
+        return np.asarray(value)
     except Exception as error:  # an array of somebody else may raise anything
         text = " ".join(str(error).split()) or type(error).__name__
-        raise ParameterError(f"{name}: this {type(given).__name__} gives no array: {text}") from None
+        raise ParameterError(f"{name}: this {type(value).__name__} gives no array: {text}") from None
 
 
 def _without(values: NDArray[Any], gaps: NDArray[np.bool_]) -> NDArray[Any]:
@@ -265,22 +265,22 @@ def _without(values: NDArray[Any], gaps: NDArray[np.bool_]) -> NDArray[Any]:
     if not gaps.any():
         return values
     wide = values.dtype.kind != "f" and values.dtype.itemsize > 2
-    found = values.astype(np.float64 if wide or values.dtype == np.float64 else np.float32)
-    found[gaps] = np.nan
-    return found
+    array = values.astype(np.float64 if wide or values.dtype == np.float64 else np.float32)
+    array[gaps] = np.nan
+    return array
 
 
 def _shape(values: NDArray[Any]) -> str:
     return f"an array of {values.dtype} {values.shape}"
 
 
-def _grid(given: object, name: str) -> tuple[str, str, bytes]:
+def _grid(value: object, name: str) -> tuple[str, str, bytes]:
     """Return a label, an ending and the bytes of an ``.npz`` of a grid, which says how its rows lie."""
     label, coordinates = "array", Coordinates()
-    values = _values(given, name)
-    if is_labelled(given):
-        values, coordinates, gap = coordinates_of(given, values, name)
-        label = str(getattr(given, "name", None) or label)
+    values = _values(value, name)
+    if is_labelled(value):
+        values, coordinates, gap = coordinates_of(value, values, name)
+        label = str(getattr(value, "name", None) or label)
         if gap is not None:
             values = _without(values, values == gap)
     if values.dtype.kind not in "iuf" or values.ndim != 2 or min(values.shape) < 2:
@@ -297,10 +297,10 @@ def _grid(given: object, name: str) -> tuple[str, str, bytes]:
     return _label(label), ".npz", _npz({"elevation": values, "first_row": "south", **coordinates.arrays()})
 
 
-def _picture(given: object, name: str) -> tuple[str, str, bytes]:
+def _picture(value: object, name: str) -> tuple[str, str, bytes]:
     """Return a label, an ending and the bytes of an ``.npy`` of a picture, top row first."""
-    values = _values(given, name)
-    label = str(getattr(given, "name", None) or "picture") if is_labelled(given) else "picture"
+    values = _values(value, name)
+    label = str(getattr(value, "name", None) or "picture") if is_labelled(value) else "picture"
     if values.ndim == 2:
         values = values[..., None]
     if values.dtype.kind == "b":

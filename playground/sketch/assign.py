@@ -14,14 +14,14 @@ from typing import Protocol
 from playground.errors import ParameterError, nearest
 from playground.memo import GRAPHS
 from playground.shader.kernel import Export, Graph, Kernel, Technique
-from playground.shader.parameter import LARGEST_SIDE, Parameter, Value, coerce, spell
+from playground.shader.parameter import MAX_SIDE, Parameter, Value, coerce, spell
 
 # How many numbers at most, which, and what a message expects.
 _TERRAIN: dict[str, tuple[int, Callable[[float], bool], str]] = {
     "size": (
         2,
-        lambda n: n.is_integer() and 1 <= n <= LARGEST_SIDE,
-        f"1 to {LARGEST_SIDE} texels a side, as 513 or 513x257",
+        lambda n: n.is_integer() and 1 <= n <= MAX_SIDE,
+        f"1 to {MAX_SIDE} texels a side, as 513 or 513x257",
     ),
     "extent": (2, lambda n: 0 < n < 1e9, "metres above 0, as 10240 or 10240x8000"),
     "relief": (1, lambda n: 0 <= n < 1e9, "a number of metres, 0 or more"),
@@ -69,12 +69,12 @@ def resolve(technique: Technique, path: str) -> tuple[Target, ...]:
 
     Raises ``ParameterError`` that names the nearest path.
     """
-    found = find_targets(technique, path)
-    if not found:
+    targets = find_targets(technique, path)
+    if not targets:
         if why := why_absent(technique, path):
             raise ParameterError(f"{path}: {why}")
         raise ParameterError(f"no parameter '{path}'{nearest(path, all_paths(technique))}")
-    return found
+    return targets
 
 
 def find_targets(technique: Technique, path: str) -> tuple[Target, ...]:
@@ -85,12 +85,12 @@ def find_targets(technique: Technique, path: str) -> tuple[Target, ...]:
     head, _, rest = path.partition(".")
     if rest:
         spec = technique.find(head)
-        found = find_targets(spec.technique, rest) if spec else ()
-        return tuple([Target(f"{head}.{t.path}", t.parameter) for t in found])
+        result = find_targets(spec.technique, rest) if spec else ()
+        return tuple([Target(f"{head}.{t.path}", t.parameter) for t in result])
     export = _export(technique, head)
     # A target is a path inside: one without a dot would be another export, perhaps this one.
     targets = [target for target in export.targets if "." in target] if export else []
-    return tuple([found for target in targets for found in find_targets(technique, target)])
+    return tuple([targets for target in targets for targets in find_targets(technique, target)])
 
 
 def why_absent(technique: Technique, path: str) -> str:
@@ -140,44 +140,44 @@ def shown_parameters(sketch: Settable) -> Iterator[Shown]:
                 yield Shown(f"{spec.name}.{path}", parameter, False)
 
 
-def flat_values(technique: Technique, given: Mapping[str, object], prefix: str = "") -> dict[str, object]:
+def flat_values(technique: Technique, arguments: Mapping[str, object], prefix: str = "") -> dict[str, object]:
     """Join the nested tables that TOML makes of dotted keys, but for a value that is itself a table.
 
     Raises ``ParameterError`` for a path that is set twice, once as a table and once by a dotted name.
     """
-    found: dict[str, object] = {}
-    for key, value in given.items():
+    values: dict[str, object] = {}
+    for key, value in arguments.items():
         path = f"{prefix}{key}"
         new = {path: value}
         is_known = find_targets(technique, path) or why_absent(technique, path)
         if isinstance(value, Mapping) and not is_known:
             new = flat_values(technique, value, f"{path}.")
-        for name in new.keys() & found.keys():
+        for name in new.keys() & values.keys():
             raise ParameterError(f"'{name}' is set twice")
-        found |= new
-    return found
+        values |= new
+    return values
 
 
-def check_value(sketch: Settable, path: str, given: object) -> Value:
+def check_value(sketch: Settable, path: str, value: object) -> Value:
     """Return a value as the parameter, or the part of the terrain, takes it; raise ``ParameterError``."""
     if path in TERRAIN_KEYS:
-        return _terrain_value(path, given)
+        return _terrain_value(path, value)
     targets = find_targets(sketch.graph, path)
     if not targets:
         if why := why_absent(sketch.graph, path):
             raise ParameterError(f"{path}: {why}")
         valid = [*TERRAIN_KEYS, *all_paths(sketch.graph)]
         raise ParameterError(f"no parameter '{path}' in sketch {sketch.name}{nearest(path, valid)}")
-    if targets[0].parameter.widget.kind == "file" and _may_be_array(given):
+    if targets[0].parameter.widget.kind == "file" and _may_be_array(value):
         from playground.sketch.arrays import stored  # loads NumPy, which few loads need
 
-        return stored(given, targets[0].parameter, _registry_at(sketch.graph, targets[0].path), path)
-    return coerce(targets[0].parameter, given, path)
+        return stored(value, targets[0].parameter, _registry_at(sketch.graph, targets[0].path), path)
+    return coerce(targets[0].parameter, value, path)
 
 
-def _may_be_array(given: object) -> bool:
-    is_path = isinstance(given, str | bytes | os.PathLike)
-    return not is_path and (hasattr(given, "__array__") or hasattr(given, "__array_interface__"))
+def _may_be_array(value: object) -> bool:
+    is_path = isinstance(value, str | bytes | os.PathLike)
+    return not is_path and (hasattr(value, "__array__") or hasattr(value, "__array_interface__"))
 
 
 def _registry_at(graph: Graph, path: str) -> str:
@@ -198,53 +198,55 @@ def effective_values(technique: Technique) -> dict[str, Value]:
 def _effective(technique: Technique) -> Mapping[str, Value]:
     if isinstance(technique, Kernel):
         return {p.name: p.default for p in technique.parameters}
-    found: dict[str, Value] = {}
+    values: dict[str, Value] = {}
     for spec in technique.passes:
         inner = effective_values(spec.technique)
         apply(spec.technique, inner, spec.values)
-        found |= {f"{spec.name}.{path}": value for path, value in inner.items()}
+        values |= {f"{spec.name}.{path}": value for path, value in inner.items()}
     for export in technique.parameters:
         targets = resolve(technique, export.name)
         for target in targets[1:]:
-            found[target.path] = found[targets[0].path]
-    return found
+            values[target.path] = values[targets[0].path]
+    return values
 
 
-def apply(technique: Technique, found: dict[str, Value], values: Iterable[tuple[str, Value]]) -> None:
+def apply(
+    technique: Technique, values_by_path: dict[str, Value], values: Iterable[tuple[str, Value]]
+) -> None:
     """Put values, by path, over those of ``effective_values``, in place."""
     for path, value in values:
         for target in resolve(technique, path):
-            found[target.path] = value
+            values_by_path[target.path] = value
 
 
-def value_of(sketch: Settable, path: str, found: Mapping[str, Value]) -> Value:
+def value_of(sketch: Settable, path: str, values: Mapping[str, Value]) -> Value:
     """Return the value that a path has, given the sketch's leaf values."""
-    return found[resolve(sketch.graph, path)[0].path]
+    return values[resolve(sketch.graph, path)[0].path]
 
 
 def values_of(sketch: Settable) -> dict[str, Value]:
     """Return the value of every leaf parameter of a sketch, overrides included, by its path."""
-    found = effective_values(sketch.graph)
-    apply(sketch.graph, found, sketch.overrides)
-    return found
+    values = effective_values(sketch.graph)
+    apply(sketch.graph, values, sketch.overrides)
+    return values
 
 
 def _export(graph: Graph, name: str) -> Export | None:
     return next((export for export in graph.parameters if export.name == name), None)
 
 
-def _terrain_value(key: str, given: object) -> Value:
-    if hasattr(given, "tolist"):  # a NumPy scalar or array
-        given = given.tolist()
-    parts = given.replace("x", ",").split(",") if isinstance(given, str) else given
+def _terrain_value(key: str, value: object) -> Value:
+    if hasattr(value, "tolist"):  # a NumPy scalar or array
+        value = value.tolist()
+    parts = value.replace("x", ",").split(",") if isinstance(value, str) else value
     numbers: list[object] = list(parts) if isinstance(parts, list | tuple) else [parts]
     try:
         values = [float(str(n)) for n in numbers]
     except ValueError:
         values = []
-    most, fits, wanted = _TERRAIN[key]
+    most, fits, expected = _TERRAIN[key]
     if not 1 <= len(values) <= most or not all(map(fits, values)):
-        raise ParameterError(f"{key} = {spell(given)}: expected {wanted}")
+        raise ParameterError(f"{key} = {spell(value)}: expected {expected}")
     if key == "size":
         return int(values[0]), int(values[-1])
     return (values[0], values[-1]) if most == 2 else values[0]

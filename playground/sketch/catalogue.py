@@ -144,14 +144,14 @@ class Entry:
 
 def sketches() -> list[Entry]:
     """List the sketches that ship."""
-    found = []
+    entries = []
     read = Techniques()  # most are in several sketches
     for name in shipped_sketches():
         try:
-            found.append(_of_sketch(name, load_with(read, name)))
+            entries.append(_of_sketch(name, load_with(read, name)))
         except PlaygroundError as error:
-            found.append(Entry(name, "sketch", file=str(SKETCHES / f"{name}.toml"), error=str(error)))
-    return found
+            entries.append(Entry(name, "sketch", file=str(SKETCHES / f"{name}.toml"), error=str(error)))
+    return entries
 
 
 def techniques(within: str = "") -> list[Entry]:
@@ -159,7 +159,7 @@ def techniques(within: str = "") -> list[Entry]:
 
     The parts of a technique are listed only for its own folder.
     """
-    found = []
+    entries = []
     read = Techniques()
     for name in shipped_names():
         if is_part(name) and not (within and is_part(f"{within}/x")):
@@ -167,14 +167,14 @@ def techniques(within: str = "") -> list[Entry]:
         if within and not name.startswith(f"{within.rstrip('/')}/"):
             continue
         try:
-            found.append(_of_technique(name, read.read(name, GLSL, GLSL)))
+            entries.append(_of_technique(name, read.read(name, GLSL, GLSL)))
         except PlaygroundError as error:
             if "is a library file" not in str(error):
-                found.append(Entry(name, "technique", error=str(error)))
-    return found
+                entries.append(Entry(name, "technique", error=str(error)))
+    return entries
 
 
-def one(name: str) -> list[Entry]:
+def entries_named(name: str) -> list[Entry]:
     """Return what a name means: a sketch, a technique, or all techniques of a folder of ``glsl/``.
 
     A path means the sketch or the shader there. Raises ``SketchError`` with the nearest name.
@@ -188,10 +188,10 @@ def one(name: str) -> list[Entry]:
         return [_of_technique(name, read_technique(name, GLSL, GLSL))]
     if within := techniques(name):
         return within
-    known = [entry.name for entry in techniques()]
-    folders = {entry.rpartition("/")[0] for entry in known}
-    known += [*shipped_sketches(), *folders, "sketches", "techniques"]
-    raise SketchError(f"there is no sketch and no technique '{name}'{nearest(name, known)}")
+    names = [entry.name for entry in techniques()]
+    folders = {entry.rpartition("/")[0] for entry in names}
+    names += [*shipped_sketches(), *folders, "sketches", "techniques"]
+    raise SketchError(f"there is no sketch and no technique '{name}'{nearest(name, names)}")
 
 
 def settable(sketch: Sketch) -> list[str]:

@@ -2,7 +2,7 @@
 
 A zip is not trusted: nothing of it is written outside its folder, no link is made, and how many
 files and bytes it may become is known before the first is written. Commands read it from
-the cache, in a folder named after its bytes, which is made anew where a file of it was
+the cache, in a folder named after its bytes, which is made again where a file of it was
 changed; a window opens a copy in the same folder, whose files may be edited.
 """
 
@@ -39,13 +39,13 @@ from playground.shader.dialects import EXPORT, is_export
 ENDING = ".zip"
 MANIFEST = "pack.json"
 FORMAT = 1
-MOST_FILES = 2000
-MOST_BYTES = 2**30
-_MOST_RATIO = 200  # of what is unpacked to the zip; what is drawn or measured stays far below
+MAX_FILES = 2000
+MAX_BYTES = 2**30
+_MAX_RATIO = 200  # of what is unpacked to the zip; what is drawn or measured stays far below
 _ALWAYS_FINE = 2**26  # [bytes] unpacked, with any ratio
-_MOST_PACKS = 16  # packs in the cache
+_MAX_PACKS = 16  # packs in the cache
 _STAMP = ".unpacked-from"
-_MOST_MANIFEST = 2**20
+_MAX_MANIFEST_BYTES = 2**20
 
 # Windows takes these for devices, with any ending.
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{name}{n}" for name in ("com", "lpt") for n in range(1, 10))}
@@ -79,7 +79,7 @@ def is_pack(path: Path) -> bool:
 
 
 def unpacked(path: Path, cache: Path | None = None) -> Path:
-    """Return the sketch's file of a zip, unpacked into the cache; raise ``DataError`` in a sentence."""
+    """Return the sketch's file of a zip, unpacked into the cache; raise ``DataError`` in a message."""
     pack = read_pack(path)
     home = (cache or cache_folder()) / "packs"
     target = home / pack.digest
@@ -141,12 +141,12 @@ def _check(entries: list[zipfile.ZipInfo], size: int) -> None:
     """Raise ``DataError`` for what is not safe to unpack; ``size`` is the zip's own, in bytes."""
     if not entries:
         raise DataError("holds no file; expected a packed sketch")
-    if len(entries) > MOST_FILES:
-        raise DataError(f"holds {len(entries)} files; at most {MOST_FILES} are unpacked")
+    if len(entries) > MAX_FILES:
+        raise DataError(f"holds {len(entries)} files; at most {MAX_FILES} are unpacked")
     whole = sum(e.file_size for e in entries)
     if sum(e.compress_size for e in entries) > size:
         raise DataError("its files overlap, as those of a zip bomb do; it is not unpacked")
-    if whole > MOST_BYTES or (whole > _ALWAYS_FINE and whole > _MOST_RATIO * size):
+    if whole > MAX_BYTES or (whole > _ALWAYS_FINE and whole > _MAX_RATIO * size):
         raise DataError(
             f"would become {whole / 2**20:.0f} MiB from {size / 2**20:.2g}: that is too much to unpack"
         )
@@ -159,7 +159,7 @@ def _check(entries: list[zipfile.ZipInfo], size: int) -> None:
         names.add(folded)
     for name in names:
         if any(folder.as_posix() in names for folder in PurePosixPath(name).parents):
-            raise DataError(f"'{_plain(name)}' lies in what is a file")
+            raise DataError(f"'{_plain(name)}' lies inside a file")
 
 
 def _check_entry(entry: zipfile.ZipInfo) -> None:
@@ -203,19 +203,19 @@ def _manifest(archive: zipfile.ZipFile, files: dict[str, zipfile.ZipInfo]) -> Ma
         raise DataError(
             f"is no packed sketch: expected one sketch.toml, in it or in its only folder, and found {what}"
         )
-    if files[MANIFEST].file_size > _MOST_MANIFEST:
+    if files[MANIFEST].file_size > _MAX_MANIFEST_BYTES:
         raise DataError(f"its {MANIFEST} is too large")
     try:
         table = read_json(archive.read(MANIFEST))
         if table["format"] != FORMAT:
             raise DataError(f"is of format {table['format']}; this playground ({__version__}) reads {FORMAT}")
         shipped, named = (tuple(map(str, some)) for some in (table["shipped"], table.get("libraries", ())))
-        found = Manifest(str(table["sketch"]), str(table["version"]), shipped, named)
+        manifest = Manifest(str(table["sketch"]), str(table["version"]), shipped, named)
     except (ValueError, KeyError, TypeError) as error:
         raise DataError(f"its {MANIFEST} cannot be read: {_reason(error)}") from None
-    if found.sketch not in files or found.sketch == MANIFEST:
-        raise DataError(f"says that it opens '{_plain(found.sketch)}', and does not hold it")
-    return found
+    if manifest.sketch not in files or manifest.sketch == MANIFEST:
+        raise DataError(f"says that it opens '{_plain(manifest.sketch)}', and does not hold it")
+    return manifest
 
 
 def _unpack(pack: Pack, target: Path, *, strip: bool = False) -> None:
@@ -225,9 +225,9 @@ def _unpack(pack: Pack, target: Path, *, strip: bool = False) -> None:
         scratch.mkdir(parents=True)
         with zipfile.ZipFile(pack.path) as archive:
             for name, entry in pack.files.items():
-                place = scratch / (name.partition("/")[2] if strip and "/" in name else name)
-                place.parent.mkdir(parents=True, exist_ok=True)
-                with archive.open(entry) as source, place.open("xb") as file:
+                path = scratch / (name.partition("/")[2] if strip and "/" in name else name)
+                path.parent.mkdir(parents=True, exist_ok=True)
+                with archive.open(entry) as source, path.open("xb") as file:
                     shutil.copyfileobj(source, file, 1 << 20)
         (scratch / _STAMP).write_text(pack.digest + "\n", encoding="utf-8")
         scratch.replace(target)
@@ -255,11 +255,11 @@ def _is_whole(pack: Pack, target: Path) -> bool:
 
 
 def _crc(path: Path) -> int:
-    found = 0
+    checksum = 0
     with open_regular(path) as file:
         while block := file.read(1 << 20):
-            found = zlib.crc32(block, found)
-    return found
+            checksum = zlib.crc32(block, checksum)
+    return checksum
 
 
 def _digest(path: Path) -> str:
@@ -285,7 +285,7 @@ def _can_make(target: Path) -> bool:
 
 def _drop_oldest(home: Path, but: Path) -> None:
     packs = sorted((p for p in home.iterdir() if p.is_dir() and p != but), key=lambda p: p.stat().st_mtime)
-    for old in packs[: max(len(packs) + 1 - _MOST_PACKS, 0)]:
+    for old in packs[: max(len(packs) + 1 - _MAX_PACKS, 0)]:
         shutil.rmtree(old, ignore_errors=True)
 
 
@@ -335,9 +335,9 @@ def find(name: str | Path) -> Path:
     for candidate in places:
         if candidate.suffix in TEXTS and is_file(candidate) and is_inside(candidate, (GLSL,)):
             return candidate
-    wanted = path / "sketch.toml" if is_folder else path
-    if what := irregularity(wanted):
-        raise SketchError(what, file=wanted)
+    sketch_file = path / "sketch.toml" if is_folder else path
+    if what := irregularity(sketch_file):
+        raise SketchError(what, file=sketch_file)
     if is_folder:
         raise SketchError("this folder holds no sketch.toml, and no Image of Shadertoy of its own", file=path)
     names = [*shipped_sketches(), *(shipped_names() if "/" in text else [])]
@@ -356,12 +356,12 @@ def shipped_sketches() -> list[str]:
 
 def shipped_names() -> list[str]:
     """List every name that ``use`` may take in ``glsl/``, library files too, without reading the files."""
-    found = [
+    paths = [
         p
         for p in GLSL.rglob("*")
         if p.suffix in TECHNIQUES and not is_variant(p) and not p.is_relative_to(SKETCHES)
     ]
-    return sorted({p.relative_to(GLSL).with_suffix("").as_posix() for p in found})
+    return sorted({p.relative_to(GLSL).with_suffix("").as_posix() for p in paths})
 
 
 def is_part(name: str) -> bool:

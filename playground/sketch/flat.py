@@ -62,7 +62,7 @@ Node = Leaf | Loop
 class Flat:
     """A sketch without nesting."""
 
-    shape: Shape  # the same before any value is set
+    shape: GraphShape  # the same before any value is set
     values: dict[str, Value]  # every leaf parameter, by path
     folder: str  # where files are looked for
     set_inside: tuple[str, ...]  # paths that are set over the sketch's file, of parameters inside techniques
@@ -137,16 +137,16 @@ class Flat:
         path, _, output = text.partition(":")
         if path not in self.outputs:
             raise SketchError(f"no pass '{path}' in sketch {sketch}{nearest(path, self.outputs)}")
-        found = self.outputs[path]
+        refs = self.outputs[path]
         if not output:
-            return found.get(path.rpartition(".")[2], next(iter(found.values())))
-        if output not in found:
-            raise SketchError(f"pass '{path}' has no output '{output}'{nearest(output, found)}")
-        return found[output]
+            return refs.get(path.rpartition(".")[2], next(iter(refs.values())))
+        if output not in refs:
+            raise SketchError(f"pass '{path}' has no output '{output}'{nearest(output, refs)}")
+        return refs[output]
 
 
 @dataclass(frozen=True)
-class Shape:
+class GraphShape:
     """A flat graph before any value is set."""
 
     nodes: tuple[Node, ...]
@@ -175,13 +175,13 @@ class Shape:
 
 def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> list[Leaf]:
     """Return every leaf, those inside loops included."""
-    found: list[Leaf] = []
+    leaves: list[Leaf] = []
     for node in nodes:
         if isinstance(node, Loop):
-            found += leaves_of(node.body)
+            leaves += leaves_of(node.body)
         else:
-            found.append(node)
-    return found
+            leaves.append(node)
+    return leaves
 
 
 def repeated_paths(nodes: tuple[Node, ...]) -> list[str]:

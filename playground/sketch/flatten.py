@@ -2,7 +2,7 @@
 
 A loop that counts frames shows each of its frames what it reads as it was then: a film has another
 picture, a kernel another time. Outside of the loop they would be what they are at the end, in all its
-frames, and each new moment would start the loop anew.
+frames, and each new moment would start the loop again.
 
 The result names no sizes and no pixels: ``engine.plan`` adds those. Wiring follows one
 rule at every level: an input takes what its pass wires, else what the technique's own
@@ -29,7 +29,7 @@ from playground.shader.expressions import counts_frames, follows_time
 from playground.shader.kernel_cache import replaced
 from playground.shader.reserved_names import CLOCKED
 from playground.sketch.assign import effective_values, find_targets, resolve, why_absent
-from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Ref, Shape, Source, leaves_of
+from playground.sketch.flat import Fed, Flat, GraphShape, Leaf, Loop, Node, Ref, Source, leaves_of
 from playground.sketch.follows import follow, rules_of
 from playground.sketch.model import Graph, Kernel, PassSpec, PlainFragment, Sketch, Technique
 from playground.sketch.presence import deciding_inputs
@@ -49,29 +49,29 @@ def with_clocked_inside(nodes: Sequence[Node]) -> list[Node]:
 
     What another loop reads that the loop reads as well stays outside.
     """
-    found = list(nodes)
+    nodes_now = list(nodes)
     for loop in [node for node in nodes if isinstance(node, Loop) and counts_frames(node.repeat)]:
-        index = next(i for i, node in enumerate(found) if node.path == loop.path)
-        moved = _to_move(found[:index], loop)
+        index = next(i for i, node in enumerate(nodes_now) if node.path == loop.path)
+        moved = _to_move(nodes_now[:index], loop)
         if moved:
-            body = tuple(node for node in found[:index] if node.path in moved and isinstance(node, Leaf))
-            before = [node for node in found[:index] if node.path not in moved]
+            body = tuple(node for node in nodes_now[:index] if node.path in moved and isinstance(node, Leaf))
+            before = [node for node in nodes_now[:index] if node.path not in moved]
             after = [node for node in before if _all_reads(node) & moved]
             while more := [n for n in before if n not in after and _all_reads(n) & {a.path for a in after}]:
                 after += more
             later = [node for node in before if node in after]
             inside = replace(loop, body=(*body, *loop.body))
-            found = [*(n for n in before if n not in after), inside, *later, *found[index + 1 :]]
-    return found
+            nodes_now = [*(n for n in before if n not in after), inside, *later, *nodes_now[index + 1 :]]
+    return nodes_now
 
 
 def _to_move(earlier: Sequence[Node], loop: Loop) -> set[str]:
     """Return the paths of the leaves to move into a loop."""
-    needed, wanted = [], _all_reads(loop)
+    needed, paths = [], _all_reads(loop)
     for node in reversed(earlier):
-        if {leaf.path for leaf in leaves_of([node])} & wanted:
+        if {leaf.path for leaf in leaves_of([node])} & paths:
             needed.append(node)
-            wanted |= _all_reads(node)
+            paths |= _all_reads(node)
     moved: set[str] = set()
     for node in reversed(needed):
         if isinstance(node, Leaf) and (_is_clocked(node.kernel) or _all_reads(node) & moved):
@@ -91,18 +91,18 @@ def _is_clocked(kernel: Kernel) -> bool:
 
 
 def _all_reads(node: Node) -> set[str]:
-    found: set[str] = set()
+    all_reads: set[str] = set()
     for leaf in leaves_of([node]):
-        found |= {source.path for _, source in leaf.inputs if isinstance(source, Ref)}
+        all_reads |= {source.path for _, source in leaf.inputs if isinstance(source, Ref)}
     if isinstance(node, Loop):
-        found |= _first_reads(node)
-        found -= _loop_paths(node)
-    return found
+        all_reads |= _first_reads(node)
+        all_reads -= _loop_paths(node)
+    return all_reads
 
 
 def _first_reads(loop: Loop) -> set[str]:
-    found = {first.path for _, first, _ in loop.feedback if isinstance(first, Ref)}
-    return found.union(*(_first_reads(node) for node in loop.body if isinstance(node, Loop)))
+    paths = {first.path for _, first, _ in loop.feedback if isinstance(first, Ref)}
+    return paths.union(*(_first_reads(node) for node in loop.body if isinstance(node, Loop)))
 
 
 def _loop_paths(loop: Loop) -> set[str]:
@@ -128,10 +128,10 @@ def flatten(sketch: Sketch) -> Flat:
 
 
 @GRAPHS.cached(identities=1, weight=256)
-def _shape(graph: Graph) -> Shape:
+def _shape(graph: Graph) -> GraphShape:
     maker = Flattener()
     written = tuple(maker.expand(graph, "", {}))
-    return Shape(
+    return GraphShape(
         nodes=in_running_order(written, maker.graphs),
         specs=maker.specs,
         graphs=maker.graphs,
@@ -180,14 +180,14 @@ def _with_exact_pictures(nodes: tuple[Node, ...], graphs: Mapping[str, Graph]) -
 
 def is_exported(graph: Graph, path: str) -> bool:
     """Return whether a technique exports a parameter inside, and nothing else, by some name."""
-    wanted = {target.path for target in find_targets(graph, path)}
-    return any({t.path for t in find_targets(graph, e.name)} == wanted for e in graph.parameters)
+    paths = {target.path for target in find_targets(graph, path)}
+    return any({t.path for t in find_targets(graph, e.name)} == paths for e in graph.parameters)
 
 
 class Flattener:
     """Flattens graphs, and holds what was found of their passes, by path."""
 
-    def __init__(self, before: Shape | None = None) -> None:
+    def __init__(self, before: GraphShape | None = None) -> None:
         self.specs: dict[str, PassSpec] = dict(before.specs) if before else {}
         self.graphs: dict[str, Graph] = dict(before.graphs) if before else {}
         self.outputs: dict[str, dict[str, Ref]] = dict(before.outputs) if before else {}
@@ -220,22 +220,22 @@ class Flattener:
         """Return the outputs of a technique at a path: the textures of leaves."""
         if isinstance(technique, Kernel):
             return {o.name: Ref(path, o.name) for o in technique.outputs}
-        found = {}
+        refs = {}
         for name in output_names(technique):
             where, _, output = target_of(technique, name).partition(":")
             source = inner(technique, where)
             if source is None:
                 raise SketchError(f"output '{name}': no pass '{where}' inside", file=shown(technique.path))
             below = self.outputs_of(source, join(path, where))
-            found[name] = below[output] if output in below else below.get(name, next(iter(below.values())))
-        return found
+            refs[name] = below[output] if output in below else below.get(name, next(iter(below.values())))
+        return refs
 
     def _one(
-        self, spec: PassSpec, prefix: str, given: Mapping[str, Source | None], earlier: list[PassSpec]
+        self, spec: PassSpec, prefix: str, sources: Mapping[str, Source | None], earlier: list[PassSpec]
     ) -> list[Node]:
         path = join(prefix, spec.name)
         technique = spec.technique
-        wires: dict[str, Source | None] = dict(given)
+        wires: dict[str, Source | None] = dict(sources)
         for name, text in spec.inputs:
             if not takes_input(technique, name):
                 owner = name.rpartition(".")[0]
@@ -266,23 +266,23 @@ class Flattener:
         self.paths[path] = tuple((p.name, join(path, p.name)) for p in technique.parameters)
         return [leaf_of(technique, spec, path, wires)]
 
-    def _ref(self, text: str, wanted: str, prefix: str, spec: PassSpec) -> Ref:
+    def _ref(self, text: str, expected: str, prefix: str, spec: PassSpec) -> Ref:
         where, _, output = text.partition(":")
         head = where.partition(".")[0]
         names = [p.name for p in self.graphs[prefix].passes if p is not spec]
         if head not in names and head != spec.name:
-            raise spec.error(f"input '{wanted}' names no pass '{where}'{nearest(where, names)}")
+            raise spec.error(f"input '{expected}' names no pass '{where}'{nearest(where, names)}")
         technique = inner(self.graphs[prefix], where)
         if technique is None:
-            raise spec.error(f"input '{wanted}': nothing named '{where}' inside '{head}'")
+            raise spec.error(f"input '{expected}': nothing named '{where}' inside '{head}'")
         outputs = self.outputs_of(technique, join(prefix, where))
         if output and output not in outputs:
             raise spec.error(
-                f"input '{wanted}': pass '{where}' has no output '{output}'{nearest(output, outputs)}"
+                f"input '{expected}': pass '{where}' has no output '{output}'{nearest(output, outputs)}"
             )
         if output:
             return outputs[output]
-        return outputs.get(wanted.rpartition(".")[2], next(iter(outputs.values())))
+        return outputs.get(expected.rpartition(".")[2], next(iter(outputs.values())))
 
     def _unwired(self, name: str, prefix: str, spec: PassSpec, earlier: list[PassSpec]) -> Source | None:
         for other in reversed(earlier):
@@ -327,18 +327,18 @@ def join(prefix: str, name: str) -> str:
 
 
 def _reads(node: Node) -> set[str]:
-    found = {s.path for leaf in leaves_of([node]) for _, s in leaf.inputs if isinstance(s, Ref)}
+    paths = {s.path for leaf in leaves_of([node]) for _, s in leaf.inputs if isinstance(s, Ref)}
     if isinstance(node, Loop):
-        found -= {leaf.path for leaf in leaves_of(node.body)}
-        found |= _starts(node)
-    return found
+        paths -= {leaf.path for leaf in leaves_of(node.body)}
+        paths |= _starts(node)
+    return paths
 
 
 def _starts(loop: Loop) -> set[str]:
     """Return what the first steps of a loop, and of the loops in it, read."""
-    found = {first.path for _, first, _ in loop.feedback if isinstance(first, Ref)}
+    starts = {first.path for _, first, _ in loop.feedback if isinstance(first, Ref)}
     inside = [_starts(node) for node in loop.body if isinstance(node, Loop)]
-    return found | (set().union(*inside) - {leaf.path for leaf in leaves_of(loop.body)})
+    return starts | (set().union(*inside) - {leaf.path for leaf in leaves_of(loop.body)})
 
 
 def ordered(nodes: list[Node], graph: Graph) -> list[Node]:

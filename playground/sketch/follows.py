@@ -30,21 +30,21 @@ def rules_of(graphs: Mapping[str, Graph]) -> tuple[Rule, ...]:
 
     An export of a technique follows as a whole; a parameter that is not exported, alone.
     """
-    found: list[Rule] = []
+    rules: list[Rule] = []
     for prefix, graph in graphs.items():
         covered: set[str] = set()
         for export in graph.parameters:
             targets = resolve(graph, export.name)
             covered |= {target.path for target in targets}
             if targets[0].parameter.follows:
-                found.append(_rule(prefix, [t.path for t in targets], targets[0].parameter))
+                rules.append(_rule(prefix, [t.path for t in targets], targets[0].parameter))
         for spec in graph.passes:
             if isinstance(spec.technique, Kernel):
                 for parameter in spec.technique.parameters:
                     path = f"{spec.name}.{parameter.name}"
                     if parameter.follows and path not in covered:
-                        found.append(_rule(prefix, [path], parameter))
-    return tuple(found)
+                        rules.append(_rule(prefix, [path], parameter))
+    return tuple(rules)
 
 
 def follow(rules: Iterable[Rule], values: dict[str, Value]) -> None:

@@ -63,14 +63,14 @@ class Track:
         if last or self.holds or self.eases[index] == "hold" or time == self.times[index]:
             return here
         many = tuple(_numbers(value) for value in self.values)
-        found = []
+        values_now = []
         for which in range(len(many[0])):
             column = [numbers[which] for numbers in many]
             if which in self.angles:
-                found.append(self._between(_unwound(column), index, time) % _CIRCLE)
+                values_now.append(self._between(_unwound(column), index, time) % _CIRCLE)
             else:
-                found.append(self._between(column, index, time))
-        return tuple(found) if isinstance(here, tuple) else found[0]
+                values_now.append(self._between(column, index, time))
+        return tuple(values_now) if isinstance(here, tuple) else values_now[0]
 
     def _between(self, column: Sequence[float], index: int, time: float) -> float:
         start, end = self.times[index], self.times[index + 1]
@@ -132,12 +132,14 @@ def _tracks(graph: Graph, keyframes: tuple[Keyframe, ...]) -> tuple[dict[str, Tr
 
 def _track(keyframes: Sequence[Keyframe], part: str, name: str, **how: Any) -> Track:
     """Return the track of a camera field or a parameter: the keyframes that name it."""
-    given = [(keyframe, dict(getattr(keyframe, part))) for keyframe in keyframes]
-    given = [(keyframe, values) for keyframe, values in given if name in values]
+    keyframes_with_values = [(keyframe, dict(getattr(keyframe, part))) for keyframe in keyframes]
+    keyframes_with_values = [
+        (keyframe, values) for keyframe, values in keyframes_with_values if name in values
+    ]
     return Track(
-        tuple(keyframe.time for keyframe, _ in given),
-        tuple(values[name] for _, values in given),
-        tuple(keyframe.ease for keyframe, _ in given),
+        tuple(keyframe.time for keyframe, _ in keyframes_with_values),
+        tuple(values[name] for _, values in keyframes_with_values),
+        tuple(keyframe.ease for keyframe, _ in keyframes_with_values),
         **how,
     )
 
@@ -161,7 +163,7 @@ def _numbers(value: Value) -> tuple[float, ...]:
 
 def _unwound(column: Sequence[float]) -> list[float]:
     """Return azimuths moved by 360 degrees, so that each is within 180 of the one before."""
-    found = [column[0]]
+    angles = [column[0]]
     for value in column[1:]:
-        found.append(value - _CIRCLE * round((value - found[-1]) / _CIRCLE))
-    return found
+        angles.append(value - _CIRCLE * round((value - angles[-1]) / _CIRCLE))
+    return angles

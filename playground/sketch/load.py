@@ -66,7 +66,7 @@ def elevation_text(path: Path, file: str) -> str:
         '"@TITLE_TEXT@"': text_of(path.stem),
         '"@FILE@"': text_of(file),
     }
-    return re.sub("|".join(words), lambda found: words[found[0]], _TEXT.read_text(encoding="utf-8"))
+    return re.sub("|".join(words), lambda match: words[match[0]], _TEXT.read_text(encoding="utf-8"))
 
 
 def elevation_sketch(path: Path, techniques: Techniques) -> Sketch:
@@ -149,24 +149,24 @@ def _holds_technique(file: TomlFile) -> bool:
 
 def _shader_alone(path: Path, techniques: Techniques) -> Sketch:
     """Return a sketch that shows one shader file."""
-    found = techniques.shader(path, root_of(path), techniques.dialect)
-    if found is None:
+    shader = techniques.shader(path, root_of(path), techniques.dialect)
+    if shader is None:
         raise nothing_to_run(path)
-    if isinstance(found, ComputeVariant):
+    if isinstance(shader, ComputeVariant):
         raise lonely_variant(path)
-    if isinstance(found, Kernel) and not isinstance(found, PlainShader):
-        return _in_plain_sketch(path, found)
-    return plain_sketch(path, found, _folder_of(path))
+    if isinstance(shader, Kernel) and not isinstance(shader, PlainShader):
+        return _in_plain_sketch(path, shader)
+    return plain_sketch(path, shader, _folder_of(path))
 
 
-def plain_sketch(path: Path, found: Technique, folder: Path) -> Sketch:
+def plain_sketch(path: Path, technique: Technique, folder: Path) -> Sketch:
     """Return the sketch of a shader that is the whole picture; its files stay in ``folder``."""
-    title = found.title
-    if isinstance(found, Graph):
-        title = f"{title or path.stem} ({found.dialect})"
-        graph = replace(found, inputs=(), parameters=())  # of a sketch all are at view
+    title = technique.title
+    if isinstance(technique, Graph):
+        title = f"{title or path.stem} ({technique.dialect})"
+        graph = replace(technique, inputs=(), parameters=())  # of a sketch all are at view
     else:
-        view = PassSpec("view", f"./{path.stem}", found, file=shown(path))
+        view = PassSpec("view", f"./{path.stem}", technique, file=shown(path))
         graph = Graph(path.stem, str(path), (view,), title=title)
     return Sketch(path.stem, str(path), str(folder), graph, title, samples=1)
 
@@ -182,13 +182,13 @@ def _in_plain_sketch(path: Path, technique: Technique) -> Sketch:
     plain = load(PLAIN_SKETCH)
     outputs = set(output_names(technique))
     passes = list(plain.graph.passes)
-    place = next((i for i, p in enumerate(passes) if outputs & set(output_names(p.technique))), None)
+    index = next((i for i, p in enumerate(passes) if outputs & set(output_names(p.technique))), None)
     folder = _folder_of(path)
     use = f"./{path.relative_to(folder).with_suffix('').as_posix()}"
     line = technique.pragma.number if isinstance(technique, Kernel) and technique.pragma else 0
     spec = PassSpec("", use, technique, file=shown(path), line=line)
-    if place is not None:
-        passes[place] = replace(spec, name=passes[place].name)
+    if index is not None:
+        passes[index] = replace(spec, name=passes[index].name)
     else:
         taken = [p.name for p in passes]
         name = next(n for n in (output_names(technique)[0], "alone", "alone_") if n not in taken)
@@ -219,12 +219,12 @@ def _default_files(graph: Graph, plain: Sketch) -> tuple[tuple[str, Value], ...]
     """Return the data files of that sketch's own passes by absolute path: they are in its folder."""
     values = effective_values(graph)
     remaining = {spec.name for spec in graph.passes if spec in plain.graph.passes}
-    found: list[tuple[str, Value]] = []
+    values_of_files: list[tuple[str, Value]] = []
     for path, parameter in graph.leaf_parameters.items():
         text = str(values[path])
         if parameter.widget.kind != "file" or path.partition(".")[0] not in remaining or is_absolute(text):
             continue
         file = Path(plain.folder) / text
         if text and is_file(file):
-            found.append((path, str(file)))
-    return tuple(found)
+            values_of_files.append((path, str(file)))
+    return tuple(values_of_files)

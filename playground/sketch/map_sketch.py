@@ -46,9 +46,9 @@ class Map:
 
     def value(self, name: str) -> Value:
         """Return the value of one of its parameters."""
-        known = dict(self.values)
+        values = dict(self.values)
         parameter = self.kernel.parameter(name)
-        return known[name] if name in known or parameter is None else parameter.default
+        return values[name] if name in values or parameter is None else parameter.default
 
 
 def _within(sketch: Sketch, view: PassSpec, shown: Map) -> Sketch:
@@ -75,17 +75,17 @@ def _within(sketch: Sketch, view: PassSpec, shown: Map) -> Sketch:
 
 def refs_of(flat: Flat) -> list[str]:
     """List the textures that a map can show: those of the sketch's own passes, then inner ones."""
-    found = [
+    refs = [
         f"{path}:{output}"
         for path, outputs in flat.outputs.items()
         for output in outputs
         if path.partition(".")[0] != "view"
     ]
-    return sorted(found, key=lambda ref: ref.count("."))
+    return sorted(refs, key=lambda ref: ref.count("."))
 
 
 def map_kernel() -> Kernel:
     """Read the kernel that draws maps."""
-    found = read_technique(USE, GLSL, GLSL)
-    assert isinstance(found, Kernel)
-    return found
+    kernel = read_technique(USE, GLSL, GLSL)
+    assert isinstance(kernel, Kernel)
+    return kernel

@@ -43,7 +43,7 @@ from playground.shader.kernel import (
     with_inner,
 )
 from playground.shader.options import FORMATS, Buffer
-from playground.shader.parameter import LARGEST_SIDE, Follows, Parameter, Sampling, Value, Widget
+from playground.shader.parameter import MAX_SIDE, Follows, Parameter, Sampling, Value, Widget
 from playground.sketch.assign import TERRAIN_KEYS, check_value
 from playground.sketch.keyframes import Keyframe, at
 from playground.sketch.presence import as_wired
@@ -73,38 +73,38 @@ TIERS = {
 """The tolerances that have names."""
 
 
-_USUAL = TIERS["rounding"]
+_DEFAULT = TIERS["rounding"]
 
 
-def tolerance_of(given: Given | None, reason: str) -> Tolerance | None:
+def tolerance_of(declared: Given | None, reason: str) -> Tolerance | None:
     """Return a tolerance from a tier's name, levels, or a table of levels and share; None for none.
 
-    Raises ``ValueError`` with a sentence for another value, and without a reason.
+    Raises ``ValueError`` with a message for another value, and without a reason.
     """
-    if given is None:
+    if declared is None:
         if reason:
             raise ValueError("reason: there is no tolerance that it is a reason for")
         return None
-    found = _allowed(given)
+    tolerance = _allowed(declared)
     if not reason.strip():
         raise ValueError('tolerance: it needs a reason, as reason = "the grain is different in each run"')
-    return replace(found, reason=reason.strip())
+    return replace(tolerance, reason=reason.strip())
 
 
-def _allowed(given: Given) -> Tolerance:
-    if isinstance(given, str):
-        if given not in TIERS:
-            raise ValueError(f"tolerance = {given!r}: expected {_CHOICES}{nearest(given, TIERS)}")
-        return TIERS[given]
-    table = given if isinstance(given, Mapping) else {"levels": given}
+def _allowed(declared: Given) -> Tolerance:
+    if isinstance(declared, str):
+        if declared not in TIERS:
+            raise ValueError(f"tolerance = {declared!r}: expected {_CHOICES}{nearest(declared, TIERS)}")
+        return TIERS[declared]
+    table = declared if isinstance(declared, Mapping) else {"levels": declared}
     unknown = [key for key in table if key not in ("levels", "share")]
     if unknown or not table:
-        raise ValueError(f"tolerance = {given!r}: expected {_CHOICES}")
-    levels, share = table.get("levels", _USUAL.levels), table.get("share", _USUAL.share)
+        raise ValueError(f"tolerance = {declared!r}: expected {_CHOICES}")
+    levels, share = table.get("levels", _DEFAULT.levels), table.get("share", _DEFAULT.share)
     if type(levels) is not int or not 2 <= levels <= 255:
         raise ValueError(f"tolerance: levels = {levels!r}: expected a whole number from 2 to 255")
     if type(share) not in (int, float) or not 0.0 < share <= 1.0:  # type: ignore[operator]
-        raise ValueError(f"tolerance: share = {share!r}: expected a share of the pixels, above 0 and to 1")
+        raise ValueError(f"tolerance: share = {share!r}: expected a fraction of the pixels, above 0 and to 1")
     return Tolerance(levels, float(share))  # type: ignore[arg-type]
 
 
@@ -115,9 +115,9 @@ __all__ = [
     "DEFAULT_PICTURE",
     "DRIVERS",
     "FORMATS",
-    "LARGEST_PICTURE",
-    "LARGEST_SIDE",
-    "MOST_SUPERSAMPLE",
+    "MAX_PICTURE_SIDE",
+    "MAX_SIDE",
+    "MAX_SUPERSAMPLE",
     "PRAGMAS",
     "SHAPES",
     "VARIANTS",
@@ -154,13 +154,13 @@ __all__ = [
     "with_inner",
 ]
 
-LARGEST_PICTURE = 65_536
+MAX_PICTURE_SIDE = 65_536
 """Pixels that a side of a picture drawn in parts may have: the limit of single precision."""
 
 DEFAULT_PICTURE = (1280, 720)
 """Size in pixels of a picture unless another is given."""
 
-MOST_SUPERSAMPLE = 8
+MAX_SUPERSAMPLE = 8
 """Times that a picture may be drawn as wide and as high as it is wanted."""
 
 
@@ -214,7 +214,7 @@ class Preset:
 
     name: str
     values: tuple[tuple[str, Value], ...]
-    left_out: tuple[str, ...] = ()  # a sentence for each value that no parameter takes
+    left_out: tuple[str, ...] = ()  # a message for each value that no parameter takes
 
 
 @dataclass(frozen=True)
@@ -298,13 +298,13 @@ class Sketch:
         Raises ``ParameterError`` naming the nearest path or the range.
         """
         overrides, changes = dict(self.overrides), dict[str, Any]()
-        for path, given in values.items():
-            found = check_value(self, path, given)
+        for path, raw in values.items():
+            value = check_value(self, path, raw)
             if path in TERRAIN_KEYS:
-                changes[path] = found
+                changes[path] = value
             else:
                 overrides.pop(path, None)  # what is set last comes last, and wins
-                overrides[path] = found
+                overrides[path] = value
         return replace(self, overrides=tuple(overrides.items()), **changes)
 
     def with_inputs(self, arrays: Mapping[str, object]) -> Sketch:
@@ -324,8 +324,8 @@ class Sketch:
         from playground.sketch.array_inputs import wired  # loads NumPy, which few loads need
 
         graph, files = self.graph, dict(self.overrides)
-        for path, given in arrays.items():
-            graph, parameter, file = wired(graph, path, given)
+        for path, array in arrays.items():
+            graph, parameter, file = wired(graph, path, array)
             files[parameter] = file
         return replace(self, graph=graph, overrides=tuple(files.items()))
 

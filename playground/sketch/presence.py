@@ -40,7 +40,7 @@ def _as_wired(sketch: Graph) -> Graph:
             example = f'as inputs = {{ {lacking} = "…" }}'
             raise spec.error(f"pass '{spec.name}' needs its input '{lacking}' wired, {example}")
         passes.append(form)
-    same = all(one is other for one, other in zip(passes, sketch.passes, strict=True))
+    same = all(left is other for left, other in zip(passes, sketch.passes, strict=True))
     return sketch if same else replace(sketch, passes=tuple(passes))
 
 
@@ -137,7 +137,7 @@ def _present(graph: Graph, wired: frozenset[str]) -> tuple[list[PassSpec], dict[
     inside |= {target for e in graph.inputs if e.name in wired for target in e.targets}
     absent: dict[str, str] = {}
     while True:
-        found: list[PassSpec] = []
+        specs: list[PassSpec] = []
         lost: dict[str, str] = {}
         lacks = {name: name for name in named - wired} | absent
         for spec in graph.passes:
@@ -145,17 +145,17 @@ def _present(graph: Graph, wired: frozenset[str]) -> tuple[list[PassSpec], dict[
                 continue
             inputs, lacking = _chosen(spec, named, lacks)
             if not lacking:
-                given = [t.partition(".")[2] for t in inside if t.partition(".")[0] == spec.name]
-                form, name = _in_form(spec, inputs, given, found)
+                names_given = [t.partition(".")[2] for t in inside if t.partition(".")[0] == spec.name]
+                form, name = _in_form(spec, inputs, names_given, specs)
                 path = f"{spec.name}.{name}"
                 lacking = next((e.name for e in graph.inputs if path in e.targets), name)
             if lacking:
                 lost[spec.name] = lacking
             else:
-                found.append(form)
-        lost = lost or _unread(graph, found, absent)
+                specs.append(form)
+        lost = lost or _unread(graph, specs, absent)
         if not lost:
-            return found, absent
+            return specs, absent
         absent |= lost
 
 
@@ -176,13 +176,13 @@ def _chosen(
 def _in_form(
     spec: PassSpec,
     inputs: tuple[tuple[str, str], ...],
-    given: Collection[str],
+    names_given: Collection[str],
     earlier: Sequence[PassSpec],
 ) -> tuple[PassSpec, str]:
     """Return a pass with its technique in its form, and the input that an output of it lacks."""
     technique, values = spec.technique, spec.values
     if isinstance(technique, Graph) and is_conditional(technique):
-        wired = {*given, *(name for name, _ in (*inputs, *spec.feedback))}
+        wired = {*names_given, *(name for name, _ in (*inputs, *spec.feedback))}
         names = [name for name in input_names(technique) if name not in wired]
         technique = form_of(technique, wired | {n for n in names if _is_found(technique, n, earlier)})
         if lacking := missing_input(technique):
@@ -201,16 +201,16 @@ def _is_found(technique: Technique, name: str, earlier: Sequence[PassSpec]) -> b
     return not decides and any(name in output_names(spec.technique) for spec in earlier)
 
 
-def _unread(graph: Graph, found: Sequence[PassSpec], absent: Mapping[str, str]) -> dict[str, str]:
+def _unread(graph: Graph, specs: Sequence[PassSpec], absent: Mapping[str, str]) -> dict[str, str]:
     """Return the passes that others name and none reads, with the input that one of those lacks."""
     readers: dict[str, list[str]] = {}
     for spec in graph.passes:
         for _, sources in sources_of(spec):
             for source in sources:
                 readers.setdefault(_head(source), []).append(spec.name)
-    read = {_head(source) for spec in found for _, source in spec.inputs} | {*_output_passes(graph)}
+    read = {_head(source) for spec in specs for _, source in spec.inputs} | {*_output_passes(graph)}
     return {
         spec.name: next((absent[name] for name in readers[spec.name] if name in absent), "")
-        for spec in found
+        for spec in specs
         if spec.name in readers.keys() - read
     }

@@ -52,27 +52,27 @@ def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
     """
     if not texts:
         return sketch
-    known: dict[int, Any] = {}  # one technique may be in several passes
+    techniques: dict[int, Any] = {}  # one technique may be in several passes
 
     def reread(technique: Technique) -> Technique:
         """Return the technique itself where none of the texts is in it."""
         if not any(file in texts for file in technique.files):
             return technique
-        if id(technique) not in known:
+        if id(technique) not in techniques:
             again = [(v, reread(v.technique)) for v in technique.variants]
             variants = tuple(
                 replace(v, technique=t) for v, t in again if isinstance(t, ComputeVariant | Graph)
             )
             if isinstance(technique, Graph) and technique.dialect:
-                known[id(technique)] = _read_again(technique, texts, Path(sketch.folder))
+                techniques[id(technique)] = _read_again(technique, texts, Path(sketch.folder))
                 if technique is sketch.graph:  # of a sketch all are at view
-                    known[id(technique)] = replace(known[id(technique)], inputs=(), parameters=())
+                    techniques[id(technique)] = replace(techniques[id(technique)], inputs=(), parameters=())
             elif isinstance(technique, Graph):
-                known[id(technique)] = replace(with_inner(technique, reread), variants=variants)
+                techniques[id(technique)] = replace(with_inner(technique, reread), variants=variants)
             else:
                 kernel = _parsed_again(technique, texts, Path(sketch.folder))
-                known[id(technique)] = replace(kernel, variants=variants)
-        return cast(Technique, known[id(technique)])
+                techniques[id(technique)] = replace(kernel, variants=variants)
+        return cast(Technique, techniques[id(technique)])
 
     graph = cast(Graph, reread(sketch.graph))
     return replace(sketch, graph=graph, main=tuple(path for path in sketch.main if find_targets(graph, path)))
@@ -82,21 +82,21 @@ def _read_again(graph: Graph, texts: Mapping[str, str], folder: Path) -> Graph:
     """Return another tool's shader by its texts."""
     path = Path(graph.path)
     root = GLSL if path.is_relative_to(GLSL) else folder
-    found = read_foreign(path, graph.name, root, Techniques().read, graph.dialect, instead=texts)
-    if found is None:
+    foreign_technique = read_foreign(path, graph.name, root, Techniques().read, graph.dialect, instead=texts)
+    if foreign_technique is None:
         raise DataError("no shader is left of this text", file=path)
-    return found
+    return foreign_technique
 
 
 def _parsed_again(kernel: Kernel, texts: Mapping[str, str], folder: Path) -> Kernel:
     path = Path(kernel.path)
     root = folder if not path.is_relative_to(GLSL) else GLSL
-    found = parse_kernel(kernel.name, read_source(path, (root,), texts))
-    if found is None or isinstance(found, ComputeVariant) != isinstance(kernel, ComputeVariant):
+    result = parse_kernel(kernel.name, read_source(path, (root,), texts))
+    if result is None or isinstance(result, ComputeVariant) != isinstance(kernel, ComputeVariant):
         raise DataError("no kernel is left of this text", file=path)
-    if isinstance(found, ComputeVariant):  # a compute variant has these of its technique
-        return replace(found, outputs=kernel.outputs, accepts=kernel.accepts)
-    return found
+    if isinstance(result, ComputeVariant):  # a compute variant has these of its technique
+        return replace(result, outputs=kernel.outputs, accepts=kernel.accepts)
+    return result
 
 
 @looking_once()
@@ -188,8 +188,8 @@ def _fits(
 
 def _formats(technique: Technique) -> list[str]:
     """Return the formats of a technique's outputs."""
-    found = technique.outputs if isinstance(technique, Kernel) else outputs_with_formats(technique)
-    return [output.format for output in found]
+    outputs = technique.outputs if isinstance(technique, Kernel) else outputs_with_formats(technique)
+    return [output.format for output in outputs]
 
 
 def _refilled(sketch: Sketch, spec: PassSpec, use: str, technique: Technique) -> Sketch:
@@ -217,9 +217,9 @@ def _refilled(sketch: Sketch, spec: PassSpec, use: str, technique: Technique) ->
 
 
 def _values_taken(technique: Technique, values: Iterable[tuple[str, Value]]) -> tuple[tuple[str, Value], ...]:
-    found = []
+    values_kept = []
     for path, value in values:
         with suppress(ParameterError):
             coerced = coerce(resolve(technique, path)[0].parameter, value, path)
-            found.append((path, coerced))
-    return tuple(found)
+            values_kept.append((path, coerced))
+    return tuple(values_kept)

@@ -36,7 +36,7 @@ from playground.sketch.keyframes import EASES
 from playground.sketch.load import load, load_with
 from playground.sketch.model import Camera, Keyframe, Parameter, PassSpec, Sketch, Value
 from playground.sketch.techniques import Techniques
-from playground.sketch.toml_text import Place, TomlPlaces, append, drop, key_text, newline_of, put, text_of
+from playground.sketch.toml_text import KeyPath, TomlPlaces, append, drop, key_text, newline_of, put, text_of
 
 _QUOTED = re.compile(r"(?<=[\"'])[\w.]+(?=[\"'])")
 
@@ -86,14 +86,14 @@ def written_terrain_value(value: Value) -> str:
     return str(value) if isinstance(value, str) else written_number(value)
 
 
-def written_so_far(text: str, table: Place, key: str) -> str:
+def written_so_far(text: str, table: KeyPath, key: str) -> str:
     """Return how a text writes the value of a key so far; "" where it does not."""
     places = TomlPlaces(text)
-    place = places.find(table, key)
-    if place is None:
+    pair_found = places.find(table, key)
+    if pair_found is None:
         # Azimuth and elevation may also be set by two dotted keys; then the key itself has no value.
         return ""
-    pair = places.pairs[place]
+    pair = places.pairs[pair_found]
     return text[pair.value : pair.end]
 
 
@@ -104,39 +104,39 @@ class ReadOnlySketch(DataError):
     """A sketch's file cannot be written to, or is not to be: a copy can."""
 
 
-def saved_text(text: str, file: Sketch, wanted: Sketch) -> str:
-    """Return a sketch's TOML text with what ``wanted`` has over ``file``, which the text says.
+def saved_text(text: str, file: Sketch, edited: Sketch) -> str:
+    """Return a sketch's TOML text with what ``edited`` has over ``file``, which the text says.
 
-    ``wanted`` is ``file`` with other values over it, another camera, other techniques.
+    ``edited`` is ``file`` with other values over it, another camera, other techniques.
     """
     for key in TERRAIN_KEYS:
-        value = getattr(wanted, key)
+        value = getattr(edited, key)
         if value is not None and value != getattr(file, key):
             text = put(text, (), key, written_terrain_value(value))
-    for spec in wanted.graph.passes:
+    for spec in edited.graph.passes:
         was = file.graph.find(spec.name)
         if was is None and spec.use == ARRAY:
             raise SketchError(f"'{spec.name}' is an array, which a sketch's file cannot name", file=file.file)
         if was is None:
-            text = _with_pass(text, wanted, spec)
+            text = _with_pass(text, edited, spec)
             continue
         if spec.use != was.use:
             text = _with_technique(with_view(text, file, spec.name), table_of(file, spec.name), was, spec)
-        text = _with_feed(text, file, wanted, was, spec)
-    if wanted.main != file.main:  # what another technique lacks is gone from it
-        text = put(text, (), "main", f"[{', '.join(map(text_of, wanted.main))}]")
-    for path, value in wanted.overrides:
-        text = _with_value(text, file, wanted, path, value)
-    if wanted.camera != file.camera:
-        text = _with_camera(text, file, wanted.camera)
+        text = _with_feed(text, file, edited, was, spec)
+    if edited.main != file.main:  # what another technique lacks is gone from it
+        text = put(text, (), "main", f"[{', '.join(map(text_of, edited.main))}]")
+    for path, value in edited.overrides:
+        text = _with_value(text, file, edited, path, value)
+    if edited.camera != file.camera:
+        text = _with_camera(text, file, edited.camera)
     return text
 
 
 def with_preset(text: str, sketch: Sketch, name: str, values: Mapping[str, Value]) -> str:
     """Return the text with a preset more, or with the values of the one of that name."""
-    known = [preset.name for preset in sketch.presets]
-    if name in known:
-        table: Place = ("preset", known.index(name), "set")
+    names = [preset.name for preset in sketch.presets]
+    if name in names:
+        table: KeyPath = ("preset", names.index(name), "set")
         for path, value in values.items():
             text = put(text, table, path, written_value(sketch, path, value, ""))
         return text
@@ -144,8 +144,8 @@ def with_preset(text: str, sketch: Sketch, name: str, values: Mapping[str, Value
     return append(text, ["[[preset]]", f"name = {text_of(name)}", "[preset.set]", *pairs])
 
 
-def save(file: Sketch, wanted: Sketch) -> None:
-    """Write ``wanted`` into the file that ``file`` was loaded from.
+def save(file: Sketch, edited: Sketch) -> None:
+    """Write ``edited`` into the file that ``file`` was loaded from.
 
     Raises ``ReadOnlySketch`` for one that cannot be written or belongs to the playground
     itself, ``SketchError`` where the file no longer says what ``file`` does, or cannot
@@ -153,23 +153,23 @@ def save(file: Sketch, wanted: Sketch) -> None:
     """
     path = Path(file.file)
     write_over(
-        path, file, lambda text: saved_text(text, file, _with_files_inside(wanted)), says_same_as(wanted)
+        path, file, lambda text: saved_text(text, file, _with_files_inside(edited)), says_same_as(edited)
     )
 
 
 def save_preset(file: Sketch, name: str, values: Mapping[str, Value]) -> None:
     """Write a preset into the file that ``file`` was loaded from; raises as ``save`` does."""
 
-    def holds(found: Sketch) -> bool:
-        preset = next((p for p in found.presets if p.name == name), None)
+    def holds(reloaded: Sketch) -> bool:
+        preset = next((p for p in reloaded.presets if p.name == name), None)
         found_values = {path: shortest(value) for path, value in preset.values} if preset else {}
         return all(found_values.get(path) == shortest(value) for path, value in values.items())
 
     write_over(Path(file.file), file, lambda text: with_preset(text, file, name, values), holds)
 
 
-def save_copy(file: Sketch, wanted: Sketch, folder: Path) -> Path:
-    """Write ``wanted`` as a sketch in a new folder of ``folder``, with the files it needs; return its path.
+def save_copy(file: Sketch, edited: Sketch, folder: Path) -> Path:
+    """Write ``edited`` as a sketch in a new folder of ``folder``, with the files it needs; return its path.
 
     Its own techniques and images come along; what lies in ``glsl/`` is found there.
     Raises ``DataError`` where nothing can be written, and as ``save`` does.
@@ -178,16 +178,16 @@ def save_copy(file: Sketch, wanted: Sketch, folder: Path) -> Path:
     text = _read(source)
     target = _new_folder(folder, file.name)
     try:
-        for name in _own_files(file, wanted):
+        for name in _own_files(file, edited):
             (target / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(Path(file.folder) / name, target / name)
         path = target / "sketch.toml"
         path.write_bytes(text.encode())
         copied = load(path)
-        graph = replace(wanted.graph, path=copied.graph.path, name=copied.graph.name)
-        moved = replace(wanted, file=copied.file, folder=copied.folder, name=copied.name, graph=graph)
+        graph = replace(edited.graph, path=copied.graph.path, name=copied.graph.name)
+        moved = replace(edited, file=copied.file, folder=copied.folder, name=copied.name, graph=graph)
         inside = _with_files_inside(moved)
-        write_over(path, copied, lambda t: saved_text(t, copied, inside), says_same_as(wanted))
+        write_over(path, copied, lambda t: saved_text(t, copied, inside), says_same_as(edited))
     except (PlaygroundError, OSError) as error:
         shutil.rmtree(target, ignore_errors=True)
         if isinstance(error, OSError):
@@ -199,7 +199,7 @@ def save_copy(file: Sketch, wanted: Sketch, folder: Path) -> Path:
 # ── what is written ──────────────────────────────────────────────────────────
 
 
-def table_of(file: Sketch, name: str) -> Place:
+def table_of(file: Sketch, name: str) -> KeyPath:
     """Return the place of a pass's table."""
     if name == "view":
         return ("view",)
@@ -216,7 +216,7 @@ def with_view(text: str, file: Sketch, name: str) -> str:
     return append(text, ["[view]", f"use = {text_of(spec.use)}", f"inputs = {{ {wires} }}"])
 
 
-def _with_technique(text: str, table: Place, was: PassSpec, now: PassSpec) -> str:
+def _with_technique(text: str, table: KeyPath, was: PassSpec, now: PassSpec) -> str:
     """Return the text with another technique in a pass, without what that has no place for."""
     text = put(text, table, "use", text_of(now.use))
     for part in ("inputs", "values", "feedback"):
@@ -227,19 +227,19 @@ def _with_technique(text: str, table: Place, was: PassSpec, now: PassSpec) -> st
     return text if now.repeat == was.repeat else drop(text, table, "repeat")
 
 
-def _with_pass(text: str, wanted: Sketch, spec: PassSpec) -> str:
+def _with_pass(text: str, edited: Sketch, spec: PassSpec) -> str:
     """Return the text with a pass more: one that feeds a channel."""
     lines = ["[[pass]]", f"name = {text_of(spec.name)}", f"use  = {text_of(spec.use)}"]
     if spec.size is not None:
         lines.append(f"size = {written_size(spec.size)}")
     if spec.values:
-        own = [(path, written_value(wanted, f"{spec.name}.{path}", value, "")) for path, value in spec.values]
+        own = [(path, written_value(edited, f"{spec.name}.{path}", value, "")) for path, value in spec.values]
         pairs = [f"{key_text(path)} = {value}" for path, value in own]
         lines.append(f"set  = {{ {', '.join(pairs)} }}")
     return append(text, lines)
 
 
-def _with_feed(text: str, file: Sketch, wanted: Sketch, was: PassSpec, now: PassSpec) -> str:
+def _with_feed(text: str, file: Sketch, edited: Sketch, was: PassSpec, now: PassSpec) -> str:
     """Return the text with a pass's wires, and of one that feeds a channel its size and values."""
     before = dict(was.inputs)
     for name, source in now.inputs:
@@ -253,7 +253,7 @@ def _with_feed(text: str, file: Sketch, wanted: Sketch, was: PassSpec, now: Pass
         text = put(text, table_of(file, was.name), "size", written_size(now.size))
     for path, value in now.values:
         if (path, value) not in was.values:
-            written = written_value(wanted, f"{now.name}.{path}", value, "")
+            written = written_value(edited, f"{now.name}.{path}", value, "")
             text = put(text, (*table_of(file, was.name), "set"), path, written)
     return text
 
@@ -264,24 +264,24 @@ def written_size(size: tuple[str, str]) -> str:
     return f"[{x}, {y}]"
 
 
-def _with_value(text: str, file: Sketch, wanted: Sketch, path: str, value: Value) -> str:
+def _with_value(text: str, file: Sketch, edited: Sketch, path: str, value: Value) -> str:
     """Return the text with a parameter set, by the name that the file has for it already."""
     name, _, inner = path.partition(".")
-    spec = wanted.graph.find(name)
+    spec = edited.graph.find(name)
     assert spec is not None
     text = with_view(text, file, name)
     mine = {target.path for target in resolve(spec.technique, inner)}
     names = [key for key, _ in spec.values if {t.path for t in resolve(spec.technique, key)} == mine]
-    table = (*table_of(wanted, name), "set")
+    table = (*table_of(edited, name), "set")
     for key in names or [inner]:
-        written = written_value(wanted, f"{name}.{key}", value, written_so_far(text, table, key))
+        written = written_value(edited, f"{name}.{key}", value, written_so_far(text, table, key))
         text = put(text, table, key, written)
     return text
 
 
 def _with_camera(text: str, file: Sketch, camera: Camera) -> str:
     text = with_view(text, file, "view")
-    table: Place = ("view", "camera")
+    table: KeyPath = ("view", "camera")
     for part in fields(Camera):
         value = getattr(camera, part.name)
         if value == getattr(file.camera, part.name):
@@ -361,30 +361,30 @@ def _same_text(a: Sketch, b: Sketch) -> bool:
     return parts(a) == parts(b)
 
 
-def says_same_as(wanted: Sketch) -> Callable[[Sketch], bool]:
+def says_same_as(edited: Sketch) -> Callable[[Sketch], bool]:
     """Return a check that a sketch says what is wanted; files may have moved into its folder."""
-    files = {p for p, v in values_of(wanted).items() if isinstance(v, str)}
+    files = {p for p, v in values_of(edited).items() if isinstance(v, str)}
 
     def parts(sketch: Sketch) -> object:
         values = {path: shortest(value) for path, value in values_of(sketch).items() if path not in files}
         uses = [(spec.name, spec.use, spec.inputs) for spec in sketch.graph.passes]
         return values, uses, sketch.camera, [getattr(sketch, key) for key in TERRAIN_KEYS]
 
-    return lambda found: parts(found) == parts(wanted)
+    return lambda reloaded: parts(reloaded) == parts(edited)
 
 
-def _with_files_inside(wanted: Sketch) -> Sketch:
+def _with_files_inside(edited: Sketch) -> Sketch:
     """Return the sketch with every file from elsewhere copied into its folder, as it may name no others."""
-    folder, overrides = Path(wanted.folder), []
-    for path, value in wanted.overrides:
-        parameter = resolve(wanted.graph, path)[0].parameter
+    folder, overrides = Path(edited.folder), []
+    for path, value in edited.overrides:
+        parameter = resolve(edited.graph, path)[0].parameter
         if parameter.widget.kind == "file" and isinstance(value, str) and value:
             if leads_outside(value, folder, parameter.file):
                 value = _copied_into(folder, Path(value))
             elif Path(value).is_absolute():
                 value = Path(value).relative_to(folder).as_posix()
         overrides.append((path, value))
-    return replace(wanted, overrides=tuple(overrides))
+    return replace(edited, overrides=tuple(overrides))
 
 
 def _copied_into(folder: Path, source: Path) -> str:
@@ -433,49 +433,49 @@ def _new_folder(folder: Path, name: str) -> Path:
     raise DataError("has ten thousand copies of this sketch", file=folder)
 
 
-def _own_files(file: Sketch, wanted: Sketch) -> list[str]:
+def _own_files(file: Sketch, edited: Sketch) -> list[str]:
     """Return the files that a sketch needs in its own folder, relative to it, without its TOML."""
-    folder, found = Path(file.folder), dict[str, None]()
-    texts = [Path(name) for name in (*file.files, *wanted.files)]
-    values = [v for v in values_of(wanted).values() if isinstance(v, str) and v]
+    folder, files = Path(file.folder), dict[str, None]()
+    texts = [Path(name) for name in (*file.files, *edited.files)]
+    values = [v for v in values_of(edited).values() if isinstance(v, str) and v]
     data = [file for value in values for file in (folder / value, *sidecars(folder / value))]
     for path in (*texts, *data):
         if path.is_file() and path.is_relative_to(folder) and str(path) != file.file:
-            found[path.relative_to(folder).as_posix()] = None
-    return list(found)
+            files[path.relative_to(folder).as_posix()] = None
+    return list(files)
 
 
-def save_keyframes(file: Sketch, wanted: Sequence[Keyframe]) -> None:
+def save_keyframes(file: Sketch, keyframes: Sequence[Keyframe]) -> None:
     """Write keyframes into the file that ``file`` was loaded from, in place of those that it has.
 
     They are written by time. Raises ``ReadOnlySketch`` and ``SketchError`` as ``save.save``
     does; of times that are the same, and of keyframes that do not fit each other, too.
     """
-    frames = tuple(sorted(wanted, key=lambda keyframe: keyframe.time))
-    for one, other in pairwise(frames):
-        if one.time == other.time:
-            raise SketchError(f"there is a keyframe at {one.time:g} s already", file=shown(file.file))
+    frames = tuple(sorted(keyframes, key=lambda keyframe: keyframe.time))
+    for frame, other in pairwise(frames):
+        if frame.time == other.time:
+            raise SketchError(f"there is a keyframe at {frame.time:g} s already", file=shown(file.file))
     says_the_rest = says_same_as(file)
 
-    def is_right(found: Sketch) -> bool:
+    def is_right(reloaded: Sketch) -> bool:
         shots = [replace(shot, line=0) for shot in file.shots]
         return (
-            _plain(found.keyframes) == _plain(frames)
-            and says_the_rest(found)
-            and found.presets == file.presets
-            and [replace(shot, line=0) for shot in found.shots] == shots
+            _plain(reloaded.keyframes) == _plain(frames)
+            and says_the_rest(reloaded)
+            and reloaded.presets == file.presets
+            and [replace(shot, line=0) for shot in reloaded.shots] == shots
         )
 
     write_over(Path(file.file), file, lambda text: with_keyframes(text, file, frames), is_right)
 
 
-def with_keyframes(text: str, file: Sketch, wanted: Sequence[Keyframe]) -> str:
+def with_keyframes(text: str, file: Sketch, keyframes: Sequence[Keyframe]) -> str:
     """Return a sketch's text, which says what ``file`` does, with these keyframes; they are by time."""
     if len(_blocks(text)) != len(file.keyframes):
         message = "its keyframes are written as one list; write each as a [[keyframe]] to change them here"
         raise SketchError(message, file=shown(file.file))
-    before = _matched(file.keyframes, wanted)
-    for keyframe, index in zip(wanted, before, strict=True):
+    before = _matched(file.keyframes, keyframes)
+    for keyframe, index in zip(keyframes, before, strict=True):
         if index is not None:
             text = _changed(text, file, ("keyframe", index), file.keyframes[index], keyframe)
     spans = _blocks(text)
@@ -483,7 +483,7 @@ def with_keyframes(text: str, file: Sketch, wanted: Sequence[Keyframe]) -> str:
     newline = newline_of(text)
     made = [
         blocks[index] if index is not None else _new_block(file, keyframe, newline)
-        for keyframe, index in zip(wanted, before, strict=True)
+        for keyframe, index in zip(keyframes, before, strict=True)
     ]
     if spans:
         return _placed(text, spans, made, newline)
@@ -494,27 +494,27 @@ def with_keyframes(text: str, file: Sketch, wanted: Sequence[Keyframe]) -> str:
 
 def _placed(text: str, spans: list[tuple[int, int]], made: list[str], newline: str) -> str:
     """Return the text with blocks in the places of its own: one each, what is left after the last."""
-    found, at = "", 0
+    text_placed, at = "", 0
     for number, (start, end) in enumerate(spans):
-        found += text[at:start]
+        text_placed += text[at:start]
         at = end
         here = made[number:] if number == len(spans) - 1 else made[number : number + 1]
         for further, block in enumerate(here):
-            found += newline if further else ""
-            found += block if block.endswith("\n") else block + newline
-        if not here and found.endswith(newline * 2):
+            text_placed += newline if further else ""
+            text_placed += block if block.endswith("\n") else block + newline
+        if not here and text_placed.endswith(newline * 2):
             # No two empty lines where a block was, and none at the end.
             if text[at:].startswith(newline):
                 at += len(newline)
             elif not text[at:].strip():
-                found = found[: -len(newline)]
-    return found + text[at:]
+                text_placed = text_placed[: -len(newline)]
+    return text_placed + text[at:]
 
 
 def _blocks(text: str) -> list[tuple[int, int]]:
     """Return where each keyframe's block begins and ends, without the empty lines after it."""
     headers = [(text.rfind("\n", 0, h.start) + 1, h) for h in TomlPlaces(text).headers]
-    found = []
+    blocks_found = []
     for number, (start, header) in enumerate(headers):
         if not header.is_list or header.keys != ["keyframe"]:
             continue
@@ -522,8 +522,8 @@ def _blocks(text: str) -> list[tuple[int, int]]:
         end = next((_above(text, s) for s in following), len(text))
         last = start + len(text[start:end].rstrip())  # the end of the last line that is not empty
         line_end = text.find("\n", last, end)
-        found.append((_above(text, start), line_end + 1 if line_end >= 0 else end))
-    return found
+        blocks_found.append((_above(text, start), line_end + 1 if line_end >= 0 else end))
+    return blocks_found
 
 
 def _above(text: str, start: int) -> int:
@@ -536,19 +536,19 @@ def _above(text: str, start: int) -> int:
     return start
 
 
-def _matched(known: Sequence[Keyframe], wanted: Sequence[Keyframe]) -> list[int | None]:
+def _matched(keyframes_in_file: Sequence[Keyframe], keyframes: Sequence[Keyframe]) -> list[int | None]:
     """Return which known keyframe each wanted one was: the same, else at its time, else with its values."""
-    left = dict(enumerate(_plain(known)))
-    found: list[int | None] = [None] * len(wanted)
+    left = dict(enumerate(_plain(keyframes_in_file)))
+    matches: list[int | None] = [None] * len(keyframes)
     for names in (["time", "camera", "values", "ease"], ["time"], ["camera", "values"]):
         key = attrgetter(*names)
-        for number, keyframe in enumerate(_plain(wanted)):
-            if found[number] is None:
+        for number, keyframe in enumerate(_plain(keyframes)):
+            if matches[number] is None:
                 hit = next((i for i, other in left.items() if key(other) == key(keyframe)), None)
                 if hit is not None:
-                    found[number] = hit
+                    matches[number] = hit
                     del left[hit]
-    return found
+    return matches
 
 
 def _plain(keyframes: Sequence[Keyframe]) -> list[Keyframe]:
@@ -560,24 +560,24 @@ def _plain(keyframes: Sequence[Keyframe]) -> list[Keyframe]:
     return [replace(k, line=0, camera=tuple(sorted(k.camera)), values=values(k)) for k in keyframes]
 
 
-def _changed(text: str, file: Sketch, place: Place, was: Keyframe, now: Keyframe) -> str:
+def _changed(text: str, file: Sketch, key_path: KeyPath, was: Keyframe, now: Keyframe) -> str:
     """Return the text with what differs between two keyframes written over in the first one's table."""
     if now.time != was.time:
-        text = put(text, place, "time", repr(float(now.time)))
+        text = put(text, key_path, "time", repr(float(now.time)))
     cameras, values = dict(was.camera), dict(was.values)
     order = [part.name for part in fields(Camera)]
     for name, number in sorted(now.camera, key=lambda pair: order.index(pair[0])):
         if name not in cameras or cameras[name] != number:
-            text = put(text, (*place, "camera"), name, written_number(number))
+            text = put(text, (*key_path, "camera"), name, written_number(number))
     for name, value in now.values:
         if name not in values or values[name] != value:
-            table = (*place, "set")
+            table = (*key_path, "set")
             text = put(text, table, name, written_value(file, name, value, written_so_far(text, table, name)))
     for name in cameras.keys() - dict(now.camera).keys():
-        text = drop(text, (*place, "camera"), name)
+        text = drop(text, (*key_path, "camera"), name)
     for name in values.keys() - dict(now.values).keys():
-        text = drop(text, (*place, "set"), name)
-    return text if now.ease == was.ease else put(text, place, "ease", text_of(now.ease))
+        text = drop(text, (*key_path, "set"), name)
+    return text if now.ease == was.ease else put(text, key_path, "ease", text_of(now.ease))
 
 
 def _new_block(file: Sketch, keyframe: Keyframe, newline: str) -> str:

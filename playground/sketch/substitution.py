@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from playground.memo import GRAPHS
 from playground.sketch.assign import effective_values, resolve
-from playground.sketch.flat import Flat, Leaf, Loop, Node, Ref, Shape, Source, leaves_of
+from playground.sketch.flat import Flat, GraphShape, Leaf, Loop, Node, Ref, Source, leaves_of
 from playground.sketch.flatten import (
     Flattener,
     flatten,
@@ -36,23 +36,23 @@ def substitute_variants(
     flat: Flat,
     kinds: Collection[str],
     *,
-    wanted: str = "",
+    text: str = "",
     stopped: tuple[str, ...] = (),
     refused: tuple[str, ...] = (),
 ) -> Flat:
     """Return a canonical flat sketch with verified fast variants of some ``kinds`` in place of techniques.
 
-    None replaces a technique around the pass that is ``wanted`` or around one that is ``stopped``, nor
+    None replaces a technique around the pass that is ``text`` or around one that is ``stopped``, nor
     one that is ``stopped`` or ``refused`` itself.
     """
     if not kinds:
         return flat
-    limits = _Limits(frozenset(kinds), wanted.partition(":")[0], stopped, refused, flat.set_inside)
+    limits = _Limits(frozenset(kinds), text.partition(":")[0], stopped, refused, flat.set_inside)
     shape = _substituted(flat.shape, limits)
     values = flat.values
     if plain := {path for path, name, default in shape.lacking if values[join(path, name)] != default}:
         more = (*refused, *sorted(plain))
-        return substitute_variants(flat, kinds, wanted=wanted, stopped=stopped, refused=more)
+        return substitute_variants(flat, kinds, text=text, stopped=stopped, refused=more)
     if shape.constants:
         values = values | shape.constants | {path: values[source] for path, source in shape.copied.items()}
     return replace(flat, shape=shape, values=values)
@@ -65,8 +65,8 @@ def omissions(sketch: Sketch, kinds: Collection[str]) -> tuple[Omission, ...]:
 
 
 def omitted(sketch: Sketch, kinds: Collection[str]) -> tuple[str, ...]:
-    """Return a sentence for each of the ``omissions`` that follows from no request."""
-    return tuple(str(one) for one in omissions(sketch, kinds) if one.is_news)
+    """Return a message for each of the ``omissions`` that follows from no request."""
+    return tuple(str(omission) for omission in omissions(sketch, kinds) if omission.is_news)
 
 
 class _Limits(NamedTuple):
@@ -80,7 +80,7 @@ class _Limits(NamedTuple):
 
 
 @GRAPHS.cached(identities=1, weight=256)
-def _substituted(shape: Shape, limits: _Limits) -> Shape:
+def _substituted(shape: GraphShape, limits: _Limits) -> GraphShape:
     made = _Substitution(shape, limits)
     for path in shape.specs:  # a technique before what is inside it
         made.consider(path)
@@ -90,7 +90,7 @@ def _substituted(shape: Shape, limits: _Limits) -> Shape:
 
 
 class _Substitution:
-    def __init__(self, shape: Shape, limits: _Limits) -> None:
+    def __init__(self, shape: GraphShape, limits: _Limits) -> None:
         self.canonical, self.limits = shape, limits
         self.found = Flattener(shape)
         self.leaves = {leaf.path: leaf for leaf in leaves_of(shape.written)}
@@ -131,7 +131,7 @@ class _Substitution:
         """Return why a fast variant does not run in place of the technique at a path; "" where it does."""
         if path in self.limits.refused:
             return "the plan refuses it"
-        if any(_is_at(one, path) for one in self.limits.stopped):
+        if any(_is_at(item, path) for item in self.limits.stopped):
             return "it is stopped early"
         outputs = {*self.found.outputs[path].values()}
         read = (s for reader, s in self.reads if _is_at(s.path, path) and not _is_at(reader, path))
@@ -151,41 +151,41 @@ class _Substitution:
     def _substitute(
         self, path: str, spec: PassSpec, variant: Variant, wires: dict[str, Source | None]
     ) -> None:
-        technique, fast, found = spec.technique, variant.technique, self.found
-        before = found.outputs[path]
+        technique, fast, result = spec.technique, variant.technique, self.found
+        before = result.outputs[path]
         if variant.kind == "draws":
             self.lacking += [(path, *own) for own in _defaults_of_lacking(technique, fast)]
         if isinstance(fast, Kernel):
-            found.paths[path] = tuple((p.name, _own(technique, path, p.name)) for p in fast.parameters)
+            result.paths[path] = tuple((p.name, _own(technique, path, p.name)) for p in fast.parameters)
             self.replaced[path] = [leaf_of(fast, spec, path, wires)]
             now = {name: Ref(path, name) for name in before}
         else:
-            place = join(path, INSIDE)
-            found.specs[place] = PassSpec(INSIDE, spec.use, fast, file=spec.file, line=spec.line)
-            nodes = self.replaced[path] = found.expand(fast, place, wires)
-            now = found.outputs_of(fast, place)
+            text = join(path, INSIDE)
+            result.specs[text] = PassSpec(INSIDE, spec.use, fast, file=spec.file, line=spec.line)
+            nodes = self.replaced[path] = result.expand(fast, text, wires)
+            now = result.outputs_of(fast, text)
             self.leaves |= {leaf.path: leaf for leaf in leaves_of(nodes)}
             self.reads += _reads(nodes)
-            self.constants |= {join(place, name): value for name, value in effective_values(fast).items()}
+            self.constants |= {join(text, name): value for name, value in effective_values(fast).items()}
             for export in fast.parameters:
                 for target in resolve(fast, export.name):
-                    self.copied[join(place, target.path)] = _own(technique, path, export.name)
+                    self.copied[join(text, target.path)] = _own(technique, path, export.name)
         self.renamed |= {old: now[name] for name, old in before.items() if old != now[name]}
-        for inside in [one for one in found.specs if one.startswith(f"{join(path, INSIDE)}.")]:
+        for inside in [spec for spec in result.specs if spec.startswith(f"{join(path, INSIDE)}.")]:
             self.consider(inside)
 
-    def shape(self) -> Shape:
+    def shape(self) -> GraphShape:
         """Return the shape with what was substituted."""
         nodes = tuple(self._nodes(self.canonical.written))
-        found = self.found
+        result = self.found
         there = {leaf.path for leaf in leaves_of(nodes)}
-        return Shape(
-            nodes=in_running_order(nodes, found.graphs),
-            specs=found.specs,
-            graphs=found.graphs,
-            outputs=self._present({path: found.outputs[path] for path in self.canonical.outputs}),
-            wires=self._present(found.wires),
-            paths={path: own for path, own in found.paths.items() if path in there},
+        return GraphShape(
+            nodes=in_running_order(nodes, result.graphs),
+            specs=result.specs,
+            graphs=result.graphs,
+            outputs=self._present({path: result.outputs[path] for path in self.canonical.outputs}),
+            wires=self._present(result.wires),
+            paths={path: own for path, own in result.paths.items() if path in there},
             rules=self.canonical.rules,
             written=nodes,
             constants=self.constants,
@@ -204,20 +204,20 @@ class _Substitution:
 
     def _nodes(self, nodes: Collection[Node]) -> list[Node]:
         """Return nodes with those of fast variants in place of their techniques', in an order that runs."""
-        found: list[Node] = []
-        placed: set[str] = set()
+        result: list[Node] = []
+        names: set[str] = set()
         for node in nodes:
             path = self._replaced_around(node.path)
             if path is None and isinstance(node, Leaf) and node.path in self.replaced:
                 path = node.path
             if path is None and isinstance(node, Loop):
-                found.append(self._rewired(replace(node, body=tuple(self._nodes(node.body)))))
+                result.append(self._rewired(replace(node, body=tuple(self._nodes(node.body)))))
             elif path is None:
-                found.append(self._rewired(node))
-            elif path not in placed:
-                placed.add(path)
-                found += self._nodes_of(path)
-        return ordered(found, self.canonical.graphs[""]) if placed else found
+                result.append(self._rewired(node))
+            elif path not in names:
+                names.add(path)
+                result += self._nodes_of(path)
+        return ordered(result, self.canonical.graphs[""]) if names else result
 
     def _nodes_of(self, path: str) -> list[Node]:
         """Return the nodes of a fast variant, in which others may be substituted."""
@@ -251,18 +251,18 @@ def _reads(nodes: Collection[Node]) -> Iterator[tuple[str, Ref]]:
     """Yield the textures that nodes read, each with the path of its reader."""
     for node in nodes:
         if isinstance(node, Loop):
-            found = [source for _, first, ref in node.feedback for source in (first, ref)]
+            paths = [source for _, first, ref in node.feedback for source in (first, ref)]
             yield from _reads(node.body)
         else:
-            found = [source for _, source in node.inputs]
-        yield from ((node.path, source) for source in found if isinstance(source, Ref))
+            paths = [source for _, source in node.inputs]
+        yield from ((node.path, source) for source in paths if isinstance(source, Ref))
 
 
 def _is_at(path: str, technique: str) -> bool:
     return path == technique or path.startswith(f"{technique}.")
 
 
-def _around_hidden(shape: Shape, prefix: str, path: str) -> Iterator[str]:
+def _around_hidden(shape: GraphShape, prefix: str, path: str) -> Iterator[str]:
     """Yield the techniques around a parameter, by its path inside one, that do not export it."""
     while "." in path:
         first, _, path = path.partition(".")
@@ -273,8 +273,8 @@ def _around_hidden(shape: Shape, prefix: str, path: str) -> Iterator[str]:
 
 def _defaults_of_lacking(technique: Technique, variant: Technique) -> list[tuple[str, Value]]:
     """Return the values that a technique has and its fast variant lacks: paths inside, and defaults."""
-    values, known = effective_values(technique), {one.name for one in variant.parameters}
-    names = [one.name for one in technique.parameters if one.name not in known]
+    values, names_known = effective_values(technique), {parameter.name for parameter in variant.parameters}
+    names = [parameter.name for parameter in technique.parameters if parameter.name not in names_known]
     return [(target.path, values[target.path]) for name in names for target in resolve(technique, name)]
 
 

@@ -40,8 +40,8 @@ class _Entry:
     def is_fresh(self) -> bool:
         """Return whether all files that it was read from are unchanged."""
         return all(
-            (signature_in_load(path) == known and path not in self.unproven) or self._has_same_text(path)
-            for path, known in self.places.items()
+            (signature_in_load(path) == signature and path not in self.unproven) or self._has_same_text(path)
+            for path, signature in self.places.items()
         )
 
     def _has_same_text(self, path: Path) -> bool:
@@ -70,24 +70,24 @@ class TechniqueCache(Techniques):
     def read(self, use: str, folder: Path, root: Path) -> Technique:
         """Return what ``use`` names, as ``read_technique`` does."""
         name = (use, folder, root) if use.startswith("./") else (use, GLSL, GLSL)
-        known = self._now.get(name) or self._cached.get(name)
-        if known is not None and name not in self._now and not known.is_fresh():
-            known = None
-        if known is None or not self.has_room_for(known.depth):
-            known = self._read_again(name, use, folder, root)
+        cached = self._now.get(name) or self._cached.get(name)
+        if cached is not None and name not in self._now and not cached.is_fresh():
+            cached = None
+        if cached is None or not self.has_room_for(cached.depth):
+            cached = self._read_again(name, use, folder, root)
         else:
-            note_again(known.places)
-            self.deepest = max(self.deepest, len(self.open) + known.depth)
-        self._now[name] = known
-        return known.technique
+            note_again(cached.places)
+            self.deepest = max(self.deepest, len(self.open) + cached.depth)
+        self._now[name] = cached
+        return cached.technique
 
     def _read_again(self, name: _Name, use: str, folder: Path, root: Path) -> _Entry:
         around, self.deepest = self.deepest, len(self.open)
         began = time.time_ns()
-        self.known.clear()  # it would not note where it read from
+        self.techniques.clear()  # it would not note where it read from
         try:
             with noting_part() as places:
-                found = super().read(use, folder, root)
+                technique = super().read(use, folder, root)
         finally:
             self.deepest, depth = max(around, self.deepest), self.deepest - len(self.open)
         in_load = texts_of_load() or {}
@@ -95,6 +95,8 @@ class TechniqueCache(Techniques):
         texts = {key: in_load[key] for key in keys if key in in_load}
         rested = 0 if os.name == "nt" else began - RESTED * 1e9
         unproven = frozenset(
-            path for path, _ in texts if (known := places[path]) is None or known.latest >= rested
+            path
+            for path, _ in texts
+            if (signature_known := places[path]) is None or signature_known.latest >= rested
         )
-        return self._cached.put(name, _Entry(found, places, texts, unproven, depth))
+        return self._cached.put(name, _Entry(technique, places, texts, unproven, depth))

@@ -113,7 +113,7 @@ class Techniques:
 
     def __init__(self, dialect: str = "") -> None:
         self.dialect = dialect  # of a shader that is opened alone; "": by its signs
-        self.known: dict[tuple[str, Path, Path], Technique] = {}
+        self.techniques: dict[tuple[str, Path, Path], Technique] = {}
         self.open: list[Path] = []  # techniques of several passes that are being read, outermost first
         self.deepest = 0  # the most that were open at once
 
@@ -124,22 +124,22 @@ class Techniques:
     def read(self, use: str, folder: Path, root: Path) -> Technique:
         """Return what ``use`` names, as ``read_technique`` does."""
         named = (use, folder, root) if use.startswith("./") else (use, GLSL, GLSL)
-        if named not in self.known:
-            self.known[named] = self._read(*_locate(use, folder, root), use)
-        return self.known[named]
+        if named not in self.techniques:
+            self.techniques[named] = self._read(*_locate(use, folder, root), use)
+        return self.techniques[named]
 
     def _read(self, path: Path, limit: Path, use: str) -> Technique:
         if path.suffix == ".toml":
             return self.graph(path, use, limit)
-        found = self.shader(path, limit)
-        if found is None:
+        technique = self.shader(path, limit)
+        if technique is None:
             raise SketchError(f"'{use}' is a library file: it has no #pragma kernel, source or draw to run")
-        return found
+        return technique
 
     def shader(self, path: Path, folder: Path, dialect: str = "") -> Technique | None:
         """Return a shader file's kernel, or the passes of another tool's shader; None for a library file.
 
-        ``dialect`` is that of another tool, or "" to go by the text.
+        ``dialect`` is that of another tool, or "" to depend on the text.
         """
         path, kernel = _followed(path), None
         wrong: ShaderError | EncodingError | None = None
@@ -153,11 +153,11 @@ class Techniques:
             and path.suffix != ".comp"
             and dialect != OWN
         ):
-            found = read_foreign(path, name_of(path), folder, self.read, dialect)
-            if found is not None:
-                for _, own in found.kernels:
+            technique = read_foreign(path, name_of(path), folder, self.read, dialect)
+            if technique is not None:
+                for _, own in technique.kernels:
                     _check_files(own, folder)
-                return found
+                return technique
         if wrong is not None:
             raise wrong
         return kernel
@@ -207,17 +207,17 @@ class Techniques:
     def _variant(self, path: Path, of: Technique, root: Path) -> Variant:
         if not is_inside(path, (root, GLSL)):
             raise SketchError("lies outside the sketch's own folder and glsl/", file=path)
-        found: ComputeVariant | Graph
+        technique: ComputeVariant | Graph
         if path.suffix == ".comp":
-            found = _compute_variant(path, root, of)
+            technique = _compute_variant(path, root, of)
         else:
             plain = without_variants(self._graph(path, name_of(path), root))
             assert isinstance(plain, Graph)
-            found = plain
-        agreed, record = verified(Path(found.path))
+            technique = plain
+        agreed, record = verified(Path(technique.path))
         if agreed is None or agreed[0] == content_of(of):
-            check_shape(found, of)  # else it is left out anyway
-        return Variant(found, agreed, record)
+            check_shape(technique, of)  # else it is left out anyway
+        return Variant(technique, agreed, record)
 
 
 def _followed(path: Path) -> Path:
@@ -230,7 +230,7 @@ def name_of(path: Path) -> str:
 
 
 class WithLibrary(Techniques):
-    """Reads a sketch's own techniques anew, and those of ``glsl/`` once for all who share ``library``."""
+    """Reads a sketch's own techniques again, and those of ``glsl/`` once for all who share ``library``."""
 
     def __init__(self, library: Techniques) -> None:
         super().__init__()
@@ -249,12 +249,12 @@ def check_kernel_count(graph: Graph) -> None:
         raise graph.error(f"{count} passes with those inside; {_MAX_KERNELS} is the most")
 
 
-def _count(technique: Technique, known: dict[int, int]) -> int:
+def _count(technique: Technique, counts: dict[int, int]) -> int:
     if isinstance(technique, Kernel):
         return 1
-    if id(technique) not in known:
-        known[id(technique)] = sum(_count(spec.technique, known) for spec in technique.passes)
-    return known[id(technique)]
+    if id(technique) not in counts:
+        counts[id(technique)] = sum(_count(spec.technique, counts) for spec in technique.passes)
+    return counts[id(technique)]
 
 
 def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
@@ -284,20 +284,20 @@ def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
 
 
 def _compute_variant(path: Path, folder: Path, of: Technique) -> ComputeVariant:
-    found = parsed_kernel(path.stem, path, (folder,))
-    if not isinstance(found, ComputeVariant):
+    kernel = parsed_kernel(path.stem, path, (folder,))
+    if not isinstance(kernel, ComputeVariant):
         message = 'a .comp next to a kernel begins with #pragma compute(groups = "…", agrees = "…")'
         raise SketchError(message, file=path)
     outputs = of.outputs if isinstance(of, Kernel) else outputs_with_formats(of)
-    return replaced(found, outputs=outputs, accepts=_accepts(of))
+    return replaced(kernel, outputs=outputs, accepts=_accepts(of))
 
 
 def _accepts(technique: Kernel | Graph) -> str:
     """Return the sizes that a technique takes: those of the first kernel in it that asks for some."""
     if isinstance(technique, Kernel):
         return technique.accepts
-    found = (_accepts(spec.technique) for spec in technique.passes if spec.size is None)
-    return next(filter(None, found), "")
+    rules = (_accepts(spec.technique) for spec in technique.passes if spec.size is None)
+    return next(filter(None, rules), "")
 
 
 def _check_files(kernel: Kernel, folder: Path) -> None:

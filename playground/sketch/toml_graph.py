@@ -27,7 +27,7 @@ from playground.sketch.assign import (
 from playground.sketch.model import Export, Graph, PassSpec, Sketch, Technique, Value
 from playground.sketch.presence import sources_of
 from playground.sketch.toml_table import TomlFile
-from playground.sketch.toml_text import Place
+from playground.sketch.toml_text import KeyPath
 
 TECHNIQUE_KEYS = tuple(key for key in toml_table.TECHNIQUE if key not in toml_table.SKETCH)
 """What a technique's TOML may hold and a sketch's may not."""
@@ -95,92 +95,92 @@ def read_passes(file: TomlFile, read: Read, *, inside: bool = False) -> tuple[Pa
     own = str(view.get("use", "")) if isinstance(view, dict) else ""
     if not tables and not own.startswith("./"):  # a shader of the sketch's own may be the whole picture
         raise file.error('no passes; a [[pass]] with name = "…" and use = "…" was expected', "pass")
-    found: dict[str, PassSpec] = {}
+    specs: dict[str, PassSpec] = {}
     for index, table in enumerate(tables):
-        place = ("pass", index)
-        file.only(table, toml_table.PASS, *place)
-        name = file.take(table, "name", str, "", *place)
+        position = ("pass", index)
+        file.only(table, toml_table.PASS, *position)
+        name = file.take(table, "name", str, "", *position)
         wrong = ""
         if not name.isidentifier():
             wrong = f"name = {spell(name)}: a pass needs a name of letters, digits and _"
-        elif name in found:
+        elif name in specs:
             wrong = f"a second pass named '{name}'"
         elif name == "view":
             wrong = "a pass may not be named 'view'; that is the [view] table's name"
         if wrong:
-            raise file.error(wrong, *place, "name")
-        found[name] = read_pass(file, table, place, name, read, inside=inside)
-    return tuple(found.values())
+            raise file.error(wrong, *position, "name")
+        specs[name] = read_pass(file, table, position, name, read, inside=inside)
+    return tuple(specs.values())
 
 
 def read_pass(
     file: TomlFile,
     table: Mapping[str, Any],
-    place: Place,
+    key_path: KeyPath,
     name: str,
     read: Read,
     *,
     inside: bool = False,
 ) -> PassSpec:
     """Return what one table, a pass's or the view's, says of a pass; ``inside`` as in ``read_passes``."""
-    use = file.take(table, "use", str, "", *place)
+    use = file.take(table, "use", str, "", *key_path)
     if not use:
-        raise file.error(f"pass '{name}' needs use = \"…\", the technique that fills it", *place, "use")
+        raise file.error(f"pass '{name}' needs use = \"…\", the technique that fills it", *key_path, "use")
     try:
         technique = read(use, file.path.parent, file.root)
     except SketchError as error:
         if error.diagnostics[0].file:
             raise
-        raise file.error(error.diagnostics[0].message, *place, "use") from None
-    repeat = _repeat(file, table, place)
-    feedback = file.texts(table, "feedback", *place)
+        raise file.error(error.diagnostics[0].message, *key_path, "use") from None
+    repeat = _repeat(file, table, key_path)
+    feedback = file.texts(table, "feedback", *key_path)
     if feedback and not repeat:
-        raise file.error(f"pass '{name}': feedback needs a repeat, as repeat = 8", *place, "feedback")
+        raise file.error(f"pass '{name}': feedback needs a repeat, as repeat = 8", *key_path, "feedback")
     if repeat and not feedback:
         example = ', as feedback = { water = "water" }'
         message = f"pass '{name}': repeat needs feedback{example}: without, each step gives the same"
-        raise file.error(message, *place, "repeat")
-    sources = file.sources(table, "inputs", *place)
+        raise file.error(message, *key_path, "repeat")
+    sources = file.sources(table, "inputs", *key_path)
     choices = tuple((name, texts) for name, texts in sources if isinstance(texts, tuple))
     if choices and not inside:
         message = "one source each: all passes of a sketch are present, so none is needed in place of another"
-        raise file.error(f"pass '{name}': {choices[0][0]}: {message}", *place, "inputs", choices[0][0])
+        raise file.error(f"pass '{name}': {choices[0][0]}: {message}", *key_path, "inputs", choices[0][0])
     inputs = tuple((name, text if isinstance(text, str) else text[0]) for name, text in sources)
     for key, pairs in (("inputs", inputs), ("feedback", feedback)):
-        for wanted, _ in pairs:
-            if not wiring.takes_input(technique, wanted):
+        for input_name, _ in pairs:
+            if not wiring.takes_input(technique, input_name):
                 valid = [*wiring.input_names(technique), *_inner_inputs(technique)]
-                message = f"{use} has no input '{wanted}'{nearest(wanted, valid)}"
-                raise file.error(message, *place, key, wanted)
-    for wanted, output in feedback:
+                message = f"{use} has no input '{input_name}'{nearest(input_name, valid)}"
+                raise file.error(message, *key_path, key, input_name)
+    for input_name, output in feedback:
         if output not in wiring.output_names(technique):
             hint = nearest(output, wiring.output_names(technique))
-            raise file.error(f"{use} has no output '{output}'{hint}", *place, "feedback", wanted)
+            raise file.error(f"{use} has no output '{output}'{hint}", *key_path, "feedback", input_name)
 
-    def read_value(path: str, given: object) -> Value:
-        return coerce(resolve(technique, path)[0].parameter, given, path)
+    def read_value(path: str, value: object) -> Value:
+        return coerce(resolve(technique, path)[0].parameter, value, path)
 
-    values = _read_values(file, table, place, technique, read_value, f"pass '{name}'")
+    values = _read_values(file, table, key_path, technique, read_value, f"pass '{name}'")
     return PassSpec(
         name=name,
         use=use,
         technique=technique,
         inputs=inputs,
         values=values,
-        size=_size(file, table, place),
+        size=_size(file, table, key_path),
         repeat=repeat,
         feedback=feedback,
         choices=choices,
         file=shown(file.path),
-        line=file.line(*place),
-        set_lines=_set_lines(file, place, table.get("set", {}), technique),
+        line=file.line(*key_path),
+        set_lines=_set_lines(file, key_path, table.get("set", {}), technique),
     )
 
 
 def _read_values(
     file: TomlFile,
     table: Mapping[str, Any],
-    place: Place,
+    key_path: KeyPath,
     technique: Technique,
     read_value: Callable[[str, object], Value],
     who: str,
@@ -192,44 +192,44 @@ def _read_values(
     A value that no parameter takes is an error, or, where there is a list ``left_out``, a warning in it.
     """
     try:
-        given = flat_values(technique, file.take(table, "set", dict, {}, *place))
+        values_given = flat_values(technique, file.take(table, "set", dict, {}, *key_path))
     except ParameterError as error:
-        raise file.error(f"{who}: {error.diagnostics[0].message}", *place, "set") from None
-    found = []
-    for path, raw in given.items():
+        raise file.error(f"{who}: {error.diagnostics[0].message}", *key_path, "set") from None
+    values_read = []
+    for path, raw in values_given.items():
         if why := why_absent(technique, path):
-            file.warn(f"{who}: {path}: {why}", *place, "set", path)
+            file.warn(f"{who}: {path}: {why}", *key_path, "set", path)
             continue
         try:
             value = read_value(path, raw)
         except ParameterError as error:
             message = f"{who}: {error.diagnostics[0].message}"
             if left_out is None or path in TERRAIN_KEYS:
-                raise file.error(message, *place, "set", path) from None
+                raise file.error(message, *key_path, "set", path) from None
             left_out.append(message)
-            file.warn(f"{who} leaves out {path}: {error.diagnostics[0].message}", *place, "set", path)
+            file.warn(f"{who} leaves out {path}: {error.diagnostics[0].message}", *key_path, "set", path)
             continue
         parameters = [target.parameter for target in find_targets(technique, path)[:1]]
         files = [parameter.file for parameter in parameters if parameter.widget.kind == "file"]
         if value and any(leads_outside(str(value), file.root, declared_in) for declared_in in files):
             message = f"{who}: {path} = {spell(value)} lies outside the sketch's own folder and glsl/"
-            raise file.error(message, *place, "set", path)
-        found.append((path, value))
-    return tuple(found)
+            raise file.error(message, *key_path, "set", path)
+        values_read.append((path, value))
+    return tuple(values_read)
 
 
 def _set_lines(
-    file: TomlFile, place: Place, given: Mapping[str, Any], technique: Technique
+    file: TomlFile, key_path: KeyPath, values_given: Mapping[str, Any], technique: Technique
 ) -> tuple[tuple[str, int], ...]:
     """Return the line of each path that a pass's ``set`` has."""
-    return tuple((path, file.line(*place, "set", path)) for path in flat_values(technique, given))
+    return tuple((path, file.line(*key_path, "set", path)) for path in flat_values(technique, values_given))
 
 
 def read_set(
     file: TomlFile,
     sketch: Sketch,
     table: Mapping[str, Any],
-    place: Place,
+    key_path: KeyPath,
     who: str,
     left_out: list[str] | None = None,
 ) -> tuple[tuple[str, Value], ...]:
@@ -238,34 +238,34 @@ def read_set(
     A value that no parameter takes is an error, or, where there is a list ``left_out``, a warning in it.
     """
     check = partial(check_value, sketch)
-    return _read_values(file, table, place, sketch.graph, check, who, left_out=left_out)
+    return _read_values(file, table, key_path, sketch.graph, check, who, left_out=left_out)
 
 
-def _repeat(file: TomlFile, table: Mapping[str, Any], place: Place) -> str:
-    given = table.get("repeat", "")
-    if isinstance(given, bool) or not isinstance(given, int | str) or ("repeat" in table and given == ""):
+def _repeat(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath) -> str:
+    count = table.get("repeat", "")
+    if isinstance(count, bool) or not isinstance(count, int | str) or ("repeat" in table and count == ""):
         raise file.error(
-            f"repeat = {spell(given)}: expected a number or an expression in quotes", *place, "repeat"
+            f"repeat = {spell(count)}: expected a number or an expression in quotes", *key_path, "repeat"
         )
-    return _expression(file, given, *place, "repeat")
+    return _expression(file, count, *key_path, "repeat")
 
 
-def _size(file: TomlFile, table: Mapping[str, Any], place: Place) -> tuple[str, str] | None:
-    given = table.get("size")
-    if given is None:
+def _size(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath) -> tuple[str, str] | None:
+    size = table.get("size")
+    if size is None:
         return None
-    both = given if isinstance(given, list) else [given, given]
+    both = size if isinstance(size, list) else [size, size]
     if len(both) != 2 or any(isinstance(v, bool) or not isinstance(v, int | str) for v in both):
-        message = f"size = {spell(given)}: expected a number, an expression in quotes, or [x, y]"
-        raise file.error(message, *place, "size")
-    x, y = (_expression(file, one, *place, "size") for one in both)
-    return (_axis(x, "x"), _axis(y, "y")) if isinstance(given, str) else (x, y)
+        message = f"size = {spell(size)}: expected a number, an expression in quotes, or [x, y]"
+        raise file.error(message, *key_path, "size")
+    x, y = (_expression(file, side, *key_path, "size") for side in both)
+    return (_axis(x, "x"), _axis(y, "y")) if isinstance(size, str) else (x, y)
 
 
-def _expression(file: TomlFile, given: int | str, *place: str | int) -> str:
-    if isinstance(given, int) and abs(given) > 2**62:
-        raise file.error(f"{place[-1]} = {spell(given)}: expected a smaller number", *place)
-    return str(given)
+def _expression(file: TomlFile, text: int | str, *key_path: str | int) -> str:
+    if isinstance(text, int) and abs(text) > 2**62:
+        raise file.error(f"{key_path[-1]} = {spell(text)}: expected a smaller number", *key_path)
+    return str(text)
 
 
 def _axis(expression: str, axis: str) -> str:
@@ -274,18 +274,18 @@ def _axis(expression: str, axis: str) -> str:
 
 
 def _exports(file: TomlFile, key: str) -> tuple[Export, ...]:
-    found = []
-    for name, given in file.take(file.table, key, dict, {}).items():
+    exports = []
+    for name, value in file.take(file.table, key, dict, {}).items():
         if key == "parameters" and name == _ALL:
-            if given != _ALL:
-                raise file.error(f'"*" = {spell(given)}: expected "*", for all passes', key, name)
-            found.append(Export(_ALL, (), file.line(key, name)))
+            if value != _ALL:
+                raise file.error(f'"*" = {spell(value)}: expected "*", for all passes', key, name)
+            exports.append(Export(_ALL, (), file.line(key, name)))
             continue
-        targets = given if isinstance(given, list) else [given]
+        targets = value if isinstance(value, list) else [value]
         if not targets or not all(isinstance(t, str) for t in targets):
-            raise file.error(f"{name} = {spell(given)}: expected a path inside, or a list of them", key, name)
-        found.append(Export(name, tuple(targets), file.line(key, name)))
-    return tuple(found)
+            raise file.error(f"{name} = {spell(value)}: expected a path inside, or a list of them", key, name)
+        exports.append(Export(name, tuple(targets), file.line(key, name)))
+    return tuple(exports)
 
 
 def _with_all(file: TomlFile, passes: Sequence[PassSpec], exports: tuple[Export, ...]) -> tuple[Export, ...]:
@@ -294,13 +294,13 @@ def _with_all(file: TomlFile, passes: Sequence[PassSpec], exports: tuple[Export,
     Passes that share a name must agree on type, default and choices: else the first one's default would be
     every other one's, and nobody would have written so.
     """
-    place = next((i for i, export in enumerate(exports) if export.name == _ALL), None)
-    if place is None:
+    index = next((i for i, export in enumerate(exports) if export.name == _ALL), None)
+    if index is None:
         return exports
-    others = exports[:place] + exports[place + 1 :]
+    others = exports[:index] + exports[index + 1 :]
     bare = Graph("", str(file.path), tuple(passes))
     taken = {t.path for export in others for target in export.targets for t in find_targets(bare, target)}
-    values, found = effective_values(bare), dict[str, list[str]]()
+    values, targets_by_name = effective_values(bare), dict[str, list[str]]()
     kinds: dict[str, tuple[str, object]] = {}
     for spec in passes:
         for parameter in spec.technique.parameters:
@@ -315,10 +315,10 @@ def _with_all(file: TomlFile, passes: Sequence[PassSpec], exports: tuple[Export,
                 who = "an export of that name is written" if same == kind[1] else f"it is not that of {other}"
                 message = f"\"*\" cannot export {path} as '{name}': {who}; export it by a name of its own"
                 raise file.error(message, "parameters", _ALL)
-            found.setdefault(name, []).append(path)
-    line = exports[place].line
-    every = tuple(Export(name, tuple(paths), line) for name, paths in found.items())
-    return exports[:place] + every + exports[place + 1 :]
+            targets_by_name.setdefault(name, []).append(path)
+    line = exports[index].line
+    every = tuple(Export(name, tuple(paths), line) for name, paths in targets_by_name.items())
+    return exports[:index] + every + exports[index + 1 :]
 
 
 def _inner_inputs(technique: Technique) -> Iterable[str]:

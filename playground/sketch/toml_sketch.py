@@ -22,8 +22,8 @@ from playground.sketch.flat import repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
 from playground.sketch.keyframes import EASES
 from playground.sketch.model import (
-    LARGEST_SIDE,
-    MOST_SUPERSAMPLE,
+    MAX_SIDE,
+    MAX_SUPERSAMPLE,
     Camera,
     Graph,
     Keyframe,
@@ -36,7 +36,7 @@ from playground.sketch.model import (
 )
 from playground.sketch.toml_graph import Read, read_pass, read_passes, read_set
 from playground.sketch.toml_table import CAMERA, KEYFRAME, TomlFile
-from playground.sketch.toml_text import Place
+from playground.sketch.toml_text import KeyPath
 from playground.sketch.wiring import check_graph
 
 _LIMITS = {
@@ -48,19 +48,21 @@ _LIMITS = {
 _FARTHEST = 1e9  # [m] of a camera's target from the origin
 
 
-def read_camera(file: TomlFile, table: Mapping[str, Any], default: Camera, place: Place) -> Camera:
+def read_camera(file: TomlFile, table: Mapping[str, Any], default: Camera, key_path: KeyPath) -> Camera:
     """Return what a table's ``camera`` says, and of the rest what ``default`` has; raise ``SketchError``."""
-    given = file.take(table, "camera", dict, None, *place)
-    if given is None:
+    table_given = file.take(table, "camera", dict, None, *key_path)
+    if table_given is None:
         return default
-    here = (*place, "camera")
-    file.only(given, CAMERA, *here)
-    numbers = {key: file.take(given, key, float, None, *here) for key in _LIMITS if key in given}
-    return camera_of({**given, **numbers}, default, lambda key, message: file.error(message, *here, key))
+    here = (*key_path, "camera")
+    file.only(table_given, CAMERA, *here)
+    numbers = {key: file.take(table_given, key, float, None, *here) for key in _LIMITS if key in table_given}
+    return camera_of(
+        {**table_given, **numbers}, default, lambda key, message: file.error(message, *here, key)
+    )
 
 
 def camera_of(
-    given: Mapping[str, Any], default: Camera, error: Callable[[str, str], PlaygroundError]
+    camera_table: Mapping[str, Any], default: Camera, error: Callable[[str, str], PlaygroundError]
 ) -> Camera:
     """Return a camera of some values by key, and of the rest what ``default`` has.
 
@@ -68,13 +70,13 @@ def camera_of(
     """
     values: dict[str, Any] = {}
     for key, (low, high) in _LIMITS.items():
-        number = given.get(key, getattr(default, key))
+        number = camera_table.get(key, getattr(default, key))
         if type(number) not in (int, float) or not low <= number <= high:
             number = f"{number:g}" if isinstance(number, float) else spell(number)
             raise error(key, f"{key} = {number}: expected {low:g} to {high:g}")
         values[key] = float(number)
     values["target"] = default.target
-    if (target := given.get("target")) is not None:
+    if (target := camera_table.get("target")) is not None:
         numbers = target if isinstance(target, list) else []
         good = len(numbers) == 3 and all(type(v) in (int, float) and abs(v) <= _FARTHEST for v in numbers)
         if not good:
@@ -89,53 +91,55 @@ MASK_ENDING = ".png"
 Mask = tuple[tuple[int, int, int, int] | str, ...]
 
 
-def read_comparison(file: TomlFile, sketch: Sketch, table: Mapping[str, Any], place: Place) -> dict[str, Any]:
+def read_comparison(
+    file: TomlFile, sketch: Sketch, table: Mapping[str, Any], key_path: KeyPath
+) -> dict[str, Any]:
     """Return the fields of a shot that say how it is compared; raise ``SketchError``."""
     return {
-        "tolerance": _tolerance(file, table, place),
-        "mask": _mask(file, sketch, table, place),
-        "allow_blank": file.take(table, "allow_blank", bool, False, *place),
+        "tolerance": _tolerance(file, table, key_path),
+        "mask": _mask(file, sketch, table, key_path),
+        "allow_blank": file.take(table, "allow_blank", bool, False, *key_path),
     }
 
 
-def _tolerance(file: TomlFile, table: Mapping[str, Any], place: Place) -> Tolerance | None:
-    reason = file.take(table, "reason", str, "", *place)
+def _tolerance(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath) -> Tolerance | None:
+    reason = file.take(table, "reason", str, "", *key_path)
     if "tolerance" not in table and "reason" not in table:
         return None
-    given = table.get("tolerance")
-    if not isinstance(given, str | int | dict | None) or isinstance(given, bool):
+    declared = table.get("tolerance")
+    if not isinstance(declared, str | int | dict | None) or isinstance(declared, bool):
         raise file.error(
-            f"tolerance = {spell(given)}: expected a tier, levels, or a table", *place, "tolerance"
+            f"tolerance = {spell(declared)}: expected a tier, levels, or a table", *key_path, "tolerance"
         )
     try:
-        return tolerance_of(given, reason)
+        return tolerance_of(declared, reason)
     except ValueError as error:
-        raise file.error(str(error), *place, "tolerance" if "tolerance" in table else "reason") from None
+        raise file.error(str(error), *key_path, "tolerance" if "tolerance" in table else "reason") from None
 
 
-def _mask(file: TomlFile, sketch: Sketch, table: Mapping[str, Any], place: Place) -> Mask:
-    given = table.get("mask", [])
-    items = given if isinstance(given, list) and not _is_rectangle(given) else [given]
-    found: list[tuple[int, int, int, int] | str] = []
+def _mask(file: TomlFile, sketch: Sketch, table: Mapping[str, Any], key_path: KeyPath) -> Mask:
+    mask_items = table.get("mask", [])
+    items = mask_items if isinstance(mask_items, list) and not _is_rectangle(mask_items) else [mask_items]
+    mask: list[tuple[int, int, int, int] | str] = []
     for item in items:
         if _is_rectangle(item):
-            found.append((item[0], item[1], item[2], item[3]))
+            mask.append((item[0], item[1], item[2], item[3]))
         elif isinstance(item, str) and item.endswith(MASK_ENDING):
-            _refuse_outside(file, sketch, item, place)
-            found.append(item)
+            _refuse_outside(file, sketch, item, key_path)
+            mask.append(item)
         elif isinstance(item, str):
             try:
                 flatten(sketch).ref(item, sketch.name)
             except SketchError as error:
-                raise file.error(f"mask: {error.diagnostics[0].message}", *place, "mask") from None
-            found.append(item)
+                raise file.error(f"mask: {error.diagnostics[0].message}", *key_path, "mask") from None
+            mask.append(item)
         else:
             message = (
                 f"mask = {spell(item)}: expected [x, y, width, height] in pixels from the top left, "
                 f'an image as "sky.png", a texture as "water:foam", or a list of such'
             )
-            raise file.error(message, *place, "mask")
-    return tuple(found)
+            raise file.error(message, *key_path, "mask")
+    return tuple(mask)
 
 
 def _is_rectangle(item: object) -> bool:
@@ -143,9 +147,9 @@ def _is_rectangle(item: object) -> bool:
     return numbers and item[2] > 0 and item[3] > 0  # type: ignore[index]
 
 
-def _refuse_outside(file: TomlFile, sketch: Sketch, text: str, place: Place) -> None:
+def _refuse_outside(file: TomlFile, sketch: Sketch, text: str, key_path: KeyPath) -> None:
     if is_absolute(text) or leads_outside(text, Path(sketch.folder)):
-        raise file.error(f"mask = {spell(text)}: it leads outside the sketch's folder", *place, "mask")
+        raise file.error(f"mask = {spell(text)}: it leads outside the sketch's folder", *key_path, "mask")
 
 
 _LATEST = 1e6  # [s]
@@ -153,60 +157,62 @@ _LATEST = 1e6  # [s]
 
 def read_keyframes(file: TomlFile, sketch: Sketch) -> tuple[Keyframe, ...]:
     """Return what the ``[[keyframe]]`` tables say; raise ``SketchError`` at the line that is wrong."""
-    found: list[Keyframe] = []
+    keyframes: list[Keyframe] = []
     names: dict[str, str] = {}  # the path that a parameter inside was set by, by its own path
     for index, table in enumerate(file.tables("keyframe")):
-        place: Place = ("keyframe", index)
-        file.only(table, KEYFRAME, *place)
-        time = _time(file, table, place, found)
+        key_path: KeyPath = ("keyframe", index)
+        file.only(table, KEYFRAME, *key_path)
+        time = _time(file, table, key_path, keyframes)
         who = f"keyframe at {time:g} s"
-        values = read_set(file, sketch, table, place, who)
+        values = read_set(file, sketch, table, key_path, who)
         for path, _ in values:
             if path in TERRAIN_KEYS:
                 message = f"'{path}' is the terrain's; keyframes set parameters and the camera"
-                raise file.error(f"{who}: {message}", *place, "set", path)
+                raise file.error(f"{who}: {message}", *key_path, "set", path)
             for target in resolve(sketch.graph, path):
                 other = names.setdefault(target.path, path)
                 if other != path:
                     message = f"'{path}' is what '{other}' sets in another keyframe"
-                    raise file.error(f"{who}: {message}", *place, "set", path)
-        camera = _camera(file, table, place)
+                    raise file.error(f"{who}: {message}", *key_path, "set", path)
+        camera = _camera(file, table, key_path)
         if not values and not camera:
-            raise file.error(f"{who}: it sets nothing; expected camera = {{ … }} or set = {{ … }}", *place)
-        ease = file.take(table, "ease", str, EASES[0], *place)
+            raise file.error(f"{who}: it sets nothing; expected camera = {{ … }} or set = {{ … }}", *key_path)
+        ease = file.take(table, "ease", str, EASES[0], *key_path)
         if ease not in EASES:
-            raise file.error(f"ease = {spell(ease)}: expected {', '.join(EASES)}", *place, "ease")
-        found.append(Keyframe(time, camera, values, ease, file.line(*place)))
-    _check_distances(file, found)
-    return tuple(found)
+            raise file.error(f"ease = {spell(ease)}: expected {', '.join(EASES)}", *key_path, "ease")
+        keyframes.append(Keyframe(time, camera, values, ease, file.line(*key_path)))
+    _check_distances(file, keyframes)
+    return tuple(keyframes)
 
 
-def _time(file: TomlFile, table: Mapping[str, Any], place: Place, before: list[Keyframe]) -> float:
+def _time(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, before: list[Keyframe]) -> float:
     if "time" not in table:
-        raise file.error("a keyframe needs time = …, in seconds", *place)
-    time: float = file.take(table, "time", float, 0.0, *place)
+        raise file.error("a keyframe needs time = …, in seconds", *key_path)
+    time: float = file.take(table, "time", float, 0.0, *key_path)
     if not 0.0 <= time <= _LATEST:
-        raise file.error(f"time = {time:g}: expected seconds from 0 to {_LATEST:g}", *place, "time")
+        raise file.error(f"time = {time:g}: expected seconds from 0 to {_LATEST:g}", *key_path, "time")
     if before and time <= before[-1].time:
         last = before[-1]
         what = "there is one at that time" if time == last.time else f"the one before is at {last.time:g} s"
-        raise file.error(f"time = {time:g}: {what}, on line {last.line}; times must increase", *place, "time")
+        raise file.error(
+            f"time = {time:g}: {what}, on line {last.line}; times must increase", *key_path, "time"
+        )
     return time
 
 
 def _camera(
-    file: TomlFile, table: Mapping[str, Any], place: Place
+    file: TomlFile, table: Mapping[str, Any], target_point: KeyPath
 ) -> tuple[tuple[str, float | tuple[float, ...]], ...]:
     if "camera" not in table:
         return ()
-    camera = read_camera(file, table, Camera(), place)
+    camera = read_camera(file, table, Camera(), target_point)
     return tuple((name, getattr(camera, name)) for name in table["camera"])
 
 
-def _check_distances(file: TomlFile, found: list[Keyframe]) -> None:
+def _check_distances(file: TomlFile, keyframes: list[Keyframe]) -> None:
     """Raise ``SketchError`` where the distance is metres in one keyframe and 0, automatic, in another."""
-    far = {bool(dict(k.camera)["distance"]) for k in found if "distance" in dict(k.camera)}
-    for index, keyframe in enumerate(found):
+    far = {bool(dict(k.camera)["distance"]) for k in keyframes if "distance" in dict(k.camera)}
+    for index, keyframe in enumerate(keyframes):
         if len(far) > 1 and dict(keyframe.camera).get("distance") == 0.0:
             message = "distance = 0 shows the whole terrain and cannot be mixed with metres; give metres"
             raise file.error(message, "keyframe", index, "camera", "distance")
@@ -260,21 +266,21 @@ def _warn_of_absent(file: TomlFile, sketch: Sketch, written: Sequence[PassSpec])
     """Warn of what passes set that is not there by their wiring."""
     for index, (spec, own) in enumerate(zip(written, sketch.graph.passes, strict=True)):
         there = dict(own.values)
-        place = ("view",) if spec.name == "view" else ("pass", index)
+        key_path = ("view",) if spec.name == "view" else ("pass", index)
         for path, _ in spec.values:
             if path not in there:
                 why = why_absent(own.technique, path)
-                file.warn(f"pass '{spec.name}': {path}: {why}", *place, "set", path)
+                file.warn(f"pass '{spec.name}': {path}: {why}", *key_path, "set", path)
 
 
 def _terrain_value(file: TomlFile, key: str) -> Any:
-    given = file.table[key]
-    numbers = given if isinstance(given, list) else [given]
+    value = file.table[key]
+    numbers = value if isinstance(value, list) else [value]
     types = (int,) if key == "size" else (int, float)
     if len(numbers) > (2 if key in _PAIRS else 1) or any(type(n) not in types for n in numbers):
-        raise file.error(f"{key} = {spell(given)}: expected {_PAIRS.get(key, 'metres')}", key)
+        raise file.error(f"{key} = {spell(value)}: expected {_PAIRS.get(key, 'metres')}", key)
     try:
-        return check_value(Sketch("", "", "", Graph("", "", ())), key, given)
+        return check_value(Sketch("", "", "", Graph("", "", ())), key, value)
     except ParameterError as error:
         raise file.error(error.diagnostics[0].message, key) from None
 
@@ -312,93 +318,93 @@ def _main(file: TomlFile, sketch: Sketch) -> tuple[str, ...]:
     return tuple(there)
 
 
-def _samples(file: TomlFile, table: Mapping[str, Any], default: int, place: Place) -> int:
-    found: int = file.take(table, "samples", int, default, *place)
-    if found not in (1, 2, 4, 8):
-        raise file.error(f"samples = {spell(found)}: expected 1, 2, 4 or 8", *place, "samples")
-    return found
+def _samples(file: TomlFile, table: Mapping[str, Any], default: int, key_path: KeyPath) -> int:
+    samples: int = file.take(table, "samples", int, default, *key_path)
+    if samples not in (1, 2, 4, 8):
+        raise file.error(f"samples = {spell(samples)}: expected 1, 2, 4 or 8", *key_path, "samples")
+    return samples
 
 
-def _supersample(file: TomlFile, table: Mapping[str, Any], default: int, place: Place) -> int:
-    found: int = file.take(table, "supersample", int, default, *place)
-    if not 1 <= found <= MOST_SUPERSAMPLE:
-        message = f"supersample = {spell(found)}: expected a whole number, 1 to {MOST_SUPERSAMPLE}"
-        raise file.error(message, *place, "supersample")
-    return found
+def _supersample(file: TomlFile, table: Mapping[str, Any], default: int, key_path: KeyPath) -> int:
+    factor: int = file.take(table, "supersample", int, default, *key_path)
+    if not 1 <= factor <= MAX_SUPERSAMPLE:
+        message = f"supersample = {spell(factor)}: expected a whole number, 1 to {MAX_SUPERSAMPLE}"
+        raise file.error(message, *key_path, "supersample")
+    return factor
 
 
 def _presets(file: TomlFile, sketch: Sketch) -> tuple[Preset, ...]:
-    found: list[Preset] = []
+    presets: list[Preset] = []
     for index, table in enumerate(file.tables("preset")):
-        place = ("preset", index)
-        file.only(table, toml_table.PRESET, *place)
-        name = file.take(table, "name", str, "", *place)
-        if not name or name in [p.name for p in found]:
-            raise file.error(f"name = {spell(name)}: a preset needs a name of its own", *place, "name")
+        key_path = ("preset", index)
+        file.only(table, toml_table.PRESET, *key_path)
+        name = file.take(table, "name", str, "", *key_path)
+        if not name or name in [p.name for p in presets]:
+            raise file.error(f"name = {spell(name)}: a preset needs a name of its own", *key_path, "name")
         left_out: list[str] = []
-        values = read_set(file, sketch, table, place, f"preset '{name}'", left_out)
-        found.append(Preset(name, values, tuple(left_out)))
-    return tuple(found)
+        values = read_set(file, sketch, table, key_path, f"preset '{name}'", left_out)
+        presets.append(Preset(name, values, tuple(left_out)))
+    return tuple(presets)
 
 
 def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
-    found: list[Shot] = []
+    shots: list[Shot] = []
     presets = [preset.name for preset in sketch.presets]
     for index, table in enumerate(file.tables("shot")):
-        place = ("shot", index)
-        file.only(table, toml_table.SHOT, *place)
-        name = file.take(table, "name", str, "", *place)
+        key_path = ("shot", index)
+        file.only(table, toml_table.SHOT, *key_path)
+        name = file.take(table, "name", str, "", *key_path)
         if not name.replace("-", "_").isidentifier():
             message = f"name = {spell(name)}: a shot needs a name of letters, digits, _ and -"
-            raise file.error(message, *place, "name")
-        if name in [s.name for s in found]:
-            raise file.error(f"a second shot named '{name}'", *place, "name")
-        size = file.take(table, "size", list, [640, 360], *place)
-        if len(size) != 2 or not all(type(v) is int and 1 <= v <= LARGEST_SIDE for v in size):
-            message = f"size = {spell(size)}: expected [width, height] in pixels, 1 to {LARGEST_SIDE}"
-            raise file.error(message, *place, "size")
-        preset = file.take(table, "preset", str, "", *place)
+            raise file.error(message, *key_path, "name")
+        if name in [s.name for s in shots]:
+            raise file.error(f"a second shot named '{name}'", *key_path, "name")
+        size = file.take(table, "size", list, [640, 360], *key_path)
+        if len(size) != 2 or not all(type(v) is int and 1 <= v <= MAX_SIDE for v in size):
+            message = f"size = {spell(size)}: expected [width, height] in pixels, 1 to {MAX_SIDE}"
+            raise file.error(message, *key_path, "size")
+        preset = file.take(table, "preset", str, "", *key_path)
         if "preset" in table and preset not in presets:
-            raise file.error(f"no preset '{preset}'{nearest(preset, presets)}", *place, "preset")
+            raise file.error(f"no preset '{preset}'{nearest(preset, presets)}", *key_path, "preset")
         for message in [m for p in sketch.presets if p.name == preset for m in p.left_out]:
             # A shot is the picture that its sketch says, or none: a test must be able to trust it.
-            raise file.error(f"shot '{name}': {message}", *place, "preset")
-        found.append(
+            raise file.error(f"shot '{name}': {message}", *key_path, "preset")
+        shots.append(
             Shot(
                 name=name,
                 size=(size[0], size[1]),
-                time=file.take(table, "time", float, 0.0, *place),
-                camera=read_camera(file, table, sketch.camera, place) if "camera" in table else None,
-                values=read_set(file, sketch, table, place, f"shot '{name}'"),
+                time=file.take(table, "time", float, 0.0, *key_path),
+                camera=read_camera(file, table, sketch.camera, key_path) if "camera" in table else None,
+                values=read_set(file, sketch, table, key_path, f"shot '{name}'"),
                 preset=preset,
-                samples=_samples(file, table, sketch.samples, place) if "samples" in table else None,
-                supersample=_supersample(file, table, 1, place) if "supersample" in table else None,
-                steps=read_steps(file, sketch, table, place),
-                marks=_marks(file, table, place),
-                line=file.line(*place),
-                **read_comparison(file, sketch, table, place),
+                samples=_samples(file, table, sketch.samples, key_path) if "samples" in table else None,
+                supersample=_supersample(file, table, 1, key_path) if "supersample" in table else None,
+                steps=read_steps(file, sketch, table, key_path),
+                marks=_marks(file, table, key_path),
+                line=file.line(*key_path),
+                **read_comparison(file, sketch, table, key_path),
             )
         )
-    return tuple(found)
+    return tuple(shots)
 
 
-def _marks(file: TomlFile, table: Mapping[str, Any], place: Place) -> tuple[str, ...]:
-    marks = file.take(table, "marks", list, [], *place)
+def _marks(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath) -> tuple[str, ...]:
+    marks = file.take(table, "marks", list, [], *key_path)
     if not all(isinstance(mark, str) and mark.isidentifier() for mark in marks):
         message = f'marks = {spell(marks)}: expected names of pytest\'s markers, as ["slow"]'
-        raise file.error(message, *place, "marks")
+        raise file.error(message, *key_path, "marks")
     return tuple(marks)
 
 
 def read_steps(
-    file: TomlFile, sketch: Sketch, table: Mapping[str, Any], place: Place
+    file: TomlFile, sketch: Sketch, table: Mapping[str, Any], key_path: KeyPath
 ) -> tuple[tuple[str, int], ...]:
     """Return what a table's ``steps`` says of repeated passes: steps by path; raise ``SketchError``."""
-    steps = file.whole_numbers(table, "steps", *place)
+    steps = file.whole_numbers(table, "steps", *key_path)
     if steps:
         nodes = flatten(sketch).nodes
         for path, _ in steps:
             if repeated_path(path, nodes) is None:
                 message = f"steps: no repeated pass '{path}'{nearest(path, repeated_paths(nodes))}"
-                raise file.error(message, *place, "steps", path)
+                raise file.error(message, *key_path, "steps", path)
     return steps

@@ -19,7 +19,7 @@ from playground.memo import TEXTS
 from playground.paths import shown
 from playground.shader.parameter import spell
 from playground.shader.source import read_text
-from playground.sketch.toml_text import Place, TomlPlaces
+from playground.sketch.toml_text import KeyPath, TomlPlaces
 
 SKETCH: dict[str, str] = {
     "format": "Version of the format: 1.",
@@ -42,7 +42,7 @@ TECHNIQUE: dict[str, str] = {
     "title": SKETCH["title"],
     "pass": SKETCH["pass"],
     "parameters": 'What may be set from outside: name → a path inside, or a list of them; "*" = "*" for all.',
-    "inputs": "What is wired from outside: name → inputs of passes inside, a path or a list of them.",
+    "inputs": "Inputs wired from outside: name → inputs of passes inside, a path or a list of them.",
     "outputs": 'What it gives: name → "pass:output"; without it what the last pass gives.',
 }
 """At the head of a technique of several passes."""
@@ -68,7 +68,7 @@ VIEW: dict[str, str] = {
     "set": PASS["set"],
     "camera": "Where the eye is: azimuth, elevation, distance, target, field_of_view.",
     "samples": "Antialiasing of draws: 1, 2, 4 or 8 samples a pixel; 4 without it.",
-    "supersample": "Rendered pictures are drawn so many times as wide and high, 1 to 8; not in the window.",
+    "supersample": "Rendered pictures are drawn n times as wide and high, 1 to 8; not in the window.",
     "above_ground": "An eye under the terrain is raised to just above it; false leaves it there.",
 }
 
@@ -95,7 +95,7 @@ SHOT: dict[str, str] = {
     "marks": 'Names of pytest\'s markers, as ["slow"].',
     "tolerance": 'What may differ: "rounding", "edges", "noise", levels, or { levels = 6, share = 0.01 }.',
     "reason": "Why the tolerance is needed; required with one.",
-    "mask": "What is not compared: [x, y, width, height], a PNG or texture that is light there, or several.",
+    "mask": "Areas not compared: [x, y, width, height], a PNG or texture that is light there, or several.",
     "allow_blank": "Whether a picture of one colour may be right; false without it.",
 }
 
@@ -173,52 +173,52 @@ class TomlFile:
 
     def _syntax(self, error: tomllib.TOMLDecodeError, text: str) -> SketchError:
         message = str(error)
-        place = _AT.search(message)
-        if place is None:
+        match = _AT.search(message)
+        if match is None:
             last = text.count("\n") + 1
             message = f"not TOML: {message.split(' (at')[0]}"
             return SketchError(message, file=self.path, line=self._before + last)
-        line, column = map(int, place.groups())
+        line, column = map(int, match.groups())
         return SketchError(
-            f"not TOML: {message[: place.start()]}",
+            f"not TOML: {message[: match.start()]}",
             file=self.path,
             line=self._before + line,
             column=column,
             excerpt=text.split("\n")[line - 1],
         )
 
-    def line(self, *place: str | int) -> int:
+    def line(self, *key_path: str | int) -> int:
         """Return the line of a place, or of the nearest table around it; 0 if none is known.
 
         A key may be a dotted path, however the text writes its dots.
         """
-        found = self._places.line(place)
-        return self._before + found if found or self._before else 0
+        line = self._places.line(key_path)
+        return self._before + line if line or self._before else 0
 
-    def error(self, message: str, *place: str | int) -> SketchError:
+    def error(self, message: str, *key_path: str | int) -> SketchError:
         """Return an error that points at a place."""
-        return SketchError(message, file=self.path, line=self.line(*place))
+        return SketchError(message, file=self.path, line=self.line(*key_path))
 
-    def warn(self, message: str, *place: str | int) -> None:
+    def warn(self, message: str, *key_path: str | int) -> None:
         """Add a warning that points at a place."""
-        line = self.line(*place)
+        line = self.line(*key_path)
         self.warnings[Diagnostic(message, shown(self.path), line, severity="warning")] = None
 
     def version(self, *, required: bool) -> None:
         """Raise ``SketchError`` if the format is one that cannot be read."""
-        found = self.table.get("format", None if required else FORMAT)
-        if found is None:
+        version = self.table.get("format", None if required else FORMAT)
+        if version is None:
             raise self.error(f"a sketch begins with format = {FORMAT}")
-        if type(found) is not int or found != FORMAT:
-            raise self.error(f"format = {spell(found)}: this version reads format = {FORMAT}", "format")
+        if type(version) is not int or version != FORMAT:
+            raise self.error(f"format = {spell(version)}: this version reads format = {FORMAT}", "format")
 
-    def only(self, table: Mapping[str, Any], valid: Collection[str], *place: str | int) -> None:
+    def only(self, table: Mapping[str, Any], valid: Collection[str], *key_path: str | int) -> None:
         """Raise ``SketchError`` for a key that is not among ``valid``."""
         for key in table:
             if key not in valid:
-                raise self.error(f"no key '{key}' here{nearest(key, valid)}", *place, key)
+                raise self.error(f"no key '{key}' here{nearest(key, valid)}", *key_path, key)
 
-    def take(self, table: Mapping[str, Any], key: str, kind: type, default: Any, *place: str | int) -> Any:
+    def take(self, table: Mapping[str, Any], key: str, kind: type, default: Any, *key_path: str | int) -> Any:
         """Return what ``key`` has in a table, checked to be of a kind; ``default`` where it is absent."""
         if key not in table:
             return default
@@ -227,7 +227,7 @@ class TomlFile:
             value = float(value)
         fits = isinstance(value, kind) and (kind is bool or not isinstance(value, bool))
         if not fits or (isinstance(value, float) and not math.isfinite(value)):
-            raise self.error(f"{key} = {spell(value)}: expected {_NOUNS[kind]}", *place, key)
+            raise self.error(f"{key} = {spell(value)}: expected {_NOUNS[kind]}", *key_path, key)
         return value
 
     def tables(self, key: str) -> list[dict[str, Any]]:
@@ -239,12 +239,12 @@ class TomlFile:
             raise self.error(f"{key} = {spell(value)}: expected tables, each begun by [[{key}]]", key)
         return value
 
-    def texts(self, table: Mapping[str, Any], key: str, *place: str | int) -> tuple[tuple[str, str], ...]:
+    def texts(self, table: Mapping[str, Any], key: str, *key_path: str | int) -> tuple[tuple[str, str], ...]:
         """Return the pairs of a table whose values are texts; dotted keys need no quotes."""
-        return self._pairs(table, key, place, _NOUNS[str], lambda value: isinstance(value, str))
+        return self._pairs(table, key, key_path, _NOUNS[str], lambda value: isinstance(value, str))
 
     def sources(
-        self, table: Mapping[str, Any], key: str, *place: str | int
+        self, table: Mapping[str, Any], key: str, *key_path: str | int
     ) -> tuple[tuple[str, str | tuple[str, ...]], ...]:
         """Return the pairs of a table whose values are texts, or lists of texts, as tuples."""
 
@@ -252,29 +252,36 @@ class TomlFile:
             texts = value if isinstance(value, list) else [value]
             return bool(texts) and all(isinstance(text, str) for text in texts)
 
-        pairs = self._pairs(table, key, place, f"{_NOUNS[str]}, or a list of such", fits)
+        pairs = self._pairs(table, key, key_path, f"{_NOUNS[str]}, or a list of such", fits)
         return tuple((name, tuple(v) if isinstance(v, list) else v) for name, v in pairs)
 
     def whole_numbers(
-        self, table: Mapping[str, Any], key: str, *place: str | int
+        self, table: Mapping[str, Any], key: str, *key_path: str | int
     ) -> tuple[tuple[str, int], ...]:
         """Return the pairs of a table whose values are 0, 1, 2, …; dotted keys need no quotes."""
         return self._pairs(
-            table, key, place, f"{_NOUNS[int]}, 0 or more", lambda v: type(v) is int and 0 <= v < 2**31
+            table, key, key_path, f"{_NOUNS[int]}, 0 or more", lambda v: type(v) is int and 0 <= v < 2**31
         )
 
     def _pairs(
-        self, table: Mapping[str, Any], key: str, place: Place, wanted: str, fits: Callable[[Any], bool]
+        self,
+        table: Mapping[str, Any],
+        key: str,
+        key_path: KeyPath,
+        expected: str,
+        fits: Callable[[Any], bool],
     ) -> tuple[tuple[str, Any], ...]:
-        pairs = tuple(_joined(self.take(table, key, dict, {}, *place)))
+        pairs = tuple(_joined(self.take(table, key, dict, {}, *key_path)))
         for name, value in pairs:
             if not fits(value):
-                raise self.error(f"{name} = {spell(value)}: expected {wanted}", *place, key, name)
+                raise self.error(f"{name} = {spell(value)}: expected {expected}", *key_path, key, name)
         return pairs
 
 
 def _joined(table: Mapping[str, Any], prefix: str = "") -> list[tuple[str, Any]]:
-    found: list[tuple[str, Any]] = []
+    keys_by_action: list[tuple[str, Any]] = []
     for key, value in table.items():
-        found += _joined(value, f"{prefix}{key}.") if isinstance(value, dict) else [(f"{prefix}{key}", value)]
-    return found
+        keys_by_action += (
+            _joined(value, f"{prefix}{key}.") if isinstance(value, dict) else [(f"{prefix}{key}", value)]
+        )
+    return keys_by_action

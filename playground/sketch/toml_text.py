@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-Place = tuple[str | int, ...]
+KeyPath = tuple[str | int, ...]
 """Where something is: keys, and places in a list, as ``("pass", 0, "use")``."""
 
 _TOKEN = re.compile(
@@ -35,7 +35,7 @@ _TOKEN = re.compile(
     r"|.",
     re.DOTALL,
 )
-_DEEPEST = 40
+_MAX_DEPTH = 40
 
 
 class Header(NamedTuple):
@@ -70,45 +70,49 @@ class TomlPlaces:
     """The lines and spans of all keys and values in a text."""
 
     def __init__(self, text: str) -> None:
-        self.lines: dict[Place, int] = {}  # of each table, key and value in a list, from 1
-        self.pairs: dict[Place, Pair] = {}
-        self.bodies: dict[Place, int] = {(): 0}  # table with a header → behind its last pair, or its header
+        self.lines: dict[KeyPath, int] = {}  # of each table, key and value in a list, from 1
+        self.pairs: dict[KeyPath, Pair] = {}
+        self.bodies: dict[KeyPath, int] = {(): 0}  # table with a header → behind its last pair, or its header
         self.headers: list[Header] = []
-        self._lists: dict[Place, int] = {}  # how many tables each [[list]] has, less one
+        self._lists: dict[KeyPath, int] = {}  # how many tables each [[list]] has, less one
         self._tokens = _tokens(text)
         self._at = 0
         with suppress(_End):
             self._document()
 
-    def line(self, place: Place) -> int:
+    def line(self, position: KeyPath) -> int:
         """Return the line of a place, or of the nearest table around it; 0 if none is known.
 
         A key may be a dotted path, however the text writes its dots: in quotes or without.
         """
-        place = _split(place)
-        while place:
-            for known in (place, (*place, 0)):  # a list of tables begins with its first
-                if known in self._lines_by_parts:
-                    return self._lines_by_parts[known]
-            place = place[:-1]
+        position = _split(position)
+        while position:
+            for key_path in (position, (*position, 0)):  # a list of tables begins with its first
+                if key_path in self._lines_by_parts:
+                    return self._lines_by_parts[key_path]
+            position = position[:-1]
         return 0
 
     @cached_property
-    def _lines_by_parts(self) -> dict[Place, int]:
-        return {_split(place): line for place, line in reversed(self.lines.items())}
+    def _lines_by_parts(self) -> dict[KeyPath, int]:
+        return {_split(key_path): line for key_path, line in reversed(self.lines.items())}
 
-    def find(self, table: Place, key: str) -> Place | None:
+    def find(self, table: KeyPath, key: str) -> KeyPath | None:
         """Return the place of a dotted key in a table, however its dots are written."""
-        for place in self.pairs:
-            if place[: len(table)] == table and ".".join(map(str, place[len(table) :])) == key:
-                return place
+        for key_path in self.pairs:
+            if key_path[: len(table)] == table and ".".join(map(str, key_path[len(table) :])) == key:
+                return key_path
         return None
 
-    def inside(self, table: Place) -> list[Pair]:
+    def inside(self, table: KeyPath) -> list[Pair]:
         """Return the innermost pairs of a table, first one first."""
-        places = [place for place in self.pairs if place[: len(table)] == table and len(place) > len(table)]
+        places = [
+            key_path
+            for key_path in self.pairs
+            if key_path[: len(table)] == table and len(key_path) > len(table)
+        ]
         outer = [p for p in places if not any(p[:n] in self.pairs for n in range(len(table) + 1, len(p)))]
-        return sorted((self.pairs[place] for place in outer), key=lambda pair: pair.key)
+        return sorted((self.pairs[key_path] for key_path in outer), key=lambda pair: pair.key)
 
     # ── reading ──────────────────────────────────────────────────────────────
 
@@ -128,7 +132,7 @@ class TomlPlaces:
         return before.start + len(before.text)
 
     def _document(self) -> None:
-        table: Place = ()
+        table: KeyPath = ()
         while self._now.text:
             if self._now.text == "\n":
                 self._step()
@@ -137,7 +141,7 @@ class TomlPlaces:
             else:
                 self.bodies[table] = self._pair(table, depth=0)
 
-    def _header(self) -> Place:
+    def _header(self) -> KeyPath:
         first = self._now
         self._step()
         is_list = self._now.text == "["
@@ -145,23 +149,23 @@ class TomlPlaces:
             self._step()
         keys = self._key("]")
         if is_list:
-            place = (*self._place_of(keys[:-1]), keys[-1])
-            self._lists[place] = self._lists.get(place, -1) + 1
+            key_path = (*self._place_of(keys[:-1]), keys[-1])
+            self._lists[key_path] = self._lists.get(key_path, -1) + 1
             self._step()  # the second bracket
-        place = self._place_of(keys)
-        self.lines.setdefault(place, first.line)
-        self.bodies[place] = self._behind()
+        key_path = self._place_of(keys)
+        self.lines.setdefault(key_path, first.line)
+        self.bodies[key_path] = self._behind()
         self.headers.append(Header(first.start, keys, is_list))
-        return place
+        return key_path
 
-    def _place_of(self, keys: list[str]) -> Place:
+    def _place_of(self, keys: list[str]) -> KeyPath:
         """Return the place of a table's name: in a list it means the last table there."""
-        place: Place = ()
+        key_path: KeyPath = ()
         for key in keys:
-            place = (*place, key)
-            if place in self._lists:
-                place = (*place, self._lists[place])
-        return place
+            key_path = (*key_path, key)
+            if key_path in self._lists:
+                key_path = (*key_path, self._lists[key_path])
+        return key_path
 
     def _key(self, end: str) -> list[str]:
         """Read a dotted key, and the token that ends it."""
@@ -177,19 +181,19 @@ class TomlPlaces:
         self._step()
         return keys
 
-    def _pair(self, table: Place, depth: int) -> int:
+    def _pair(self, table: KeyPath, depth: int) -> int:
         """Read a key and its value; return where it ends."""
         first = self._now
-        place = (*table, *self._key("="))
-        self.lines.setdefault(place, first.line)
+        key_path = (*table, *self._key("="))
+        self.lines.setdefault(key_path, first.line)
         value = self._now.start
-        end = self._value(place, depth)
-        self.pairs[place] = Pair(first.start, value, end, inline=depth > 0)
+        end = self._value(key_path, depth)
+        self.pairs[key_path] = Pair(first.start, value, end, inline=depth > 0)
         return end
 
-    def _value(self, place: Place, depth: int) -> int:
+    def _value(self, key_path: KeyPath, depth: int) -> int:
         """Read a value; return where it ends."""
-        if depth > _DEEPEST:
+        if depth > _MAX_DEPTH:
             raise _End
         if self._now.text not in ("[", "{"):
             # A plain value may be several tokens, as 0.5 is three.
@@ -204,31 +208,31 @@ class TomlPlaces:
                 index += self._now.text == ","
                 self._step()
             elif closing == "}":
-                self._pair(place, depth + 1)
+                self._pair(key_path, depth + 1)
             else:
                 begins = self._at
-                self.lines.setdefault((*place, index), self._now.line)
-                self._value((*place, index), depth + 1)
+                self.lines.setdefault((*key_path, index), self._now.line)
+                self._value((*key_path, index), depth + 1)
                 if self._at == begins:  # a bracket of the other kind, which no value begins with
                     raise _End
         self._step()
         return self._behind()
 
 
-def _split(place: Place) -> Place:
+def _split(index: KeyPath) -> KeyPath:
     """Return a place with each dotted key split into its parts."""
-    return tuple(part for key in place for part in (key.split(".") if isinstance(key, str) else (key,)))
+    return tuple(part for key in index for part in (key.split(".") if isinstance(key, str) else (key,)))
 
 
 def _tokens(text: str) -> list[_Token]:
     """Return the tokens of a text, without spaces and comments, and an empty one at its end."""
-    found, line = [], 1
+    tokens, line = [], 1
     for match in _TOKEN.finditer(text):
         token = match.group()
         if token == "\n" or not (token.isspace() or token.startswith("#")):
-            found.append(_Token(token, match.start(), line))
+            tokens.append(_Token(token, match.start(), line))
         line += token.count("\n")
-    return [*found, _Token("", len(text), line)]
+    return [*tokens, _Token("", len(text), line)]
 
 
 def _unquoted(token: str) -> str:
@@ -244,16 +248,16 @@ def _unquoted(token: str) -> str:
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
-def put(text: str, table: Place, key: str, value: str) -> str:
+def put(text: str, table: KeyPath, key: str, value: str) -> str:
     """Return the text with a key of a table set; ``value`` as TOML writes it.
 
     The table is written as it is written so far: in braces, under a header, by dotted keys.
     Where there is none yet, it begins in braces at the end of the table around it.
     """
     places = TomlPlaces(text)
-    place = places.find(table, key)
-    if place is not None:
-        pair = places.pairs[place]
+    position = places.find(table, key)
+    if position is not None:
+        pair = places.pairs[position]
         return text[: pair.value] + value + text[pair.end :]
     pairs, written = places.inside(table), f"{key_text(key)} = {value}"
     if table in places.pairs:
@@ -270,17 +274,19 @@ def put(text: str, table: Place, key: str, value: str) -> str:
     return _line_after(text, places.bodies[around], f"{prefix} = {{ {written} }}")
 
 
-def drop(text: str, table: Place, key: str) -> str:
+def drop(text: str, table: KeyPath, key: str) -> str:
     """Return the text without a key of a table; as it is where there is no such key."""
     places = TomlPlaces(text)
-    place = places.find(table, key)
-    if place is None:
+    folder_path = places.find(table, key)
+    if folder_path is None:
         return text
-    pair = places.pairs[place]
+    pair = places.pairs[folder_path]
     if not pair.inline:
         start, end = text.rfind("\n", 0, pair.key) + 1, text.find("\n", pair.end)
         return text[:start] + (text[end + 1 :] if end >= 0 else "")
-    braces = next(place[:n] for n in range(len(place) - 1, 0, -1) if place[:n] in places.pairs)
+    braces = next(
+        folder_path[:n] for n in range(len(folder_path) - 1, 0, -1) if folder_path[:n] in places.pairs
+    )
     row = places.inside(braces)
     index = row.index(pair)
     if len(row) == 1:

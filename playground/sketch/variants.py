@@ -105,13 +105,13 @@ def compiled_text(code: str) -> str:
 
     A line of the preprocessor stays a line, with its spaces: they can mean something there.
     """
-    found: list[str] = []
+    lines: list[str] = []
     for line in code.split("\n"):
         if line.lstrip().startswith("#"):
-            found.append(f"\n{' '.join(line.split())}\n")
+            lines.append(f"\n{' '.join(line.split())}\n")
         else:
-            found += _TOKEN.findall(line)
-    return " ".join(found)
+            lines += _TOKEN.findall(line)
+    return " ".join(lines)
 
 
 @dataclass(frozen=True)
@@ -131,8 +131,8 @@ class Omission:
 
 def active_variant(technique: Technique, kinds: Collection[str]) -> Variant | None:
     """Return the fast variant of some ``kinds`` that runs in place of a technique, if one may."""
-    found = (v for v in technique.variants if v.kind in kinds and is_verified(technique, v))
-    return next(found, None)
+    variants = (v for v in technique.variants if v.kind in kinds and is_verified(technique, v))
+    return next(variants, None)
 
 
 def is_verified(technique: Technique, variant: Variant) -> bool:
@@ -210,13 +210,13 @@ _HELD = {1: ("float", "vec4"), 2: ("vec2", "vec4"), 4: ("vec4",)}  # types of a 
 def check_shape(variant: ComputeVariant | Graph, of: Technique) -> None:
     """Raise ``SketchError`` or ``ShaderError`` where a fast variant has what its technique has not."""
     starts = initial_names(of) if isinstance(of, Draw) else ()
-    names = [one.name for one in of.parameters], [*(one.name for one in of.inputs), *starts]
+    names = [parameter.name for parameter in of.parameters], [*(item.name for item in of.inputs), *starts]
     for declared, valid in zip((variant.parameters, variant.inputs), names, strict=True):
-        for one in declared:
-            if one.name not in valid:
-                message = f"'{one.name}' is not among the parameters and inputs of {of.name}"
+        for item in declared:
+            if item.name not in valid:
+                message = f"'{item.name}' is not among the parameters and inputs of {of.name}"
                 raise SketchError(
-                    f"{message}{nearest(one.name, valid)}", file=shown(variant.path), line=one.line
+                    f"{message}{nearest(item.name, valid)}", file=shown(variant.path), line=item.line
                 )
     outputs = of.outputs if isinstance(of, Kernel) else outputs_with_formats(of)
     if isinstance(variant, Graph):
@@ -242,11 +242,11 @@ def _check_compute(variant: ComputeVariant, outputs: tuple[Output, ...]) -> None
             raise variant.error(f"a buffer of {held} cannot be the output {output.name}:{output.format}")
 
 
-def _check_passes(variant: Graph, of: Technique, wanted: tuple[Output, ...]) -> None:
-    found = outputs_with_formats(variant)
-    if {(o.name, o.format) for o in found} != {(o.name, o.format) for o in wanted}:
-        one, other = (", ".join(f"{o.name}:{o.format}" for o in some) for some in (found, wanted))
-        raise variant.error(f"gives {one}; {of.name} gives {other}")
+def _check_passes(variant: Graph, of: Technique, expected: tuple[Output, ...]) -> None:
+    outputs = outputs_with_formats(variant)
+    if {(o.name, o.format) for o in outputs} != {(o.name, o.format) for o in expected}:
+        left, other = (", ".join(f"{o.name}:{o.format}" for o in some) for some in (outputs, expected))
+        raise variant.error(f"gives {left}; {of.name} gives {other}")
     if isinstance(of, Graph) and of.find(INSIDE):
         message = f"with a fast variant no pass is named '{INSIDE}': that is where the variant's passes are"
         raise of.error(message)
@@ -282,13 +282,13 @@ def verified(variant: Path) -> tuple[Verified | None, str]:
     record, name = record_of(variant)
     if not is_file(record):
         return None, ""
-    found = _read(read_text(record), shown(record)).get(name)
-    return found, "" if record.parent == GLSL else str(record)
+    entry = _read(read_text(record), shown(record)).get(name)
+    return entry, "" if record.parent == GLSL else str(record)
 
 
 def written(entries: Mapping[str, Verified]) -> str:
     """Return a record's text: the same for the same entries."""
-    table = {name: {"canonical": found[0], "variant": found[1]} for name, found in sorted(entries.items())}
+    table = {name: {"canonical": hashes[0], "variant": hashes[1]} for name, hashes in sorted(entries.items())}
     return json.dumps({"format": 1, "variants": table}, indent=1) + "\n"
 
 
@@ -301,7 +301,7 @@ def read(record: Path) -> dict[str, Verified]:
 def _read(text: str, name: str) -> Mapping[str, Verified]:
     try:
         table = read_json(text)["variants"]
-        return {key: (str(one["canonical"]), str(one["variant"])) for key, one in table.items()}
+        return {key: (str(step["canonical"]), str(step["variant"])) for key, step in table.items()}
     except (ValueError, TypeError, KeyError, AttributeError):
         message = "not a record of fast variants; remove it, then `playground variants renew` writes it again"
         raise SketchError(message, file=name) from None

@@ -77,12 +77,12 @@ def shadowed_by_files(sketch: Sketch) -> list[Shadowed]:
     """
     by, values = _setters(sketch.graph, ""), effective_values(sketch.graph)
     by_user = {target.path for path, _ in sketch.overrides for target in resolve(sketch.graph, path)}
-    found = []
+    shadows = []
     for path, parameter in sketch.graph.leaf_parameters.items():
         own = not Path(parameter.file).is_relative_to(GLSL)
         if own and path in by and path not in by_user and values[path] != parameter.default:
-            found.append(Shadowed(path, parameter, values[path], by[path]))
-    return found
+            shadows.append(Shadowed(path, parameter, values[path], by[path]))
+    return shadows
 
 
 def newly_shadowed(before: Sketch, now: Sketch) -> list[Shadowed]:
@@ -99,7 +99,7 @@ def newly_shadowed(before: Sketch, now: Sketch) -> list[Shadowed]:
     if not changed:
         return []
     by, values = _setters(now.graph, ""), effective_values(now.graph)
-    layers = [(f"{shown(now.file)}:{one.line}", one.values) for one in reversed(now.keyframes)]
+    layers = [(f"{shown(now.file)}:{keyframe.line}", keyframe.values) for keyframe in reversed(now.keyframes)]
     for who, pairs in [*layers, (PANEL, now.overrides)]:
         apply(now.graph, values, pairs)
         by |= {target.path: who for path, _ in pairs for target in resolve(now.graph, path)}
@@ -112,16 +112,16 @@ def newly_shadowed(before: Sketch, now: Sketch) -> list[Shadowed]:
 
 def _setters(graph: Graph, prefix: str) -> dict[str, str]:
     """Return "file:line" of what sets each parameter that a ``set`` names; the outermost counts."""
-    found: dict[str, str] = {}
+    setters: dict[str, str] = {}
     for spec in graph.passes:
         inside = f"{prefix}{spec.name}."
         if isinstance(spec.technique, Graph):
-            found |= _setters(spec.technique, inside)
+            setters |= _setters(spec.technique, inside)
         lines = dict(spec.set_lines)
         for path, _ in spec.values:
             for target in resolve(spec.technique, path):
-                found[f"{inside}{target.path}"] = f"{spec.file}:{lines.get(path, spec.line)}"
-    return found
+                setters[f"{inside}{target.path}"] = f"{spec.file}:{lines.get(path, spec.line)}"
+    return setters
 
 
 def warnings_of_kernel(kernel: Kernel) -> tuple[Diagnostic, ...]:
@@ -132,16 +132,16 @@ def warnings_of_kernel(kernel: Kernel) -> tuple[Diagnostic, ...]:
 def unheeded(kernel: Kernel) -> tuple[Diagnostic, ...]:
     """Return what a picture does not show though the text says it: unfed samplers, ``1/4``, ``#line``."""
     is_plain = isinstance(kernel, PlainShader) and not isinstance(kernel, ForeignShader)
-    found = [*(unfed_samplers(kernel.source) if is_plain else ())]
-    found += whole_divisions(kernel.source)
+    diagnostics = [*(unfed_samplers(kernel.source) if is_plain else ())]
+    diagnostics += whole_divisions(kernel.source)
     if isinstance(kernel, ForeignShader) and kernel.vertex_source:
-        found += whole_divisions(kernel.vertex_source)
-    found += [
+        diagnostics += whole_divisions(kernel.vertex_source)
+    diagnostics += [
         line.diagnostic("#line is left out, so that errors name the file's own lines", severity="warning")
         for line in kernel.source.lines
         if line.left_out
     ]
-    return tuple(dict.fromkeys(found))
+    return tuple(dict.fromkeys(diagnostics))
 
 
 # ── divisions of whole numbers ───────────────────────────────────────────────
@@ -170,7 +170,7 @@ def whole_divisions(source: SourceText) -> list[Diagnostic]:
     """
     if not _MAYBE_DIVIDED.search(source.code):
         return []
-    found: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     tokens: list[tuple[str, int, int]] = []  # text, index of its line, column
     directive = False
     for index, line in enumerate(source.lines):
@@ -195,8 +195,8 @@ def whole_divisions(source: SourceText) -> list[Diagnostic]:
         last, end = tokens[after - 1][1], tokens[after - 1][2] - 1 + len(texts[after - 1])
         written = line.code[column - 1 : end] if source.lines[last] is line else f"{left}/{right}"
         message = f"{written} divides whole numbers, which gives {left // right}; write {left}.0/{right}.0"
-        found.append(line.diagnostic(message, column, "warning"))
-    return found
+        diagnostics.append(line.diagnostic(message, column, "warning"))
+    return diagnostics
 
 
 def _whole_before(texts: Sequence[str], at: int) -> tuple[int, int | None]:
@@ -360,7 +360,7 @@ def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
     variants = [inner for v in kernel.variants for _, inner in kernels_of(v.technique)]
     texts = [each.source for each in (kernel, *variants)]
     code = "\n".join([text.code for text in texts] + [line.pragma for text in texts for line in text.lines])
-    found = []
+    diagnostics = []
     for name in [*(p.name for p in kernel.parameters), *(i.name for i in kernel.inputs)]:
         declared = rf"\buniform\b[^;\n]*?\b{re.escape(name)}\s*(?:=[^;\n]*)?;"
         rest = re.sub(declared, "", code)
@@ -371,11 +371,11 @@ def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
         for line in kernel.source.lines:
             if match := re.search(declared, line.code):
                 column = match.start() + match[0].index(name) + 1
-                found.append(
+                diagnostics.append(
                     line.diagnostic(f"nothing reads '{name}', so it has no effect", column, "warning")
                 )
                 break
-    return tuple(found)
+    return tuple(diagnostics)
 
 
 def _counted(path: Path) -> frozenset[str]:
@@ -384,7 +384,7 @@ def _counted(path: Path) -> frozenset[str]:
     These are the technique that the folder is of, and those in it. A name is followed to what it exports.
     """
     folder = path.parent
-    found: set[str] = set()
+    pictures: set[str] = set()
     for file in (folder.with_suffix(".toml"), *sorted(folder.glob("*.toml"))):
         try:
             table = tomllib.loads(read_regular(file).decode())
@@ -398,10 +398,10 @@ def _counted(path: Path) -> frozenset[str]:
                     used = uses.get(target.partition(".")[0], path.stem)
                     # Of a technique in the technique any pass may be the kernel's.
                     if used == path.stem or not (folder / f"{used}.glsl").is_file():
-                        found.add(target.rpartition(".")[2])
+                        pictures.add(target.rpartition(".")[2])
         except (OSError, ValueError, AttributeError, KeyError, TypeError, RecursionError, PlaygroundError):
             continue  # it is not there, or reading the technique itself says what is wrong with it
-    return frozenset(found)
+    return frozenset(pictures)
 
 
 def warnings_of_sketch(sketch: Sketch) -> tuple[Diagnostic, ...]:
@@ -431,14 +431,14 @@ def unwritten(kernel: Kernel) -> tuple[Diagnostic, ...]:
     from playground.shader.declarations import Declarations
     from playground.shader.preprocessor import readings
 
-    found: dict[Diagnostic, None] = {}
+    diagnostics: dict[Diagnostic, None] = {}
     for tokens in readings(kernel.source.code):
         reads = _Reads(Declarations(tokens))
         for name, token in reads.before_writing():
             line = kernel.source.lines[token.line]
             message = f"'{name}' is read here before anything is written to it, so its value is undefined"
-            found[line.diagnostic(message, token.start + 1, "warning")] = None
-    return tuple(found)
+            diagnostics[line.diagnostic(message, token.start + 1, "warning")] = None
+    return tuple(diagnostics)
 
 
 _STEPS = frozenset({"++", "--"})
@@ -468,21 +468,32 @@ class _Reads:
         self.loops = [(at, self._end_of_loop(at)) for word in _LOOPS for at in self.places[word]]
         self.writers: dict[str, set[int]] = {name: set(which) for name, which in _WRITES_OF_GLSL.items()}
         for function in (*declared.functions, *declared.prototypes):
-            outs = {i for i, one in enumerate(function.parameters) if one.qualifiers & {"out", "inout"}}
+            outs = {
+                i
+                for i, parameter in enumerate(function.parameters)
+                if parameter.qualifiers & {"out", "inout"}
+            }
             self.writers.setdefault(function.name, set()).update(outs)
         self.known = {*self.writers, *GLSL_WORDS, *declared.structs}
 
     def before_writing(self) -> Iterator[tuple[str, Token]]:
         """Yield each local variable whose first use is a read, and the token of that."""
-        declared = {one.at for one in self.declared.variables}
-        for one in self.declared.variables:
-            if one.has_value or one.is_global or one.qualifiers & {"const", "shared"} or one.type.members:
+        declared = {variable.at for variable in self.declared.variables}
+        for variable in self.declared.variables:
+            if (
+                variable.has_value
+                or variable.is_global
+                or variable.qualifiers & {"const", "shared"}
+                or variable.type.members
+            ):
                 continue
-            uses = [at for at in self.places[one.name] if one.end < at < self._end_of_scope(one)]
+            uses = [
+                at for at in self.places[variable.name] if variable.end < at < self._end_of_scope(variable)
+            ]
             if uses and not declared.intersection(uses) and self._is_read(uses[0]):
-                around = [end for at, end in self.loops if one.at < at < uses[0] < end]
+                around = [end for at, end in self.loops if variable.at < at < uses[0] < end]
                 if not any(self._is_written(at) for at in uses if at < max(around, default=0)):
-                    yield one.name, self.declared.tokens[uses[0]]
+                    yield variable.name, self.declared.tokens[uses[0]]
 
     def _is_read(self, at: int) -> bool:
         """Return whether a use is certainly a read."""
@@ -532,12 +543,12 @@ class _Reads:
                 index += 1
         return False
 
-    def _end_of_scope(self, one: Variable) -> int:
+    def _end_of_scope(self, variable: Variable) -> int:
         """Return the index of the bracket that closes the block, or the function, that a variable is in."""
-        functions = [f for f in self.declared.functions if f.opens < one.at < f.closes]
+        functions = [f for f in self.declared.functions if f.opens < variable.at < f.closes]
         end = functions[0].closes if functions else len(self.texts)
         depth = 0
-        for index in range(one.close, end):
+        for index in range(variable.close, end):
             depth += (self.texts[index] == "{") - (self.texts[index] == "}")
             if depth < 0:
                 return index

@@ -127,10 +127,10 @@ def _check_expressions(graph: Graph, spec: PassSpec) -> None:
             names = expressions.names_in(text)
             if "frames" in names and find_targets(graph, "frames"):
                 raise ExpressionError(f"'{text}': 'frames' {expressions.TWO_FRAMES}")
-            known = {name for name in names if _is_number(graph, name)}
-            if names - known:
-                expressions.check(text, [*known, *_numbers(graph)])
-            expressions.check(text, known)
+            numbers = {name for name in names if _is_number(graph, name)}
+            if names - numbers:
+                expressions.check(text, [*numbers, *_numbers(graph)])
+            expressions.check(text, numbers)
         except ExpressionError as error:
             raise spec.error(f"pass '{spec.name}': {what}: {error}") from None
 

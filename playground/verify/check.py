@@ -95,8 +95,8 @@ class FileReport:
             [{"file": d.file, "line": d.line, "column": d.column, "message": d.message} for d in some]
             for some in (self.errors, self.warnings)
         )
-        found = {"path": self.path, "ok": self.ok, "skipped": list(self.skipped)}
-        return found | {"errors": errors, "warnings": warnings, "notes": list(self.notes)}
+        report = {"path": self.path, "ok": self.ok, "skipped": list(self.skipped)}
+        return report | {"errors": errors, "warnings": warnings, "notes": list(self.notes)}
 
 
 def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
@@ -106,24 +106,24 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
     and TOML files of other programs. Raises ``DataError`` for a path that is not there or
     cannot be checked, and for folders in which there is nothing to check.
     """
-    found: dict[Path, Path] = {}
+    files: dict[Path, Path] = {}
     named: list[str] = []
-    for given in paths:
-        path = Path(given).expanduser()
+    for path_text in paths:
+        path = Path(path_text).expanduser()
         named.append(shown(path))
         if path.is_dir():
             for file in _inside(path):
-                found.setdefault(file.resolve(), named_root(file.resolve()) or path.resolve())
+                files.setdefault(file.resolve(), named_root(file.resolve()) or path.resolve())
         elif path.is_file():
             if is_pack(path):
                 sketch = unpacked(path)
                 for file in _inside(sketch.parent):
-                    found.setdefault(file.resolve(), sketch.parent.resolve())
+                    files.setdefault(file.resolve(), sketch.parent.resolve())
                 continue
             if path.suffix not in TEXTS and not is_export(path) and not is_elevation(path):
-                wanted = ", ".join((*TEXTS, ENDING, "an elevation file"))
-                raise DataError(f"cannot be checked; expected a folder or {wanted}", file=shown(path))
-            found.setdefault(path.resolve(), root_of(path.resolve()))
+                expected = ", ".join((*TEXTS, ENDING, "an elevation file"))
+                raise DataError(f"cannot be checked; expected a folder or {expected}", file=shown(path))
+            files.setdefault(path.resolve(), root_of(path.resolve()))
         elif what := irregularity(path):
             raise DataError(what, file=shown(path))
         else:
@@ -132,10 +132,10 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
             raise DataError(
                 f"there is no such file or folder{hint if 'mean' in hint else ''}", file=shown(path)
             )
-    if not found:
-        wanted = ", ".join(TEXTS)
-        raise DataError(f"nothing to check in {', '.join(named)}; expected files ending in {wanted}")
-    return list(found.items())
+    if not files:
+        expected = ", ".join(TEXTS)
+        raise DataError(f"nothing to check in {', '.join(named)}; expected files ending in {expected}")
+    return list(files.items())
 
 
 def check_file(
@@ -193,9 +193,9 @@ class _Check:
         kernel = Techniques().shader(self.path, self.root, self.dialect)
         if kernel is None and self.path.suffix != ".glsl":
             raise nothing_to_run(self.path)
-        for _, one in kernels_of(kernel) if kernel is not None else ():
-            if not Path(one.path).is_relative_to(GLSL) or self.path.is_relative_to(GLSL):
-                self.warnings |= dict.fromkeys(warnings_of_kernel(one))
+        for _, kernel_inside in kernels_of(kernel) if kernel is not None else ():
+            if not Path(kernel_inside.path).is_relative_to(GLSL) or self.path.is_relative_to(GLSL):
+                self.warnings |= dict.fromkeys(warnings_of_kernel(kernel_inside))
         if kernel is None:
             self.attempt(TryLibrary(str(self.path), str(self.root), tuple(unsaved_texts().items())))
         elif isinstance(kernel, Graph) or isinstance(kernel, PlainShader):
@@ -247,7 +247,7 @@ class _Check:
         # The child draws small; what is wrong at the sketch's own size shows in the plan.
         plan = make_plan(sketch, PlanRequest(frame_size=_FRAME))
         self.warnings |= dict.fromkeys([*kernel_warnings(sketch.graph), *source_warnings(plan)])
-        self.warnings |= dict.fromkeys(found.warning for found in shadowed_by_files(sketch))
+        self.warnings |= dict.fromkeys(shadow.warning for shadow in shadowed_by_files(sketch))
         for preset in sketch.presets:
             make_plan(sketch.with_preset(preset.name), PlanRequest(frame_size=_FRAME))
         for shot in sketch.shots:
@@ -263,8 +263,8 @@ class _Check:
 
     def check_standalone(self, technique: Technique) -> None:
         """Try a technique: its own text by both drivers, then its fast variants, verified or not."""
-        found = () if self.plain else unverified(self.standalone_sketch(technique))
-        self.notes = tuple(map(str, found))
+        result = () if self.plain else unverified(self.standalone_sketch(technique))
+        self.notes = tuple(map(str, result))
         plain = without_variants(technique)
         self.attempt(self.request(plain, BOTH))
         deciding = deciding_inputs(plain)
@@ -286,13 +286,13 @@ class _Check:
             self.failed(PlaygroundError("the sandbox failed and gave no reason"))
 
     def failed(self, error: PlaygroundError, more_time: str = "") -> None:
-        """Add an error; ``more_time`` is what a sentence about the limit ends in."""
+        """Add an error; ``more_time`` is what a message about the limit ends in."""
         for diagnostic in error.diagnostics:
             if diagnostic.severity == "error":
                 if isinstance(error, SandboxTimeout):
                     diagnostic = replace(diagnostic, message=f"{diagnostic.message}{more_time}")
-                placed = diagnostic if diagnostic.file else replace(diagnostic, file=shown(self.path))
-                self.errors[placed] = None
+                located = diagnostic if diagnostic.file else replace(diagnostic, file=shown(self.path))
+                self.errors[located] = None
 
     def read(self, path: Path) -> Technique:
         if path.is_relative_to(GLSL):
@@ -305,8 +305,8 @@ class _Check:
     def standalone_sketch(self, technique: Technique) -> Sketch:
         """Return a sketch that shows a technique, its inputs wired to placeholders."""
         subject = self.path.stem if _NAME.fullmatch(self.path.stem) else "technique"
-        found = standalone_sketch(technique, free_name(subject, technique), self.root, self.picture)
-        return replace(found, name=self.path.stem, file=str(self.path))
+        sketch = standalone_sketch(technique, free_name(subject, technique), self.root, self.picture)
+        return replace(sketch, name=self.path.stem, file=str(self.path))
 
     @property
     def picture(self) -> Path:

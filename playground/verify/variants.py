@@ -62,7 +62,7 @@ _USERS = 2  # techniques that use it, besides the sketch of its own
 
 
 @dataclass(frozen=True)
-class Place:
+class VariantUse:
     """Where a fast variant can run: in a sketch, at a pass."""
 
     sketch: Sketch
@@ -93,41 +93,43 @@ class Verdict:
         """How closely they agree, or what is wrong."""
         if self.wrong or self.skipped:
             return self.wrong or self.skipped
-        found = [
+        parts = [
             f"{name} to the last bit" if not bound.most else f"{name} {apart:.2g} of {bound}"
             for name, (apart, bound) in self.worst.items()
         ]
-        return f"{', '.join(found)} ({self.drawings} drawings)"
+        return f"{', '.join(parts)} ({self.drawings} drawings)"
 
 
-def places_in(sketch: Sketch, folder: Path) -> Iterator[Place]:
+def places_in(sketch: Sketch, folder: Path) -> Iterator[VariantUse]:
     """Yield where the fast variants of a folder run in a sketch."""
     for spec in sketch.graph.passes:
         for path, technique in _inside(spec):
             for variant in technique.variants:
                 if Path(variant.path).is_relative_to(folder):
-                    yield Place(sketch, path, technique, variant)
+                    yield VariantUse(sketch, path, technique, variant)
 
 
 def places_of(
     technique: Technique, variant: Variant, picture: Path, users: Iterable[Technique] = ()
-) -> Iterator[Place]:
+) -> Iterator[VariantUse]:
     """Yield where a technique is drawn: alone, for two terrains, and inside the smallest of its ``users``.
 
     ``picture`` is a file that may be written, for parameters that name none.
     """
-    found = sorted(
+    uses = sorted(
         ((user, path) for user in users for path in _paths_in(user, variant)),
         key=lambda pair: sum(1 for _ in kernels_of(pair[0])),
     )
     for number, seed in enumerate(_SEEDS):
         alone = _standalone(technique, seed, picture, variant)
-        yield Place(alone, _subject(technique), technique, variant, number == 0)
-    for user, path in found[:_USERS]:
-        yield Place(_standalone(user, _SEEDS[0], picture), f"{_subject(user)}.{path}", technique, variant)
+        yield VariantUse(alone, _subject(technique), technique, variant, number == 0)
+    for user, path in uses[:_USERS]:
+        yield VariantUse(
+            _standalone(user, _SEEDS[0], picture), f"{_subject(user)}.{path}", technique, variant
+        )
 
 
-def verify(engine: Engine, variant: Variant, technique: Technique, places: Iterable[Place]) -> Verdict:
+def verify(engine: Engine, variant: Variant, technique: Technique, places: Iterable[VariantUse]) -> Verdict:
     """Draw a technique by both forms at each place, and compare them."""
     verdict = Verdict(variant, (content_of(technique), content_of(variant.technique)))
     if not variant.technique.agrees:
@@ -137,10 +139,10 @@ def verify(engine: Engine, variant: Variant, technique: Technique, places: Itera
     else:
         try:
             check_shape(variant.technique, technique)
-            for place in places:
-                for words, sketch in _cases(place):
+            for site in places:
+                for words, sketch in _cases(site):
                     if not verdict.wrong:
-                        _compare(engine, place, sketch, words, verdict)
+                        _compare(engine, site, sketch, words, verdict)
         except PlaygroundError as error:  # of this variant: the others are verified all the same
             verdict.wrong = str(error.diagnostics[0])
         if not verdict.wrong and not verdict.drawings:
@@ -148,27 +150,27 @@ def verify(engine: Engine, variant: Variant, technique: Technique, places: Itera
     return verdict
 
 
-def compared(engine: Engine, place: Place) -> Verdict:
+def compared(engine: Engine, site: VariantUse) -> Verdict:
     """Compare both forms of a technique in one sketch as it is; no drawings where the variant steps back."""
-    contents = (content_of(place.technique), content_of(place.variant.technique))
-    verdict = Verdict(place.variant, contents)
-    _compare(engine, place, place.sketch, "its own values", verdict)
+    contents = (content_of(site.technique), content_of(site.variant.technique))
+    verdict = Verdict(site.variant, contents)
+    _compare(engine, site, site.sketch, "its own values", verdict)
     return verdict
 
 
-def difference(found: NDArray[np.float32], wanted: NDArray[np.float32], bound: Bound) -> float:
+def difference(actual: NDArray[np.float32], expected: NDArray[np.float32], bound: Bound) -> float:
     """Return how far numbers are apart, as a bound counts it; 0 where every bit is the same."""
-    if found.shape != wanted.shape:
+    if actual.shape != expected.shape:
         return float("inf")
     if not bound.most:
-        same = (found.view(np.uint32) == wanted.view(np.uint32)) | (np.isnan(found) & np.isnan(wanted))
+        same = (actual.view(np.uint32) == expected.view(np.uint32)) | (np.isnan(actual) & np.isnan(expected))
         return float(np.count_nonzero(~same))
-    one, other = (values.astype(np.float64) for values in (found, wanted))
+    left, other = (values.astype(np.float64) for values in (actual, expected))
     if bound.degrees:
-        one, other = (np.degrees(np.arctan(values)) for values in (one, other))
-    alike = (one == other) | (np.isnan(one) & np.isnan(other))
+        left, other = (np.degrees(np.arctan(values)) for values in (left, other))
+    alike = (left == other) | (np.isnan(left) & np.isnan(other))
     with np.errstate(invalid="ignore"):
-        apart = np.abs(np.where(alike, 0.0, one - np.where(alike, 0.0, other)))
+        apart = np.abs(np.where(alike, 0.0, left - np.where(alike, 0.0, other)))
     apart = np.where(alike, 0.0, np.where(np.isnan(apart), np.inf, apart))
     if not np.isfinite(apart).all():
         return float("inf")
@@ -187,8 +189,8 @@ def _standalone(technique: Technique, seed: int, picture: Path, variant: Variant
     folder = GLSL if Path(technique.path).is_relative_to(GLSL) else Path(technique.path).parent
     made = standalone_sketch(technique, _subject(technique), folder, picture, seed=seed)
     starts = {export.name for export in technique.inputs if _starts(technique, export.name)}
-    known = input_names(variant.technique) if variant else input_names(technique)
-    starts |= {n for n in input_names(technique) if n not in known and is_optional(technique, n)}
+    inputs = input_names(variant.technique) if variant else input_names(technique)
+    starts |= {n for n in input_names(technique) if n not in inputs and is_optional(technique, n)}
     passes = tuple(spec for spec in made.graph.passes if spec.name not in starts)
     # Where a pixel has more than one sample, no draw has a fast variant.
     return replace(made, graph=replace(made.graph, passes=passes), samples=1)
@@ -199,8 +201,8 @@ def _starts(technique: Technique, name: str) -> bool:
     if isinstance(technique, Kernel):
         return isinstance(technique, TexelKernel) and name in initial_names(technique)
     targets = [t.rpartition(".") for e in technique.inputs if e.name == name for t in e.targets]
-    found = [(inner(technique, path), last) for path, _, last in targets]
-    return any(below is not None and _starts(below, last) for below, last in found)
+    starts = [(inner(technique, path), last) for path, _, last in targets]
+    return any(below is not None and _starts(below, last) for below, last in starts)
 
 
 def _inside(spec: PassSpec, prefix: str = "") -> Iterator[tuple[str, Technique]]:
@@ -222,31 +224,31 @@ def _paths_in(user: Technique, variant: Variant) -> Iterator[str]:
 # ── cases ────────────────────────────────────────────────────────────────────
 
 
-def _cases(place: Place) -> Iterator[tuple[str, Sketch]]:
+def _cases(site: VariantUse) -> Iterator[tuple[str, Sketch]]:
     """Yield what is drawn at a place, with the words for it."""
-    sizes = list(dict.fromkeys(_accepted(place.sketch, size) for size in SIZES))
-    seeds = [path for path in all_paths(place.sketch.graph) if path.rpartition(".")[2] == "seed"]
-    own = [path for path in seeds if path.partition(".")[0] == place.path.partition(".")[0]]
+    sizes = list(dict.fromkeys(_accepted(site.sketch, size) for size in SIZES))
+    seeds = [path for path in all_paths(site.sketch.graph) if path.rpartition(".")[2] == "seed"]
+    own = [path for path in seeds if path.partition(".")[0] == site.path.partition(".")[0]]
     # A seed that the technique keeps inside would have the plain form run.
-    own = [path for path in own if path.rpartition(".")[0] not in _within(place)]
+    own = [path for path in own if path.rpartition(".")[0] not in _within(site)]
     for number, size in enumerate(sizes):
         for order, seed in enumerate(_SEEDS if own else _SEEDS[:1]):
             extent = _EXTENTS[(number + order) % len(_EXTENTS)]
-            sketch = replace(place.sketch, size=size, extent=extent, relief=_RELIEF)
+            sketch = replace(site.sketch, size=size, extent=extent, relief=_RELIEF)
             values = {path: seed for path in own}
             yield f"{size[0]} x {size[1]} texels, seed {seed}", sketch.with_values(values)
-    if place.varied:
-        small = replace(place.sketch, size=sizes[0], extent=_EXTENTS[1], relief=_RELIEF)
-        for path, value in _variations(place):
+    if site.varied:
+        small = replace(site.sketch, size=sizes[0], extent=_EXTENTS[1], relief=_RELIEF)
+        for path, value in _variations(site):
             yield f"{path.rpartition('.')[2]} = {value}", small.with_values({path: value})
 
 
-def _within(place: Place) -> set[str]:
+def _within(site: VariantUse) -> set[str]:
     """Return the paths of all passes inside a place's technique."""
-    if not isinstance(place.technique, Graph):
+    if not isinstance(site.technique, Graph):
         return set()
-    inside = (path for spec in place.technique.passes for path, _ in _inside(spec))
-    return {f"{place.path}.{path}" for path in inside}
+    inside = (path for spec in site.technique.passes for path, _ in _inside(spec))
+    return {f"{site.path}.{path}" for path in inside}
 
 
 def _accepted(sketch: Sketch, size: tuple[int, int]) -> tuple[int, int]:
@@ -257,11 +259,11 @@ def _accepted(sketch: Sketch, size: tuple[int, int]) -> tuple[int, int]:
     return size
 
 
-def _variations(place: Place) -> Iterator[tuple[str, Value]]:
-    names = [p.name for p in place.technique.parameters]
+def _variations(site: VariantUse) -> Iterator[tuple[str, Value]]:
+    names = [p.name for p in site.technique.parameters]
     for name in names:
-        path = f"{place.path}.{name}"
-        parameter = resolve(place.sketch.graph, path)[0].parameter
+        path = f"{site.path}.{name}"
+        parameter = resolve(site.sketch.graph, path)[0].parameter
         yield from ((path, value) for value in _ends(parameter) if value != parameter.default)
 
 
@@ -288,30 +290,30 @@ def _ends(parameter: Parameter) -> Iterator[Value]:
 # ── comparing ────────────────────────────────────────────────────────────────
 
 
-def _compare(engine: Engine, place: Place, sketch: Sketch, words: str, verdict: Verdict) -> None:
-    fast = replace(sketch, graph=_with_one(sketch.graph, place.variant, verdict.contents))
-    for output in output_names(place.technique):
-        bound = bound_of(place.variant.technique.agrees, output)
+def _compare(engine: Engine, site: VariantUse, sketch: Sketch, words: str, verdict: Verdict) -> None:
+    fast = replace(sketch, graph=_with_one(sketch.graph, site.variant, verdict.contents))
+    for output in output_names(site.technique):
+        bound = bound_of(site.variant.technique.agrees, output)
         if bound is None:
             continue
-        ref = f"{place.path}:{output}"
+        ref = f"{site.path}:{output}"
         try:
-            if not _runs(engine, place, fast, ref):
+            if not _runs(engine, site, fast, ref):
                 return
-            found = engine.read(fast, ref)
+            actual = engine.read(fast, ref)
         except SketchError:
             if _is_drawn(engine, sketch.plainly(), ref):
                 raise
             return  # the technique itself needs more here, as a mesh in tiles what says how fine each is
-        wanted = engine.read(sketch.plainly(), ref)
-        apart = difference(found, wanted, bound)
+        expected = engine.read(sketch.plainly(), ref)
+        apart = difference(actual, expected, bound)
         if apart >= verdict.worst.get(output, (0.0, bound))[0]:
             verdict.worst[output] = apart, bound
         if apart > bound.most:
             many = f"in {apart:.0f} numbers" if not bound.most else f"by {apart:.3g}, more than {bound},"
             verdict.wrong = (
-                f"{output} differs {many} from {shown(place.technique.path)}, with {words}"
-                f" (as {place.path} of {sketch.name})"
+                f"{output} differs {many} from {shown(site.technique.path)}, with {words}"
+                f" (as {site.path} of {sketch.name})"
             )
             return
     verdict.drawings += 1
@@ -326,21 +328,21 @@ def _is_drawn(engine: Engine, sketch: Sketch, texture: str) -> bool:
     return True
 
 
-def _runs(engine: Engine, place: Place, fast: Sketch, ref: str) -> bool:
+def _runs(engine: Engine, site: VariantUse, fast: Sketch, ref: str) -> bool:
     """Return whether the variant would run for a texture: where more is wired, it has the plain form run.
 
     A file of both forms tells nothing, so what each runs at the place is compared; nothing is drawn.
     """
-    plans = (engine.plan(s, DEFAULT_PICTURE, wanted=ref) for s in (fast, fast.plainly()))
-    one, other = (
+    plans = (engine.plan(s, DEFAULT_PICTURE, text=ref) for s in (fast, fast.plainly()))
+    left, other = (
         {
             (step.path, step.kernel.path, step.size, step.repeat, repr(sorted(step.values.items())))
             for step in plan.walk()
-            if f"{step.path}.".startswith(f"{place.path}.")
+            if f"{step.path}.".startswith(f"{site.path}.")
         }
         for plan in plans
     )
-    return one != other
+    return left != other
 
 
 def _with_one(technique: Graph, variant: Variant, contents: tuple[str, str]) -> Graph:
@@ -363,7 +365,7 @@ class Subject:
 
     variant: Variant
     technique: Technique
-    places: tuple[Place, ...]
+    places: tuple[VariantUse, ...]
 
 
 @looking_once()
@@ -374,11 +376,11 @@ def subjects(what: str, picture: Path) -> list[Subject]:
     technique or of a sketch, whose folder's own variants are meant; "" is all of ``glsl/``.
     ``picture`` is a file that may be written.
     """
-    found = list(_found(what, picture))
-    if not found:
+    result = list(_found(what, picture))
+    if not result:
         where = f"in {what}" if what else "in glsl/"
         raise SketchError(f"there is no fast variant {where}; one is a file ending in {' or '.join(FAST)}")
-    return found
+    return result
 
 
 def recorded(verdicts: Iterable[Verdict]) -> list[Path]:
@@ -417,8 +419,8 @@ def _found(what: str, picture: Path) -> Iterator[Subject]:
 
 def _named(what: str) -> list[Path]:
     """Return the files and the folder of ``glsl/`` that a name means; raise ``SketchError`` for none."""
-    found = [GLSL / f"{what}{ending}" for ending in ("", ".glsl", ".toml")]
-    if present := [path for path in found if path.exists()]:
+    paths = [GLSL / f"{what}{ending}" for ending in ("", ".glsl", ".toml")]
+    if present := [path for path in paths if path.exists()]:
         return present
     raise SketchError(
         f"there is no file and no technique '{what}'{nearest(what, [*shipped_names(), *shipped_sketches()])}"
@@ -428,17 +430,17 @@ def _named(what: str) -> list[Path]:
 def _of_library(places: list[Path], picture: Path) -> Iterator[Subject]:
     """Yield those of ``glsl/`` in some folders, or those of some files."""
     reader = Techniques()
-    known: list[Technique] = []
+    techniques: list[Technique] = []
     for name in shipped_names():
         try:
-            known.append(reader.read(name, GLSL, GLSL))
+            techniques.append(reader.read(name, GLSL, GLSL))
         except PlaygroundError as error:
             if "library file" not in str(error):
                 raise
-    for technique in known:
+    for technique in techniques:
         for variant in technique.variants:
             if any(Path(p).is_relative_to(at) for p in (variant.path, technique.path) for at in places):
-                users = [other for other in known if other is not technique and isinstance(other, Graph)]
+                users = [other for other in techniques if other is not technique and isinstance(other, Graph)]
                 yield Subject(variant, technique, tuple(places_of(technique, variant, picture, users)))
 
 
@@ -456,9 +458,9 @@ def _of_file(path: Path, picture: Path) -> Iterator[Subject]:
 def _of_sketch(path: Path, picture: Path) -> Iterator[Subject]:
     """Yield the variants of a sketch's own folder that it uses."""
     sketch = load(find(path))
-    found: dict[str, list[Place]] = {}
-    for place in places_in(sketch, Path(sketch.folder)):
-        found.setdefault(place.variant.path, []).append(place)
-    for places in found.values():
+    sites: dict[str, list[VariantUse]] = {}
+    for site in places_in(sketch, Path(sketch.folder)):
+        sites.setdefault(site.variant.path, []).append(site)
+    for places in sites.values():
         technique, variant = places[0].technique, places[0].variant
         yield Subject(variant, technique, (*places_of(technique, variant, picture), *places))

@@ -15,7 +15,7 @@ Data = Mapping[str, Any]
 
 _NEEDED_BY: dict[str, Callable[[Data], bool]] = {
     "with_keyframes.js": lambda sketch: bool(sketch["tracks"]),
-    "with_plain.js": lambda sketch: any(one["kind"] == "plain_fragment" for one in sketch["kernels"]),
+    "with_plain.js": lambda sketch: any(item["kind"] == "plain_fragment" for item in sketch["kernels"]),
 }
 """Bundle → whether a sketch needs it: see ``Sketch`` in schema.js."""
 

@@ -1,6 +1,6 @@
 """Read the runtime's bundles: what esbuild makes of ``runtime/``, committed and shipped.
 
-``npm ci && npm run build`` in this folder makes them anew (build.mjs), after any change of a source.
+``npm ci && npm run build`` in this folder makes them again (build.mjs), after any change of a source.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def sources_in(text: str) -> str:
 def hash_of_sources() -> str:
     """Return the hash of the sources as they are in a checkout, as build.mjs works it out."""
     names = sorted(path.name for path in (_HERE / "runtime").iterdir() if path.suffix in (".js", ".css"))
-    found = hashlib.sha256()
+    digest = hashlib.sha256()
     for name in ("build.mjs", "package-lock.json", *(f"runtime/{name}" for name in names)):
-        found.update(f"{name}\0".encode() + (_HERE / name).read_bytes() + b"\0")
-    return found.hexdigest()[:16]
+        digest.update(f"{name}\0".encode() + (_HERE / name).read_bytes() + b"\0")
+    return digest.hexdigest()[:16]

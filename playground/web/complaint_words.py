@@ -84,7 +84,7 @@ def words() -> dict[str, object]:
     """Return the patterns, as ``[source, flags]`` of a JavaScript ``RegExp``, and the sentences."""
     log, names = driver_log, driver_log
     return {
-        "formats": [_pattern(one) for one in log.FORMATS if any(map(one.fullmatch, _IN_BROWSERS))],
+        "formats": [_pattern(item) for item in log.FORMATS if any(map(item.fullmatch, _IN_BROWSERS))],
         "benign": _pattern(log.BENIGN),
         "frame": _pattern(log.FRAME),
         "summary": _pattern(log.SUMMARY),
@@ -153,10 +153,12 @@ def _rows(head: str, value: object) -> list[str]:
         parts = [json.dumps(value[at : at + size]) for at in range(0, len(value), size)]
         return [head.rstrip(), *_texts(parts, inside)] if head.strip() else _texts(parts, inside[2:])
     if isinstance(value, dict):
-        pairs = [row for key, one in value.items() for row in _rows(f"{inside}{json.dumps(key)}: ", one)]
+        pairs = [
+            row for key, element in value.items() for row in _rows(f"{inside}{json.dumps(key)}: ", element)
+        ]
         return [f"{head}{{", *_together(pairs, inside), f"{inside[2:]}}},"]
     assert isinstance(value, list)
-    items = [row for one in value for row in _rows(inside, one)]
+    items = [row for element in value for row in _rows(inside, element)]
     return [f"{head}[", *_together(items, inside), f"{inside[2:]}],"]
 
 
@@ -166,16 +168,16 @@ def _texts(parts: list[str], inside: str) -> list[str]:
 
 def _together(rows: list[str], inside: str) -> list[str]:
     """Put short rows of the same depth on one line."""
-    found: list[str] = []
+    lines: list[str] = []
     for row in rows:
         short = row.startswith(inside) and row[len(inside)] not in " ]}" and row[-2:-1] not in "[{"
-        last = found[-1] if found else ""
+        last = lines[-1] if lines else ""
         if short and last.endswith(",") and last.startswith(inside) and last[len(inside)] not in " ]}":
             if len(last) + len(row.strip()) + 1 <= _WIDTH:
-                found[-1] = f"{last} {row.strip()}"
+                lines[-1] = f"{last} {row.strip()}"
                 continue
-        found.append(row)
-    return found
+        lines.append(row)
+    return lines
 
 
 if __name__ == "__main__":

@@ -29,9 +29,9 @@ def lacking(code: str) -> str:
 
     A function that the text itself defines is none.
     """
-    found = _TYPES.search(code)
-    if found:
-        return found.group(0)
+    match = _TYPES.search(code)
+    if match:
+        return match.group(0)
     own = {name for pair in _OWN.findall(code) for name in pair}
     called = (match.group(1) for match in _CALL.finditer(code))
     return next((f"{name}()" for name in called if name in _FUNCTIONS and name not in own), "")

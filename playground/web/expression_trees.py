@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from playground.shader.expressions import parsed, split_at_commas
-from playground.sketch.model import LARGEST_SIDE
+from playground.sketch.model import MAX_SIDE
 
 Tree = Any
 """A number, a name, or a list: an operation and what it is of."""
@@ -39,17 +39,17 @@ def tree(text: str, named: Callable[[str], Tree] = str) -> Tree:
     ``named`` returns what stands for a dotted name. The expression is one that ``expressions.check``
     lets pass.
     """
-    found = _tree(parsed(text), named)
-    return found if isinstance(found, int | float) else ["text", text, found]
+    result = _tree(parsed(text), named)
+    return result if isinstance(result, int | float) else ["text", text, result]
 
 
 def accepted(accepts: str) -> list[list[tuple[Tree, int]]]:
     """Return the sizes that a kernel's ``accepts`` allows, as ``Accepted`` of schema.js."""
-    found = []
+    numbers = []
     for axis in split_at_commas(accepts):
         forms = [each.partition(" up to ") for each in axis.split(" or ")]
-        found.append([(tree(form), int(most or LARGEST_SIDE)) for form, _, most in forms])
-    return found
+        numbers.append([(tree(form), int(most or MAX_SIDE)) for form, _, most in forms])
+    return numbers
 
 
 def _tree(node: ast.expr, named: Callable[[str], Tree]) -> Tree:

@@ -20,7 +20,7 @@ from playground.data.image_files import MAX_HALF, read_image
 from playground.shader.parameter import srgb_to_linear
 from playground.web.blobs import Blobs
 
-_LARGEST_WEBP = 16_383
+_MAX_WEBP_SIDE = 16_383
 
 
 class Images:
@@ -36,16 +36,16 @@ class Images:
         if key not in self.data:
             pixels = read_image(path).pixels
             eight = pixels.dtype == np.uint8
-            found: dict[str, Any] = {"size": [pixels.shape[1], pixels.shape[0]]}
+            entry: dict[str, Any] = {"size": [pixels.shape[1], pixels.shape[0]]}
             if not eight:
-                found |= {"kind": "rgba16f", "blob": self.blobs.add(_halves(pixels, encoded).tobytes())}
+                entry |= {"kind": "rgba16f", "blob": self.blobs.add(_halves(pixels, encoded).tobytes())}
             else:
-                found["kind"] = "rgba8" if encoded else "srgb8"
+                entry["kind"] = "rgba8" if encoded else "srgb8"
                 file = _lossless(pixels)
-                found["blob"] = self.blobs.add(file or np.ascontiguousarray(pixels[::-1]).tobytes())
+                entry["blob"] = self.blobs.add(file or np.ascontiguousarray(pixels[::-1]).tobytes())
                 if file:
-                    found["file"] = "image/webp"
-            self.data[key] = found
+                    entry["file"] = "image/webp"
+            self.data[key] = entry
         return key
 
 
@@ -62,7 +62,7 @@ def _lossless(pixels: NDArray[Any]) -> bytes:
     """Return opaque pixels, top row first, as a lossless WebP; nothing for others."""
     import PIL.Image
 
-    if (pixels[..., 3] != 255).any() or max(pixels.shape[:2]) > _LARGEST_WEBP:
+    if (pixels[..., 3] != 255).any() or max(pixels.shape[:2]) > _MAX_WEBP_SIDE:
         return b""
     stream = io.BytesIO()
     picture = PIL.Image.fromarray(np.ascontiguousarray(pixels[..., :3]))

@@ -52,7 +52,7 @@ class Kernels:
         return self._numbers[id(kernel)]
 
     def _written(self, kernel: Kernel) -> dict[str, Any]:
-        found: dict[str, Any] = {
+        data: dict[str, Any] = {
             "name": _name(kernel),
             "kind": kernel.kind,
             "file": self.texts.add(kernel.source, self.folder, _name(kernel)),
@@ -77,26 +77,26 @@ class Kernels:
             "fragment": {},
         }
         rows = [(row, row.of(kernel)) for row in options_of(type(kernel)).values() if row.page]
-        found |= {row.page: tree(value) if row.expressions else value for row, value in rows if value != ""}
+        data |= {row.page: tree(value) if row.expressions else value for row, value in rows if value != ""}
         if kernel.accepts:
-            found["accepted"] = accepted(kernel.accepts)
+            data["accepted"] = accepted(kernel.accepts)
         if isinstance(kernel, PlainShader):
-            found["usual"] = [list(pair) for pair in kernel.usual]
-            found["dialect"] = kernel.dialect if isinstance(kernel, ForeignShader) else ""
+            data["usual"] = [list(pair) for pair in kernel.usual]
+            data["dialect"] = kernel.dialect if isinstance(kernel, ForeignShader) else ""
         if used := _used(kernel):
-            found["used"] = used
+            data["used"] = used
         if not isinstance(kernel, CpuSource):
-            found |= self._stages(kernel)
-        return found
+            data |= self._stages(kernel)
+        return data
 
     def _stages(self, kernel: Kernel) -> dict[str, Any]:
         _, recipes = recipes_of(kernel, FRAGMENT)
-        found = {}
+        stages = {}
         for name, recipe in recipes.items():
             own = kernel.vertex_source if name == "vertex" and isinstance(kernel, ForeignShader) else None
             file = self.texts.add(own, self.folder, f"{_name(kernel)} vertex") if own else ""
-            found[name] = stage_data(recipe, file)
-        return found
+            stages[name] = stage_data(recipe, file)
+        return stages
 
 
 def sampling_data(sampling: Sampling) -> dict[str, Any]:
@@ -112,16 +112,16 @@ def _name(kernel: Kernel) -> str:
 
 
 def _uniform(parameter: Parameter) -> dict[str, Any]:
-    found: dict[str, Any] = {
+    data: dict[str, Any] = {
         "name": parameter.name,
         "type": parameter.type,
         "widget": parameter.widget.kind,
     }
     if parameter.widget.values:
-        found["values"] = list(parameter.widget.values)
+        data["values"] = list(parameter.widget.values)
     if parameter.widget.kind == "file":
-        found["sampling"] = sampling_data(parameter.sampling)
-    return found
+        data["sampling"] = sampling_data(parameter.sampling)
+    return data
 
 
 def _used(kernel: Kernel) -> list[str]:

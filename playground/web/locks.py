@@ -51,7 +51,7 @@ class Locks:
         return self._own.get(path, False)
 
     def of_parameter(self, path: str, targets: tuple[str, ...]) -> str:
-        """Return why a parameter cannot be changed, a sentence; "": it can."""
+        """Return why a parameter cannot be changed, a message; "": it can."""
         for target in targets:
             leaf, _, name = target.rpartition(".")
             if leaf in self.sources and not self._plays_by(leaf, name):
@@ -61,16 +61,16 @@ class Locks:
             if target in self._needed_by:
                 made = made_by(self.sources[self._needed_by[target]])
                 return _sentence(f"{made} was made in this size when the page was exported")
-            kernel = next((one.kernel for one in self.flat.leaves if one.path == leaf), None)
+            kernel = next((item.kernel for item in self.flat.leaves if item.path == leaf), None)
             parameter = kernel.parameter(name) if kernel else None
             if parameter is not None and parameter.widget.kind == "file":
                 return "The image was chosen when the page was exported."
         return self._replaced_around(path)
 
     def of_steps(self, path: str) -> str:
-        """Return why a repeated pass cannot be stopped early, a sentence; "": it can, or is not repeated."""
+        """Return why a repeated pass cannot be stopped early, a message; "": it can, or is not repeated."""
         spec = self.flat.specs[path]
-        leaf = next((one for one in self.flat.leaves if one.path == path), None)
+        leaf = next((leaf for leaf in self.flat.leaves if leaf.path == path), None)
         if not spec.repeat and (leaf is None or leaf.kernel.repeat == "1"):
             return ""
         for read in self._read_by:
@@ -88,49 +88,49 @@ class Locks:
     def of_metres(self) -> dict[str, str]:
         """Return why the terrain's metres cannot be changed, of those by name that cannot."""
         leaves = {leaf.path: leaf for leaf in self.flat.leaves}
-        found: dict[str, str] = {}
+        locks: dict[str, str] = {}
         for path, source in {**{path: path for path in self.sources}, **self._read_by}.items():
             kernel = leaves[path].kernel
             for name, names in _METRES.items():
                 if any(map(kernel.reads, names)):
                     made = made_by(self.sources[source])
-                    found[name] = _sentence(f"{made} was made by this when the page was exported")
-        return found
+                    locks[name] = _sentence(f"{made} was made by this when the page was exported")
+        return locks
 
     def notes(self) -> list[str]:
-        """Return a sentence on each source that a page has as it was at export: its size, its moment."""
-        found = []
+        """Return a message on each source that a page has as it was at export: its size, its moment."""
+        notes = []
         if FRAME in self._needed_by:
             path = self._needed_by[FRAME]
-            found.append(f"{path}: {made_by(self.sources[path])} has the size of the picture at export")
+            notes.append(f"{path}: {made_by(self.sources[path])} has the size of the picture at export")
         for leaf in self.flat.leaves:
             if leaf.path in self._read_by and leaf.kernel.reads("time"):
                 made = made_by(self.sources[self._read_by[leaf.path]])
                 moment = f"at {self.plan.time:g} s, so that it does not move in a page"
-                found.append(f"{leaf.path}: {made} was made of this {moment}")
-        return found
+                notes.append(f"{leaf.path}: {made} was made of this {moment}")
+        return notes
 
     def _readers(self) -> dict[str, str]:
         """Return the leaves that the inputs of sources read, however far behind."""
         leaves = {leaf.path: leaf for leaf in self.flat.leaves}
         loops = {name: (first, ref) for name, first, ref in self._fed()}
-        found: dict[str, str] = {}
+        readers: dict[str, str] = {}
 
-        def note(read: Source | None, source: str, known: set[Fed]) -> None:
+        def note(read: Source | None, source: str, seen: set[Fed]) -> None:
             if isinstance(read, Fed):
-                if read not in known:
-                    known.add(read)
+                if read not in seen:
+                    seen.add(read)
                     for each in loops[read]:
-                        note(each, source, known)
-            elif read is not None and read.path not in found:
-                found[read.path] = source
+                        note(each, source, seen)
+            elif read is not None and read.path not in readers:
+                readers[read.path] = source
                 for _, each in leaves[read.path].inputs:
-                    note(each, source, known)
+                    note(each, source, seen)
 
         for path, leaf in self.sources.items():
             for _, each in leaf.inputs:
                 note(each, path, set())
-        return found
+        return readers
 
     def _fed(self) -> Iterator[tuple[Fed, Source | None, Ref]]:
         """Yield what each loop feeds back: what its first iteration reads, and what the next ones do."""
@@ -168,29 +168,27 @@ class Locks:
         step = self.plan.step(leaf.path)
         return step is not None and source_kind(leaf.kernel.registry).size(step.values) is not None
 
-    def _note(self, path: str, source: str, known: set[str]) -> None:
+    def _note(self, path: str, source: str, seen: set[str]) -> None:
         """Note the values and bases that the size of a pass depends on, for a source."""
-        if path in known:
+        if path in seen:
             return
-        known.add(path)
+        seen.add(path)
         if path in (TERRAIN, FRAME):
             self._needed_by.setdefault(path, source)
             return
         spec = self.flat.specs[path]
         if spec.size is None:
-            self._note(base_of(path), source, known)
+            self._note(base_of(path), source, seen)
             return
         for text in spec.size:
-            self._note_names(path, text, source, known)
+            self._note_names(path, text, source, seen)
 
-    def _note_names(
-        self, path: str, text: str, source: str, known: set[str], *, repeat: bool = False
-    ) -> None:
+    def _note_names(self, path: str, text: str, source: str, seen: set[str], *, repeat: bool = False) -> None:
         """Note what an expression of the pass at a path depends on: its size, or its ``repeat``."""
         for word in sorted(names_in(text)):
             kind, where, _, _ = named(self.flat, path, word, repeat=repeat)
             if kind == sizes.SIZE:
-                self._note(where, source, known)
+                self._note(where, source, seen)
             elif kind == sizes.VALUE:
                 self._needed_by.setdefault(self.flat.shape.copied.get(where, where), source)
             elif where in counting(self.flat) and kind in (sizes.COUNTER, sizes.FED):
@@ -199,7 +197,7 @@ class Locks:
                 )
                 raise self.flat.user(source).error(message)
             elif kind == sizes.COUNTER and where:
-                self._note_names(where, self.flat.specs[where].repeat, source, known, repeat=True)
+                self._note_names(where, self.flat.specs[where].repeat, source, seen, repeat=True)
 
 
 def _sentence(text: str) -> str:
@@ -207,5 +205,5 @@ def _sentence(text: str) -> str:
 
 
 def made_by(leaf: Leaf) -> str:
-    """Return what a source makes, in words."""
+    """Return what a source makes, as text."""
     return source_kind(leaf.kernel.registry).makes

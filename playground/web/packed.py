@@ -28,7 +28,7 @@ from playground.sketch.save import saved_text
 from playground.web.blobs import Blobs
 from playground.web.toml_template import Piece, page_name, sketch_pieces, technique_pieces
 
-LARGEST_FILE = 4 * 2**20
+MAX_FILE_BYTES = 4 * 2**20
 """Bytes of a file of data that a page still carries for the sake of the zip."""
 _TEXTS = (*TEXTS, ".md", ".txt", "")
 
@@ -64,7 +64,7 @@ def pack_data(sketch: Sketch, names: Mapping[str, str], blobs: Blobs) -> dict[st
             files[name] = ["file", names[str(path)]]
         elif path.suffix in _TEXTS:
             files[name] = ["text", read_text(path, any_encoding=True)]
-        elif path.stat().st_size <= LARGEST_FILE:
+        elif path.stat().st_size <= MAX_FILE_BYTES:
             files[name] = ["blob", blobs.add(read_regular(path))]
         else:
             left_out.append(name)
@@ -104,23 +104,23 @@ def _toml(sketch: Sketch, named: Callable[[str], str]) -> list[Piece] | None:
 
 def _with_shipped_data(text: str) -> str:
     """Return a shipped sketch's TOML with its data files named from ``glsl/``."""
-    found, at = "", 0
+    text_filled, at = "", 0
     for match in re.finditer(r'"([^"\\\n]+)"', text):
         if (SKETCHES / match[1]).suffix not in ("", *_TEXTS) and (SKETCHES / match[1]).is_file():
-            found += f'{text[at : match.start()]}"{page_name(str(SKETCHES / match[1]))}"'
+            text_filled += f'{text[at : match.start()]}"{page_name(str(SKETCHES / match[1]))}"'
             at = match.end()
-    return found + text[at:]
+    return text_filled + text[at:]
 
 
 def _graphs(technique: Technique) -> Iterator[Graph]:
     """Yield the techniques of several passes that files of TOML hold, each file once."""
-    known: set[str] = set()
+    seen: set[str] = set()
     waiting = [technique]
     while waiting:
-        one = waiting.pop()
-        if not isinstance(one, Graph):
+        graph = waiting.pop()
+        if not isinstance(graph, Graph):
             continue
-        if one.path.endswith(".toml") and one.path not in known:
-            known.add(one.path)
-            yield one.written
-        waiting += [spec.technique for spec in one.written.passes]
+        if graph.path.endswith(".toml") and graph.path not in seen:
+            seen.add(graph.path)
+            yield graph.written
+        waiting += [spec.technique for spec in graph.written.passes]

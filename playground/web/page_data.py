@@ -39,12 +39,12 @@ def page_data(
         made, first = technique_menus(sketches[0], techniques)
         sketches, menus = [*made, *sketches[1:]], [*first, *menus[1:]]
     at: dict[str, Any] = {"frame": frame, "time": time, "steps": steps, "engine": engine}
-    written = [sketch_data(one, shared, **at) for one in sketches]
-    for one, choices in zip(written, menus, strict=True):
-        one["choices"] = choices
+    written = [sketch_data(sketch_entry, shared, **at) for sketch_entry in sketches]
+    for sketch_entry, choices in zip(written, menus, strict=True):
+        sketch_entry["choices"] = choices
     if packed:
-        for sketch, one in zip(sketches, written, strict=True):
+        for sketch, sketch_entry in zip(sketches, written, strict=True):
             if has_arrays(sketch):  # no file says them, so there is nothing to download
                 continue
-            one["pack"] = pack_data(sketch, shared.texts.names, shared.blobs)
+            sketch_entry["pack"] = pack_data(sketch, shared.texts.names, shared.blobs)
     return {"format": FORMAT, "sketches": written, "shared": shared.data()}

@@ -77,7 +77,7 @@ class _Writing:
         self.kernels = Kernels(shared.texts, sketch.folder)
         self.leaves = {leaf.path: leaf for leaf in self.flat.leaves}
         self.steps = {step.path: step for step in plan.walk()}
-        self.given = {path: step.values for path, step in self.steps.items()}
+        self.values = {path: step.values for path, step in self.steps.items()}
         self.locks = Locks(plan)
         self.notes: list[str] = []
 
@@ -86,8 +86,8 @@ class _Writing:
         sketch, plan, terrain = self.sketch, self.plan, self.plan.terrain
         lacking = [sentence.partition(": see ")[0] for sentence in plan.lacking]  # files are not in a page
         nodes = [self._node(node) for node in self.flat.nodes]
-        found = values_of(sketch) | self._constants()
-        values = {path: self.written(path, value) for path, value in found.items()}
+        constants = values_of(sketch) | self._constants()
+        values = {path: self.written(path, value) for path, value in constants.items()}
         rows = shown_data(sketch, values, self.locks.of_parameter)
         presets, preset_notes = presets_data(sketch, rows, self.written)
         tracks, track_notes = tracks_data(sketch, self.locks.of_parameter, self.written)
@@ -108,7 +108,7 @@ class _Writing:
                 "base_elevation": terrain.base_elevation,
                 "locked": self.locks.of_terrain(),
                 "lockedMetres": self.locks.of_metres(),
-                "extentFollows": extent_follows_size(sketch, self.flat, self.given),
+                "extentFollows": extent_follows_size(sketch, self.flat, self.values),
             },
             "camera": asdict(sketch.camera),
             "picture": _ref(plan.picture),
@@ -171,7 +171,7 @@ class _Writing:
     def _leaf(self, leaf: Leaf) -> dict[str, Any]:
         copied = self.flat.shape.copied
         paths = {name: copied.get(path, path) for name, path in self.flat.shape.paths[leaf.path]}
-        found: dict[str, Any] = {
+        data: dict[str, Any] = {
             "path": leaf.path,
             "kernel": self.kernels.add(leaf.kernel),
             "inputs": [[name, _source(source)] for name, source in leaf.inputs],
@@ -181,13 +181,13 @@ class _Writing:
         if isinstance(leaf.kernel, CpuSource):
             step = self.steps[leaf.path]
             made = source_data(step, made_by(leaf), self.shared.blobs, partial(self._drawn, step))
-            found["inputs"] = []  # what it was made of is not drawn again
+            data["inputs"] = []  # what it was made of is not drawn again
             self.notes.append(made.note)
-            found["data"] = made.textures
+            data["data"] = made.textures
             recording = source_kind(leaf.kernel.registry).recording
             if recording is not None:
-                found["clock"] = {what: paths[name] for what, name in recording.clock.items()}
-        return found
+                data["clock"] = {what: paths[name] for what, name in recording.clock.items()}
+        return data
 
     def _drawn(self, step: Step) -> dict[str, NDArray[Any]]:
         """Return the texels of a source with inputs: a page has no other way to them."""
@@ -200,21 +200,21 @@ class _Writing:
 
     def _passes(self) -> dict[str, dict[str, Any]]:
         """Return the size of every pass at every level, and of a loop its repeat."""
-        found = {}
+        passes = {}
         for path, spec in self.flat.specs.items():
             base = base_of(path)
-            one: dict[str, Any] = {"base": base, "where": self._place(spec.file, spec.line)}
+            data: dict[str, Any] = {"base": base, "where": self._place(spec.file, spec.line)}
             if path in self.leaves and self.locks.own_size(path):
-                one["own"] = list(self.steps[path].size)
+                data["own"] = list(self.steps[path].size)
             elif spec.size is not None:
-                one["size"] = [pass_tree(text, self.flat, path) for text in spec.size]
+                data["size"] = [pass_tree(text, self.flat, path) for text in spec.size]
             if spec.repeat:
-                one["repeat"] = pass_tree(spec.repeat, self.flat, path, repeat=True)
-                one["counting"] = path in counting(self.flat)
+                data["repeat"] = pass_tree(spec.repeat, self.flat, path, repeat=True)
+                data["counting"] = path in counting(self.flat)
             if locked := self.locks.of_steps(path):
-                one["locked"] = locked
-            found[path] = one
-        return found
+                data["locked"] = locked
+            passes[path] = data
+        return passes
 
     def _place(self, file: str, line: int) -> str:
         """Return where a pass is written, without where that lies on a disk."""
@@ -225,13 +225,13 @@ class _Writing:
 
     def _textures(self) -> list[dict[str, Any]]:
         height = view_height(self.plan)
-        found = []
+        textures = []
         for ref in refs_of(self.flat):
             path, _, output = ref.partition(":")
             label = path if path.rpartition(".")[2] == output else ref
             is_height = bool(height) and self.flat.ref(ref, "") == self.flat.ref(height, "")
-            found.append({"ref": ref, **_ref(self.flat.ref(ref, "")), "label": label, "height": is_height})
-        return found
+            textures.append({"ref": ref, **_ref(self.flat.ref(ref, "")), "label": label, "height": is_height})
+        return textures
 
     def _map(self) -> dict[str, Any]:
         kernel = map_kernel()

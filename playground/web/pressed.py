@@ -21,10 +21,10 @@ ESCAPED = "\0\a\b\t\n\v\f\r\x1a\x1b&<\x7f"
 _FIRST = 2  # of the 128 letters for each: U+0080 … are controls
 _ESCAPE = re.compile(b"[" + re.escape(ESCAPED.encode()) + b"].?", re.DOTALL)
 _PAIRS = {
-    bytes([ord(one), next_]): chr(place << 7 | next_).encode()
-    for place, one in enumerate(ESCAPED, _FIRST)
+    bytes([ord(item), next_]): chr(index << 7 | next_).encode()
+    for index, item in enumerate(ESCAPED, _FIRST)
     for next_ in range(128)
-} | {one.encode(): chr(15 << 7 | ord(one)).encode() for one in ESCAPED}  # at the end, alone
+} | {item.encode(): chr(15 << 7 | ord(item)).encode() for item in ESCAPED}  # at the end, alone
 _LETTERS = ascii_letters.encode()
 _WORD = re.compile(rb"[A-Za-z]{3,}")
 _FILTERS = [
@@ -54,8 +54,8 @@ def _with_words(data: bytes) -> bytes:
     a fortieth.
     """
     present = {*data, 0, *_LETTERS}
-    found = Counter(_WORD.findall(data))
-    best = sorted(found, key=lambda word: (-(found[word] - 1) * (len(word) - 1), word))
+    counts = Counter(_WORD.findall(data))
+    best = sorted(counts, key=lambda word: (-(counts[word] - 1) * (len(word) - 1), word))
     codes = {word: bytes([code]) for word, code in zip(best, sorted({*range(256)} - present), strict=False)}
     listed = b"".join(code + word for word, code in codes.items())
     return listed + b"\0" + _WORD.sub(lambda match: codes.get(match[0], match[0]), data)

@@ -21,42 +21,42 @@ Locked = Callable[[str, tuple[str, ...]], str]
 
 def shown_data(sketch: Sketch, values: Mapping[str, Any], locked: Locked) -> list[dict[str, Any]]:
     """Return every parameter of a sketch as the panel has it: see ``Shown`` in schema.js."""
-    found = []
+    rows = []
     for shown in shown_parameters(sketch):
         targets = tuple(target.path for target in resolve(sketch.graph, shown.path))
-        found.append(row(shown, values[targets[0]], targets, locked(shown.path, targets)))
-    named = {one["path"]: one for one in found}
-    by_leaf = {one["targets"][0]: one for one in found}  # a row inside may be named by an outer path
-    for place, path in enumerate(sketch.main, 1):
+        rows.append(row(shown, values[targets[0]], targets, locked(shown.path, targets)))
+    named = {entry["path"]: entry for entry in rows}
+    by_leaf = {entry["targets"][0]: entry for entry in rows}  # a row inside may be named by an outer path
+    for index, path in enumerate(sketch.main, 1):
         main = named.get(path) or by_leaf[resolve(sketch.graph, path)[0].path]
-        main["main"] = main["main"] or place
-    return found
+        main["main"] = main["main"] or index
+    return rows
 
 
 def row(shown: Shown, value: Any, targets: tuple[str, ...], locked: str = "") -> dict[str, Any]:
     """Return one parameter as a page shows it."""
-    found = described(shown)
-    found["ranges"] = [list(ends) if ends else [None, None] for ends in found["ranges"]]
-    found |= {"main": 0, "locked": locked, "value": value, "targets": list(targets)}
+    data = described(shown)
+    data["ranges"] = [list(ends) if ends else [None, None] for ends in data["ranges"]]
+    data |= {"main": 0, "locked": locked, "value": value, "targets": list(targets)}
     if shown.parameter.widget.raw:
-        found["raw"] = True
-    return found
+        data["raw"] = True
+    return data
 
 
 def presets_data(
     sketch: Sketch, rows: Collection[Mapping[str, Any]], written: Written
 ) -> tuple[list[dict[str, Any]], list[str]]:
-    """Return the presets by the paths of the rows, and a sentence for each that says less in a page."""
+    """Return the presets by the paths of the rows, and a message for each that says less in a page."""
     by_path = {row["path"]: row for row in rows}
     by_target = {target: row for row in rows for target in row["targets"]}
-    found, notes = [], []
+    presets, notes = [], []
     for preset in sketch.presets:
         values = {}
-        for path, given in preset.values:
+        for path, arguments in preset.values:
             if "." in path and not find_targets(sketch.graph, path):
                 notes.append(f"preset '{preset.name}' leaves {path} out: this technique does not have it")
                 continue
-            value = check_value(sketch, path, given)
+            value = check_value(sketch, path, arguments)
             if "." not in path:
                 values[path] = value
                 continue
@@ -66,14 +66,14 @@ def presets_data(
                 notes.append(f"preset '{preset.name}' leaves {shown['path']} as it is: {shown['locked']}")
             else:
                 values[shown["path"]] = written(target, value)
-        found.append({"name": preset.name, "values": values})
-    return found, notes
+        presets.append({"name": preset.name, "values": values})
+    return presets, notes
 
 
 def tracks_data(sketch: Sketch, locked: Locked, written: Written) -> tuple[list[dict[str, Any]], list[str]]:
-    """Return the keyframes' tracks, but for what is set over them, and a sentence for each left out."""
+    """Return the keyframes' tracks, but for what is set over them, and a message for each left out."""
     cameras, tracks = tracks_of(sketch.keyframes, sketch.graph)
-    found = [_track("camera", name, (), track, list(track.values)) for name, track in cameras.items()]
+    result = [_track("camera", name, (), track, list(track.values)) for name, track in cameras.items()]
     over = {t.path for path, _ in sketch.overrides for t in resolve(sketch.graph, path)}
     notes = []
     for path, track in tracks.items():
@@ -82,8 +82,8 @@ def tracks_data(sketch: Sketch, locked: Locked, written: Written) -> tuple[list[
             notes.append(f"keyframes leave {path} as it is: {why}")
         elif targets:
             values = [written(targets[0], value) for value in track.values]
-            found.append(_track("value", path, targets, track, values))
-    return found, notes
+            result.append(_track("value", path, targets, track, values))
+    return result, notes
 
 
 def rules_data(flat: Flat) -> list[dict[str, Any]]:

@@ -1,7 +1,7 @@
 """Write down what the processor makes: the texels of sources, of a film or a sound frame by frame.
 
-A file that is played is written from its beginning as far as that fits into ``MOST_BYTES`` of a page
-and ``LONGEST`` seconds; what comes later stays as the last frame is. Of a sound that repeats, a page has
+A file that is played is written from its beginning as far as that fits into ``MAX_SOURCE_BYTES`` of a page
+and ``MAX_SECONDS`` seconds; what comes later stays as the last frame is. Of a sound that repeats, a page has
 also what is heard of its end in the next lap. What a window feeds has nothing to show in a page.
 """
 
@@ -20,9 +20,9 @@ from playground.engine.sources import source_kind
 from playground.engine.textures import texels_in
 from playground.web.blobs import Blobs
 
-MOST_BYTES = 3 * 2**20
+MAX_SOURCE_BYTES = 3 * 2**20
 """Bytes of a page that the frames of one source may take."""
-LONGEST = 10.0
+MAX_SECONDS = 10.0
 """[s] of a file that is played that a page has at most."""
 
 
@@ -31,13 +31,13 @@ class SourceData:
     """What a page has of a source."""
 
     textures: list[dict[str, Any]]  # see ``DataTexture`` in schema.js
-    note: str  # a sentence on what that is
+    note: str  # a message on what that is
 
 
 def source_data(
     step: Step, what: str, blobs: Blobs, drawn: Callable[[], Mapping[str, NDArray[Any]]]
 ) -> SourceData:
-    """Return the texels of a source; ``what`` it makes, in words.
+    """Return the texels of a source; ``what`` it makes, as text.
 
     ``drawn`` gives the texels of one that has inputs. Raises ``DataError`` for a file that cannot be read.
     """
@@ -54,35 +54,35 @@ def source_data(
 
 
 def _recorded(recording: Recording, step: Step, what: str, blobs: Blobs) -> SourceData:
-    found: list[dict[str, Any]] = []
+    sources: list[dict[str, Any]] = []
     times: list[float] = []
-    length, limit = recording.length(step.values), blobs.size + MOST_BYTES
+    length, limit = recording.length(step.values), blobs.size + MAX_SOURCE_BYTES
     for time, arrays in recording.frames(step.values, step.size):
-        if times and (blobs.size >= limit or time > LONGEST):
+        if times and (blobs.size >= limit or time > MAX_SECONDS):
             note = f"{step.path}: of {what}, {length:.3g} s long, the page has the first {time:.3g} s"
             break
         now = _textures(step, arrays, blobs)
-        found = found or [one | {"times": times, "frames": [], "length": length} for one in now]
+        sources = sources or [entry | {"times": times, "frames": [], "length": length} for entry in now]
         times.append(time)
-        for one, other in zip(found, now, strict=True):
-            one["frames"].append(other["blob"])
+        for entry, other in zip(sources, now, strict=True):
+            entry["frames"].append(other["blob"])
     else:
         note = f"{step.path}: {what} is exported as it is, {length:.3g} s"
     if recording.laps is not None:
-        _add_laps(found, recording, step, blobs)
-    return SourceData(found, note)
+        _add_laps(sources, recording, step, blobs)
+    return SourceData(sources, note)
 
 
-def _add_laps(found: list[dict[str, Any]], recording: Recording, step: Step, blobs: Blobs) -> None:
+def _add_laps(sources: list[dict[str, Any]], recording: Recording, step: Step, blobs: Blobs) -> None:
     """Add to each texture what shows from the end of a file on that repeats."""
     assert recording.laps is not None
     times: list[float] = []
-    for one in found:
-        one["laps"] = {"lead": recording.lead, "times": times, "frames": []}
+    for entry in sources:
+        entry["laps"] = {"lead": recording.lead, "times": times, "frames": []}
     for time, arrays in recording.laps(step.values, step.size):
         times.append(time)
-        for one, other in zip(found, _textures(step, arrays, blobs), strict=True):
-            one["laps"]["frames"].append(other["blob"])
+        for entry, other in zip(sources, _textures(step, arrays, blobs), strict=True):
+            entry["laps"]["frames"].append(other["blob"])
 
 
 def _textures(step: Step, arrays: Mapping[str, NDArray[Any]], blobs: Blobs) -> list[dict[str, Any]]:

@@ -14,13 +14,13 @@ def stage_data(recipe: Recipe, file: str = "") -> dict[str, Any]:
     before = [
         {"text": part.text, **({"names": list(part.names)} if part.names else {})} for part in recipe.before
     ]
-    found: dict[str, Any] = {"before": before, "after": recipe.after.removesuffix("\n")}
+    data: dict[str, Any] = {"before": before, "after": recipe.after.removesuffix("\n")}
     if recipe.without:
-        found["without"] = recipe.without
+        data["without"] = recipe.without
     if recipe.replaced:
-        found["replace"] = dict(recipe.replaced)
+        data["replace"] = dict(recipe.replaced)
     if recipe.keeps_version:
-        found["keepsVersion"] = True
+        data["keepsVersion"] = True
     if file:
-        found["file"] = file
-    return found
+        data["file"] = file
+    return data

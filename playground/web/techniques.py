@@ -16,26 +16,26 @@ from playground.sketch.model import DEFAULT_PICTURE, Sketch
 from playground.sketch.replace_technique import choices, fits, nearest_fitting, with_technique
 from playground.web.plan import KINDS
 
-MOST = 24
+MAX_COMBINATIONS = 24
 """Sketches that a page may hold: one for each combination of techniques."""
 
 
 @looking_once()
 def technique_menus(
-    sketch: Sketch, wanted: Mapping[str, Sequence[str]]
+    sketch: Sketch, names: Mapping[str, Sequence[str]]
 ) -> tuple[list[Sketch], list[list[dict[str, Any]]]]:
     """Return a sketch for each combination of techniques, the sketch itself first, and the menus of each.
 
-    ``wanted`` lists techniques by pass, as ``use`` names them; none means all that fit and
+    ``names`` lists techniques by pass, as ``use`` names them; none means all that fit and
     can be planned. What fills a pass now is always among them. Raises ``ParameterError`` for more than
-    ``MOST`` combinations, ``SketchError`` for what does not fit.
+    ``MAX_COMBINATIONS`` combinations, ``SketchError`` for what does not fit.
     """
-    lists = {name: _fitting(sketch, name, uses) for name, uses in wanted.items()}
+    lists = {name: _fitting(sketch, name, uses) for name, uses in names.items()}
     count = prod(map(len, lists.values()))
-    if count > MOST:
+    if count > MAX_COMBINATIONS:
         listed = " x ".join(f"{len(uses)} of {name}" for name, uses in lists.items())
         raise ParameterError(
-            f"{listed} are {count} sketches in one page; at most {MOST}: name fewer techniques"
+            f"{listed} are {count} sketches in one page; at most {MAX_COMBINATIONS}: name fewer techniques"
         )
     chosen = list(product(*lists.values()))
     numbers = {uses: number for number, uses in enumerate(chosen)}
@@ -61,14 +61,14 @@ def technique_menus(
 
 def _fitting(sketch: Sketch, name: str, uses: Sequence[str]) -> list[str]:
     """Return what fills a pass, and what else is wanted there."""
-    found = uses or [use for use in choices(sketch, name) if _is_planned(sketch, name, use)]
+    techniques = uses or [use for use in choices(sketch, name) if _is_planned(sketch, name, use)]
     for use in uses:
         if not fits(sketch, name, use):
             hint = nearest_fitting(sketch, name, use)
             raise SketchError(f"no technique '{use}' fits pass '{name}'{hint}")
     spec = sketch.graph.find(name)
     assert spec is not None  # or ``choices`` has said so
-    return list(dict.fromkeys([spec.use, *found]))
+    return list(dict.fromkeys([spec.use, *techniques]))
 
 
 def _is_planned(sketch: Sketch, name: str, use: str) -> bool:

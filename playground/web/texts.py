@@ -61,19 +61,19 @@ class Texts:
 
     def _rewritten(self, source: SourceText, folder: str, label: str) -> str:
         text = "\n".join(map(_with_comment, source.lines))
-        known = f"{source.path}{PART_OF_FILE}{label}"
-        if self.files.get(self._names.get(known, ""), text) != text:
-            known += f" {len(self.files)}"
-        name = self._name(known, folder)
+        name_known = f"{source.path}{PART_OF_FILE}{label}"
+        if self.files.get(self._names.get(name_known, ""), text) != text:
+            name_known += f" {len(self.files)}"
+        name = self._name(name_known, folder)
         self.files[name] = text
         return name
 
     def _name(self, path: str, folder: str) -> str:
         if path not in self._names:
-            wanted = _short_name(Path(path), folder)
-            name, number = wanted, 2
+            short_name = _short_name(Path(path), folder)
+            name, number = short_name, 2
             while name in self._names.values():
-                name, number = f"{wanted}-{number}", number + 1
+                name, number = f"{short_name}-{number}", number + 1
             self._names[path] = name
         return self._names[path]
 

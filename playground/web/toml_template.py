@@ -16,7 +16,7 @@ from playground.shader.source import normalised
 from playground.sketch.assign import TERRAIN_KEYS, resolve, shown_parameters
 from playground.sketch.model import Camera, Graph, Sketch
 from playground.sketch.save import table_of, with_view
-from playground.sketch.toml_text import Place, TomlPlaces, key_text
+from playground.sketch.toml_text import KeyPath, TomlPlaces, key_text
 
 Piece = str | dict[str, Any]
 """A part of the text, or a hole: ``{path, was}`` a parameter's value, ``{camera, was}`` and ``{terrain,
@@ -48,7 +48,7 @@ def sketch_pieces(text: str, sketch: Sketch, named: Callable[[str], str]) -> lis
     cuts = list(_uses(text, places, sketch.graph, named))
     cuts += _known(text, places, (), ((key, {"terrain": key}) for key in TERRAIN_KEYS))
     cuts.append(_insertion(text, places, (), TERRAIN))
-    camera: Place = ("view", "camera")
+    camera: KeyPath = ("view", "camera")
     names = [part.name for part in fields(Camera)]
     cuts += _known(text, places, camera, ((name, {"camera": name}) for name in names))
     cuts.append(_insertion(text, places, camera, CAMERA))
@@ -90,17 +90,17 @@ def _uses(text: str, places: TomlPlaces, graph: Graph, named: Callable[[str], st
 
 
 def _known(
-    text: str, places: TomlPlaces, table: Place, wanted: Iterable[tuple[str, dict[str, Any]]]
+    text: str, places: TomlPlaces, table: KeyPath, holes: Iterable[tuple[str, dict[str, Any]]]
 ) -> Iterator[_Cut]:
     """Yield the values that a table has already."""
-    for key, hole in wanted:
-        place = places.find(table, key)
-        if place is not None:
-            pair = places.pairs[place]
+    for key, hole in holes:
+        pair_found = places.find(table, key)
+        if pair_found is not None:
+            pair = places.pairs[pair_found]
             yield _Cut(pair.value, pair.end, {**hole, "was": text[pair.value : pair.end]})
 
 
-def _insertion(text: str, places: TomlPlaces, table: Place, into: str) -> _Cut:
+def _insertion(text: str, places: TomlPlaces, table: KeyPath, into: str) -> _Cut:
     """Return where keys are added to a table, in the way that it is written."""
     pairs = places.inside(table)
     if table in places.pairs:
@@ -135,15 +135,15 @@ def _cut(text: str, start: int, end: int, into: str, begin: str, join: str, clos
 
 
 def _pieces(text: str, cuts: Iterable[_Cut]) -> list[Piece]:
-    found: list[Piece] = []
+    pieces: list[Piece] = []
     at = 0
     # An insertion behind a value comes after it, and those at one place in the order of the tables.
-    for cut in sorted(cuts, key=lambda one: (one.start, one.end)):
+    for cut in sorted(cuts, key=lambda cut: (cut.start, cut.end)):
         if cut.start > at:
-            found.append(text[at : cut.start])
-        found.append(cut.hole)
+            pieces.append(text[at : cut.start])
+        pieces.append(cut.hole)
         at = cut.end
-    return [*found, text[at:]] if at < len(text) else found
+    return [*pieces, text[at:]] if at < len(text) else pieces
 
 
 def page_name(path: str) -> str:

@@ -40,7 +40,7 @@ class Autosave:
         self,
         session: Session,
         memory: Memory,
-        found: Remembered | None = None,
+        remembered: Remembered | None = None,
         now: Callable[[], float] = time.monotonic,
         *,
         compare: Compare | None = None,
@@ -60,7 +60,7 @@ class Autosave:
         self._in_file: tuple[Draft | None, tuple[tuple[str, FileValue], ...]] = (None, ())
         self._compared = Remembered().compared
         session.before_switch = self._take_last_edits
-        self._recall(found or Remembered())
+        self._recall(remembered or Remembered())
 
     @property
     def waits(self) -> bool:
@@ -80,11 +80,11 @@ class Autosave:
                 self._compared = None if is_on else self._latest.compared
             session.stay()
             return
-        found, complaint = Memory(path, self._memory.path.parent).read()
-        session.open(path, start=found.start)
+        remembered, complaint = Memory(path, self._memory.path.parent).read()
+        session.open(path, start=remembered.start)
         session.notes.extend(filter(None, [complaint]))
         self._opened = path
-        self._recall(found)
+        self._recall(remembered)
 
     def look(self, window: tuple[int, int], at: tuple[int, int] | None = None) -> None:
         """Take in what the session shows now, and write it if it is time to.
@@ -98,20 +98,22 @@ class Autosave:
                 self._recalled = False
             if session.shown is None or self._latest is None:
                 return
-            found = replace(self._latest, **self._drawn_of(session.shown))
+            remembered = replace(self._latest, **self._drawn_of(session.shown))
         else:
             if session.path != self._path:
                 self._switch()
             self._recalled = False
             if self._compared is not None and (self.compare is None or self.compare.recall(self._compared)):
                 self._compared = None
-            found = self._snapshot(session.shown, window, at)
-        if self._latest is None or replace(found, time=self._latest.time) != self._latest:
+            remembered = self._snapshot(session.shown, window, at)
+        if self._latest is None or replace(remembered, time=self._latest.time) != self._latest:
             self._changed_at = now
-        self._latest = found
-        is_moment = self._written is not None and replace(found, time=self._written.time) == self._written
+        self._latest = remembered
+        is_moment = (
+            self._written is not None and replace(remembered, time=self._written.time) == self._written
+        )
         rested = now - self._changed_at >= QUIET
-        if found != self._written and rested and (not is_moment or now - self._written_at >= TIME):
+        if remembered != self._written and rested and (not is_moment or now - self._written_at >= TIME):
             self.write()
 
     def write(self) -> None:
@@ -153,15 +155,17 @@ class Autosave:
         if path != self._opened:  # it was opened without what is remembered of it
             self._compared = None
 
-    def _recall(self, found: Remembered) -> None:
+    def _recall(self, remembered: Remembered) -> None:
         """Have the session show what is remembered besides the edits."""
         session, clock = self.session, self.session.clock
-        self._compared = found.compared  # A of the last session, until it is there again
-        self._recalled = not found.is_nothing
-        clock.time, clock.playing, clock.speed = found.time, found.playing, found.speed
-        if found.loop is not None:
-            clock.set_loop(*found.loop)
-        session.restore_view(dict(found.steps), Map(found.map, found.map_values) if found.map else None)
+        self._compared = remembered.compared  # A of the last session, until it is there again
+        self._recalled = not remembered.is_default
+        clock.time, clock.playing, clock.speed = remembered.time, remembered.playing, remembered.speed
+        if remembered.loop is not None:
+            clock.set_loop(*remembered.loop)
+        session.restore_view(
+            dict(remembered.steps), Map(remembered.map, remembered.map_values) if remembered.map else None
+        )
 
     def _drawn_of(self, draft: Draft) -> dict[str, Any]:
         """Return the fields of ``Remembered`` that hold a draft's edits, the map and the stopped repeats."""

@@ -22,7 +22,7 @@ from playground.workbench.sketch_file import SketchFile
 from playground.workbench.undo import Undo
 
 
-class Bench:
+class Workbench:
     """One session, and what works on it."""
 
     def __init__(

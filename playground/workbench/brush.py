@@ -25,7 +25,7 @@ class Brush:
 
     layer: int = 3  # of a mask: 0 to 3, or ERASER
     radius: float = 60.0  # [m]
-    strength: float = 0.6  # 0..1; on a mask what each step of a stroke covers, else a share of a rate
+    strength: float = 0.6  # 0..1; on a mask what each step of a stroke covers, else a fraction of a rate
     softness: float = 0.7  # share of the radius over which it fades, 0..1
     tool: Tool = "raise"  # of what has one number a texel
     level: float | None = None  # that flatten goes to; None: where the stroke begins
@@ -40,7 +40,7 @@ def reached(
 ) -> Part:
     """Return the rows and columns that a stroke can touch; no texel where it is off the terrain.
 
-    ``size``: (nx, ny) of the image; ``start`` and ``end`` in shares of the terrain's sides from
+    ``size``: (nx, ny) of the image; ``start`` and ``end`` in fractions of the terrain's sides from
     the south-west; ``extent`` of the terrain and ``radius`` of the brush [m].
     """
     ends = np.array([start, end], np.float64) * extent

@@ -24,10 +24,10 @@ from playground.workbench.brush import Brush, Part
 from playground.workbench.data_files import hash_of
 from playground.workbench.latest_write import LatestWrite
 
-MOST_TEXELS = 4097
+MAX_TEXELS = 4097
 """Of an image's longer side; a larger terrain's is resampled from it."""
 _TILE = 64  # texels of a side
-_MOST_UNDONE = 24
+_MAX_UNDO_STEPS = 24
 _REMEMBERED = 256  # changes whose places are known
 
 
@@ -63,8 +63,8 @@ class Canvas(ABC):
         self._after: list[_Stroke] = []  # after each that was undone, the last one at the end
 
     @classmethod
-    def begun(
-        cls, folder: Path, name: str, of: Path | None, size: tuple[int, int], most: int = MOST_TEXELS
+    def create(
+        cls, folder: Path, name: str, of: Path | None, size: tuple[int, int], most: int = MAX_TEXELS
     ) -> Self:
         """Begin a file that is new in a folder: a copy of another one, or nothing painted yet.
 
@@ -202,7 +202,7 @@ class Canvas(ABC):
     def _settle(self) -> None:
         """End the stroke that goes on: what it has changed can be undone."""
         if self._tiles:
-            self._before = [*self._before, list(self._tiles.values())][-_MOST_UNDONE:]
+            self._before = [*self._before, list(self._tiles.values())][-_MAX_UNDO_STEPS:]
         self._tiles = None
 
     def _go(self, there: list[_Stroke], back: list[_Stroke]) -> None:
@@ -225,9 +225,9 @@ def _tile(number: int) -> slice:
     return slice(number * _TILE, (number + 1) * _TILE)
 
 
-def _around(one: Part, other: Part) -> Part:
+def _around(first: Part, other: Part) -> Part:
     """Return the rectangle around two."""
     rows, columns = (
-        slice(min(a.start, b.start), max(a.stop, b.stop)) for a, b in zip(one, other, strict=True)
+        slice(min(a.start, b.start), max(a.stop, b.stop)) for a, b in zip(first, other, strict=True)
     )
     return rows, columns

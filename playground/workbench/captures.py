@@ -16,13 +16,13 @@ from fractions import Fraction
 from pathlib import Path
 
 from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, CaptureJob, JobProcess
-from playground.capture.sheet import USUAL_SIZE
+from playground.capture.sheet import DEFAULT_SIZE
 from playground.capture.sweep import read_sweep, swept
 from playground.capture.video import QUALITY, check_video
 from playground.errors import DataError, ParameterError, PlaygroundError, counted
 from playground.paths import shown
 from playground.shader.parameter import is_whole, length_of
-from playground.sketch.model import LARGEST_PICTURE, LARGEST_SIDE, Parameter, Sketch
+from playground.sketch.model import MAX_PICTURE_SIDE, MAX_SIDE, Parameter, Sketch
 from playground.workbench.notices import Notices
 from playground.workbench.session import Session
 from playground.workbench.snapshot import save_new
@@ -33,7 +33,7 @@ _TURN = {"azimuth": (0.0, 350.0), "elevation": (5.0, 60.0)}
 
 
 @dataclass
-class Wish:
+class CaptureSettings:
     """What is typed and chosen in the capture's window."""
 
     kind: str = PICTURE
@@ -55,7 +55,7 @@ class Captures:
     notices: Notices
     folder: Path  # where pictures go
     settle: Callable[[], bool]  # has what is painted written, which the other process reads; whether it is
-    wish: Wish = field(default_factory=Wish)
+    capture_settings: CaptureSettings = field(default_factory=CaptureSettings)
     shown: bool = False  # the capture's window is open
     working: JobProcess | None = None
     saved: Path | None = None  # the last picture
@@ -127,33 +127,40 @@ class Captures:
 
     def size(self) -> tuple[int, int]:
         """Return the size in pixels that is wished for; raise ``ParameterError``."""
-        wish, picture = self.wish, self.session.picture.texture
+        capture_settings, picture = self.capture_settings, self.session.picture.texture
         width, height = picture.size if picture is not None else (0, 0)
-        if wish.kind == SHEET and wish.multiple:
-            scale = USUAL_SIZE[0] * wish.multiple / max(width, 1)
+        if capture_settings.kind == SHEET and capture_settings.multiple:
+            scale = DEFAULT_SIZE[0] * capture_settings.multiple / max(width, 1)
             return max(round(width * scale), 1), max(round(height * scale), 1)
-        size = (width * wish.multiple, height * wish.multiple) if wish.multiple else wish.size
-        if wish.kind == FILM and wish.ending != ".gif":
+        size = (
+            (width * capture_settings.multiple, height * capture_settings.multiple)
+            if capture_settings.multiple
+            else capture_settings.size
+        )
+        if capture_settings.kind == FILM and capture_settings.ending != ".gif":
             size = size[0] + size[0] % 2, size[1] + size[1] % 2
-        most = LARGEST_PICTURE if wish.kind in (PICTURE, PICTURES) else LARGEST_SIDE
+        most = MAX_PICTURE_SIDE if capture_settings.kind in (PICTURE, PICTURES) else MAX_SIDE
         if not all(1 <= side <= most for side in size):
             raise ParameterError(f"{size[0]} x {size[1]} pixels: expected 1 to {most} a side")
         return size
 
     def job(self) -> CaptureJob:
         """Return what is wished for as a job; raise ``PlaygroundError`` for what cannot be."""
-        wish, session = self.wish, self.session
+        capture_settings, session = self.capture_settings, self.session
         if session.sketch is None:
             raise DataError("there is no picture to save yet")
         shown_map = session.view.map
         sketch = shown_map.of(session.sketch) if shown_map is not None else session.sketch
         steps, size = session.view.stops(session.sketch, session.clock.time), self.size()
-        moves = wish.kind in (FILM, PICTURES)
-        start = wish.start if moves else session.clock.time
-        fps, sweeps = Fraction(max(wish.fps, 1)), tuple(filter(None, (s.strip() for s in wish.sweeps)))
-        if wish.kind == FILM:
-            check_video(self.folder / f"film{wish.ending}", size, fps, wish.quality)
-        if wish.kind == SHEET:
+        moves = capture_settings.kind in (FILM, PICTURES)
+        start = capture_settings.start if moves else session.clock.time
+        fps, sweeps = (
+            Fraction(max(capture_settings.fps, 1)),
+            tuple(filter(None, (s.strip() for s in capture_settings.sweeps))),
+        )
+        if capture_settings.kind == FILM:
+            check_video(self.folder / f"film{capture_settings.ending}", size, fps, capture_settings.quality)
+        if capture_settings.kind == SHEET:
             if not sweeps:
                 raise ParameterError("choose a parameter to sweep, or write one, as light.gain=0.5..3")
             at = sketch.at(start)
@@ -161,16 +168,16 @@ class Captures:
             if steps:
                 raise ParameterError("a sheet runs every repeat to its end; set the steps back to all")
         return CaptureJob(
-            kind=wish.kind,
+            kind=capture_settings.kind,
             sketch=sketch,
             folder=self.folder,
             size=size,
             time=start,
             steps=steps,
-            seconds=seconds_of(wish, sketch) if moves else None,
+            seconds=seconds_of(capture_settings, sketch) if moves else None,
             fps=fps,
-            ending=wish.ending,
-            quality=wish.quality,
+            ending=capture_settings.ending,
+            quality=capture_settings.quality,
             sweeps=sweeps,
         )
 
@@ -180,16 +187,16 @@ class Captures:
             width, height = self.size()
         except ParameterError as error:
             return str(error)
-        if self.wish.kind in (FILM, PICTURES) and self.session.sketch is not None:
-            count = round(seconds_of(self.wish, self.session.sketch) * self.wish.fps)
+        if self.capture_settings.kind in (FILM, PICTURES) and self.session.sketch is not None:
+            count = round(seconds_of(self.capture_settings, self.session.sketch) * self.capture_settings.fps)
             return f"{counted(count, 'picture')} of {width} x {height} pixels"
-        return f"{width} x {height} pixels" + (" each" if self.wish.kind == SHEET else "")
+        return f"{width} x {height} pixels" + (" each" if self.capture_settings.kind == SHEET else "")
 
 
-def seconds_of(wish: Wish, sketch: Sketch) -> float:
+def seconds_of(capture_settings: CaptureSettings, sketch: Sketch) -> float:
     """Return how long a film is [s]: as long as is wished, else to its last keyframe, else ten."""
-    left = sketch.duration - wish.start
-    return wish.seconds if wish.seconds > 0.0 else left if left > 0.0 else 10.0
+    left = sketch.duration - capture_settings.start
+    return capture_settings.seconds if capture_settings.seconds > 0.0 else left if left > 0.0 else 10.0
 
 
 def sweep_text(path: str, parameter: Parameter, part: str = "") -> str:
@@ -219,7 +226,7 @@ def parts_of(parameter: Parameter) -> tuple[str, ...]:
 
 
 def open_folder(path: Path) -> str:
-    """Show a file's folder, or a folder, in the system's file manager; return a sentence where that fails."""
+    """Show a file's folder, or a folder, in the system's file manager; return a message where that fails."""
     folder = path if path.is_dir() else path.parent
     try:
         if sys.platform == "win32":

@@ -53,13 +53,13 @@ class CatchUp:
                 try:
                     return draw(at)
                 except SourceUnfinished as stopped:
-                    self.behind, self.source = (stopped.done, stopped.wanted), stopped.path
+                    self.behind, self.source = (stopped.done, stopped.total), stopped.path
                     self._since = self._since if before else self._now()
                     return None
                 except Unfinished as stopped:
-                    at *= stopped.done / stopped.wanted
+                    at *= stopped.done / stopped.total
                     if self.behind is None:
-                        self.behind = stopped.done, stopped.wanted
+                        self.behind = stopped.done, stopped.total
                         self._since = self._since if before else self._now()
             return None
         finally:

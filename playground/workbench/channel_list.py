@@ -56,13 +56,13 @@ class Taker:
 
 def takers(sketch: Sketch, ending: str) -> tuple[Taker, ...]:
     """Return the channels that a file of an ending, as ".png", may feed."""
-    found = []
+    result = []
     for channel in channels(sketch):
         for source in [s for s in sources(sketch, channel.path) if is_technique(s)]:
             parameter = _file_parameter(_technique(sketch, source))
             if parameter is not None and ending in endings_of(sketch, source):
-                found.append(Taker(channel, source, parameter.name))
-    return tuple(found)
+                result.append(Taker(channel, source, parameter.name))
+    return tuple(result)
 
 
 def endings_of(sketch: Sketch, source: str) -> tuple[str, ...]:
@@ -80,5 +80,5 @@ def _technique(sketch: Sketch, source: str) -> Technique:
 
 def _file_parameter(technique: Technique) -> Parameter | None:
     """Return the one parameter of a technique that names a file; None for none, or several."""
-    found = technique.file_parameters if isinstance(technique, Kernel) else ()
-    return found[0] if len(found) == 1 else None
+    file_parameters = technique.file_parameters if isinstance(technique, Kernel) else ()
+    return file_parameters[0] if len(file_parameters) == 1 else None

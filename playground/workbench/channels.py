@@ -94,16 +94,16 @@ def _channels(graph: Graph) -> tuple[Channel, ...]:
             sources[leaf.path, name] = source
             if isinstance(source, Ref):
                 readers.setdefault(source.path, set()).add((leaf.path.partition(".")[0], name))
-    found = []
+    result = []
     for spec, name in names:
         kernel, _, own = _leaf(spec, name).rpartition(".")
         source, shape = sources.get((kernel, own)), shapes.get((kernel, own), "")
         if isinstance(source, Ref):
             fed = _fed(graph, f"{spec.name}.{name}", source, len(readers[source.path]), flat.specs)
-            found.append(replace(fed, shape=shape))
+            result.append(replace(fed, shape=shape))
         elif source is None:
-            found.append(Channel(f"{spec.name}.{name}", "", shape=shape))
-    return tuple(found)
+            result.append(Channel(f"{spec.name}.{name}", "", shape=shape))
+    return tuple(result)
 
 
 def _by_number(name: str) -> list[str | int]:
@@ -125,10 +125,10 @@ def _fed(graph: Graph, path: str, source: Ref, readers: int, specs: dict[str, Pa
 
 def channel_of(sketch: Sketch, path: str) -> Channel:
     """Return a channel by its path; raise ``SketchError`` with the nearest where there is none."""
-    known = {channel.path: channel for channel in channels(sketch)}
-    if path not in known:
-        raise SketchError(f"no channel '{path}' in sketch {sketch.name}{nearest(path, known)}")
-    return known[path]
+    channels_by_path = {channel.path: channel for channel in channels(sketch)}
+    if path not in channels_by_path:
+        raise SketchError(f"no channel '{path}' in sketch {sketch.name}{nearest(path, channels_by_path)}")
+    return channels_by_path[path]
 
 
 def find_channel(sketch: Sketch, path: str) -> Channel | None:
@@ -138,8 +138,8 @@ def find_channel(sketch: Sketch, path: str) -> Channel | None:
 
 def source_of(sketch: Sketch, path: str) -> str | None:
     """Return what feeds a channel; None where there is no such channel."""
-    found = find_channel(sketch, path)
-    return found.source if found is not None else None
+    channel = find_channel(sketch, path)
+    return channel.source if channel is not None else None
 
 
 def sources(sketch: Sketch, path: str) -> list[str]:
@@ -158,8 +158,8 @@ def sources(sketch: Sketch, path: str) -> list[str]:
         and not (spec.name in stand_ins and not _reads_file(spec))  # another channel's own
     ]
     feeds = [use for use in _feeds() if use == _ANY or (use in _CUBES) == (now.shape == "cube")]
-    found = dict.fromkeys([*feeds, *passes, now.source])
-    return [source for source in found if source == now.source or _may_feed(sketch, path, source)]
+    sources_found = dict.fromkeys([*feeds, *passes, now.source])
+    return [source for source in sources_found if source == now.source or _may_feed(sketch, path, source)]
 
 
 def _reads_file(spec: PassSpec) -> bool:
@@ -179,14 +179,14 @@ def in_order(sources: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
 @cache
 def _feeds() -> tuple[str, ...]:
     """Return the techniques that may feed a channel."""
-    found = []
+    feeds = []
     for use in shipped_names():
         if use.startswith(FOLDER):
             technique = read_technique(use, GLSL, GLSL)
             needs = [name for name in input_names(technique) if not is_optional(technique, name)]
             if output_names(technique) == (OUTPUT,) and not needs:
-                found.append(use)
-    return tuple(found)
+                feeds.append(use)
+    return tuple(feeds)
 
 
 def _may_feed(sketch: Sketch, path: str, source: str) -> bool:
@@ -223,9 +223,9 @@ def with_source(sketch: Sketch, path: str, source: str) -> Sketch:
     )
     if not now.alone:
         return _wired(sketch, now, name, (*passes[:-1], spec, passes[-1]))
-    was = next(one for one in passes if one.name == name)
+    was = next(spec for spec in passes if spec.name == name)
     spec = replace(spec, inputs=(), file=was.file, line=was.line)
-    return _checked(sketch, tuple(spec if one is was else one for one in passes))
+    return _checked(sketch, tuple(spec if pass_ is was else pass_ for pass_ in passes))
 
 
 def _wired(sketch: Sketch, channel: Channel, source: str, passes: tuple[PassSpec, ...]) -> Sketch:
@@ -244,9 +244,9 @@ def _wired(sketch: Sketch, channel: Channel, source: str, passes: tuple[PassSpec
 def _checked(sketch: Sketch, passes: tuple[PassSpec, ...]) -> Sketch:
     graph = replace(sketch.graph, passes=passes)
     overrides = tuple(pair for pair in sketch.overrides if find_targets(graph, pair[0]))
-    found = replace(sketch, graph=graph, overrides=overrides)
-    flatten(found)
-    return found
+    checked = replace(sketch, graph=graph, overrides=overrides)
+    flatten(checked)
+    return checked
 
 
 def _new_name(sketch: Sketch, channel: Channel) -> str:
@@ -254,9 +254,9 @@ def _new_name(sketch: Sketch, channel: Channel) -> str:
     taken = [spec.name for spec in sketch.graph.passes]
     same = [spec for spec in sketch.graph.passes if channel.name in input_names(spec.technique)]
     own = channel.path.replace(".", "_")
-    wanted = own if len(same) > 1 or "." in channel.name else channel.name
-    numbered = (f"{wanted}_{number}" for number in range(2, 10_000))
-    return next(name for name in (wanted, *numbered) if name not in taken)
+    base_name = own if len(same) > 1 or "." in channel.name else channel.name
+    numbered = (f"{base_name}_{number}" for number in range(2, 10_000))
+    return next(name for name in (base_name, *numbered) if name not in taken)
 
 
 def _values(technique: Technique, channel: Channel) -> tuple[tuple[str, Value], ...]:

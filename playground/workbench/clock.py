@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-LEAST_LOOP = 0.05
+MIN_LOOP = 0.05
 """[s] that a loop lasts at least."""
 
 
@@ -29,7 +29,7 @@ class Clock:
     def set_loop(self, start: float, end: float) -> None:
         """Repeat between two times [s], in whichever order; no loop where they are the same."""
         low, high = sorted((max(start, 0.0), max(end, 0.0)))
-        self.loop = (low, high) if high - low >= LEAST_LOOP else None
+        self.loop = (low, high) if high - low >= MIN_LOOP else None
 
     def toggle(self) -> None:
         """Play if it is paused, pause if it plays."""

@@ -35,7 +35,7 @@ class Commands:
     opens: Callable[[Path], None] | None = None  # opens a sketch with its remembered edits
     _visited: list[Path] = field(default_factory=list)  # the sketches that were opened, in order
     _at: int = 0  # which of them is open now
-    _missed: str = ""  # the end of a sentence about what is saved: what is not in it
+    _missed: str = ""  # the end of a message about what is saved: what is not in it
 
     def open(self, path: Path) -> bool:
         """Open another sketch, with a history of its own; the one that is shown is read again.
@@ -220,19 +220,19 @@ def rounded(camera: Camera) -> Camera:
 def _values_in_file(draft: Draft) -> dict[Key, object]:
     """Return what the file sets for everything that is edited."""
     values = values_of(draft.base)
-    found: dict[Key, object] = {}
+    result: dict[Key, object] = {}
     for path in draft.applied:
         if path in TERRAIN_KEYS:
-            found["value", path] = getattr(draft.base, path)
+            result["value", path] = getattr(draft.base, path)
         else:
-            found["value", path] = values[resolve(draft.base.graph, path)[0].path]
+            result["value", path] = values[resolve(draft.base.graph, path)[0].path]
     for name, _ in draft.edits.techniques:
         spec = draft.file.graph.find(name)
-        found["technique", name] = spec.use if spec else None
+        result["technique", name] = spec.use if spec else None
     for channel, _ in draft.edits.channels:
-        found["channel", channel] = source_of(draft.file, channel)
-    found["camera", ""] = draft.file.camera
-    return {key: value for key, value in found.items() if value is not None}
+        result["channel", channel] = source_of(draft.file, channel)
+    result["camera", ""] = draft.file.camera
+    return {key: value for key, value in result.items() if value is not None}
 
 
 def _summary(draft: Draft) -> str:

@@ -35,7 +35,7 @@ def data_files(sketch: Sketch) -> frozenset[Path]:
 
     With each come the files next to it that say how to read it, there or missing.
     """
-    found: set[Path] = set()
+    paths: set[Path] = set()
     parameters = traits_of(sketch).files
     values = values_of(sketch) if parameters else {}
     for path, parameter in parameters:
@@ -46,8 +46,8 @@ def data_files(sketch: Sketch) -> frozenset[Path]:
             file = find_file(str(text), sketch.folder, parameter.file, parameter.name)
         except DataError:
             file = Path(sketch.folder, str(text))
-        found |= {file, *sidecar_places(file)}
-    return frozenset(found)
+        paths |= {file, *sidecar_places(file)}
+    return frozenset(paths)
 
 
 def watched(
@@ -64,19 +64,19 @@ def watched(
     """
     # As texts: hundreds of places are compared at each save, and parts of paths take ten times as long.
     roots = tuple(os.path.normcase(f"{root}{os.sep}") for root in (path.resolve().parent, GLSL))
-    found = {path}
-    found |= {p for p, there in places.items() if there or os.path.normcase(p).startswith(roots)}
+    files = {path}
+    files |= {p for p, there in places.items() if there or os.path.normcase(p).startswith(roots)}
     for sketch in sketches:
-        found |= files_of(sketch)
+        files |= files_of(sketch)
     for error in errors:
-        found |= files_named_by(error)
-    return frozenset(found)
+        files |= files_named_by(error)
+    return frozenset(files)
 
 
 def files_named_by(error: PlaygroundError) -> frozenset[Path]:
     """Return the files that an error points at; those of its includes as well."""
     named = [d.file for d in error.diagnostics]
-    named += [place.rpartition(":")[0] for d in error.diagnostics for place in d.chain]
+    named += [location.rpartition(":")[0] for d in error.diagnostics for location in d.chain]
     return frozenset(path_named(name) for name in filter(None, named))
 
 

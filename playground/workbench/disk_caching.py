@@ -45,7 +45,7 @@ class SessionCaching:
             self._full_at = session.draws
             session.redraw()
             return
-        checked = finite.patience is None and not finite.found
+        checked = finite.patience is None and not finite.non_finite
         if caching.going or (checked and not session.drafts.testing and not session.is_preview):
             self.patience = caching.look(session.engine, session.plan)
         if caching.store.trouble != self._reported:

@@ -176,8 +176,8 @@ class Drafts:
         elif shown is not None:
             notes += map(str, newly_shadowed(shown.file, draft.sketch))
         variants = self._checks.variants
-        known = () if old is None else omitted(old.base, variants)
-        notes += [note for note in omitted(draft.base, variants) if note not in known]
+        not_run = () if old is None else omitted(old.base, variants)
+        notes += [note for note in omitted(draft.base, variants) if note not in not_run]
         self._propose(notes)
 
     def open(
@@ -193,12 +193,12 @@ class Drafts:
         ``keep``: it is a copy of this one, and the user's edits go on. ``start``: the edits of the
         other; ``texts`` replace some of its files.
         """
-        found = find(path).absolute()
+        path_found = find(path).absolute()
         self._techniques.dialect = ""
         if not keep:
             self._leave_out("another sketch is opened", self._choices if self._is_checked else [])
             self._start, self._choices = start or StoredEdits(), []
-        self.path, self.texts, self.opening = found, texts or {}, not keep
+        self.path, self.texts, self.opening = path_found, texts or {}, not keep
         self.opened += 1
         self.reload()
 
@@ -251,13 +251,13 @@ class Drafts:
 
     def failed(self, error: Exception) -> None:
         """Report why what is coming cannot be shown; where it is more than one thing, check the rest."""
-        found, checked = explained(error, self.path), [c for c in self._choices if c.chosen]
+        error_explained, checked = explained(error, self.path), [c for c in self._choices if c.chosen]
         if checked and (self._saved is not None or len(checked) > 1):
             self._choices.remove(checked[-1])
-            self._leave_out(found.diagnostics[0].message, checked[-1:])
+            self._leave_out(error_explained.diagnostics[0].message, checked[-1:])
             self._propose(self._coming_notes)
         else:
-            self.stage, self._check_error = ReloadStage.FAILED, found
+            self.stage, self._check_error = ReloadStage.FAILED, error_explained
 
     def report(self, error: Exception) -> None:
         """Report why what is shown cannot be drawn any more."""
@@ -340,14 +340,14 @@ class Drafts:
         except ParameterError as error:
             self.notes.append(str(error))
             return
-        known = edited.edits.values[-1][1]
-        self._change(lambda draft: draft.with_edits(draft.edits.with_value(path, known)), edited)
+        value_before = edited.edits.values[-1][1]
+        self._change(lambda draft: draft.with_edits(draft.edits.with_value(path, value_before)), edited)
 
     def set_all(self, values: Mapping[str, Value]) -> None:
         """Set several parameters at once; those that are locked, gone or do not take theirs stay."""
         if self.shown is not None:
             free = [(p, v) for p, v in values.items() if p not in self.shown.edits.locked]
-            fit = {p: v for p, given in free if (v := taken(self.shown.base, p, given)) is not None}
+            fit = {p: v for p, value in free if (v := taken(self.shown.base, p, value)) is not None}
             self._edit(
                 lambda edits: replace(
                     edits, values=(*(v for v in edits.values if v[0] not in fit), *fit.items())
@@ -380,21 +380,25 @@ class Drafts:
         """
         if self.latest is None:
             return False
-        known = self.latest.edits
-        _, changes = changes_between(known, edits)
+        edits_before = self.latest.edits
+        _, changes = changes_between(edits_before, edits)
 
         def change(draft: Draft) -> Draft:
             """Make the changes between the two; on the edits that were known, exactly those wanted."""
-            wanted = edits if draft.edits == known else edits_of(applied(state_of(draft.edits, {}), changes))
-            return draft.with_all(wanted)
+            edits_wanted = (
+                edits
+                if draft.edits == edits_before
+                else edits_of(applied(state_of(draft.edits, {}), changes))
+            )
+            return draft.with_all(edits_wanted)
 
         return self._change(change)
 
     def restore_with_save(self, edits: Edits) -> None:
         """Replace values and camera in what was just saved; what is shown stays until that is drawn."""
         if self._is_checked and self._saved is not None:
-            known = self._saved.edits
-            kept = replace(edits, techniques=known.techniques, channels=known.channels)
+            edits_saved = self._saved.edits
+            kept = replace(edits, techniques=edits_saved.techniques, channels=edits_saved.channels)
             self._saved = self._saved.with_edits(kept)
             self.coming = self._saved
             for choice in self._choices:

@@ -27,21 +27,21 @@ class FileValue:
 
 def file_values(sketch: Sketch, paths: Iterable[str]) -> dict[str, FileValue]:
     """Return what the files say of each parameter, by its path; those that are gone are left out."""
-    wanted = tuple(paths)
-    if not wanted:
+    paths_wanted = tuple(paths)
+    if not paths_wanted:
         return {}
-    known, own = values_of(sketch), _set_by(sketch)
-    found = {}
-    for path in wanted:
+    values_in_file, own = values_of(sketch), _set_by(sketch)
+    values_found = {}
+    for path in paths_wanted:
         if path in TERRAIN_KEYS:
-            found[path] = FileValue(getattr(sketch, path), True)
+            values_found[path] = FileValue(getattr(sketch, path), True)
             continue
         try:
             leaf = resolve(sketch.graph, path)[0].path
         except ParameterError:
             continue
-        found[path] = FileValue(known[leaf], leaf in own)
-    return found
+        values_found[path] = FileValue(values_in_file[leaf], leaf in own)
+    return values_found
 
 
 def newer_value(

@@ -24,7 +24,7 @@ from playground.workbench.shell_quoting import MARK, with_file
 
 VARIABLES = ("PLAYGROUND_EDITOR", "VISUAL", "EDITOR")
 BUILT_IN = "builtin"
-_LEAST = 4000  # last bytes of a failing editor's messages that are read
+_TAIL_BYTES = 4000  # last bytes of a failing editor's messages that are read
 
 _COLON = ("{file}:{line}:{column}",)
 _PLUS = ("+{line}", "{file}")
@@ -90,34 +90,34 @@ class Editor:
 
         Raises ``ValueError`` where its words cannot take a file's name safely.
         """
-        words, place = list(self.words), PLACES.get(self.name, ("{file}",))
+        words, template = list(self.words), PLACES.get(self.name, ("{file}",))
         if any(MARK in word for word in words):
-            words, place = [], tuple(self.words)
+            words, template = [], tuple(self.words)
         if self.name == "emacsclient" and "-t" not in words and "-nw" not in words and "-n" not in words:
             words.append("-n")  # or it waits until the file is closed
         row, place_in_row = str(max(line, 1)), str(max(column, 1))
-        words += [word.replace("{line}", row).replace("{column}", place_in_row) for word in place]
+        words += [word.replace("{line}", row).replace("{column}", place_in_row) for word in template]
         return [*self.terminal, *with_file(words, str(file.absolute()), _stem)]
 
 
 def find_editor(
     environ: Mapping[str, str] | None = None, which: Which = shutil.which, platform: str = sys.platform
 ) -> tuple[Editor | None, str]:
-    """Return (the editor to use, a sentence on a requested one that cannot be used).
+    """Return (the editor to use, a message on a requested one that cannot be used).
 
     None: the one in the window. The sentence is ``""`` where there is nothing to say.
     """
     environ = os.environ if environ is None else environ
     complaint = ""
     for variable in VARIABLES:
-        wanted = environ.get(variable, "").strip()
-        if not wanted:
+        command = environ.get(variable, "").strip()
+        if not command:
             continue
-        if wanted == BUILT_IN:
+        if command == BUILT_IN:
             return None, complaint
-        found, why = _named_by(wanted, environ, which, platform)
-        if found is not None:
-            return found, complaint
+        editor, why = _named_by(command, environ, which, platform)
+        if editor is not None:
+            return editor, complaint
         complaint = complaint or f"${variable} {why}"
     names = [*_WINDOWED, *(_ON_A_MAC if platform == "darwin" else ())]
     if platform == "win32":
@@ -138,11 +138,11 @@ def find_editor(
 def find_terminal(environ: Mapping[str, str], which: Which = shutil.which) -> tuple[str, ...]:
     """Return the words that run a command in a new terminal; none where there is no terminal."""
     try:
-        wanted = shlex.split(environ.get("TERMINAL", ""))
+        words = shlex.split(environ.get("TERMINAL", ""))
     except ValueError:
-        wanted = []
-    if wanted and (path := which(wanted[0])):
-        return (path, *wanted[1:], *TERMINALS.get(_stem(wanted[0]), ("-e",)))
+        words = []
+    if words and (path := which(words[0])):
+        return (path, *words[1:], *TERMINALS.get(_stem(words[0]), ("-e",)))
     for name, between in TERMINALS.items():
         if path := which(name):
             return (path, *between)
@@ -150,22 +150,22 @@ def find_terminal(environ: Mapping[str, str], which: Which = shutil.which) -> tu
 
 
 def _named_by(
-    wanted: str, environ: Mapping[str, str], which: Which, platform: str
+    command: str, environ: Mapping[str, str], which: Which, platform: str
 ) -> tuple[Editor | None, str]:
     """Return the editor that a variable names, or why it cannot be used."""
-    if path := which(wanted):  # a path with blanks in it, as on Windows
+    if path := which(command):  # a path with blanks in it, as on Windows
         words = [path]
     else:
         try:
-            words = [word.strip('"') for word in shlex.split(wanted, posix=platform != "win32")]
+            words = [word.strip('"') for word in shlex.split(command, posix=platform != "win32")]
         except ValueError as error:
             return None, f"is not a command: {error}"
         if not words:
             return None, "names no program"
-        found = which(words[0])
-        if found is None:
+        result = which(words[0])
+        if result is None:
             return None, f"names {words[0]}, which is not installed"
-        words[0] = found
+        words[0] = result
     name = _stem(words[0])
     if name in IN_A_TERMINAL or (name in ("emacs", "emacsclient") and {"-nw", "-t"} & set(words)):
         terminal = find_terminal(environ, which)
@@ -216,7 +216,7 @@ class Opener:
         def wait() -> None:
             status = process.wait()
             if status != 0:
-                errors.seek(max(errors.seek(0, os.SEEK_END) - _LEAST, 0))
+                errors.seek(max(errors.seek(0, os.SEEK_END) - _TAIL_BYTES, 0))
                 text = errors.read().decode("utf-8", "replace").strip()
                 last = text.splitlines()[-1].strip()[:200] if text else "it gave no reason"
                 self.notes.append(f"{editor.name} ended with status {status}: {last}")

@@ -79,8 +79,8 @@ class Draft:
     @cached_property
     def applied(self) -> dict[str, Value]:
         """The values edited that fit the sketch of the moment, by path; the others wait."""
-        found = ((path, taken(self.base, path, value)) for path, value in self.edits.values)
-        return {path: value for path, value in found if value is not None}
+        pairs = ((path, taken(self.base, path, value)) for path, value in self.edits.values)
+        return {path: value for path, value in pairs if value is not None}
 
     @cached_property
     def sketch(self) -> Sketch:
@@ -92,10 +92,10 @@ class Draft:
         """Return the same files with other values or another camera edited."""
         return replace(self, edits=edits)
 
-    def with_value(self, path: str, given: object) -> Draft:
+    def with_value(self, path: str, raw: object) -> Draft:
         """Return the draft with one parameter set; raise ``ParameterError`` where it cannot be."""
-        sketch = self.sketch.with_values({path: given})
-        value = dict(sketch.overrides).get(path, given)
+        sketch = self.sketch.with_values({path: raw})
+        value = dict(sketch.overrides).get(path, raw)
         made = self.with_edits(self.edits.with_value(path, value))  # type: ignore[arg-type]
         made.__dict__.update(sketch=sketch)  # all of it is checked already
         return made
@@ -133,7 +133,9 @@ class Draft:
         others = tuple(c for c in self.edits.channels if c[0] != channel)
         chosen = () if in_file is not None and in_file.is_fed_by(source) else ((channel, source),)
         made = self.with_choices(techniques, (*others, *chosen))
-        feeder = found.feeder if (found := find_channel(made.base, channel)) is not None else ""
+        feeder = (
+            channel_found.feeder if (channel_found := find_channel(made.base, channel)) is not None else ""
+        )
         for name, value in values.items():
             made = made.with_value(f"{feeder}.{name}", value)
         return made
@@ -165,16 +167,16 @@ def taken(sketch: Sketch, path: str, value: Value) -> Value | None:
     Text is read as on the command line.
     """
     try:
-        found = check_value(sketch, path, value)
+        taken_picture = check_value(sketch, path, value)
     except ParameterError:
         return None
     if path in TERRAIN_KEYS or isinstance(value, str):
-        return found
-    return found if _shape(found) == _shape(value) else None
+        return taken_picture
+    return taken_picture if _shape(taken_picture) == _shape(value) else None
 
 
 def reload_draft(old: Draft, loaded: Sketch) -> tuple[Draft, list[str]]:
-    """Return the draft after its files changed, and a sentence for each edit that gave way."""
+    """Return the draft after its files changed, and a message for each edit that gave way."""
     if old.edits == Edits():
         return Draft(loaded, loaded), []
     notes: list[str] = []
@@ -188,7 +190,7 @@ def reload_draft(old: Draft, loaded: Sketch) -> tuple[Draft, list[str]]:
 
 
 def with_camera_of(edits: Edits, was: Camera, now: Camera) -> tuple[Edits, str]:
-    """Return edits without their camera where the file has moved its own, and a sentence if one is due."""
+    """Return edits without their camera where the file has moved its own, and a message if one is due."""
     if edits.camera is None or now == was:
         return edits, ""
     note = "" if edits.camera == now else "camera: the file's new one is taken"
@@ -236,7 +238,7 @@ def _with_sources(
 
 
 def _after_reload(old: Draft, base: Sketch, notes: list[str]) -> list[tuple[str, Value]]:
-    """Return the edited values after a reload; add a sentence to the notes for each that gave way."""
+    """Return the edited values after a reload; add a message to the notes for each that gave way."""
     values = _with_locked(old, values_of(base))
     before, after = (file_values(sketch, [p for p, _ in values]) for sketch in (old.base, base))
     left: list[tuple[str, Value]] = []
@@ -265,19 +267,19 @@ def _after_reload(old: Draft, base: Sketch, notes: list[str]) -> list[tuple[str,
 
 def _with_locked(old: Draft, after: dict[str, Value]) -> list[tuple[str, Value]]:
     """Return the edited values, and those of locked parameters that the files would now change."""
-    found = list(old.edits.values)
+    values = list(old.edits.values)
     if old.edits.locked:
         now = values_of(old.sketch)
         for path in old.edits.locked:
             inner = leaves(old.base, path)
             moved = any(leaf in after and after[leaf] != now[leaf] for leaf in inner)
             if moved and not old.edits.has(path):
-                found.append((path, now[min(inner)]))
-    return found
+                values.append((path, now[min(inner)]))
+    return values
 
 
 def _moved(was: Parameter, now: Parameter, value: Value, path: str, base: Sketch) -> tuple[Value | None, str]:
-    """Return what becomes of a value whose parameter is declared anew (None: it goes), and why."""
+    """Return what becomes of a value whose parameter is declared again (None: it goes), and why."""
     if was.type != now.type or (was.widget.kind == "menu") != (now.widget.kind == "menu"):
         noun = (was.type, now.type) if was.type != now.type else (was.widget.kind, now.widget.kind)
         return None, f"{path} was {noun[0]} and is {noun[1]} now: back to the file's value"
@@ -304,8 +306,8 @@ def _clamped(parameter: Parameter, value: Value, low: float, high: float) -> Val
     numbers = value if isinstance(value, tuple) else (value,)
     axes = parameter.widget.axes or ((low, high),) * len(numbers)
     held = [min(max(float(n), least), most) for n, (least, most) in zip(numbers, axes, strict=True)]
-    found = tuple(round(n) for n in held) if is_whole(parameter.type) else tuple(held)
-    return found if isinstance(value, tuple) else found[0]
+    result = tuple(round(n) for n in held) if is_whole(parameter.type) else tuple(held)
+    return result if isinstance(value, tuple) else result[0]
 
 
 def leaves(sketch: Sketch, path: str) -> set[str]:

@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 
 STAMP = 0.05  # [s] of a stroke that each run of the technique makes
 _HALF = 16  # texels of which half a window has a multiple: a side of 32 k + 1
-_LEAST_SOFTNESS = 0.25  # of the brush, so that its rim is no step
+_MIN_SOFTNESS = 0.25  # of the brush, so that its rim is no step
 
-Place = tuple[float, float]
+Position = tuple[float, float]
 
 
 def technique_at(use: str, file: str) -> Technique:
@@ -61,9 +61,9 @@ class ErodeTool:
         self._weighs = "brush" in inputs
         made = technique.outputs if isinstance(technique, Kernel) else outputs_with_formats(technique)
         self._channels = {
-            one.name: split_format(one.format)[0]
-            for one in made
-            if one.name in inputs and one.name not in ("height", "brush")
+            output.name: split_format(output.format)[0]
+            for output in made
+            if output.name in inputs and output.name not in ("height", "brush")
         }
         self._carried: dict[str, NDArray[np.float32]] = {}
         self._corner = 0, 0  # of the window that they are of: row, column
@@ -74,7 +74,7 @@ class ErodeTool:
         """Begin a stroke, dry; heights [m] are counted from a level near it, for their last bits' sake."""
         self._carried, self._owed, self._level = {}, 0.0, level
 
-    def stamps(self, start: Place, end: Place, seconds: float) -> Iterator[Place]:
+    def stamps(self, start: Position, end: Position, seconds: float) -> Iterator[Position]:
         """Yield where the stamps of a part of a stroke are, by time alone: those of a fast one lie apart."""
         owed = self._owed
         count = int((owed + seconds) / STAMP + 1e-6)
@@ -88,7 +88,7 @@ class ErodeTool:
     def change(
         self,
         terrain: tuple[NDArray[np.float32], NDArray[np.float32] | None],
-        place: Place,
+        position: Position,
         extent: tuple[float, float],
         brush: Brush,
     ) -> tuple[Part, NDArray[np.float32]]:
@@ -100,7 +100,7 @@ class ErodeTool:
         spacing = spacing_of((shape[1], shape[0]), extent)
         reach = np.ceil(brush.radius / spacing).astype(int) + 1
         half = -(-reach // _HALF) * _HALF
-        middle = np.rint(np.array(place) * (np.array(shape[::-1]) - 1)).astype(int)
+        middle = np.rint(np.array(position) * (np.array(shape[::-1]) - 1)).astype(int)
         first, last = (middle - half)[::-1], (middle + half)[::-1]
         rows, columns = (np.arange(a, b + 1) for a, b in zip(first, last, strict=True))
         inside = np.ix_(*(np.clip(i, 0, n - 1) for i, n in zip((rows, columns), shape, strict=True)))
@@ -108,24 +108,24 @@ class ErodeTool:
         if terrain[1] is not None:
             heights += terrain[1][inside]
         before = heights.astype(np.float32)
-        away = np.hypot(columns * spacing[0] - place[0] * extent[0],
-                        (rows * spacing[1] - place[1] * extent[1])[:, None])  # fmt: skip
-        softness = max(brush.softness, _LEAST_SOFTNESS)
+        away = np.hypot(columns * spacing[0] - position[0] * extent[0],
+                        (rows * spacing[1] - position[1] * extent[1])[:, None])  # fmt: skip
+        softness = max(brush.softness, _MIN_SOFTNESS)
         weight = brush.strength * falloff(away, brush.radius, softness)
         weight[(rows < 0) | (rows >= shape[0])] = 0
         weight[:, (columns < 0) | (columns >= shape[1])] = 0
         weight = weight.astype(np.float32)
         self._shift((int(first[0]), int(first[1])), before.shape)
-        given = {"height": before, **self._carried} | ({"brush": weight} if self._weighs else {})
-        found = self.runner.run(
-            given,
+        inputs = {"height": before, **self._carried} | ({"brush": weight} if self._weighs else {})
+        textures = self.runner.run(
+            inputs,
             spacing=(float(spacing[0]), float(spacing[1])),
             relief=1.0,
             base_elevation=self._level,
             outputs=("height", *self._channels),
         )
-        self._carried = {name: found[name] for name in self._channels}
-        added = found["height"] - before
+        self._carried = {name: textures[name] for name in self._channels}
+        added = textures["height"] - before
         if not self._weighs:
             added *= weight
         here = tuple(slice(max(a, 0), min(b + 1, n)) for a, b, n in zip(first, last, shape, strict=True))

@@ -40,10 +40,10 @@ def numbered(lines: list[tuple[int, str]], wrong: int, column: int, room: int) -
     return rows, at
 
 
-def short_place(place: str, folder: str) -> str:
+def short_place(location: str, folder: str) -> str:
     """Return "file:line:column" with the file named from a folder, if it lies in there."""
-    name, colon, rest = place.partition(":") if not place[1:3] == ":\\" else (place, "", "")
+    name, colon, rest = location.partition(":") if not location[1:3] == ":\\" else (location, "", "")
     path = current_folder() / name
     if folder and path.is_relative_to(folder):
         return path.relative_to(folder).as_posix() + colon + rest
-    return place
+    return location

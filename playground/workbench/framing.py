@@ -14,31 +14,31 @@ from playground.engine.camera import Eye
 from playground.sketch.model import Camera, Sketch
 from playground.workbench.camera_drag import Gesture, steered
 
-WIDEST = 100.0
+MAX_FIELD_OF_VIEW = 100.0
 """[degrees] that a view is opened to at most: beyond, what is near its edges is drawn out of shape."""
 
 Size = tuple[int, int]
 
 
-def framed(sketch: Sketch, time: float, wanted: Size, room: Size) -> Sketch:
+def framed(sketch: Sketch, time: float, size: Size, room: Size) -> Sketch:
     """Return a sketch at a time as it is shown in a ``room``; the same object where nothing is opened.
 
-    ``wanted``: the size of the picture whose sides stay visible. Sizes in pixels.
+    ``size``: the size of the picture whose sides stay visible. Sizes in pixels.
     """
     now = sketch.at(time)
-    opened = field_for(now.camera.field_of_view, wanted, room)
+    opened = field_for(now.camera.field_of_view, size, room)
     if opened == now.camera.field_of_view:
         return sketch
     return replace(now, camera=replace(now.camera, field_of_view=opened))
 
 
-def field_for(degrees: float, wanted: Size, room: Size) -> float:
+def field_for(degrees: float, size: Size, room: Size) -> float:
     """Return the vertical field of view that shows in a room what a picture shows from side to side."""
-    narrower = (wanted[0] / wanted[1]) / (room[0] / max(room[1], 1))
+    narrower = (size[0] / size[1]) / (room[0] / max(room[1], 1))
     if narrower <= 1.0:
         return degrees
     opened = 2 * math.degrees(math.atan(math.tan(math.radians(degrees) / 2) * narrower))
-    return max(degrees, min(opened, WIDEST))
+    return max(degrees, min(opened, MAX_FIELD_OF_VIEW))
 
 
 def moved(camera: Camera, eye: Eye, gesture: Gesture, seen_through: Camera) -> Camera:

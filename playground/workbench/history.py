@@ -22,7 +22,7 @@ from playground.workbench.edits import Edits
 
 MOMENT = 0.7
 """[s] within which a change of the same things belongs to the step before."""
-MOST = 200
+MAX_ENTRIES = 200
 """Steps that are stored; the oldest go first."""
 
 KEYFRAMES = "keyframes"
@@ -48,14 +48,14 @@ class Step:
 
 def state_of(edits: Edits, steps: Mapping[str, int]) -> dict[Key, object]:
     """Return everything that is edited."""
-    found: dict[Key, object] = {("value", path): value for path, value in edits.values}
-    found |= {("technique", name): use for name, use in edits.techniques}
-    found |= {("channel", path): source for path, source in edits.channels}
-    found |= {("lock", path): True for path in edits.locked}
-    found |= {("step", path): step for path, step in steps.items()}
+    state: dict[Key, object] = {("value", path): value for path, value in edits.values}
+    state |= {("technique", name): use for name, use in edits.techniques}
+    state |= {("channel", path): source for path, source in edits.channels}
+    state |= {("lock", path): True for path in edits.locked}
+    state |= {("step", path): step for path, step in steps.items()}
     if edits.camera is not None:
-        found["camera", ""] = edits.camera
-    return found
+        state["camera", ""] = edits.camera
+    return state
 
 
 def edits_of(state: State) -> Edits:
@@ -77,7 +77,7 @@ def steps_of(state: State) -> dict[str, int]:
 class History:
     """The steps so far, oldest first, and how many of them are done."""
 
-    def __init__(self, most: int = MOST) -> None:
+    def __init__(self, most: int = MAX_ENTRIES) -> None:
         self.steps: list[Step] = []
         self.done = 0  # the first so many are; the others can be done again
         self._most = most
@@ -111,12 +111,12 @@ class History:
         held: bool,
         now: float,
         read: Edits | None = None,
-        rests: bool = False,
+        is_idle: bool = False,
     ) -> None:
         """Take in the state at the end of a frame.
 
         ``of`` counts how often the files were read: another number is a reload, which left the edits
-        ``read``. ``held``: a mouse button is down. ``now``: seconds of any clock. ``rests``: nothing
+        ``read``. ``held``: a mouse button is down. ``now``: seconds of any clock. ``is_idle``: nothing
         is being checked, so that an undo which has not come by now never will: it is no longer done.
         """
         if self._open and not held:
@@ -135,7 +135,7 @@ class History:
             if key in self._due and self._due[key] == self._state.get(key):
                 del self._due[key]
                 changed.discard(key)
-        if rests and self._due:
+        if is_idle and self._due:
             missed = {key: value for key, value in self._due.items() if self._state.get(key) != value}
             self._due = {}
             if any(kind in CHECKED for kind, _ in missed):
@@ -163,11 +163,11 @@ class History:
         if not (self.can_redo if by > 0 else self.can_undo):
             return False
         step = self.steps[self.done if by > 0 else self.done - 1]
-        wanted = step.after if by > 0 else step.before
-        if not apply(wanted):
+        values = step.after if by > 0 else step.before
+        if not apply(values):
             return False
         self.done, self._open = self.done + by, False
-        self._due |= {key: value for key, value in wanted.items() if key[0] not in (KEYFRAMES, "time")}
+        self._due |= {key: value for key, value in values.items() if key[0] not in (KEYFRAMES, "time")}
         return True
 
     def saved(self, before: State) -> None:
@@ -219,8 +219,8 @@ def changes_between(before: Edits, after: Edits) -> tuple[dict[Key, object], dic
 
 def applied(state: State, changes: State) -> dict[Key, object]:
     """Return a state with changes made to it; None takes a thing out."""
-    found = {**state, **changes}
-    return {key: value for key, value in found.items() if value is not None}
+    state_now = {**state, **changes}
+    return {key: value for key, value in state_now.items() if value is not None}
 
 
 def in_words(step: Step, name_of: Callable[[str], str], write: Callable[[str, object], str]) -> str:

@@ -59,5 +59,5 @@ def closing_indent(before: str, bracket: str) -> str | None:
 
 
 def _indent(line: str) -> str:
-    found = _BLANK.match(line)
-    return found[0] if found else ""
+    match = _BLANK.match(line)
+    return match[0] if match else ""

@@ -23,7 +23,7 @@ SIZES = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0)
 """What the keys go through; 1 is as large as the screen says."""
 
 FORMAT = 1
-_LARGEST = 2**16  # [bytes]
+_MAX_BYTES = 2**16  # [bytes]
 
 
 @dataclass
@@ -56,7 +56,7 @@ def remembered_size(folder: Path | None = None) -> InterfaceSize:
     """Return the size that was chosen last, in the user's state folder unless another is named."""
     file = (folder or state_folder()) / "interface.json"
     try:
-        if file.stat().st_size > _LARGEST:
+        if file.stat().st_size > _MAX_BYTES:
             return InterfaceSize(file=file)
         table = read_json(read_regular(file).decode())
         size = float(table["size"]) if table["format"] == FORMAT else 1.0

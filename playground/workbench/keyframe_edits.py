@@ -60,16 +60,16 @@ class KeyframeEdits:
             self.notices.say("choose what the keyframe sets: the camera, or a parameter")
             return False
         time = _rounded_time(session.clock.time)
-        known = self.keyframes
+        keyframes = self.keyframes
         now = session.sketch.at(time)
         values = values_of(now)
         try:
-            named = {_name_for(draft.file, known, path): value_of(now, path, values) for path in paths}
+            named = {_name_for(draft.file, keyframes, path): value_of(now, path, values) for path in paths}
         except ParameterError as error:
             self.notices.say(str(error))
             return False
         seen = self._camera(draft.file, now) if camera else {}
-        here = next((keyframe for keyframe in known if keyframe.time == time), None)
+        here = next((keyframe for keyframe in keyframes if keyframe.time == time), None)
         base = here or Keyframe(time)
         made = replace(
             base,
@@ -79,16 +79,16 @@ class KeyframeEdits:
         keyed = {target.path for path in paths for target in resolve(draft.base.graph, path)}
         left = tuple(v for v in draft.edits.values if not keyed & leaves(draft.base, v[0]))
         edits = replace(draft.edits, values=left, camera=None if camera else draft.edits.camera)
-        others = [keyframe for keyframe in known if keyframe is not here]
+        others = [keyframe for keyframe in keyframes if keyframe is not here]
         return self._write([*others, made], f"Keyframe at {time:g} s", edits)
 
     def move(self, index: int, time: float) -> bool:
         """Move a keyframe to another time [s]; its place among the others follows."""
-        known, time = self.keyframes, _rounded_time(time)
-        if any(keyframe.time == time for number, keyframe in enumerate(known) if number != index):
+        keyframes, time = self.keyframes, _rounded_time(time)
+        if any(keyframe.time == time for number, keyframe in enumerate(keyframes) if number != index):
             self.notices.say(f"there is a keyframe at {time:g} s already")
             return False
-        return self._replace(index, f"Keyframe to {time:g} s", replace(known[index], time=time))
+        return self._replace(index, f"Keyframe to {time:g} s", replace(keyframes[index], time=time))
 
     def set_ease(self, index: int, ease: str) -> bool:
         """Set how the values go on from a keyframe: one of ``EASES``."""
@@ -101,8 +101,8 @@ class KeyframeEdits:
         return self._replace(index, f"Delete the keyframe at {self.keyframes[index].time:g} s")
 
     def _replace(self, index: int, name: str, *instead: Keyframe) -> bool:
-        known = self.keyframes
-        return self._write([*known[:index], *instead, *known[index + 1 :]], name)
+        keyframes = self.keyframes
+        return self._write([*keyframes[:index], *instead, *keyframes[index + 1 :]], name)
 
     def _write(self, keyframes: Sequence[Keyframe], name: str, edits: Edits | None = None) -> bool:
         """Write keyframes into the file and replace the edits, as one step."""
@@ -110,10 +110,10 @@ class KeyframeEdits:
         if draft is None:
             return False
         self.undo.record()
-        known = draft.file.keyframes
+        existing = draft.file.keyframes
         if not self.file.write_keyframes(keyframes):
             return False
-        before: dict[Key, object] = {(KEYFRAMES, ""): known}
+        before: dict[Key, object] = {(KEYFRAMES, ""): existing}
         after: dict[Key, object] = {(KEYFRAMES, ""): tuple(sorted(keyframes, key=lambda k: k.time))}
         if edits is not None and edits != draft.edits:
             old, new = changes_between(draft.edits, edits)
@@ -125,12 +125,18 @@ class KeyframeEdits:
 
     def _camera(self, file: Sketch, now: Sketch) -> dict[str, float | tuple[float, ...]]:
         """Return the camera as a keyframe says it; in metres, unless the others show the whole terrain."""
-        camera, plan, known = rounded(now.camera), self.session.plan, file.keyframes
-        far = [dict(keyframe.camera)["distance"] for keyframe in known if "distance" in dict(keyframe.camera)]
-        if camera.distance == 0.0 and not (far and all(one == 0.0 for one in far)) and plan is not None:
+        camera, plan, keyframes = rounded(now.camera), self.session.plan, file.keyframes
+        far = [
+            dict(keyframe.camera)["distance"] for keyframe in keyframes if "distance" in dict(keyframe.camera)
+        ]
+        if (
+            camera.distance == 0.0
+            and not (far and all(distance == 0.0 for distance in far))
+            and plan is not None
+        ):
             camera = replace(camera, distance=round(plan.eye.distance, 2))
         parts = {part.name: getattr(camera, part.name) for part in fields(Camera)}
-        named = {name for keyframe in known for name, _ in keyframe.camera}
+        named = {name for keyframe in keyframes for name, _ in keyframe.camera}
         if parts["target"] is None and "target" in named and plan is not None:
             parts["target"] = tuple(round(float(n), 2) for n in plan.eye.target)
         if parts["field_of_view"] == file.camera.field_of_view and "field_of_view" not in named:
@@ -144,14 +150,14 @@ def summary(keyframe: Keyframe) -> str:
     return ", ".join([*parts, *(path for path, _ in keyframe.values)])
 
 
-def _name_for(file: Sketch, known: Sequence[Keyframe], path: str) -> str:
+def _name_for(file: Sketch, keyframes: Sequence[Keyframe], path: str) -> str:
     """Return the name that keyframes have for a parameter already, else its own."""
     if path in TERRAIN_KEYS:
         raise ParameterError(f"'{path}' is of the terrain; keyframes set parameters and the camera")
     mine = leaves(file, path)
     if not mine:
         raise ParameterError(f"'{path}' is of a technique chosen here; save that into the sketch first")
-    names = dict.fromkeys(name for keyframe in known for name, _ in keyframe.values)
+    names = dict.fromkeys(name for keyframe in keyframes for name, _ in keyframe.values)
     return next((name for name in names if mine & leaves(file, name)), path)
 
 

@@ -61,10 +61,10 @@ class LatestWrite:
             error: PlaygroundError | None = None
             try:
                 write()
-            except PlaygroundError as found:
-                error = found
-            except Exception as found:
-                error = DataError(f"an image could not be written: {found}")
+            except PlaygroundError as caught:
+                error = caught
+            except Exception as caught:
+                error = DataError(f"an image could not be written: {caught}")
             self.error = error
             self.writes += 1
             self.ended()

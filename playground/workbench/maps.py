@@ -13,14 +13,14 @@ from playground.sketch.wiring import output_names
 def in_view(sketch: Sketch, ref: str) -> bool:
     """Say whether a texture is one of the sketch's view: a map can show it, though no list has it."""
     path, _, output = ref.partition(":")
-    found: Technique | None = None
+    technique: Technique | None = None
     for number, name in enumerate(path.split(".")):
-        around = found if number else sketch.graph
+        around = technique if number else sketch.graph
         spec = around.find(name) if isinstance(around, Graph) else None
         if spec is None or (number == 0 and name != "view"):
             return False
-        found = spec.technique
-    return found is not None and output in output_names(found)
+        technique = spec.technique
+    return technique is not None and output in output_names(technique)
 
 
 def fitted(shown: Map, values: NDArray[np.float32]) -> Map:
@@ -29,7 +29,7 @@ def fitted(shown: Map, values: NDArray[np.float32]) -> Map:
     One or two components are shown as a number, from the lowest to the highest there
     is; three or four as a colour from 0 to 1. Values that are not finite are left out.
     """
-    known = {p.name for p in shown.kernel.parameters}
+    names = {p.name for p in shown.kernel.parameters}
     components = 1 if values.ndim == 2 else values.shape[2]
     settings: dict[str, Value] = {"channel": 0 if components >= 3 else 1, "lowest": 0.0, "highest": 1.0}
     if components < 3:
@@ -38,6 +38,6 @@ def fitted(shown: Map, values: NDArray[np.float32]) -> Map:
         if finite.size and finite.min() < finite.max():
             settings |= {"lowest": float(finite.min()), "highest": float(finite.max())}
     for name, value in settings.items():
-        if name in known:
+        if name in names:
             shown = shown.with_value(name, value)
     return shown

@@ -27,7 +27,7 @@ from playground.workbench.resume import StoredEdits
 from playground.workbench.unread import set_aside
 
 FORMAT = 1
-_LARGEST = 4 * 2**20  # [bytes] no session sets so much by the user
+_MAX_BYTES = 4 * 2**20  # [bytes] no session sets so much by the user
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Remembered:
         return StoredEdits(self.edits, dict(self.in_file), self.camera_in_file)
 
     @property
-    def is_nothing(self) -> bool:
+    def is_default(self) -> bool:
         """Whether it says no more than the sketch does."""
         return replace(self, window=(0, 0), at=None) == Remembered()
 
@@ -81,19 +81,19 @@ class Memory:
         self._lock: IO[bytes] | None = None
 
     def read(self) -> tuple[Remembered, str]:
-        """Return what is remembered, and a sentence if the file cannot be used: it is then set aside."""
+        """Return what is remembered, and a message if the file cannot be used: it is then set aside."""
         try:
             if not self.path.exists():
                 return Remembered(), ""
-            if self.path.stat().st_size > _LARGEST:
-                raise ValueError(f"it is larger than {_LARGEST // 2**20} MiB")
+            if self.path.stat().st_size > _MAX_BYTES:
+                raise ValueError(f"it is larger than {_MAX_BYTES // 2**20} MiB")
             return _read(read_json(read_regular(self.path).decode())), ""
         except (OSError, ValueError, TypeError, KeyError, AttributeError, ArithmeticError) as error:
             return Remembered(), set_aside(self.path, "what was remembered of this sketch", error)
 
     def write(self, remembered: Remembered) -> None:
         """Write it, or remove the file where there is nothing to remember; raise ``DataError``."""
-        if remembered.is_nothing and remembered.window == (0, 0):
+        if remembered.is_default and remembered.window == (0, 0):
             with contextlib.suppress(OSError):
                 self.path.unlink(missing_ok=True)
             return
@@ -217,24 +217,24 @@ def _compared(table: Any) -> Compared | None:
 def _camera(table: Any) -> Camera | None:
     if table is None:
         return None
-    place = None
+    target_point = None
     if table["target"] is not None:
         east, north, up = (_number(number) for number in table["target"])
-        place = east, north, up
+        target_point = east, north, up
     numbers = {name: _number(table[name]) for name in ("azimuth", "elevation", "distance", "field_of_view")}
-    return Camera(**numbers, target=place)
+    return Camera(**numbers, target=target_point)
 
 
-def _value(given: Any) -> Value:
-    if isinstance(given, list):
-        return tuple(given) if all(isinstance(n, int) for n in given) else tuple(_number(n) for n in given)
-    if isinstance(given, str | bool | int):
-        return given
-    return _number(given)
+def _value(number: Any) -> Value:
+    if isinstance(number, list):
+        return tuple(number) if all(isinstance(n, int) for n in number) else tuple(_number(n) for n in number)
+    if isinstance(number, str | bool | int):
+        return number
+    return _number(number)
 
 
-def _number(given: Any) -> float:
-    number = float(given)
+def _number(value: Any) -> float:
+    number = float(value)
     if not math.isfinite(number):
-        raise ValueError(f"{given} is no number to set")
+        raise ValueError(f"{value} is no number to set")
     return number

@@ -24,7 +24,9 @@ class FiniteWatch:
     """What was found in the picture, and the look that is under way."""
 
     def __init__(self, now: Callable[[], float] = time.perf_counter) -> None:
-        self.found: tuple[NotFinite, ...] = ()  # of each pass that makes such numbers, in the order they ran
+        self.non_finite: tuple[
+            NotFinite, ...
+        ] = ()  # of each pass that makes such numbers, in the order they ran
         self.looks = 0  # passes looked at so far
         self._now = now
         self._picture: tuple[object, int] = (None, -1)  # the engine, and how many pictures it had drawn
@@ -72,10 +74,10 @@ class FiniteWatch:
             if engine.record.plan is not session.plan:  # a texture was read since
                 engine.recall(session.plan)
             self._going, self._coming, self._spent = engine.not_finite_by_pass(), [], 0.0
-        for found in self._going:
+        for number in self._going:
             self.looks += 1
-            if found is not None:
-                self._coming.append(found)
+            if number is not None:
+                self._coming.append(number)
             if not to_the_end:
                 self._spent += self._now() - start
                 return
@@ -91,20 +93,20 @@ class FiniteWatch:
         if session.view.map is not None and self._of is session.sketch:
             ran = (step.path for step in session.plan.walk() if step.path in session.engine.record.results)
             there = {session.view.map.own_path(path) for path in ran}
-            earlier = [f for f in self.found if f.path not in there]
+            earlier = [f for f in self.non_finite if f.path not in there]
         self._of = session.sketch
         coming = self._coming
         if session.view.map is not None:
-            found = [(f, session.view.map.own_path(f.path)) for f in coming]
-            coming = [replace(f, path=path) for f, path in found if path]
-        self.found = (*coming, *earlier)
+            pairs = [(f, session.view.map.own_path(f.path)) for f in coming]
+            coming = [replace(f, path=path) for f, path in pairs if path]
+        self.non_finite = (*coming, *earlier)
 
 
-def summary(found: tuple[NotFinite, ...]) -> str:
-    """Return what was found as a sentence: the first, and of how many."""
-    first = found[0]
+def summary(not_finite: tuple[NotFinite, ...]) -> str:
+    """Return what was found as a message: the first, and of how many."""
+    first = not_finite[0]
     x, y = first.texel
     output = f", output '{first.output}'," if first.output != first.path.rpartition(".")[2] else ""
     text = f"pass '{first.path}'{output} makes {first.value} at texel ({x}, {y})"
     text += f", {counted(first.count, 'texel')}"
-    return f"{text}; first of {len(found)} passes" if len(found) > 1 else text
+    return f"{text}; first of {len(not_finite)} passes" if len(not_finite) > 1 else text

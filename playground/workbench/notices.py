@@ -9,12 +9,12 @@ from dataclasses import dataclass, field
 
 SECONDS = 6.0
 """[s] that a notice stays on the screen."""
-_MOST = 5
+_MAX_NOTICES = 5
 
 
 @dataclass
 class Notice:
-    """A sentence on the screen for a while."""
+    """A message on the screen for a while."""
 
     text: str
     until: float  # by the clock of ``Notices``
@@ -28,9 +28,9 @@ class Notices:
     items: list[Notice] = field(default_factory=list)
 
     def say(self, text: str) -> None:
-        """Put a sentence on the screen; the same one again only stays longer."""
+        """Put a message on the screen; the same one again only stays longer."""
         self.drop(text)
-        self.items = [*self.items[1 - _MOST :], Notice(text, self.now() + SECONDS)]
+        self.items = [*self.items[1 - _MAX_NOTICES :], Notice(text, self.now() + SECONDS)]
 
     def drop(self, start: str) -> None:
         """Remove notices that begin with a text."""

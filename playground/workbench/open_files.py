@@ -38,7 +38,7 @@ class OpenFiles:
             self.notices.say(f"there is no file {shown(path)} to open")
             return
         copy = self.copy_of(path)
-        known = copy or next((one for one in self.editing if one.text.path == path), None)
+        open_file = copy or next((item for item in self.editing if item.text.path == path), None)
         if not here and copy is None:
             editor, complaint = find_editor()
             if complaint:
@@ -46,13 +46,13 @@ class OpenFiles:
             if editor is not None and self.opener.open(editor, path, line, column):
                 self.notices.say(f"opened {shown(path)} in {editor.name}")
                 return
-        if known is None:
+        if open_file is None:
             try:
-                known = Editing(OpenText.read(path))
+                open_file = Editing(OpenText.read(path))
             except PlaygroundError as error:
                 self.notices.say(str(error))
                 return
-        self.focus(known, line, column)
+        self.focus(open_file, line, column)
 
     def focus(self, editing: Editing, line: int = 1, column: int = 1) -> None:
         """Bring an open file to the front at a place, also where its window was closed."""
@@ -65,20 +65,20 @@ class OpenFiles:
         if not diagnostic.file:
             return
         whole = without_part(diagnostic.file) == diagnostic.file
-        place = (diagnostic.line, diagnostic.column) if whole else (0, 0)  # a line of a string has none
-        self.open(path_named(diagnostic.file), *place, here=here)
+        position = (diagnostic.line, diagnostic.column) if whole else (0, 0)  # a line of a string has none
+        self.open(path_named(diagnostic.file), *position, here=here)
 
     def open_current(self, problems: Problems) -> None:
         """Open the file of the current mistake, at first of the first."""
         if problems.all:
             self.open_problem(problems.all[max(problems.at, 0)])
         else:
-            self.notices.say("nothing is wrong, so there is nothing to edit")
+            self.notices.say("no errors, so nothing to edit")
 
-    def open_place(self, place: str) -> None:
+    def open_place(self, location: str) -> None:
         """Open "file:line", as an include chain has it."""
-        name, _, line = place.rpartition(":")
-        self.open(path_named(name or place), int(line) if name and line.isdigit() else 0)
+        name, _, line = location.rpartition(":")
+        self.open(path_named(name or location), int(line) if name and line.isdigit() else 0)
 
 
 def editor_name() -> str:

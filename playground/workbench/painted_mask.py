@@ -12,7 +12,7 @@ from playground.engine.file_sources import resized, weights_of
 from playground.workbench.brush import Brush, reached, stroke
 from playground.workbench.canvas import Canvas, Patch
 
-MOST_BY_FILE = 1024
+MAX_SIDE_BY_FILE = 1024
 """Where the picture follows by the file only: a larger one takes longer to write than the mouse to move."""
 
 

@@ -26,17 +26,17 @@ from playground.errors import DataError, PlaygroundError
 from playground.sketch.assign import resolve, shown_parameters, value_of, values_of
 from playground.sketch.model import CpuSource, Parameter, Sketch
 from playground.workbench.brush import TOOLS, Brush, Tool
-from playground.workbench.canvas import MOST_TEXELS, Canvas
+from playground.workbench.canvas import MAX_TEXELS, Canvas
 from playground.workbench.erode_tool import ErodeTool, technique_at
-from playground.workbench.painted_mask import MOST_BY_FILE, Mask
+from playground.workbench.painted_mask import MAX_SIDE_BY_FILE, Mask
 from playground.workbench.sculpted_ground import ground_of, ground_ref
 from playground.workbench.sculpture import Sculpture, rate_of
 from playground.workbench.session import Session
 
-NARROWEST, USUAL, WIDEST = 0.002, 0.025, 0.25
+MIN_RADIUS, DEFAULT_RADIUS, MAX_RADIUS = 0.002, 0.025, 0.25
 """A brush's radius, in shares of the terrain's longer side."""
 
-CLICK, LONGEST = 0.05, 0.25
+CLICK, MAX_DAB_SECONDS = 0.05, 0.25
 """[s] How long a stroke works on the place where it begins, and at most from one frame to the next."""
 
 SAVES_EVERY = 0.1
@@ -154,13 +154,15 @@ class Painting:
                 'this sketch has nothing to paint on: none of its files has the word "paint"'
             )
         self._taken = bool(self.target) and not self._taken
-        if not NARROWEST * self.side <= self.brush.radius <= WIDEST * self.side:
-            self.brush = replace(self.brush, radius=USUAL * self.side)
+        if not MIN_RADIUS * self.side <= self.brush.radius <= MAX_RADIUS * self.side:
+            self.brush = replace(self.brush, radius=DEFAULT_RADIUS * self.side)
 
     def resize(self, by: float) -> None:
         """Make the brush wider, by steps of a tenth."""
         radius = self.brush.radius * 1.1**by
-        self.brush = replace(self.brush, radius=min(max(radius, NARROWEST * self.side), WIDEST * self.side))
+        self.brush = replace(
+            self.brush, radius=min(max(radius, MIN_RADIUS * self.side), MAX_RADIUS * self.side)
+        )
 
     def strengthen(self, by: float) -> None:
         """Make the brush stronger, by steps of a twentieth of the strongest."""
@@ -177,16 +179,16 @@ class Painting:
         if tool in self.tools:
             self.brush = replace(self.brush, tool=tool)
         else:
-            self.session.notes.append(f"there is nothing to {tool} in {self.target}: choose another tool")
+            self.session.notes.append(f"nothing to {tool} in {self.target}: choose another tool")
 
-    def ground(self, place: tuple[float, float]) -> tuple[float, float] | None:
+    def ground(self, position: tuple[float, float]) -> tuple[float, float] | None:
         """Return where on the terrain a place of the picture lies, both in shares; None in the sky."""
         surface = self._surface()
-        return ground_under(surface[0], place, *surface[1:]) if surface is not None else None
+        return ground_under(surface[0], position, *surface[1:]) if surface is not None else None
 
-    def outline(self, place: tuple[float, float], corners: int) -> list[tuple[float, float]]:
-        """Return the brush's circle as it lies on the terrain, in shares of the picture; [] in the sky."""
-        surface, middle = self._surface(), self.ground(place)
+    def outline(self, position: tuple[float, float], corners: int) -> list[tuple[float, float]]:
+        """Return the brush's circle as it lies on the terrain, in fractions of the picture; [] in the sky."""
+        surface, middle = self._surface(), self.ground(position)
         if surface is None or middle is None:
             return []
         eye, heights, extent, relief = surface
@@ -195,7 +197,7 @@ class Painting:
         shares = np.clip(np.array(middle) + around / extent, 0.0, 1.0)
         return seen_from(eye, shares, heights, extent, relief)
 
-    def press(self, place: tuple[float, float]) -> None:
+    def press(self, position: tuple[float, float]) -> None:
         """Begin a stroke at a place of the picture, in shares from its lower left."""
         if self.canvas is not None and not self.canvas.holds():
             # Another program has removed the file, or painted on it.
@@ -205,7 +207,7 @@ class Painting:
             self._heights = None, None  # what could not be read may be there now
         if self._height() is None and not (plan and view_height(plan)):
             self.session.notes.append("the view shows no height, so there is no ground to paint on")
-        self._last = self.ground(place)
+        self._last = self.ground(position)
         if self._last is None:
             return
         ground = ground_of(self.session, step.path) if step is not None and self.sculpts else None
@@ -216,7 +218,7 @@ class Painting:
         if canvas is not None:
             self._hand_over(canvas)
             if isinstance(canvas, Sculpture):
-                canvas.lie_on(ground)
+                canvas.set_base(ground)
                 if self.brush.tool == "erode" and not self._erodes(canvas):
                     self._last = None  # a note says why
                     return
@@ -224,15 +226,15 @@ class Painting:
             self._stroke = canvas
             self._saved_at = -SAVES_EVERY
             self._moved_at = self._now() - CLICK
-            self.move(place)
+            self.move(position)
 
-    def move(self, place: tuple[float, float]) -> None:
+    def move(self, position: tuple[float, float]) -> None:
         """Go on with the stroke, for as long as it is since the last time; nothing where it has ended."""
         plan, canvas = self.session.plan, self.canvas
         if plan is None or plan.terrain.extent is None or canvas is None or canvas is not self._stroke:
             return
-        now, at = self.ground(place), self._now()
-        seconds, self._moved_at = min(at - self._moved_at, LONGEST), at
+        now, at = self.ground(position), self._now()
+        seconds, self._moved_at = min(at - self._moved_at, MAX_DAB_SECONDS), at
         if now is not None:
             try:
                 canvas.paint(self._last or now, now, plan.terrain.extent, self.brush, seconds)
@@ -280,7 +282,7 @@ class Painting:
         return all(canvas.saved for canvas in self._canvases.values())
 
     def close(self) -> list[str]:
-        """End the stroke and wait for the files; return a sentence for each that could not be written."""
+        """End the stroke and wait for the files; return a message for each that could not be written."""
         self.release()
         self.settle()
         errors = (canvas.writing.error for canvas in self._canvases.values())
@@ -337,12 +339,12 @@ class Painting:
         """
         parameter, engine = self._parameter(), self.session.engine
         if "erode" not in self.tools:
-            self.session.notes.append(f"there is nothing to erode in {self.target}: choose another tool")
+            self.session.notes.append(f"nothing to erode in {self.target}: choose another tool")
             return False
         try:
             technique = technique_at(parameter.erode, parameter.file)
-            known = self._eroding.runner if self._eroding is not None else None
-            if known is None or known.engine is not engine or known.technique != technique:
+            runner = self._eroding.runner if self._eroding is not None else None
+            if runner is None or runner.engine is not engine or runner.technique != technique:
                 self._eroding = ErodeTool(engine, technique)
         except PlaygroundError as error:
             self.session.notes.append(str(error))
@@ -363,7 +365,7 @@ class Painting:
         return plan.step(resolve(sketch.graph, path)[0].path.rpartition(".")[0])
 
     def _begun(self) -> Canvas | None:
-        """Return the mask that is painted on, begun anew where the sketch names another file."""
+        """Return the mask that is painted on, begun again where the sketch names another file."""
         if self.canvas is not None:
             return self.canvas
         path, sketch = self.target, self.session.sketch
@@ -375,8 +377,8 @@ class Painting:
         try:
             file = str(value_of(sketch, path, values_of(sketch)))
             of = find_file(file, sketch.folder, leaf.parameter.file, path) if file else None
-            most = MOST_TEXELS if self._shows(step, self.folder, step.size) else MOST_BY_FILE
-            canvas: Canvas = _kind_of(step).begun(self.folder, name, of, step.size, most)
+            most = MAX_TEXELS if self._shows(step, self.folder, step.size) else MAX_SIDE_BY_FILE
+            canvas: Canvas = _kind_of(step).create(self.folder, name, of, step.size, most)
         except PlaygroundError as error:
             self.session.notes.append(str(error))
             return None
@@ -410,12 +412,14 @@ def _painted(sketch: Sketch | None) -> tuple[str, ...]:
     """Return the parameters that may be painted on, those that a technique shows before those inside."""
     if sketch is None:
         return ()
-    found = [shown for shown in shown_parameters(sketch) if shown.parameter.painted]
-    return tuple(shown.path for shown in sorted(found, key=lambda shown: not shown.exported))
+    painted = [shown for shown in shown_parameters(sketch) if shown.parameter.painted]
+    return tuple(shown.path for shown in sorted(painted, key=lambda shown: not shown.exported))
 
 
 def _kind_of(step: Step) -> type[Mask] | type[Sculpture]:
     """Return what is painted: a number a texel where a source gives one, else a mask."""
     outputs = step.kernel.outputs
-    one = isinstance(step.kernel, CpuSource) and len(outputs) == 1 and split_format(outputs[0].format)[0] == 1
-    return Sculpture if one else Mask
+    is_sculpture = (
+        isinstance(step.kernel, CpuSource) and len(outputs) == 1 and split_format(outputs[0].format)[0] == 1
+    )
+    return Sculpture if is_sculpture else Mask

@@ -94,9 +94,9 @@ class Listing:
         """Return what its parameters are set to."""
         return _values(draft)
 
-    def filtered(self, draft: Draft, wanted: Filter) -> dict[str, Section]:
+    def filtered(self, draft: Draft, filter_: Filter) -> dict[str, Section]:
         """Return the passes with what a filter lets through, by name; none that keeps nothing."""
-        return _filtered(draft.base, wanted, self.values(draft).changed)
+        return _filtered(draft.base, filter_, self.values(draft).changed)
 
 
 @INTERFACE.cached(identities=1, weight=128)
@@ -115,20 +115,20 @@ def _values_in_file(sketch: Sketch) -> dict[str, Value]:
 
 
 @INTERFACE.cached(identities=1, weight=128)
-def _filtered(sketch: Sketch, wanted: Filter, changed: frozenset[str]) -> dict[str, Section]:
-    left = {section.name: _thinned(section, wanted, changed) for section in _sections(sketch)}
+def _filtered(sketch: Sketch, filter_: Filter, changed: frozenset[str]) -> dict[str, Section]:
+    left = {section.name: _thinned(section, filter_, changed) for section in _sections(sketch)}
     return {name: section for name, section in left.items() if section.items}
 
 
 def set_words(draft: Draft, values: Values) -> str:
     """Return what differs from the file as words of the command line: ``--set height.seed=3 --set …``."""
-    found = []
+    words = []
     for path, value in draft.applied.items():
         targets = resolve(draft.base.graph, path) if path not in values.of and "." in path else ()
         parameter = targets[0].parameter if targets else _parameter(draft.base, path)
         text = write(parameter, value) if parameter is not None else _terrain_text(value)
-        found.append(f"--set {_quoted(f'{path}={text}')}")
-    return " ".join(found)
+        words.append(f"--set {_quoted(f'{path}={text}')}")
+    return " ".join(words)
 
 
 def _parameter(sketch: Sketch, path: str) -> Parameter | None:
@@ -147,7 +147,7 @@ def _quoted(word: str) -> str:
 
 @INTERFACE.cached(identities=1, weight=128)
 def _sections(sketch: Sketch) -> tuple[Section, ...]:
-    found = []
+    sections = []
     by_pass = {
         name: list(mine)
         for name, mine in groupby(shown_parameters(sketch), lambda s: s.path.partition(".")[0])
@@ -157,8 +157,8 @@ def _sections(sketch: Sketch) -> tuple[Section, ...]:
         outer = [item for item in items if item.exported]
         inner = groupby((i for i in items if not i.exported), lambda i: i.path.rpartition(".")[0])
         inside = tuple((path.partition(".")[2] or path, _groups(list(mine))) for path, mine in inner)
-        found.append(Section(spec.name, _groups(outer), inside))
-    return tuple(found)
+        sections.append(Section(spec.name, _groups(outer), inside))
+    return tuple(sections)
 
 
 def _item(sketch: Sketch, shown: Shown) -> Item:
@@ -175,9 +175,9 @@ def _main(sketch: Sketch) -> tuple[Item, ...]:
     items = [item for section in _sections(sketch) for item in section.items]
     named = {item.path: item for item in items}
     by_leaf = {item.leaf: item for item in items}  # an inner path may be in the list of an outer one
-    found = [named.get(path) or by_leaf[resolve(sketch.graph, path)[0].path] for path in sketch.main]
-    titles = [_with_group(item.parameter) for item in found]
-    for item, title in zip(found, titles, strict=True):
+    result = [named.get(path) or by_leaf[resolve(sketch.graph, path)[0].path] for path in sketch.main]
+    titles = [_with_group(item.parameter) for item in result]
+    for item, title in zip(result, titles, strict=True):
         if titles.count(title) > 1:
             title = _under(label_of(item.path.partition(".")[0]), title)
         made.append(replace(item, label=f"##main {item.path}", title=title))
@@ -197,19 +197,19 @@ def _under(heading: str, title: str) -> str:
 
 def _groups(items: list[Item]) -> tuple[Group, ...]:
     names = dict.fromkeys(["", *(item.parameter.group for item in items)])
-    found = (Group(name, tuple(i for i in items if i.parameter.group == name)) for name in names)
-    return tuple(group for group in found if group.items)
+    groups = (Group(name, tuple(i for i in items if i.parameter.group == name)) for name in names)
+    return tuple(group for group in groups if group.items)
 
 
-def _thinned(section: Section, wanted: Filter, changed: frozenset[str]) -> Section:
+def _thinned(section: Section, filter_: Filter, changed: frozenset[str]) -> Section:
     def passes(item: Item) -> bool:
-        if wanted.changed and item.path not in changed:
+        if filter_.changed and item.path not in changed:
             return False
-        return all(word in item.words for word in wanted.words)
+        return all(word in item.words for word in filter_.words)
 
     def thinned(groups: tuple[Group, ...]) -> tuple[Group, ...]:
-        found = (Group(g.name, tuple(filter(passes, g.items))) for g in groups)
-        return tuple(group for group in found if group.items)
+        groups_left = (Group(g.name, tuple(filter(passes, g.items))) for g in groups)
+        return tuple(group for group in groups_left if group.items)
 
-    inner = tuple((name, found) for name, groups in section.inner if (found := thinned(groups)))
+    inner = tuple((name, groups_left) for name, groups in section.inner if (groups_left := thinned(groups)))
     return Section(section.name, thinned(section.groups), inner)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from itertools import pairwise
 
-_MOST = 4  # sizes that are remembered of a pass: those of the latest measurements
+_MAX_SIZES = 4  # sizes that are remembered of a pass: those of the latest measurements
 
 
 class PassCosts:
@@ -28,14 +28,14 @@ class PassCosts:
                 self._known[path] = {texels: spent}
                 self._first.add(path)
                 continue
-            known = self._known[path]
+            costs = self._known[path]
             if path in self._first:
                 self._first.remove(path)
-                known.clear()
-            before = known.pop(texels, spent)
-            known[texels] = min(spent, 0.5 * (before + spent))
-            while len(known) > _MOST:
-                del known[next(iter(known))]
+                costs.clear()
+            before = costs.pop(texels, spent)
+            costs[texels] = min(spent, 0.5 * (before + spent))
+            while len(costs) > _MAX_SIZES:
+                del costs[next(iter(costs))]
 
     def expected(self, path: str, texels: int) -> float | None:
         """Return what a pass is expected to take with so many texels [ms]; None where it never ran.
@@ -43,16 +43,16 @@ class PassCosts:
         Between measured sizes, and beyond two of them, it is linear in texels; beyond one it is in
         proportion.
         """
-        known = self._known.get(path)
-        if not known:
+        costs = self._known.get(path)
+        if not costs:
             return None
-        sizes = sorted(known)
+        sizes = sorted(costs)
         if len(sizes) == 1 or texels <= sizes[0]:
-            return known[sizes[0]] * texels / sizes[0]
+            return costs[sizes[0]] * texels / sizes[0]
         low, high = next(((a, b) for a, b in pairwise(sizes) if texels <= b), (sizes[-2], sizes[-1]))
         # No smaller size takes longer, unless the machine was busy.
-        least = min(known[low], known[high])
-        return least + (known[high] - least) * (texels - low) / (high - low)
+        least = min(costs[low], costs[high])
+        return least + (costs[high] - least) * (texels - low) / (high - low)
 
     def clear(self) -> None:
         """Forget all: another sketch is opened, whose passes may have the same paths."""

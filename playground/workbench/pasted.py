@@ -20,7 +20,7 @@ from playground.partial import partial_file
 from playground.regular_file import read_regular
 from playground.shader.dialects import OWN, dialect_of, names
 
-LARGEST = 4 * 2**20
+MAX_PASTED_BYTES = 4 * 2**20
 """Bytes that a text may have."""
 
 _ENDINGS = {OWN: ".glsl", "isf": ".fs", "export": ".json"}
@@ -41,7 +41,7 @@ def keep_text(text: str, folder: Path) -> Path:
 
     The file is in ``folder``, or where that cannot be written to, in the user's own folder of the
     playground. Raises ``SketchError`` for a text with nothing to run, and ``DataError`` for what is no
-    text, for one of more than ``LARGEST`` bytes, and where nothing can be written.
+    text, for one of more than ``MAX_PASTED_BYTES`` bytes, and where nothing can be written.
     """
     text = text.removeprefix("\ufeff").replace("\r\n", "\n")
     if not text.strip():
@@ -49,8 +49,10 @@ def keep_text(text: str, folder: Path) -> Path:
     if "\0" in text:
         raise DataError("this is no text; a shader's text was expected")
     data = text.encode("utf-8", "replace")
-    if len(data) > LARGEST:
-        raise DataError(f"the text is larger than {LARGEST // 2**20} MiB; a shader's text was expected")
+    if len(data) > MAX_PASTED_BYTES:
+        raise DataError(
+            f"the text is larger than {MAX_PASTED_BYTES // 2**20} MiB; a shader's text was expected"
+        )
     dialect = dialect_of(text)
     if dialect is None:
         raise SketchError("nothing to run: no main, mainImage or #pragma kernel in the text")
@@ -101,8 +103,8 @@ def _stems(name: str) -> Iterator[str]:
 
 def _named(text: str) -> str:
     """Return a file's name from the title that a text begins with; "" where that is none."""
-    found = _OF_EXPORT.search(text) or _COMMENT.match(text)
-    title = found.group(1).strip() if found else ""
+    paths = _OF_EXPORT.search(text) or _COMMENT.match(text)
+    title = paths.group(1).strip() if paths else ""
     if not _TITLE.fullmatch(title) or _NO_TITLE.search(title):
         return ""
     return re.sub(r"\W+", "_", title.lower()).strip("_")[:40].rstrip("_")

@@ -30,7 +30,7 @@ class Choice:
 
     @property
     def label(self) -> str:
-        """What is chosen, for a sentence: "height: ./dunes"."""
+        """What is chosen, for a message: "height: ./dunes"."""
         named = {
             path: value if kind in CHECKED or value is None else Path(str(value)).name
             for (kind, path), value in self.chosen.items()

@@ -42,9 +42,9 @@ def as_preview(
     coarse: list[tuple[str, Value]] = []
     grid = GRID_OF_FEWER if fewer else GRID
     for path, kernel in draws:
-        found = kernel.parameter(_RESOLUTION)
+        parameter = kernel.parameter(_RESOLUTION)
         name = f"{path}.{_RESOLUTION}"
-        if found is not None and values[name] == found.default and int(found.default) > grid:  # type: ignore[arg-type]
+        if parameter is not None and values[name] == parameter.default and int(parameter.default) > grid:  # type: ignore[arg-type]
             coarse.append((name, grid))
     chosen = [
         (f"{path}.{parameter.name}", parameter.preview)

@@ -25,7 +25,7 @@ BUDGETS = {1: 0.04, 2: 0.1, 3: 0.15, 4: 0.2}
 DIVISORS = tuple(BUDGETS)
 SLOW = 0.2
 """[s] of a whole picture from which on time that runs is better paused, so that it is seen at all."""
-LEAST = 2**15
+MIN_PREVIEW_PIXELS = 2**15
 """Pixels that a preview has at least: fewer show nothing."""
 
 _STAYS, _GROWS = 1.2, 0.8  # of the budget: within these the size does not change, so that it is steady
@@ -50,11 +50,11 @@ def chosen(expected: Mapping[int, float], current: int) -> int:
         factor = _STAYS if divisor == current else _GROWS if divisor < current else 1.0
         return expected[divisor] <= BUDGETS[divisor] * factor
 
-    found = [divisor for divisor in expected if fits(divisor)]
-    if not found:
+    divisors = [divisor for divisor in expected if fits(divisor)]
+    if not divisors:
         enough = _GAINS * min(expected.values())
-        found = [divisor for divisor in expected if expected[divisor] <= enough]
-    return min(found)
+        divisors = [divisor for divisor in expected if expected[divisor] <= enough]
+    return min(divisors)
 
 
 class PreviewSize:
@@ -89,7 +89,7 @@ class PreviewSize:
         counted. ``at``: the time and what else ``Engine.plan_for`` takes. Raises as that does.
         """
         self.guessed, self.whole = False, 0.0
-        possible = [d for d in DIVISORS if d == 1 or size[0] * size[1] >= LEAST * d * d]
+        possible = [d for d in DIVISORS if d == 1 or size[0] * size[1] >= MIN_PREVIEW_PIXELS * d * d]
         if len(possible) == 1:
             self.divisor = 1
             return size
@@ -101,19 +101,19 @@ class PreviewSize:
         if changed is None or not sizes.keys() >= set(changed):
             changed = engine.stale(sketch, size=size, **at)
         if not _goes_on(whole).isdisjoint(following):
-            self.divisor = 1  # it would begin anew at each size
+            self.divisor = 1  # it would begin again at each size
             return size
         expected: dict[int, float] = {}
         for divisor in possible:
-            found = 0.0
+            cost = 0.0
             for path in changed:
                 texels = sizes[path] // (divisor**2 if path in following else 1)
                 spent = self._costs.expected(path, max(texels, 1))
                 if spent is None and path in following:
                     self.divisor, self.guessed = possible[-1], True
                     return divided(size, self.divisor)
-                found += (spent or 0.0) / 1e3
-            expected[divisor] = found
+                cost += (spent or 0.0) / 1e3
+            expected[divisor] = cost
         self.whole = expected[1]
         self.divisor = chosen(expected, self.divisor)
         return divided(size, self.divisor)
@@ -125,11 +125,11 @@ def _texels(plan: Plan) -> dict[str, int]:
 
 def _goes_on(plan: Plan) -> set[str]:
     """Return the paths of the passes that go on from an earlier time's, as those of a simulation do."""
-    found: set[str] = set()
+    names: set[str] = set()
     for node in every_node(plan.nodes):
         if isinstance(node, LoopStep):
             if follows_time(node.spec.repeat):
-                found |= {step.path for step in walk(node.body)}
+                names |= {step.path for step in walk(node.body)}
         elif follows_time(node.kernel.repeat):
-            found.add(node.path)
-    return found
+            names.add(node.path)
+    return names

@@ -60,12 +60,12 @@ class Problems:
         found_now = () if error is None else tuple(dict.fromkeys((*error.diagnostics, *self._also)))
         errors = tuple(d for d in found_now if d.severity == "error")
         mild = [*(d for d in found_now if d.severity != "error"), *warnings]
-        known = {(d.file, d.line, d.message) for d in errors}
+        keys = {(d.file, d.line, d.message) for d in errors}
         before = self.errors, self.warnings
         self.warnings = tuple(
-            found
+            moved
             for d in dict.fromkeys(mild)
-            if (d.file, d.line, d.message) not in known and (found := self.moved_with_its_line(d)) is not None
+            if (d.file, d.line, d.message) not in keys and (moved := self.moved_with_its_line(d)) is not None
         )
         if error is not self._error:
             self._error, self.errors = error, errors
@@ -78,10 +78,10 @@ class Problems:
 
     def by_file(self) -> list[tuple[str, list[Diagnostic]]]:
         """Return (file, what is wrong with it), each file once; "" means no file."""
-        found: dict[str, list[Diagnostic]] = {}
+        diagnostics: dict[str, list[Diagnostic]] = {}
         for diagnostic in (*self.errors, *self.warnings):
-            found.setdefault(diagnostic.file, []).append(diagnostic)
-        return list(found.items())
+            diagnostics.setdefault(diagnostic.file, []).append(diagnostic)
+        return list(diagnostics.items())
 
     def step(self, by: int) -> None:
         """Look at the next one, or the one before; round and round."""
@@ -197,7 +197,7 @@ def unreadable(sketch: Sketch | None) -> tuple[Diagnostic, ...]:
 
     Loading a sketch stops at the first.
     """
-    found: dict[Diagnostic, None] = {}
+    diagnostics: dict[Diagnostic, None] = {}
     paths = {k.path for _, k in kernels_of(sketch.graph)} if sketch is not None else set()
     for path in sorted(Path(name) for name in paths):
         if path.is_relative_to(GLSL) or not path.is_file():
@@ -205,8 +205,8 @@ def unreadable(sketch: Sketch | None) -> tuple[Diagnostic, ...]:
         try:
             Techniques().shader(path, root_of(path))
         except PlaygroundError as error:
-            found |= dict.fromkeys(error.diagnostics)
-    return tuple(found)
+            diagnostics |= dict.fromkeys(error.diagnostics)
+    return tuple(diagnostics)
 
 
 def passes_of(sketch: Sketch | None, diagnostic: Diagnostic) -> list[str]:
@@ -214,5 +214,5 @@ def passes_of(sketch: Sketch | None, diagnostic: Diagnostic) -> list[str]:
     path = path_named(diagnostic.file) if diagnostic.file else None
     if sketch is None or path is None:
         return []
-    found = [name.partition(".")[0] for name, kernel in kernels_of(sketch.graph) if str(path) in kernel.files]
-    return list(dict.fromkeys(found))
+    names = [name.partition(".")[0] for name, kernel in kernels_of(sketch.graph) if str(path) in kernel.files]
+    return list(dict.fromkeys(names))

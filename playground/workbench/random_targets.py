@@ -17,7 +17,7 @@ Targets = list[tuple[str, Parameter]]
 
 
 def targets(
-    draft: Draft | None, listing: Listing, wanted: Filter, *, everything: bool = False
+    draft: Draft | None, listing: Listing, filter_: Filter, *, everything: bool = False
 ) -> tuple[Targets, str]:
     """Return the parameters that random values are for, by path, and a few words for them.
 
@@ -27,9 +27,9 @@ def targets(
     """
     if draft is None:
         return [], ""
-    sections = listing.filtered(draft, wanted).values()
+    sections = listing.filtered(draft, filter_).values()
     items, words = [item for section in sections for item in section.items], "those found by the search"
-    if not wanted:
+    if not filter_:
         items, words = [item for item in items if item.exported], "all that the passes show"
         if not everything:
             items, words = _of_the_shape(draft.base, items, listing.main(draft))
@@ -39,14 +39,14 @@ def targets(
 def _of_the_shape(sketch: Sketch, items: list[Item], main: tuple[Item, ...]) -> tuple[list[Item], str]:
     others = [spec for spec in sketch.graph.passes if spec.name != "view"]
     shape = [spec for spec in others if "height" in output_names(spec.technique) and not _reads_file(spec)]
-    for found, words in (
+    for places_found, words in (
         (_within(main, shape), "the main ones of the shape"),
         (_within(items, shape), "those of the shape"),
         (_within(main, others), "the main ones"),
         (_within(items, others), "every pass but the view"),
     ):
-        if found:
-            return found, words
+        if places_found:
+            return places_found, words
     return [], "there are none"
 
 

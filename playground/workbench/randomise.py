@@ -25,8 +25,8 @@ def at_random(parameters: Iterable[tuple[str, Parameter]], seed: int) -> dict[st
     Evenly over the slider's own way: a logarithmic one by its logarithm, a menu by its
     choices, a colour by what is visible.
     """
-    found = {path: _anywhere(parameter, Random(f"{seed} {path}")) for path, parameter in parameters}
-    return {path: value for path, value in found.items() if value is not None}
+    values = {path: _anywhere(parameter, Random(f"{seed} {path}")) for path, parameter in parameters}
+    return {path: value for path, value in values.items() if value is not None}
 
 
 def mutated(
@@ -34,14 +34,14 @@ def mutated(
 ) -> dict[str, Value]:
     """Return a value near the one of now for each parameter, by path.
 
-    ``strength`` (0..1) is the standard deviation of the way it goes, in shares of its range,
+    ``strength`` (0..1) is the standard deviation of the way it goes, in fractions of its range,
     and the probability that a menu or a checkbox changes at all.
     """
-    found = {
+    result = {
         path: _near(parameter, values[path], Random(f"{seed} {path}"), strength)
         for path, parameter in parameters
     }
-    return {path: value for path, value in found.items() if value is not None}
+    return {path: value for path, value in result.items() if value is not None}
 
 
 def _anywhere(parameter: Parameter, randoms: Random) -> Value | None:
@@ -83,7 +83,7 @@ def _near(parameter: Parameter, value: Value, randoms: Random, strength: float) 
 
 
 def _on(parameter: Parameter, share: float, axis: int) -> float:
-    """Return the number at a share of the slider's way; ``axis`` is its place in a vector."""
+    """Return the number at a fraction of the slider's way; ``axis`` is its place in a vector."""
     low, high = parameter.widget.ends(axis)
     assert low is not None and high is not None
     share = min(max(share, 0.0), 1.0)
@@ -93,7 +93,7 @@ def _on(parameter: Parameter, share: float, axis: int) -> float:
 
 
 def _share(parameter: Parameter, number: float, axis: int) -> float:
-    """Return the share of the slider's way at which a number lies; ``axis`` is its place in a vector."""
+    """Return the fraction of the slider's way at which a number lies; ``axis`` is its place in a vector."""
     low, high = parameter.widget.ends(axis)
     assert low is not None and high is not None
     if parameter.widget.kind == "log_slider":
@@ -107,18 +107,18 @@ def _count(parameter: Parameter) -> int:
 
 def _number(parameter: Parameter, numbers: list[float]) -> Value:
     held = [snapped(parameter, n) for n in numbers]
-    found: tuple[float, ...] | tuple[int, ...]
+    values: tuple[float, ...] | tuple[int, ...]
     if is_whole(parameter.type):
         lowest, highest = (0, 2**32 - 1) if parameter.type.startswith("u") else (-(2**31), 2**31 - 1)
-        found = tuple(min(max(round(n), lowest), highest) for n in held)
+        values = tuple(min(max(round(n), lowest), highest) for n in held)
     else:
-        found = tuple(tidied(n) for n in held)
-    return found if _count(parameter) > 1 else found[0]
+        values = tuple(tidied(n) for n in held)
+    return values if _count(parameter) > 1 else values[0]
 
 
 def _colour(parameter: Parameter, seen: list[float], alpha: list[float] | None = None) -> Value:
     """Return a colour of eight bits a channel, so that it can be written as it is; alpha stays."""
     steps = [round(min(max(c, 0.0), 1.0) * 255) / 255 for c in seen]
     assert isinstance(parameter.default, tuple)
-    found = steps if parameter.widget.raw else srgb_to_linear(steps).tolist()
-    return (*found, *(alpha or parameter.default[3:]))
+    components = steps if parameter.widget.raw else srgb_to_linear(steps).tolist()
+    return (*components, *(alpha or parameter.default[3:]))

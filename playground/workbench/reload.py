@@ -23,10 +23,10 @@ class Follower:
         ``own`` are files that this process writes itself and shows already.
         """
         changed = self.watcher.take() - set(own)
-        known = changed & self.session.drafts.files if changed else changed
-        if not changed or not (self.session.error or known):
+        changed_files = changed & self.session.drafts.files if changed else changed
+        if not changed or not (self.session.error or changed_files):
             return False
-        self.session.drafts.reload(known)
+        self.session.drafts.reload(changed_files)
         return True
 
     def follow(self) -> None:

@@ -56,8 +56,8 @@ def explained(error: Exception, sketch: Path) -> PlaygroundError:
     if all(diagnostic.file for diagnostic in error.diagnostics):
         return error
     file = shown(sketch)
-    placed = [d if d.file else replace(d, file=file) for d in error.diagnostics]
-    return type(error)(diagnostics=placed)
+    diagnostics = [d if d.file else replace(d, file=file) for d in error.diagnostics]
+    return type(error)(diagnostics=diagnostics)
 
 
 def refusal(report: SandboxReport) -> PlaygroundError | None:

@@ -35,7 +35,7 @@ def stored(draft: Draft) -> StoredEdits:
 
 
 def first_draft(loaded: Sketch, start: StoredEdits) -> tuple[Draft, list[str]]:
-    """Return the draft to begin with, and a sentence for each edit that gave way to the files."""
+    """Return the draft to begin with, and a message for each edit that gave way to the files."""
     edits, note = with_camera_of(start.edits, start.camera_in_file or loaded.camera, loaded.camera)
     draft = Draft(loaded, loaded, replace(edits, techniques=(), channels=()))
     notes = [note] if note else []

@@ -46,7 +46,7 @@ def sculpt(
     ``ends`` are shares of the terrain's sides, ``extent`` is in metres. ``rate`` is how fast raise goes
     at full strength [unit/s], ``level`` what flatten goes to.
     """
-    start, end = (np.array(place, np.float64) for place in ends)
+    start, end = (np.array(position, np.float64) for position in ends)
     stamps = max(1, math.ceil(float(np.hypot(*((end - start) * extent))) / (_APART * brush.radius)))
     for n in range(stamps):
         x, y = start + (end - start) * (n + 0.5) / stamps
@@ -56,7 +56,7 @@ def sculpt(
 def _stamp(
     change: NDArray[np.float32],
     ground: NDArray[np.float32] | None,
-    place: tuple[float, float],
+    position: tuple[float, float],
     extent: tuple[float, float],
     brush: Brush,
     seconds: float,
@@ -64,7 +64,7 @@ def _stamp(
     level: float,
 ) -> None:
     shape = change.shape[0], change.shape[1]
-    rows, columns, share = covered(shape, place, place, extent, brush)
+    rows, columns, share = covered(shape, position, position, extent, brush)
     part = rows, columns
     if not share.size:
         return
@@ -85,7 +85,7 @@ def _stamp(
             added = _spread(terrain, weight, radius**2 / 16 * seconds, (dx, dy)) - terrain
         case "sharpen":
             sigma = max(brush.radius / 4, dx, dy)
-            around = reached((shape[1], shape[0]), place, place, extent, brush.radius + 3 * sigma)
+            around = reached((shape[1], shape[0]), position, position, extent, brush.radius + 3 * sigma)
             away = _terrain(change, ground, part) - _mean(
                 _terrain(change, ground, around), around, part, sigma, (dx, dy)
             )
@@ -96,8 +96,8 @@ def _stamp(
 def _terrain(
     change: NDArray[np.float32], ground: NDArray[np.float32] | None, part: Part
 ) -> NDArray[np.float64]:
-    found = change[part].astype(np.float64)
-    return found if ground is None else found + ground[part]
+    heights = change[part].astype(np.float64)
+    return heights if ground is None else heights + ground[part]
 
 
 def _spread(
@@ -111,14 +111,14 @@ def _spread(
     steps = max(1, math.ceil(2 * most * float(weight.max(initial=0.0)) * (1 / dx**2 + 1 / dy**2)))
     east = np.minimum(weight[:, 1:], weight[:, :-1]) * (most / steps / dx**2)
     north = np.minimum(weight[1:], weight[:-1]) * (most / steps / dy**2)
-    found = terrain.copy()
+    heights = terrain.copy()
     for _ in range(steps):
-        along, across = east * np.diff(found, axis=1), north * np.diff(found, axis=0)
-        found[:, :-1] += along
-        found[:, 1:] -= along
-        found[:-1] += across
-        found[1:] -= across
-    return found
+        along, across = east * np.diff(heights, axis=1), north * np.diff(heights, axis=0)
+        heights[:, :-1] += along
+        heights[:, 1:] -= along
+        heights[:-1] += across
+        heights[1:] -= across
+    return heights
 
 
 def _mean(
@@ -140,5 +140,5 @@ def _weights(there: slice, here: slice, step: float, every: int) -> NDArray[np.f
     """Return the weights (here, there) of a Gaussian mean; ``step`` is a texel in standard deviations."""
     places = np.arange(there.start, there.stop, every)
     away = step * (np.arange(here.start, here.stop)[:, None] - places)
-    found = np.exp(-0.5 * np.minimum(away * away, 1000.0))
-    return np.asarray(found / found.sum(axis=1, keepdims=True))
+    weights = np.exp(-0.5 * np.minimum(away * away, 1000.0))
+    return np.asarray(weights / weights.sum(axis=1, keepdims=True))

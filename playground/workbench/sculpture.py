@@ -36,7 +36,7 @@ class Sculpture(Canvas):
         self.ground: NDArray[np.float32] | None = None  # (ny, nx) [m] that it is added to; None: to none
         self.eroding: ErodeTool | None = None  # what "erode" runs; None: nothing
 
-    def lie_on(self, heights: NDArray[np.float32] | None) -> None:
+    def set_base(self, heights: NDArray[np.float32] | None) -> None:
         """Take the heights [m] that it is added to, at any size; None where it changes no height."""
         if heights is not None and heights.shape != self.pixels.shape:
             heights = resample(heights, self.size)
@@ -99,14 +99,16 @@ class Sculpture(Canvas):
     ) -> None:
         if self.eroding is None:
             return
-        for place in self.eroding.stamps(start, end, seconds):
+        for position in self.eroding.stamps(start, end, seconds):
             terrain = self.pixels, self.ground
-            part, added = self.eroding.change(terrain, place, extent, brush)
+            part, added = self.eroding.change(terrain, position, extent, brush)
             self._remember(part)
             self.pixels[part] += added
             self._change(part)
 
-    def _height_at(self, place: tuple[float, float]) -> float:
+    def _height_at(self, position: tuple[float, float]) -> float:
         """Return the terrain's height at its texel nearest to a place."""
-        x, y = (round(min(max(share, 0.0), 1.0) * (n - 1)) for share, n in zip(place, self.size, strict=True))
+        x, y = (
+            round(min(max(share, 0.0), 1.0) * (n - 1)) for share, n in zip(position, self.size, strict=True)
+        )
         return float(self.pixels[y, x]) + (0.0 if self.ground is None else float(self.ground[y, x]))

@@ -158,7 +158,7 @@ class Session:
         return self.picture.is_preview
 
     @property
-    def rests(self) -> bool:
+    def is_idle(self) -> bool:
         """Whether there is a picture, and nothing is coming that may replace it."""
         coming = self.drafts.stage is not ReloadStage.NONE or self.catch_up.behind is not None
         return self.plan is not None and not (coming or self.is_preview or self.awaits_data)
@@ -209,7 +209,7 @@ class Session:
         self.drafts.reset_values()
 
     def redraw(self) -> None:
-        """Draw anew: a file that the sketch reads has changed."""
+        """Draw again: a file that the sketch reads has changed."""
         self.view.revision += 1
 
     def point(self, mouse: tuple[float, float, float, float]) -> None:
@@ -219,7 +219,7 @@ class Session:
             runner.mouse = mouse
             self.redraw()
 
-    def hover(self, place: tuple[float, float], *, pressed: bool, clicked: bool) -> None:
+    def hover(self, position: tuple[float, float], *, pressed: bool, clicked: bool) -> None:
         """Pass the mouse to other tools' shaders, in pixels from the lower left; see ``Runner.drag``.
 
         ``clicked``: it was pressed in this very frame.
@@ -227,13 +227,13 @@ class Session:
         runner = self.engine.runner
         x, y, press_x, press_y = runner.drag
         if clicked:
-            drag = (*place, *place)
+            drag = (*position, *position)
         elif pressed:
-            drag = (*place, abs(press_x), -abs(press_y))
+            drag = (*position, abs(press_x), -abs(press_y))
         else:
             drag = (x, y, -abs(press_x), -abs(press_y))
-        if (runner.hover, runner.drag) != (place, drag):
-            runner.hover, runner.drag = place, drag
+        if (runner.hover, runner.drag) != (position, drag):
+            runner.hover, runner.drag = position, drag
             if self.sketch is not None and traits_of(self.sketch).mouse:
                 self.redraw()
 
@@ -269,13 +269,13 @@ class Session:
             self.redraw()
 
     @property
-    def listens(self) -> bool:
+    def is_listening(self) -> bool:
         """Whether the picture may change by what a microphone or a camera delivers."""
         return self.sketch is not None and traits_of(self.sketch).devices
 
     def listen(self) -> None:
         """Begin a frame: take what microphones and cameras delivered."""
-        if self.engine.runner.inputs.begin_frame() and self.listens:
+        if self.engine.runner.inputs.begin_frame() and self.is_listening:
             self.redraw()
 
     def advance(self, seconds: float, date: datetime) -> None:
@@ -340,7 +340,7 @@ class Session:
     # ── the picture ──────────────────────────────────────────────────────────
 
     def frame(self, size: tuple[int, int]) -> moderngl.Texture | None:
-        """Return the picture, drawn anew if anything changed; None before the first good one.
+        """Return the picture, drawn again if anything changed; None before the first good one.
 
         ``size`` in pixels. The texture stays valid until the next call. Nothing is raised
         for a mistake in the sketch: it is in ``error``, and the last good picture stays.
@@ -355,11 +355,11 @@ class Session:
         if drafts.stage is ReloadStage.DRAW:
             self._draw_coming(size)
         if drafts.shown is not None:
-            wanted = self._wanted(size)
-            if wanted != self._drawn or self.catch_up.behind is not None:
-                self._draw_shown(drafts.shown.sketch, wanted, size)
+            key = self._wanted(size)
+            if key != self._drawn or self.catch_up.behind is not None:
+                self._draw_shown(drafts.shown.sketch, key, size)
             elif due:
-                self._draw_shown(drafts.shown.sketch, wanted, size, in_full=True, in_pieces=True)
+                self._draw_shown(drafts.shown.sketch, key, size, in_full=True, in_pieces=True)
         return self.picture.texture
 
     def read(self) -> Frame | None:
@@ -377,7 +377,7 @@ class Session:
     def rebuild(self, engine: Engine) -> None:
         """Go on with another engine: the context of the one before is lost, and all that was in it.
 
-        What is shown is drawn anew, unless it lost two contexts in a row: then it waits until
+        What is shown is drawn again, unless it lost two contexts in a row: then it waits until
         something is changed.
         """
         runner, before = engine.runner, self.engine.runner
@@ -446,13 +446,13 @@ class Session:
         self._drawn = None if self.view.map is not None else self._wanted(size)
 
     def _draw_shown(
-        self, sketch: Sketch, wanted: tuple[object, ...], size: tuple[int, int], **how: bool
+        self, sketch: Sketch, key: tuple[object, ...], size: tuple[int, int], **how: bool
     ) -> None:
         """Draw the sketch that is shown; ``how``: as ``_draw`` takes it."""
         if self.drafts.sandboxed and self.reads_new_data(sketch):
             return  # the last good picture stays
-        time_alone = self._drawn is not None and wanted[:-1] == self._drawn[:-1]
-        self._drawn, shown = wanted, self.view.map
+        time_alone = self._drawn is not None and key[:-1] == self._drawn[:-1]
+        self._drawn, shown = key, self.view.map
         try:
             if shown is not None and not self.can_show(shown.ref):
                 self.notes.append(f"{shown.ref} is gone, so the sketch's own view is shown")

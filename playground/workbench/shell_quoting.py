@@ -24,25 +24,25 @@ _BARE, _SINGLE, _DOUBLE = "", "'", '"'
 def with_file(words: Sequence[str], file: str, stem: Callable[[str], str]) -> list[str]:
     """Return the words with a file's name in place of each mark; ``stem`` gives a program's name.
 
-    Raises ``ValueError`` in a sentence where a script hands the name to another shell.
+    Raises ``ValueError`` in a message where a script hands the name to another shell.
     """
-    found: list[str] = []
+    names: list[str] = []
     for index, word in enumerate(words):
         if MARK not in word or not any(letter.isspace() for letter in word.strip()):
-            found.append(word.replace(MARK, file))
+            names.append(word.replace(MARK, file))
             continue
         if _NESTED.search(word):
             raise ValueError(f"'{word}' hands {MARK} to a second shell; write it with one")
         if not _is_script(words, index, stem):
-            found.append(
+            names.append(
                 "".join(_quoted(file, state) if text == MARK else text for text, state in _parts(word))
             )
             continue
         after = [other.replace(MARK, file) for other in words[index + 1 :]] or ["sh"]  # $0, $1 …
         number = f"${{{len(after)}}}"
         script = "".join(_named(number, state) if text == MARK else text for text, state in _parts(word))
-        return [*found, script, *after, file]
-    return found
+        return [*names, script, *after, file]
+    return names
 
 
 def _is_script(words: Sequence[str], index: int, stem: Callable[[str], str]) -> bool:
@@ -55,7 +55,7 @@ def _is_script(words: Sequence[str], index: int, stem: Callable[[str], str]) -> 
 
 def _parts(script: str) -> Iterator[tuple[str, str]]:
     """Yield the marks and the characters of a script, each with the quotes around it."""
-    inside, at = [_BARE], 0  # quotes and parentheses that are open; those in $( ) begin anew
+    inside, at = [_BARE], 0  # quotes and parentheses that are open; those in $( ) begin again
     while at < len(script):
         state = inside[-1]
         if script.startswith(MARK, at):

@@ -195,9 +195,9 @@ def _at(view: View, sketch: Sketch, time: float, *, coming: bool = False) -> dic
 
 def _has_new_text(plan: Plan | None, sketch: Sketch) -> bool:
     """Return whether a kernel of a sketch has another text than it had in a plan; a comment is none."""
-    known = dict(kernels_of(plan.sketch.graph)) if plan is not None else {}
+    kernels = dict(kernels_of(plan.sketch.graph)) if plan is not None else {}
     for path, kernel in kernels_of(sketch.graph):
-        before = known.get(path, kernel)
+        before = kernels.get(path, kernel)
         if before is not kernel and before.source.canonical != kernel.source.canonical:
             return True
     return False

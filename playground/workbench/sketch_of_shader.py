@@ -41,8 +41,10 @@ def save_as_sketch(draft: Draft, folder: Path) -> Draft:
         return _save_elevation(draft, shader, folder)
     if shader.suffix not in TECHNIQUES:
         *endings, last = (ending for ending in TECHNIQUES if ending != ".toml")
-        known = f"{', '.join(endings)} or {last}"
-        raise DataError(f"a sketch uses shaders that end in {known}, not in {shader.suffix}", file=shader)
+        endings_text = f"{', '.join(endings)} or {last}"
+        raise DataError(
+            f"a sketch uses shaders that end in {endings_text}, not in {shader.suffix}", file=shader
+        )
     ships = shader.is_relative_to(GLSL)
     root = GLSL if ships else Path(draft.file.folder)
     use = f"{'' if ships else './'}{shader.relative_to(root).with_suffix('').as_posix()}"
@@ -50,11 +52,11 @@ def save_as_sketch(draft: Draft, folder: Path) -> Draft:
         path.write_text(_text(draft.file, use), "utf-8")
         loaded = load(path)
         if _dialects(loaded) != _dialects(draft.file):
-            message = "a sketch goes by the shader's text, not by --dialect, so it would be another picture"
+            message = "a sketch depends on the shader's text, not on --dialect, so the picture would differ"
             raise DataError(message, file=shader)
         again = _again(draft, loaded)
-        wanted = again.sketch if again.edits.camera else again.sketch.with_camera(draft.file.camera)
-        save(loaded, wanted)
+        sketch_wanted = again.sketch if again.edits.camera else again.sketch.with_camera(draft.file.camera)
+        save(loaded, sketch_wanted)
         saved = load(path)
     return Draft(saved, saved, Edits(locked=again.edits.locked))
 
@@ -126,10 +128,10 @@ def _again(draft: Draft, loaded: Sketch) -> Draft:
         made = made.feed(path if source_of(loaded, path) is not None else f"view.{path}", source)
     names = dict(_renamed(channels(draft.base), channels(made.base)))
     values = [*draft.file.overrides, *draft.applied.items()]
-    found = {_place(made.base, path, names): value for path, value in values}
+    values_again = {_place(made.base, path, names): value for path, value in values}
     kept = replace(
         edits,
-        values=tuple(found.items()),
+        values=tuple(values_again.items()),
         techniques=made.edits.techniques,
         channels=made.edits.channels,
         locked=tuple(_place(made.base, path, names) for path in edits.locked),

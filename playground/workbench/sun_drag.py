@@ -6,7 +6,7 @@ from playground.sketch.assign import shown_parameters, value_of, values_of
 from playground.sketch.model import Sketch
 from playground.workbench.camera_drag import HALF_TURN
 
-LOWEST = -10.0
+MIN_ELEVATION = -10.0
 """[degrees] A little below the horizon, so that a sunset can be gone through."""
 
 
@@ -15,18 +15,18 @@ def suns_of(sketch: Sketch) -> dict[str, tuple[float, float]]:
 
     Those of the view count only where no pass has one: they light a mesh, not the terrain.
     """
-    found: dict[str, tuple[float, float]] = {}
+    suns: dict[str, tuple[float, float]] = {}
     leaves = values_of(sketch)
     for shown in shown_parameters(sketch):
         if shown.exported and shown.parameter.widget.kind == "direction":
             value = value_of(sketch, shown.path, leaves)
             if isinstance(value, tuple):
-                found[shown.path] = (float(value[0]), float(value[1]))
-    of_terrain = {path: value for path, value in found.items() if not path.startswith("view.")}
-    return of_terrain or found
+                suns[shown.path] = (float(value[0]), float(value[1]))
+    of_terrain = {path: value for path, value in suns.items() if not path.startswith("view.")}
+    return of_terrain or suns
 
 
 def turned(sun: tuple[float, float], across: float, up: float) -> tuple[float, float]:
-    """Return a direction after a drag, in shares of the picture's height to the right and upwards."""
+    """Return a direction after a drag, in fractions of the picture's height to the right and upwards."""
     azimuth, elevation = sun[0] + across * HALF_TURN, sun[1] + up * HALF_TURN / 2
-    return round(azimuth % 360.0, 2), round(min(max(elevation, LOWEST), 90.0), 2)
+    return round(azimuth % 360.0, 2), round(min(max(elevation, MIN_ELEVATION), 90.0), 2)

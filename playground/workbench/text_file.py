@@ -17,7 +17,7 @@ from playground.partial import partial_file
 from playground.paths import shown
 from playground.regular_file import read_regular
 
-MOST = 8 * 2**20
+MAX_FILE_BYTES = 8 * 2**20
 """Bytes that a file may have."""
 
 
@@ -47,7 +47,7 @@ class OpenText:
 
     @classmethod
     def read(cls, path: Path) -> OpenText:
-        """Read a file; raise ``DataError`` in a sentence where it cannot be edited as a text."""
+        """Read a file; raise ``DataError`` in a message where it cannot be edited as a text."""
         made = cls(path)
         made.reload()
         return made
@@ -104,16 +104,16 @@ class OpenText:
         """
         base = self.base
         with_theirs = OpenText.read(self.path)
-        found = merge(base, mine, with_theirs.base)
-        if found is not None:
+        merged = merge(base, mine, with_theirs.base)
+        if merged is not None:
             self.base, self._bytes = with_theirs.base, with_theirs._bytes
             self._ending, self._mark = with_theirs._ending, with_theirs._mark
-        return found
+        return merged
 
     def _on_disk(self) -> bytes:
         try:
-            if self.path.stat().st_size > MOST:
-                raise DataError(f"larger than {MOST // 2**20} MiB", file=shown(self.path))
+            if self.path.stat().st_size > MAX_FILE_BYTES:
+                raise DataError(f"larger than {MAX_FILE_BYTES // 2**20} MiB", file=shown(self.path))
             return read_regular(self.path)
         except FileNotFoundError:
             raise DataError("there is no such file", file=shown(self.path)) from None
@@ -173,8 +173,8 @@ def merge(base: str, mine: str, theirs: str) -> str | None:
     changes.sort(key=lambda change: change[:2])
     if any(after[0] <= before[1] for before, after in itertools.pairwise(changes)):
         return None
-    found, at = [], 0
+    merged_lines, at = [], 0
     for low, high, instead in changes:
-        found += [*lines[at:low], *instead]
+        merged_lines += [*lines[at:low], *instead]
         at = high
-    return "".join([*found, *lines[at:]])
+    return "".join([*merged_lines, *lines[at:]])

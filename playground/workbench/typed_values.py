@@ -29,5 +29,5 @@ def read_typed(parameter: Parameter, text: str, path: str) -> Value:
     except ExpressionError as error:
         raise ParameterError(f"{path}: {error}") from None
     whole = is_whole(parameter.type)
-    found = [int(n) if whole and n.is_integer() else n for n in numbers]
-    return coerce(parameter, found[0] if len(found) == 1 else found, path)
+    result = [int(n) if whole and n.is_integer() else n for n in numbers]
+    return coerce(parameter, result[0] if len(result) == 1 else result, path)

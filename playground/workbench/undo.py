@@ -54,8 +54,8 @@ class Undo:
         if session.shown is not None:
             edits, drafts, now = session.shown.edits, session.drafts, self.notices.now()
             steps, read = session.view.steps, drafts.read_edits
-            rests = drafts.stage in (ReloadStage.NONE, ReloadStage.FAILED)
-            self.history.look(edits, steps, drafts.reads, held=held, now=now, read=read, rests=rests)
+            is_idle = drafts.stage in (ReloadStage.NONE, ReloadStage.FAILED)
+            self.history.look(edits, steps, drafts.reads, held=held, now=now, read=read, is_idle=is_idle)
 
     @contextmanager
     def step(self, name: str) -> Iterator[None]:
@@ -77,7 +77,7 @@ class Undo:
             self.painting.undo()
             self.notices.say("took the last stroke back; put the brush down (B) to undo values")
         elif not self._go(-1):
-            self.notices.say("there is nothing to undo")
+            self.notices.say("nothing to undo")
 
     def redo(self) -> None:
         """Redo the step that was undone last; while painting, the stroke."""
@@ -88,7 +88,7 @@ class Undo:
             self.painting.redo()
             self.notices.say("painted the stroke again; put the brush down (B) to redo values")
         elif not self._go(1):
-            self.notices.say("there is nothing to do again")
+            self.notices.say("nothing to redo")
 
     def _go(self, by: int) -> bool:
         """Undo (-1) or redo (1) a step; return False where there is none."""
@@ -117,16 +117,16 @@ class Undo:
         latest = session.drafts.latest
         if latest is None:
             return False
-        wanted = applied(state_of(latest.edits, session.view.steps), changes)
-        keyframes = wanted.pop((KEYFRAMES, ""), None)
+        values = applied(state_of(latest.edits, session.view.steps), changes)
+        keyframes = values.pop((KEYFRAMES, ""), None)
         if isinstance(keyframes, tuple) and not self.file.write_keyframes(keyframes):
             return False
-        if not session.drafts.restore(edits_of(wanted)):
+        if not session.drafts.restore(edits_of(values)):
             return False
-        time = wanted.pop(("time", ""), None)
+        time = values.pop(("time", ""), None)
         if isinstance(time, float):
             session.clock.time = time
-        stops = steps_of(wanted)
+        stops = steps_of(values)
         for path in {*session.view.steps, *stops}:
             session.stop_at(path, stops.get(path, -1))
         return True

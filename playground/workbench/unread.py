@@ -9,7 +9,7 @@ from playground.errors import PlaygroundError
 
 
 def set_aside(path: Path, what: str, error: Exception) -> str:
-    """Rename a file to ``NAME.unread.json``, numbered where that is taken; return a sentence that says so.
+    """Rename a file to ``NAME.unread.json``, numbered where that is taken; return a message that reports it.
 
     ``what`` was remembered in it, as the sentence begins; ``error`` is why it cannot be read.
     """

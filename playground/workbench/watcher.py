@@ -1,6 +1,6 @@
 """Say which files have changed, whichever way an editor saves them.
 
-Folders are watched, not files, because a file that is renamed over or created anew is
+Folders are watched, not files, because a file that is renamed over or created again is
 another file; a change counts only if the contents differ. Twice a second the thread
 also looks for itself, so that a folder that vanished and came back is found again, and
 a file system that reports no changes is followed all the same.
@@ -43,7 +43,7 @@ class Watcher:
         self._others: dict[Path, bytes] = {}  # hashes of what is not followed, once reported
         self._changed: dict[Path, bytes | None] = {}  # with the hash last taken, where that is known
         self._stop = threading.Event()
-        self._again = threading.Event()  # set to have the folders read anew
+        self._again = threading.Event()  # set to have the folders read again
         self._thread: threading.Thread | None = None
 
     def __enter__(self) -> Watcher:
@@ -80,19 +80,19 @@ class Watcher:
         then. A file new to the set that changed after that is reported at once, and so is any
         whose reader saw what was never reported: so no save falls in between.
         """
-        wanted = set(files)
+        files_followed = set(files)
         read = read or {}
         with self._lock:
-            folders = _folders(self._real) if wanted != self._followed.keys() else None
-            for path in self._followed.keys() - wanted:
+            folders = _folders(self._real) if files_followed != self._followed.keys() else None
+            for path in self._followed.keys() - files_followed:
                 del self._followed[path], self._real[path]
-            for path in wanted - self._followed.keys():
+            for path in files_followed - self._followed.keys():
                 now = signature(path)
                 self._real[path] = path.resolve()
                 self._followed[path] = (now, _hash(path))
                 if read_at is not None and now is not None and now.latest / 1e9 > read_at - _JUST:
                     self._changed[path] = None
-            for path in wanted & read.keys():
+            for path in files_followed & read.keys():
                 if read[path] == self._followed[path][0]:
                     continue
                 now = signature(path)
@@ -109,7 +109,7 @@ class Watcher:
         """Return the files that changed since the last call.
 
         One that changed and changed back, as a file does that is truncated and written
-        anew with the same text, is not among them.
+        again with the same text, is not among them.
         """
         with self._lock:
             changed, self._changed = self._changed, {}
@@ -187,11 +187,11 @@ def _folders(files: Mapping[Path, Path]) -> frozenset[Path]:
 
 def _identities(folders: Iterable[Path]) -> dict[Path, int]:
     """Return the inode of each folder that is there."""
-    found = {}
+    identities = {}
     for folder in folders:
         with contextlib.suppress(OSError):
-            found[folder] = folder.stat().st_ino
-    return found
+            identities[folder] = folder.stat().st_ino
+    return identities
 
 
 def _hash(path: Path) -> bytes:

@@ -15,8 +15,8 @@ SMALL = ["bench", "white_noise", "diamond_square", "--size", "33", "--rounds", "
 
 def ran(capsys, *arguments):
     status = cli.main(list(arguments))
-    found = capsys.readouterr()
-    return status, found.out, found.err
+    result = capsys.readouterr()
+    return status, result.out, result.err
 
 
 def test_results_are_written_read_again_and_compared(tmp_path, capsys):
@@ -24,8 +24,8 @@ def test_results_are_written_read_again_and_compared(tmp_path, capsys):
     first, page = tmp_path / "first.json", tmp_path / "page.html"
     status, out, err = ran(capsys, *SMALL, "-o", str(first))
     assert status == 0 and out.count("\n") >= 4 and "processors" in err
-    found = json.loads(first.read_text(encoding="utf-8"))
-    assert [figure["name"] for figure in found["figures"]] == ["diamond_square", "white_noise"]
+    result = json.loads(first.read_text(encoding="utf-8"))
+    assert [figure["name"] for figure in result["figures"]] == ["diamond_square", "white_noise"]
     status, out, _ = ran(capsys, *SMALL, "--against", str(first), "--page", str(page))
     assert status == 0 and "of 2 figures alike" in out
     text = page.read_text(encoding="utf-8")
@@ -38,10 +38,10 @@ def test_results_are_written_read_again_and_compared(tmp_path, capsys):
 def test_what_has_become_slower_fails_where_that_is_asked_for(tmp_path, capsys):
     first = tmp_path / "first.json"
     ran(capsys, "bench", "white_noise", "--size", "33", "--rounds", "3", "-o", str(first))
-    found = json.loads(first.read_text(encoding="utf-8"))
-    for samples in found["figures"][0]["ours"].values():
+    result = json.loads(first.read_text(encoding="utf-8"))
+    for samples in result["figures"][0]["ours"].values():
         samples["wall"] = [1e-6, 1.1e-6, 1.2e-6]
-    first.write_text(json.dumps(found), encoding="utf-8")
+    first.write_text(json.dumps(result), encoding="utf-8")
     again = ["bench", "white_noise", "--size", "33", "--rounds", "3", "--against", str(first)]
     assert ran(capsys, *again)[0] == 0
     status, out, _ = ran(capsys, *again, "--fail")
@@ -64,9 +64,9 @@ def test_the_list_runs_nothing(capsys):
 
 def test_json_has_every_sample(capsys):
     status, out, _ = ran(capsys, "bench", "white_noise", "--size", "33", "--rounds", "2", "--json")
-    found = json.loads(out)
-    assert status == 0 and found["changes"] == []
-    assert len(found["figures"][0]["ours"]["auto"]["wall"]) == 2
+    result = json.loads(out)
+    assert status == 0 and result["changes"] == []
+    assert len(result["figures"][0]["ours"]["auto"]["wall"]) == 2
 
 
 @pytest.mark.parametrize(

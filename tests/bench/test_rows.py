@@ -60,11 +60,11 @@ def test_its_sketch_has_the_texture_and_what_changes(name):
         changed |= dict.fromkeys(row.options.get("suns", ()), (120.0, 30.0))
         changed |= dict.fromkeys(row.options.get("nudged", ()), row.options.get("around", 0.5) + 0.01)
         assert changed, "each run is to make something new"
-        wanted = str(row.options["texture"])
-        plan = room.engine().plan(sketch.with_values(changed), (64, 36), 0.0, None, wanted)
-        plan.flat.ref(wanted, "sketch")
+        expected = str(row.options["texture"])
+        plan = room.engine().plan(sketch.with_values(changed), (64, 36), 0.0, None, expected)
+        plan.flat.ref(expected, "sketch")
         if "part" in row.options:
-            assert row.options["part"] != wanted
+            assert row.options["part"] != expected
             engine = room.engine()
             engine.texture(sketch.with_values(changed), row.options["part"])
             assert "a" not in engine.record.ran, "the part is made without what is measured"
@@ -82,10 +82,10 @@ def test_the_picture_of_unchanged_passes_reads_one_or_their_chain(name, read):
 
 
 def test_a_measured_row_has_every_form_and_what_is_missing_is_told(monkeypatch):
-    told: list[str] = []
+    names: list[str] = []
     monkeypatch.setitem(__import__("sys").modules, "opensimplex", None)  # an import of it fails
     rows = chosen(["layered_noise_sum", "white_noise"])
-    results = run(rows, [33, 65], Options(rounds=2, say=told.append))
+    results = run(rows, [33, 65], Options(rounds=2, say=names.append))
     assert [(f.name, f.size) for f in results.figures] == [
         ("layered_noise_sum", 33),
         ("layered_noise_sum", 65),
@@ -95,8 +95,8 @@ def test_a_measured_row_has_every_form_and_what_is_missing_is_told(monkeypatch):
     assert list(results.figures[0].ours) == ["auto", "fragment", "plain"]
     assert list(results.figures[2].ours) == ["auto", "fragment"], "it has no fast variant"
     assert all(len(s.wall) == 2 for f in results.figures for s in f.ours.values())
-    assert sum("opensimplex is not installed" in each for each in told) == 1
-    assert results.notes == told
+    assert sum("opensimplex is not installed" in each for each in names) == 1
+    assert results.notes == names
     assert results.machine["renderer"] and results.machine["processors"] >= 1
 
 

@@ -16,20 +16,20 @@ from playground.bench.timing import Samples, alternate, beyond
 def test_runs_take_turns_and_the_first_rounds_do_not_count():
     called: list[str] = []
     runs = {name: lambda name=name: called.append(name) for name in ("ours", "theirs", "slow")}
-    found = alternate(runs, 3, once=("slow",), unmeasured=2)
+    samples = alternate(runs, 3, once=("slow",), unmeasured=2)
     assert called == [*["ours", "theirs"] * 2, "ours", "theirs", "slow", *["ours", "theirs"] * 2]
-    assert [len(found[name].wall) for name in runs] == [3, 3, 1]
-    assert len(found["ours"].processor) == 3
+    assert [len(samples[name].wall) for name in runs] == [3, 3, 1]
+    assert len(samples["ours"].processor) == 3
 
 
 def test_the_clock_and_the_processors_are_told_apart():
-    found = alternate({"asleep": lambda: time.sleep(0.05)}, 1, unmeasured=0)["asleep"]
-    assert found.wall[0] >= 50 > found.processor[0]
+    result = alternate({"asleep": lambda: time.sleep(0.05)}, 1, unmeasured=0)["asleep"]
+    assert result.wall[0] >= 50 > result.processor[0]
 
 
 def test_a_part_is_taken_off_round_by_round():
-    found = beyond(Samples([9.0, 19.0], [7.0, 8.0]), Samples([4.0, 13.0], [3.0, 3.5]))
-    assert found.wall == [5.0, 6.0] and found.processor == [4.0, 4.5]
+    samples = beyond(Samples([9.0, 19.0], [7.0, 8.0]), Samples([4.0, 13.0], [3.0, 3.5]))
+    assert samples.wall == [5.0, 6.0] and samples.processor == [4.0, 4.5]
 
 
 @pytest.mark.parametrize("count", [3, 4, 7, 20])

@@ -3,7 +3,7 @@
     python tests/benchmarks/air.py [--size 1280x720] [--rounds 9]
 
 Each figure is the median of several runs, each at another time, so that clouds have drifted and all
-that reads them is made anew: up to the texture that the row names, where nothing else has changed.
+that reads them is made again: up to the texture that the row names, where nothing else has changed.
 Processor time is that of all threads together, which a busy machine changes least; with a graphics
 card see the wall clock.
 """
@@ -38,15 +38,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--size", default="1280x720")
     parser.add_argument("--rounds", type=int, default=9)
-    given = parser.parse_args()
-    width, height = (int(n) for n in given.size.split("x"))
+    names = parser.parse_args()
+    width, height = (int(n) for n in names.size.split("x"))
     table = Table("", "processor ms", "wall ms")
     moments = itertools.count()  # no two rows share one, or the second would find its textures made
     with open_context() as ctx, Engine(ctx) as engine:
         for name, texture, values in ROWS:
             sketch = load("sky").with_values(values)
             taken = []
-            for _ in range(given.rounds + 2):
+            for _ in range(names.rounds + 2):
                 ctx.finish()
                 start = time.process_time(), time.perf_counter()
                 engine.texture(sketch, texture, size=(width, height), time=0.37 * next(moments))
@@ -55,7 +55,7 @@ def main() -> None:
             # The first compile, and make what does not change with the time.
             figures = (statistics.median(column[2:]) * 1e3 for column in zip(*taken, strict=True))
             table.add_row(name, *(f"{figure:.1f}" for figure in figures))
-        Console().print(f"{engine.info.renderer}, {given.size}", table)
+        Console().print(f"{engine.info.renderer}, {names.size}", table)
 
 
 if __name__ == "__main__":

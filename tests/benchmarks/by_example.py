@@ -38,7 +38,7 @@ def cost(engine: Engine, folder: Path, use: str, wired: str, size: int, extent: 
     """Return the processor's and the clock's milliseconds of one technique at a size."""
     path = folder / "sketch.toml"
     path.write_text(SKETCH.format(use=use, input=wired, size=size, extent=extent))
-    found = []
+    result = []
     for seed in range(6):
         sketch = load(path).with_values({"made.seed": seed})
         engine.texture(sketch, "raw")
@@ -46,8 +46,8 @@ def cost(engine: Engine, folder: Path, use: str, wired: str, size: int, extent: 
         start = time.process_time(), time.perf_counter()
         engine.texture(sketch, "made:height")
         engine.ctx.finish()
-        found.append(((time.process_time() - start[0]) * 1e3, (time.perf_counter() - start[1]) * 1e3))
-    return statistics.median(c for c, _ in found[1:]), statistics.median(w for _, w in found[1:])
+        result.append(((time.process_time() - start[0]) * 1e3, (time.perf_counter() - start[1]) * 1e3))
+    return statistics.median(c for c, _ in result[1:]), statistics.median(w for _, w in result[1:])
 
 
 def main() -> int:

@@ -59,27 +59,27 @@ def medians(runs: dict[str, Callable[[], object]], rounds: int) -> dict[str, tup
 
     The runs alternate, after one round that is not counted.
     """
-    found: dict[str, list[tuple[float, float]]] = {name: [] for name in runs}
+    result: dict[str, list[tuple[float, float]]] = {name: [] for name in runs}
     for number in range(rounds + 1):
         for name, run in runs.items():
             start, before = time.perf_counter(), spent()
             run()
             if number:
-                found[name].append(((time.perf_counter() - start) * 1e3, (spent() - before) * 1e3))
+                result[name].append(((time.perf_counter() - start) * 1e3, (spent() - before) * 1e3))
     return {
         name: (statistics.median(wall for wall, _ in times), statistics.median(cpu for _, cpu in times))
-        for name, times in found.items()
+        for name, times in result.items()
     }
 
 
 def comparing(size: tuple[int, int], folder: Path) -> dict[str, Callable[[], object]]:
     """Return what compares two pictures: ours, and what else there is here."""
-    one, other = pictures(size)
+    first, other = pictures(size)
     fingerprint = Fingerprint(renderer="llvmpipe", size=f"{size[0]}x{size[1]}", mesa="1", llvm="1")
-    same = [Reference(Path("a.png"), one.copy(), fingerprint.texts())]
+    same = [Reference(Path("a.png"), first.copy(), fingerprint.texts())]
     runs: dict[str, Callable[[], object]] = {
-        "FLIP": lambda: flip(one, other),
-        "the judge, equal pictures": lambda: judge(one, fingerprint, same),
+        "FLIP": lambda: flip(first, other),
+        "the judge, equal pictures": lambda: judge(first, fingerprint, same),
         "the judge, another picture": lambda: judge(other, fingerprint, same),
     }
     try:
@@ -87,7 +87,7 @@ def comparing(size: tuple[int, int], folder: Path) -> dict[str, Callable[[], obj
     except ImportError:
         pass
     else:
-        light = [np.ascontiguousarray(p[..., :3], np.float32) / np.float32(255) for p in (one, other)]
+        light = [np.ascontiguousarray(p[..., :3], np.float32) / np.float32(255) for p in (first, other)]
         runs["flip-evaluator"] = lambda: flip_evaluator.evaluate(*light, "LDR")
     try:
         from matplotlib.testing.compare import compare_images
@@ -95,7 +95,7 @@ def comparing(size: tuple[int, int], folder: Path) -> dict[str, Callable[[], obj
         pass
     else:
         files = [str(folder / name) for name in ("one.png", "other.png")]
-        for file, picture in zip(files, (one, other), strict=True):
+        for file, picture in zip(files, (first, other), strict=True):
             write_png(Path(file), picture)
         runs["matplotlib's compare_images, of files"] = lambda: compare_images(files[0], files[1], tol=100)
     return runs
@@ -126,15 +126,15 @@ def main() -> None:
     width, height = map(int, options.size.split("x"))
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        found = medians(comparing((width, height), folder), options.rounds)
-        found |= medians(starting(folder), options.rounds)
+        result = medians(comparing((width, height), folder), options.rounds)
+        result |= medians(starting(folder), options.rounds)
     table = Table(title=f"{options.size}: milliseconds, medians of {options.rounds}")
     table.add_column("what")
     table.add_column("wall", justify="right")
     table.add_column("processors", justify="right")
-    for what, took in found.items():
+    for what, took in result.items():
         table.add_row(what, *(f"{ms:.1f}" for ms in took))
-    extra = zip(found["pytest, with the plugin"], found["pytest, without it"], strict=True)
+    extra = zip(result["pytest, with the plugin"], result["pytest, without it"], strict=True)
     table.add_row("what the plugin adds", *(f"{more - less:.1f}" for more, less in extra), style="bold")
     Console().print(table)
 

@@ -55,9 +55,9 @@ def write(folder: Path, side: int) -> None:
     paths = paths_in(folder)
     heights = terrain(side)
     facts = {"driver": "GTiff", "width": side, "height": side, "count": 1, "dtype": "float32"}
-    place = {"crs": "EPSG:32633", "transform": Affine(10.0, 0.0, 4e5, 0.0, -10.0, 53e5), "nodata": -9999.0}
+    position = {"crs": "EPSG:32633", "transform": Affine(10.0, 0.0, 4e5, 0.0, -10.0, 53e5), "nodata": -9999.0}
     for path, (name, options) in zip(paths, FORMS.items(), strict=False):
-        with rasterio.open(path, "w", **facts, **place, **options) as file:
+        with rasterio.open(path, "w", **facts, **position, **options) as file:
             file.write(heights, 1)
             if name == "overviews":
                 file.build_overviews([2, 4, 8, 16], Resampling.average)
@@ -84,16 +84,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--side", type=int, default=10_000, help="texels of a file's side")
-    given = parser.parse_args()
-    given.folder.mkdir(parents=True, exist_ok=True)
-    picture = given.folder / "picture.png"
+    names = parser.parse_args()
+    names.folder.mkdir(parents=True, exist_ok=True)
+    picture = names.folder / "picture.png"
     print(f"{'no file':16} {measured('fbm', picture, '--set', 'size=1025')}")
-    if not all(path.exists() for path in paths_in(given.folder)):
+    if not all(path.exists() for path in paths_in(names.folder)):
         # In a process of its own: a program that is started begins with the most memory of who starts it.
-        writer = Process(target=write, args=(given.folder, given.side))
+        writer = Process(target=write, args=(names.folder, names.side))
         writer.start()
         writer.join()
-    for path in paths_in(given.folder):
+    for path in paths_in(names.folder):
         print(f"{path.stem:16} {measured(str(path), picture)}")
 
 

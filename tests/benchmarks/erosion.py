@@ -81,7 +81,7 @@ def main() -> None:
 
 def steps_table(engine: Engine, sketch: Sketch, rounds: int, where: str) -> Table:
     """Return what a step of each technique costs at 257 and at 1025 texels a side."""
-    found: dict[tuple[str, int], list[tuple[float, float]]] = {}
+    result: dict[tuple[str, int], list[tuple[float, float]]] = {}
     for number in range(rounds + 1):
         for size in (257, 1025):
             # The pipes go on from the steps before; what falls begins with another terrain each time.
@@ -99,12 +99,12 @@ def steps_table(engine: Engine, sketch: Sketch, rounds: int, where: str) -> Tabl
                 spent = time.perf_counter() - wall, time.process_time() - cores
                 if number:
                     each = (1000 * spent[0] / STEPS, 1000 * spent[1] / STEPS)
-                    found.setdefault((what, size), []).append(each)
+                    result.setdefault((what, size), []).append(each)
     table = Table(title=f"A step on {where}")
     for heading in ("technique", "texels", "wall", "C", "least C", "to reach"):
         table.add_column(heading)
     limits = {("pipes", 1025): "60 ms C"}
-    for (what, size), times in found.items():
+    for (what, size), times in result.items():
         wall, cores = (statistics.median(column) for column in zip(*times, strict=True))
         least = min(time for _, time in times)
         columns = f"{size}²", f"{wall:.2f} ms", f"{cores:.2f} ms", f"{least:.2f} ms"
@@ -142,9 +142,9 @@ def sizes_table(engine: Engine, sketch: Sketch, sizes: list[int], hours: int) ->
         table.add_column(heading)
     coarsest, changes, wear, cores = min(sizes), {}, {}, {}
     for size in sizes:
-        sized, begun = sketch.with_values({"size": size, "worn.hours": hours}), time.process_time()
+        sized, started = sketch.with_values({"size": size, "worn.hours": hours}), time.process_time()
         change = engine.read(sized, "worn").astype(np.float64) - engine.read(sized, "raw")
-        cores[size] = time.process_time() - begun
+        cores[size] = time.process_time() - started
         per = (size - 1) // (coarsest - 1)
         changes[size] = 1800 * gaussian_filter(change, 2 * per, mode="nearest")[::per, ::per]
         wear[size] = float(engine.read(sized, "worn:wear").mean())
@@ -185,14 +185,14 @@ def axes_table(engine: Engine, folder: Path, cones: int = 4) -> Table:
     y, x = np.mgrid[-1:1:129j, -1:1:129j]
     away = np.hypot(x, y)
     ring = (away > 0.2) & (away < 0.85)
-    found: dict[int, list[list[float]]] = {75: [], 300: []}
+    values: dict[int, list[list[float]]] = {75: [], 300: []}
     (folder / "cone.toml").write_text(CONE)
     for seed in range(cones):
         noise = gaussian_filter(np.random.default_rng(seed).normal(size=(129, 129)), 1.5)
         cone = 0.05 + 0.9 * np.clip(1 - 0.9 * away, 0, 1) + 0.02 * noise / noise.std()
         np.save(folder / "cone.npy", cone.astype(np.float32))
         sketch = load(folder / "cone.toml")
-        for steps, rows in found.items():
+        for steps, rows in values.items():
             flux = engine.read(sketch, "worn.water:flux", steps={"worn.water": steps})
             west, east, south, north = np.moveaxis(flux.astype(np.float64), -1, 0)
             across = east - west + np.roll(east, 1, 1) - np.roll(west, -1, 1)
@@ -201,7 +201,7 @@ def axes_table(engine: Engine, folder: Path, cones: int = 4) -> Table:
             streams = ring & (flow > np.quantile(flow[ring], 0.9))
             fields = [(gaussian_filter(across, s), gaussian_filter(along, s)) for s in (1, 2, 4)]
             rows.append([np.cos(4 * np.arctan2(v[streams], u[streams])).mean() for u, v in (*fields, (x, y))])
-    for steps, rows in found.items():
+    for steps, rows in values.items():
         table.add_row(f"{steps}", *(f"{value:.2f}" for value in np.mean(rows, axis=0)))
     return table
 

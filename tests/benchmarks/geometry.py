@@ -101,8 +101,8 @@ def table_of(engine: Engine, name: str, sketch: Sketch, samples: list[int], roun
     truth = heights(engine, sketch, {"detail": "geomipmap", "tolerance": 0.0})
     scale = pixels(sketch, truth)
     most = 0
-    for mesh, given in meshes.items():
-        away = abs(heights(engine, sketch, given) - truth) * scale
+    for mesh, value in meshes.items():
+        away = abs(heights(engine, sketch, value) - truth) * scale
         count = engine.runner.draws.triangles
         most = most or count
         error = away[scale > 0]
@@ -133,23 +133,23 @@ def frame_times(
     engine: Engine, sketch: Sketch, meshes: dict[str, dict[str, object]], rounds: int
 ) -> dict[str, float]:
     """Return the milliseconds of a frame after the camera has turned, by mesh."""
-    found: dict[str, list[float]] = {mesh: [] for mesh in meshes}
+    values: dict[str, list[float]] = {mesh: [] for mesh in meshes}
     for number in range(rounds + 1):
-        for mesh, given in meshes.items():
+        for mesh, value in meshes.items():
             camera = replace(sketch.camera, azimuth=sketch.camera.azimuth + number)
-            seen = sketch.with_camera(camera).with_values({f"view.{k}": v for k, v in given.items()})
+            seen = sketch.with_camera(camera).with_values({f"view.{k}": v for k, v in value.items()})
             engine.ctx.finish()
             start = time.perf_counter()
             engine.draw(seen, size=SIZE)
             engine.ctx.finish()
             if number:
-                found[mesh].append((time.perf_counter() - start) * 1e3)
-    return {mesh: statistics.median(times) for mesh, times in found.items()}
+                values[mesh].append((time.perf_counter() - start) * 1e3)
+    return {mesh: statistics.median(times) for mesh, times in values.items()}
 
 
-def heights(engine: Engine, sketch: Sketch, given: dict[str, object]) -> np.ndarray:
+def heights(engine: Engine, sketch: Sketch, values: dict[str, object]) -> np.ndarray:
     """Return the heights [m] of a mesh over the terrain, as the sketch's camera is shown it."""
-    seen = sketch.with_values({f"above.{key}": value for key, value in given.items()})
+    seen = sketch.with_values({f"above.{key}": value for key, value in values.items()})
     return engine.read(seen, "above", size=SIZE)[..., 0].astype(np.float64)
 
 

@@ -49,6 +49,6 @@ def measure(
                 spent = time.perf_counter() - start, time.process_time() - busy
                 times[name].append((spent[0] * 1e3, spent[1] * 1e3))
     return {
-        name: (statistics.median(w for w, _ in found), statistics.median(c for _, c in found))
-        for name, found in times.items()
+        name: (statistics.median(w for w, _ in result), statistics.median(c for _, c in result))
+        for name, result in times.items()
     }

@@ -58,11 +58,11 @@ def measure(sketch: str, draws: str, steps: int) -> list[tuple[str, list[tuple[f
         count = lab.browser.run(
             "return document.querySelectorAll('.sketches .rows input[type=range]').length"
         )
-        found = []
+        result = []
         for number in range(count):
-            found.append(tuple(lab.browser.run(DRAG, number, steps)))
+            result.append(tuple(lab.browser.run(DRAG, number, steps)))
             lab.browser.wait(SHOWN)
-        return found
+        return result
 
 
 def main() -> None:
@@ -70,13 +70,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("sketch", nargs="?", default="")
     parser.add_argument("--steps", type=int, default=8)
-    given = parser.parse_args()
+    names = parser.parse_args()
     if MISSING:
         raise SystemExit(MISSING)
-    table = Table("drawn by", "slider", "median ms", "longest ms", "widths", title=given.sketch)
+    table = Table("drawn by", "slider", "median ms", "longest ms", "widths", title=names.sketch)
     for draws in ("browser", "kernel"):
         every = []
-        for name, steps in measure(given.sketch, draws, given.steps):
+        for name, steps in measure(names.sketch, draws, names.steps):
             times = [taken for taken, _ in steps]
             every += times
             widths = ", ".join(map(str, sorted({width for _, width in steps})))

@@ -85,7 +85,7 @@ def main() -> None:
     options = parser.parse_args()
     if MISSING:
         sys.exit(f"page_frames: {MISSING}")
-    found = [load(name) for name in options.sketches]
+    sketches = [load(name) for name in options.sketches]
     with (
         tempfile.TemporaryDirectory() as folder,
         playground.headless(software=True, driver="fragment") as engine,
@@ -102,9 +102,9 @@ def main() -> None:
             "shown / engine",
         ):
             table.add_column(heading)
-        pages.begin(data := page_data(found, frame=SIZE))
-        for sketch, one in zip(found, data["sketches"], strict=True):
-            pages.open(one)
+        pages.begin(data := page_data(sketches, frame=SIZE))
+        for sketch, item in zip(sketches, data["sketches"], strict=True):
+            pages.open(item)
             times = measured(engine, pages, sketch, options.frames, options.runs)
             row = [f"{times[what]:.1f}" for what in ("engine", "drawn", "shown", "showing")]
             row += [f"{times[what] / times['engine']:.2f}" for what in ("drawn", "shown")]
@@ -135,7 +135,7 @@ def measured(engine: Engine, pages: Pages, sketch: Sketch, frames: int, runs: in
             work(run * 0.1)
             if run:  # the first compiles
                 times[name].append(clock() - before)
-    return {name: statistics.median(found) * 1000 / frames for name, found in times.items()}
+    return {name: statistics.median(result) * 1000 / frames for name, result in times.items()}
 
 
 def drawn(engine: Engine, sketch: Sketch, frames: int, start: float) -> None:
@@ -152,12 +152,12 @@ def spent(first: int) -> float:
     parents: dict[int, int] = {}
     for folder in Path("/proc").glob("[0-9]*"):
         try:
-            found = (folder / "stat").read_text().rpartition(")")[2].split()
+            result = (folder / "stat").read_text().rpartition(")")[2].split()
         except OSError:
             continue  # it has ended
         process = int(folder.name)
-        parents[process] = int(found[1])
-        ticks[process] = int(found[11]) + int(found[12])
+        parents[process] = int(result[1])
+        ticks[process] = int(result[11]) + int(result[12])
     family = {first}
     while more := {each for each, parent in parents.items() if parent in family} - family:
         family |= more

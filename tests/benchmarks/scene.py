@@ -157,11 +157,11 @@ def main() -> None:
 
 def made(folder: Path, index: int, size: int) -> Sketch:
     """Write and load the sketch of a row."""
-    passes, view, samples, inputs, given, _ = [*ROWS.values()][index]
+    passes, view, samples, inputs, value, _ = [*ROWS.values()][index]
     path = folder / f"row_{index}.toml"
     sky = "gain = 1.0, ambient = 1.0" if "dome" in inputs else 'sky = "daylight", haze = 0.3'
     text = TERRAIN.format(
-        size=size, passes=passes, view=view, samples=samples, inputs=inputs, given=given, sky=sky
+        size=size, passes=passes, view=view, samples=samples, inputs=inputs, given=value, sky=sky
     )
     path.write_text(text, encoding="utf-8")
     return load(path)

@@ -76,8 +76,8 @@ def measure(size: int, radius: int) -> None:
             brush, drawn = [], []
             for n in range(STEPS):
                 clock[0] += STAMP
-                place = 0.4 + 0.005 * n, 0.45
-                brush.append(spent(lambda place=place: painting.move(place)))  # type: ignore[misc]
+                position = 0.4 + 0.005 * n, 0.45
+                brush.append(spent(lambda position=position: painting.move(position)))  # type: ignore[misc]
                 drawn.append(spent(frame))
             release = spent(painting.release)
             both = statistics.median(map(sum, zip(brush, drawn, strict=True)))
@@ -93,5 +93,5 @@ if __name__ == "__main__":
     )
     parser.add_argument("--size", type=int, default=1025)
     parser.add_argument("--radius", type=int, default=32, help="of the brush, in texels")
-    given = parser.parse_args()
-    measure(given.size, given.radius)
+    names = parser.parse_args()
+    measure(names.size, names.radius)

@@ -55,7 +55,7 @@ class Clock:
     def times(self, comparison: Comparison) -> dict[str, float]:
         """Return the milliseconds of each; they alternate, after one unmeasured round."""
         runs = comparison.ours | comparison.theirs
-        found: dict[str, list[float]] = {name: [] for name in runs}
+        values: dict[str, list[float]] = {name: [] for name in runs}
         for number in range(self.rounds + 1):
             for name, run in runs.items():
                 if name in comparison.once and number != 1:
@@ -65,8 +65,8 @@ class Clock:
                 end = time.process_time() if self.processor else time.perf_counter()
                 shared = CORES if self.processor and name not in comparison.alone else 1
                 if number:
-                    found[name].append((end - start) * 1e3 / shared)
-        return {name: statistics.median(times) for name, times in found.items()}
+                    values[name].append((end - start) * 1e3 / shared)
+        return {name: statistics.median(times) for name, times in values.items()}
 
     def __str__(self) -> str:
         over = " of processor time over processors" if self.processor else ""

@@ -64,14 +64,14 @@ def main() -> None:
         engine.draw(sketch, size=SIZE)
         step, own = 0, {}
         for what, (path, before) in STEPS.items():
-            found = []
+            result = []
             for _ in range(rounds + 1):
                 step += 1
                 start = time.process_time()
                 engine.texture(moved(sketch, step), path, size=SIZE)
                 ctx.finish()
-                found.append(1000.0 * (time.process_time() - start))
-            own[what] = median(found[1:]) - sum(own[each] for each in before)
+                result.append(1000.0 * (time.process_time() - start))
+            own[what] = median(result[1:]) - sum(own[each] for each in before)
             print(f"{what:20} {own[what]:7.0f} ms")
         total = int(engine.read(moved(sketch, step), "view.place:total", size=SIZE)[0, 0])
         print(f"{total} trees")

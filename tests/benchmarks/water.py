@@ -147,7 +147,7 @@ def fastscape(module: Any, z: np.ndarray, steps: int) -> np.ndarray:
 
 
 COMPARISONS: dict[str, Callable[[Erosion, int], Iterator[Comparison]]] = {
-    found.__name__: found for found in (fill, flow, carve)
+    result.__name__: result for result in (fill, flow, carve)
 }
 """What is timed, by the name it goes by on the command line."""
 

@@ -66,13 +66,13 @@ def lop(folder: Path) -> playground.Sketch:
 def metres(size: tuple[int, int] = (9, 5)) -> np.ndarray:
     """Return the terrain's heights, north row first, worked out texel by texel in float64."""
     nx, ny = size
-    found = np.empty((ny, nx))
+    result = np.empty((ny, nx))
     for row in range(ny):
         north = 1.0 - row / (ny - 1)
         for col in range(nx):
             east = col / (nx - 1)
-            found[row, col] = 50.0 + 1000.0 * (0.125 + 0.75 * north * (1.0 - east) + 0.0625 * east**2)
-    return found
+            result[row, col] = 50.0 + 1000.0 * (0.125 + 0.75 * north * (1.0 - east) + 0.0625 * east**2)
+    return result
 
 
 @pytest.fixture(scope="session")

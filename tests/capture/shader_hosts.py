@@ -90,28 +90,28 @@ def draw_isf(
     version = "#version 330\n"
     before = ["uniform vec2 RENDERSIZE; uniform int PASSINDEX; uniform float TIME; out vec4 k_frag_color;"]
     before.append("#define gl_FragColor k_frag_color")
-    given: dict[str, Any] = {}
+    value: dict[str, Any] = {}
     for each in header["INPUTS"]:
         before.append(f"uniform {TYPES[each['TYPE']]} {each['NAME']};")
         default = (values or {}).get(each["NAME"], each["DEFAULT"])
-        given[each["NAME"]] = tuple(default) if isinstance(default, list) else default
+        value[each["NAME"]] = tuple(default) if isinstance(default, list) else default
     passes = header.get("PASSES", [{}])
     names = [each["TARGET"] for each in passes if "TARGET" in each] + list(header.get("IMPORTED", {}))
     before += [f"uniform sampler2D {name};" for name in names]
     with ExitStack() as stack:
         host = Host(ctx, stack)
-        known: dict[str, moderngl.Texture] = {}
+        textures: dict[str, moderngl.Texture] = {}
         for name, pixels in (images or {}).items():
-            known[name] = host.texture(pixels.shape[1::-1], floats=False, data=pixels.tobytes())
+            textures[name] = host.texture(pixels.shape[1::-1], floats=False, data=pixels.tobytes())
         for index, each in enumerate(passes):
             whole = side(each.get("WIDTH"), size, 0), side(each.get("HEIGHT"), size, 1)
             is_last = index == len(passes) - 1
             target = host.texture(whole, floats=is_last or bool(each.get("FLOAT")))
-            numbers = given | {"RENDERSIZE": whole, "PASSINDEX": index, "TIME": time}
-            host.draw(version, "\n".join([*before, body]), target, known, numbers)
+            numbers = value | {"RENDERSIZE": whole, "PASSINDEX": index, "TIME": time}
+            host.draw(version, "\n".join([*before, body]), target, textures, numbers)
             if is_last:
                 return picture_of(target)
-            known[each["TARGET"]] = target
+            textures[each["TARGET"]] = target
     raise AssertionError("an ISF file without a pass")
 
 
@@ -128,20 +128,20 @@ def draw_shadertoy(
     )
     with ExitStack() as stack:
         host = Host(ctx, stack)
-        known: dict[str, moderngl.Texture] = {}
+        textures: dict[str, moderngl.Texture] = {}
         for each in order:
             target = host.texture(size)
-            reads = {f"iChannel{i['channel']}": known[i["id"]] for i in each["inputs"]}
+            reads = {f"iChannel{i['channel']}": textures[i["id"]] for i in each["inputs"]}
             for i in each["inputs"]:
                 how = i["sampler"]["filter"]
-                found = known[i["id"]]
-                found.filter = (moderngl.NEAREST,) * 2 if how == "nearest" else (moderngl.LINEAR,) * 2
+                result = textures[i["id"]]
+                result.filter = (moderngl.NEAREST,) * 2 if how == "nearest" else (moderngl.LINEAR,) * 2
                 if how == "mipmap":
-                    found.build_mipmaps()
-                found.repeat_x = found.repeat_y = i["sampler"]["wrap"] == "repeat"
+                    result.build_mipmaps()
+                result.repeat_x = result.repeat_y = i["sampler"]["wrap"] == "repeat"
             numbers = {"iResolution": (*map(float, size), 1.0), "iTime": time}
             host.draw(ES, before + common + each["code"] + after, target, reads, numbers)
             if each["type"] == "image":
                 return picture_of(target)
-            known[each["outputs"][0]["id"]] = target
+            textures[each["outputs"][0]["id"]] = target
     raise AssertionError("an export without an Image")

@@ -17,9 +17,9 @@ def test_every_number_comes_back(dtype: type, shape: tuple[int, ...], tmp_path: 
     image = np.random.default_rng(3).normal(scale=100.0, size=shape).astype(dtype)
     path = tmp_path / "a.exr"
     path.write_bytes(encode_exr(image, "a remark"))
-    with OpenEXR.File(str(path), separate_channels=True) as found:
-        assert found.header()["comments"] == "a remark"
-        pixels = {name: channel.pixels.copy() for name, channel in found.channels().items()}
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        assert file.header()["comments"] == "a remark"
+        pixels = {name: channel.pixels.copy() for name, channel in file.channels().items()}
     names = "Y" if image.ndim == 2 else "RGBA"[: shape[2]]
     assert set(pixels) == set(names)
     for index, name in enumerate(names):
@@ -39,5 +39,5 @@ def test_what_is_no_number_stays_so(tmp_path: Path):
     image = np.array([[np.nan, np.inf], [-np.inf, 0.0]], np.float32)
     path = tmp_path / "a.exr"
     path.write_bytes(encode_exr(image))
-    with OpenEXR.File(str(path), separate_channels=True) as found:
-        np.testing.assert_array_equal(found.channels()["Y"].pixels, image)
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        np.testing.assert_array_equal(file.channels()["Y"].pixels, image)

@@ -82,22 +82,22 @@ def decoded(path: Path) -> np.ndarray:
 
 def test_a_picture_is_that_of_its_number(any_engine: Engine, clock):
     film = film_of(clock, seconds=0.5, fps=20, size=(4, 2), start=1.0)
-    found = np.stack(list(frames(any_engine, film)))[:, 0, 0]
+    result = np.stack(list(frames(any_engine, film)))[:, 0, 0]
     times = 1.0 + np.arange(10) / 20
-    np.testing.assert_allclose(found[:, 0] / 255, times / 10, atol=0.5 / 255)
-    np.testing.assert_array_equal(found[:, 1], 60 + 3 * np.arange(10))
-    np.testing.assert_allclose(found[:, 2] / 255, 0.05, atol=0.5 / 255)
+    np.testing.assert_allclose(result[:, 0] / 255, times / 10, atol=0.5 / 255)
+    np.testing.assert_array_equal(result[:, 1], 60 + 3 * np.arange(10))
+    np.testing.assert_allclose(result[:, 2] / 255, 0.05, atol=0.5 / 255)
     assert any_engine.runner.delta == 1 / 60, "as it was"
 
 
 def test_keyframes_move_what_a_film_shows(any_engine: Engine, keyed):
     film = film_of(keyed, fps=10, size=(64, 36))
     assert film.count == 4, "to the last keyframe"
-    found = list(frames(any_engine, film))
-    for number, picture in enumerate(found):
+    result = list(frames(any_engine, film))
+    for number, picture in enumerate(result):
         alone = any_engine.render(keyed.at(film.time(number)), size=(64, 36))
         np.testing.assert_array_equal(picture, alone.array)
-    assert all((one != other).any() for one, other in itertools.pairwise(found))
+    assert all((first != other).any() for first, other in itertools.pairwise(result))
 
 
 def test_how_long_a_film_is(clock, keyed):
@@ -137,14 +137,14 @@ def test_pictures_leave_no_objects(any_engine: Engine, keyed, alive: Counter[str
 
 def ramps(count: int, size=(128, 72)) -> list[np.ndarray]:
     width, height = size
-    found = []
+    arrays = []
     for number in range(count):
         picture = np.full((height, width, 4), 255, np.uint8)
         picture[..., 0] = np.linspace(0, 255, width)
         picture[..., 1] = np.linspace(0, 255, height)[:, None]
         picture[..., 2] = 255 * number // max(count - 1, 1)
-        found.append(picture)
-    return found
+        arrays.append(picture)
+    return arrays
 
 
 @pytest.mark.parametrize(("ending", "worst"), [(".mp4", 2.0), (".webm", 2.0), (".gif", 12.0)])
@@ -153,11 +153,11 @@ def test_colours_come_back(tmp_path: Path, ending: str, worst: float):
     with Video(path, (128, 72), Fraction(20), 6) as video:
         for picture in pictures:
             video.add(picture)
-    found = decoded(path)
-    assert found.shape == (6, 72, 128, 3)
-    error = np.abs(found.astype(int) - np.stack(pictures)[..., :3])
+    array = decoded(path)
+    assert array.shape == (6, 72, 128, 3)
+    error = np.abs(array.astype(int) - np.stack(pictures)[..., :3])
     assert error.mean() < worst
-    assert abs(found.astype(float).mean() - np.stack(pictures)[..., :3].mean()) < 2.0, (
+    assert abs(array.astype(float).mean() - np.stack(pictures)[..., :3].mean()) < 2.0, (
         "neither darker nor paler"
     )
     assert count_pictures(path) == (6, Fraction(20))
@@ -409,11 +409,11 @@ def test_a_still_film_is_warned_of_before_it_is_made(any_engine: Engine, keyed, 
 
 
 def test_numbered_pictures(any_engine: Engine, keyed, tmp_path: Path):
-    found = render_sequence(
+    result = render_sequence(
         keyed, tmp_path / "new" / "%03d.png", range(2, 5), fps=10, size=(64, 36), engine=any_engine
     )
-    assert [path.name for path in found.drawn] == ["002.png", "003.png", "004.png"] and not found.kept
-    for number, path in enumerate(found.drawn, 2):
+    assert [path.name for path in result.drawn] == ["002.png", "003.png", "004.png"] and not result.kept
+    for number, path in enumerate(result.drawn, 2):
         alone = any_engine.render(keyed, size=(64, 36), time=number / 10).array
         np.testing.assert_array_equal(read_png(path)[0], alone)
     assert len(list((tmp_path / "new").iterdir())) == 3
@@ -429,9 +429,9 @@ def test_good_pictures_stay_and_others_are_drawn_anew(any_engine: Engine, keyed,
     (tmp_path / "3.png").unlink()
     (tmp_path / "4.png").write_bytes(b"")
     before = (tmp_path / "0.png").stat().st_mtime_ns
-    found = write_sequence(any_engine, film, pattern, resume=True)
-    assert [path.name for path in found.kept] == ["0.png", "5.png"]
-    assert [path.name for path in found.drawn] == ["1.png", "2.png", "3.png", "4.png"]
+    sequence = write_sequence(any_engine, film, pattern, resume=True)
+    assert [path.name for path in sequence.kept] == ["0.png", "5.png"]
+    assert [path.name for path in sequence.drawn] == ["1.png", "2.png", "3.png", "4.png"]
     assert (tmp_path / "0.png").stat().st_mtime_ns == before
     for number in range(6):
         np.testing.assert_array_equal(read_png(tmp_path / f"{number}.png")[0], truth[number])

@@ -69,8 +69,8 @@ def folder(tmp_path: Path) -> Path:
 def test_one_pass_leaves_in_every_form(folder: Path, any_engine: Engine, name: str, ending: str) -> None:
     path = folder / "out" / f"again.{ending}"
     done = export(folder / name, path, engine=any_engine)
-    one, other = (any_engine.render(load(p), size=FRAME, time=1.25).array for p in (folder / name, path))
-    assert apart(one[..., :3], other[..., :3]) <= ROUNDING
+    first, other = (any_engine.render(load(p), size=FRAME, time=1.25).array for p in (folder / name, path))
+    assert apart(first[..., :3], other[..., :3]) <= ROUNDING
     stays = any("the mouse stays behind: iMouse" in warning for warning in done.warnings)
     assert stays == (name == "toy.frag" and ending in ("fs", "glsl"))
 
@@ -80,8 +80,8 @@ def test_a_filter_of_another_s_picture_leaves_with_it(folder: Path, any_engine: 
     path = folder / "out" / f"again.{ending}"
     export(folder / "filtered.toml", path, engine=any_engine)
     files = folder / "filtered.toml", path
-    one, other = (any_engine.render(load(p), size=FRAME, time=0.5).array for p in files)
-    assert apart(one[..., :3], other[..., :3]) <= ROUNDING
+    first, other = (any_engine.render(load(p), size=FRAME, time=0.5).array for p in files)
+    assert apart(first[..., :3], other[..., :3]) <= ROUNDING
 
 
 @pytest.mark.parametrize("ending", ["fs", "json"])
@@ -90,16 +90,16 @@ def test_heights_of_another_s_picture_leave(folder: Path, any_engine: Engine, en
     export(folder / "terrain.toml", path, texture="height", engine=any_engine)
     sketch = load(folder / "terrain.toml").with_values({"size": FRAME})
     values = np.clip(any_engine.read(sketch, "height").astype(np.float64), 0, 1)
-    wanted = np.repeat(np.floor(values * 255 + 0.5).astype(np.uint8)[..., None], 3, axis=2)
+    expected = np.repeat(np.floor(values * 255 + 0.5).astype(np.uint8)[..., None], 3, axis=2)
     again = any_engine.render(load(path), size=FRAME).array[::-1, :, :3]
-    assert apart(wanted, again) <= ROUNDING
+    assert apart(expected, again) <= ROUNDING
 
 
 def test_an_isf_s_functions_stay(folder: Path, any_engine: Engine) -> None:
     body = "void main() { gl_FragColor = vec4(isf_FragNormCoord, 0.0, 1.0); }\n"
     (folder / "own.fs").write_text('/*{"ISFVSN": "2", "INPUTS": []}*/\n' + body)
-    found = refusal(any_engine, folder / "own.fs", folder / "out" / "again.json")
-    assert "is own.fs, whose own tool gives it functions" in found[0]
+    result = refusal(any_engine, folder / "own.fs", folder / "out" / "again.json")
+    assert "is own.fs, whose own tool gives it functions" in result[0]
 
 
 def test_a_stand_in_s_size_is_told(folder: Path, any_engine: Engine) -> None:

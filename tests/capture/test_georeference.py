@@ -260,8 +260,8 @@ def test_real_terrain_that_is_worn_and_coloured_by_its_water_comes_back_in_its_p
 
     real = np.load(SKETCHES / "data" / "jacksboro_fault_dem.npz")
     texel = float(real["dx"])
-    place = Affine(texel, 0.0, float(real["xmin"]), 0.0, -texel, float(real["ymin"]))
-    path = dem(tmp_path / "dem.tif", "EPSG:4269", place, heights=real["elevation"].astype(np.float32))
+    affine = Affine(texel, 0.0, float(real["xmin"]), 0.0, -texel, float(real["ymin"]))
+    path = dem(tmp_path / "dem.tif", "EPSG:4269", affine, heights=real["elevation"].astype(np.float32))
     (tmp_path / "sketch.toml").write_text(ERODED)
     sketch = load(tmp_path / "sketch.toml")
     heights = export(sketch, tmp_path / "worn.tif", engine=any_engine).path

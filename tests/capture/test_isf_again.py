@@ -56,9 +56,9 @@ def test_widgets_do_the_same_there(any_engine: Engine, path: Path, changes: dict
     names = {p.name.removeprefix("height_"): p for p in again.graph.find("view").technique.parameters}  # type: ignore[union-attr]
     values = {f"view.{names[name].name}": value for name, value in changes.items()}
     sketch = load(path).with_values({f"height.{name}": value for name, value in changes.items()})
-    wanted = np.clip(any_engine.read(sketch, "height"), 0.0, 1.0)
-    found = any_engine.render(again.with_values(values), size=(32, 18)).array[::-1, :, 0]
-    np.testing.assert_allclose(found / 255.0, wanted, atol=1.5 / 255.0)
+    expected = np.clip(any_engine.read(sketch, "height"), 0.0, 1.0)
+    array = any_engine.render(again.with_values(values), size=(32, 18)).array[::-1, :, 0]
+    np.testing.assert_allclose(array / 255.0, expected, atol=1.5 / 255.0)
     kinds = {name: p.widget.kind for name, p in names.items()}
     assert {
         "mode": "menu",

@@ -1,4 +1,4 @@
-"""A capture in its process ends with a sentence, whatever went wrong."""
+"""A capture in its process ends with a message, whatever went wrong."""
 
 from __future__ import annotations
 

@@ -81,8 +81,8 @@ def test_a_plain_shader_gives_the_same_bytes(any_engine: Engine, tmp_path: Path)
 
 
 def test_both_drivers_give_the_same_bytes(engine: Engine, tmp_path: Path):
-    place = "vec2(texel) / vec2(textureSize(shown, 0))"
-    body = f"return vec4({place}, texelFetch(shown, texel, 0).r, 1.0);"
+    position = "vec2(texel) / vec2(textureSize(shown, 0))"
+    body = f"return vec4({position}, texelFetch(shown, texel, 0).r, 1.0);"
     sketch = two_passes(tmp_path, body)
     whole = engine.render(sketch, size=(90, 50)).array
     assert whole[..., 2].std() > 10

@@ -89,10 +89,10 @@ def test_a_pack_opens_elsewhere_with_the_same_picture(
     path = pack(load(folder), tmp_path / "lesson.zip")
     for file in sorted(folder.rglob("*.*")):
         file.unlink()  # nothing of it is needed
-    found = load(path)
-    assert found.name == "hills" and Path(found.file).is_relative_to(tmp_path / "cache")
-    assert np.array_equal(any_engine.render(found, size=(64, 48)).array, before.array)
-    other = any_engine.render(found.with_preset("other"), size=(64, 48))
+    result = load(path)
+    assert result.name == "hills" and Path(result.file).is_relative_to(tmp_path / "cache")
+    assert np.array_equal(any_engine.render(result, size=(64, 48)).array, before.array)
+    other = any_engine.render(result.with_preset("other"), size=(64, 48))
     assert not np.array_equal(other.array, before.array), "the preset's image came along"
 
 
@@ -233,7 +233,7 @@ def test_links_passwords_bombs_and_doubles_are_refused(
         load(zipped(path, {"sketch.toml": b"/etc"}, external_attr=(stat.S_IFLNK | 0o777) << 16))
     with pytest.raises(DataError, match="twice"):
         load(zipped(path, {"sketch.toml": b"", "Sketch.toml": b""}))
-    with pytest.raises(DataError, match="lies in what is a file"):
+    with pytest.raises(DataError, match="lies inside a file"):
         load(zipped(path, {"sketch.toml": b"", "a/b": b"", "a": b""}))
     with pytest.raises(DataError, match="2001 files; at most 2000"):
         load(zipped(path, {f"{n}.glsl": b"" for n in range(2001)}))
@@ -264,8 +264,8 @@ def test_overlapping_files_are_refused(tmp_path: Path) -> None:
 def test_a_file_cut_short_leaves_nothing(folder: Path, tmp_path: Path) -> None:
     path = pack(load(folder), tmp_path / "lesson.zip")
     data = bytearray(path.read_bytes())
-    place = data.index(b"hills/parts/terrain.glsl") + 40
-    data[place : place + 4] = b"\xff\xff\xff\xff"
+    index = data.index(b"hills/parts/terrain.glsl") + 40
+    data[index : index + 4] = b"\xff\xff\xff\xff"
     path.write_bytes(data)
     with pytest.raises(DataError, match="cannot be unpacked"):
         load(path)
@@ -298,13 +298,13 @@ def test_files_from_outside_are_refused_in_a_sentence(folder: Path, tmp_path: Pa
 def test_the_cache_keeps_the_latest_and_check_finds_a_pack_s_files(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(unpack, "_MOST_PACKS", 2)
+    monkeypatch.setattr(unpack, "_MAX_PACKS", 2)
     for number in range(4):
         (folder / "README.md").write_text(f"{number}")
         latest = unpacked(pack(load(folder), tmp_path / f"{number}.zip"))
     assert len(list((tmp_path / "cache/packs").iterdir())) == 2 and latest.is_file()
-    found = [path.name for path, _ in find_files([tmp_path / "3.zip"])]
-    assert found == ["tilt.glsl", "terrain.glsl", "sketch.toml"]
+    names = [path.name for path, _ in find_files([tmp_path / "3.zip"])]
+    assert names == ["tilt.glsl", "terrain.glsl", "sketch.toml"]
 
 
 def test_a_fast_variant_and_the_record_of_it_go_along_and_run(folder: Path, tmp_path: Path) -> None:
@@ -317,6 +317,6 @@ def test_a_fast_variant_and_the_record_of_it_go_along_and_run(folder: Path, tmp_
     packed = pack(load(folder), tmp_path / "hills.zip")
     with zipfile.ZipFile(packed) as archive:
         assert {"hills/parts/terrain.fast.toml", f"hills/parts/{NAME}"} <= set(archive.namelist())
-    found = load(unpacked(packed))
-    assert unverified(found) == ()
-    assert active_variant(found.graph.passes[0].technique, VARIANTS) is not None
+    result = load(unpacked(packed))
+    assert unverified(result) == ()
+    assert active_variant(result.graph.passes[0].technique, VARIANTS) is not None

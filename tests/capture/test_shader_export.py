@@ -106,10 +106,10 @@ def drawn(engine: Engine, path: Path | str, *, time: float = 0.0, texture: str =
     return np.floor(np.clip(three.astype(np.float64), 0, 1) * 255.0 + 0.5).astype(np.uint8)
 
 
-def apart(one: NDArray[np.uint8], other: NDArray[np.uint8]) -> int:
-    assert one.shape == other.shape
-    assert len(np.unique(one.reshape(-1, 3), axis=0)) > 1, "nothing to see"
-    return int(np.abs(one.astype(int) - other.astype(int)).max())
+def apart(first: NDArray[np.uint8], other: NDArray[np.uint8]) -> int:
+    assert first.shape == other.shape
+    assert len(np.unique(first.reshape(-1, 3), axis=0)) > 1, "nothing to see"
+    return int(np.abs(first.astype(int) - other.astype(int)).max())
 
 
 def isf_of(ctx: moderngl.Context, path: Path, **more: object) -> NDArray[np.uint8]:
@@ -119,10 +119,10 @@ def isf_of(ctx: moderngl.Context, path: Path, **more: object) -> NDArray[np.uint
 def toy_of(ctx: moderngl.Context, path: Path, time: float = 0.0) -> NDArray[np.uint8]:
     text = path.read_text()
     if path.suffix == ".frag":
-        found = [{"type": "image", "code": text, "inputs": [], "outputs": []}]
+        result = [{"type": "image", "code": text, "inputs": [], "outputs": []}]
     else:
-        found = json.loads(text)[0]["renderpass"]
-    return draw_shadertoy(ctx, found, FRAME, time=time)
+        result = json.loads(text)[0]["renderpass"]
+    return draw_shadertoy(ctx, result, FRAME, time=time)
 
 
 # Half floats between passes are 32-bit ones elsewhere, and a rounding may fall the other way: one level.
@@ -197,17 +197,17 @@ def test_parameters_are_inputs_of_an_isf(folder: Path, any_engine: Engine) -> No
     path = folder / "out.fs"
     done = export(folder / "alone.toml", path, texture="height", engine=any_engine)
     header = json.loads(path.read_text().partition("}*/")[0].removeprefix("/*") + "}")
-    found = {each["NAME"]: each for each in header["INPUTS"]}
+    result = {each["NAME"]: each for each in header["INPUTS"]}
     for name, (kind, low, high, value) in INPUTS.items():
-        each = found[name]
+        each = result[name]
         assert (each["TYPE"], each["MIN"], each["MAX"], each["DEFAULT"]) == (kind, low, high, value), name
-    assert found["shape"]["LABELS"] == ["sine", "square"]
-    assert found["shape"]["VALUES"] == [0, 1]
-    assert found["shape"]["DEFAULT"] == 1
-    assert found["turned"] == {"NAME": "turned", "TYPE": "bool", "LABEL": "Height: Turned", "DEFAULT": True}
-    assert found["height_middle"]["TYPE"] == "point2D"
-    assert found["height_tint"]["TYPE"] == "color"
-    assert found["height_tint"]["DEFAULT"][:3] == pytest.approx([0.484529, 0.735357, 0.906332], abs=1e-5)
+    assert result["shape"]["LABELS"] == ["sine", "square"]
+    assert result["shape"]["VALUES"] == [0, 1]
+    assert result["shape"]["DEFAULT"] == 1
+    assert result["turned"] == {"NAME": "turned", "TYPE": "bool", "LABEL": "Height: Turned", "DEFAULT": True}
+    assert result["height_middle"]["TYPE"] == "point2D"
+    assert result["height_tint"]["TYPE"] == "color"
+    assert result["height_tint"]["DEFAULT"][:3] == pytest.approx([0.484529, 0.735357, 0.906332], abs=1e-5)
     assert any("Height: Offset" in warning for warning in done.warnings), "its range is made up"
 
 
@@ -225,8 +225,8 @@ def test_an_input_does_what_the_parameter_did(
         | {"height.sun": (135.0, 60.0)}
     )
     values = np.clip(any_engine.read(sketch, "height").astype(np.float64), 0, 1)
-    wanted = np.repeat(np.floor(values * 255 + 0.5).astype(np.uint8)[..., None], 3, axis=2)
-    assert apart(wanted, again) <= ROUNDING
+    expected = np.repeat(np.floor(values * 255 + 0.5).astype(np.uint8)[..., None], 3, axis=2)
+    assert apart(expected, again) <= ROUNDING
 
 
 def test_one_name_in_two_passes_keeps_two_meanings(folder: Path, any_engine: Engine) -> None:
@@ -244,10 +244,10 @@ def test_what_passes_share_is_common_once(folder: Path, any_engine: Engine) -> N
     text = text.replace("[[pass]]", passes(land="./land") + "[[pass]]", 1)
     (folder / "two.toml").write_text(text + '[view]\nuse = "./shown"\ninputs = { slope = "second" }\n')
     export(folder / "two.toml", path, engine=any_engine)
-    found = {each["name"]: each["code"] for each in json.loads(path.read_text())[0]["renderpass"]}
-    assert sum("float at(sampler2D texels" in code for code in found.values()) == 1
-    assert "float at(sampler2D texels" in found["Common"]
-    assert list(found) == ["Common", "Buffer A", "Buffer B", "Buffer C", "Image"]
+    result = {each["name"]: each["code"] for each in json.loads(path.read_text())[0]["renderpass"]}
+    assert sum("float at(sampler2D texels" in code for code in result.values()) == 1
+    assert "float at(sampler2D texels" in result["Common"]
+    assert list(result) == ["Common", "Buffer A", "Buffer B", "Buffer C", "Image"]
 
 
 GROW = """// grow.glsl -- what grows from frame to frame, and where it was.
@@ -298,8 +298,8 @@ def test_what_runs_once_a_frame_goes_on_from_its_own_buffer(
     export(folder / "loop.toml", path, engine=any_engine)
     for frame in (0, 1, 7):
         again = any_engine.render(load(path), size=FRAME, time=frame / 60).array[::-1, :, :3]
-        wanted = drawn(any_engine, folder / "loop.toml", time=frame / 60)
-        assert apart(wanted, again) <= ROUNDING, frame
+        expected = drawn(any_engine, folder / "loop.toml", time=frame / 60)
+        assert apart(expected, again) <= ROUNDING, frame
 
 
 def test_a_loop_that_is_not_the_frames_stays_behind(folder: Path, any_engine: Engine) -> None:
@@ -308,8 +308,8 @@ def test_a_loop_that_is_not_the_frames_stays_behind(folder: Path, any_engine: En
     lines = [line.replace('"frames"', '"5"') for line in LOOPS["spread"]]
     text = HEAD + passes(seed="./seed", state=("./spread", *lines))
     (folder / "loop.toml").write_text(text + map_of("state", "red"))
-    found = refusal(any_engine, folder / "loop.toml", folder / "out.fs")
-    assert found[0].startswith("pass 'state' repeats passes (5), which these formats have not")
+    result = refusal(any_engine, folder / "loop.toml", folder / "out.fs")
+    assert result[0].startswith("pass 'state' repeats passes (5), which these formats have not")
 
 
 ASKED = """// asked.glsl -- an input that a function reads, where something is wired.
@@ -414,27 +414,27 @@ def refusal(engine: Engine, sketch: Path | str, path: Path, **more: str) -> list
 
 def test_what_cannot_leave_is_named_one_by_one(folder: Path, any_engine: Engine) -> None:
     (folder / "far.toml").write_text(HEAD + passes(height="./land") + '[view]\nuse = "view/terrain"\n')
-    found = refusal(any_engine, folder / "far.toml", folder / "out.fs")
-    assert sum("--texture PASS exports one texture" in one for one in found) == 1
-    assert any("'view.land' draws a mesh (land)" in one for one in found)
-    assert any("'view.sky' reads the camera" in one for one in found)
-    assert not any("'height'" in one for one in found)
+    result = refusal(any_engine, folder / "far.toml", folder / "out.fs")
+    assert sum("--texture PASS exports one texture" in item for item in result) == 1
+    assert any("'view.land' draws a mesh (land)" in item for item in result)
+    assert any("'view.sky' reads the camera" in item for item in result)
+    assert not any("'height'" in item for item in result)
 
 
 def test_more_passes_than_a_format_has_are_counted(folder: Path, any_engine: Engine) -> None:
-    found = refusal(any_engine, folder / "chain.toml", folder / "out.frag")
-    assert found == [
+    result = refusal(any_engine, folder / "chain.toml", folder / "out.frag")
+    assert result == [
         "a Shadertoy text is one pass; these are 3 (height, slope, view): export it as .json",
     ]
     (folder / "life.glsl").write_text(LIFE.replace('"3"', '"9"'))
-    found = refusal(any_engine, folder / "lives.toml", folder / "out.json")
-    assert "Shadertoy has 4 buffers, and 9 are needed" in found[0]
+    result = refusal(any_engine, folder / "lives.toml", folder / "out.json")
+    assert "Shadertoy has 4 buffers, and 9 are needed" in result[0]
 
 
 def test_a_whole_number_for_a_float_is_refused_for_shadertoy(folder: Path, any_engine: Engine) -> None:
     (folder / "land.glsl").write_text(LAND.replace("float h = 0.25", "float h = 1; h *= 0.25"))
-    found = refusal(any_engine, folder / "alone.toml", folder / "out.frag", texture="height")
-    assert "does not compile as GLSL ES 3.00" in found[0]
+    result = refusal(any_engine, folder / "alone.toml", folder / "out.frag", texture="height")
+    assert "does not compile as GLSL ES 3.00" in result[0]
 
 
 @pytest.mark.parametrize("ending", ["fs", "json"])
@@ -446,6 +446,6 @@ def test_a_size_that_a_kernel_insists_on_is_kept(
     export(folder / "alone.toml", path, texture="height", engine=any_engine)
     values = np.clip(any_engine.read(load(folder / "alone.toml"), "height").astype(np.float64), 0, 1)
     x, y = np.arange(FRAME[0]) * 33 // FRAME[0], np.arange(FRAME[1]) * 33 // FRAME[1]
-    wanted = np.floor(values[np.ix_(y, x)] * 255 + 0.5).astype(np.uint8)
+    expected = np.floor(values[np.ix_(y, x)] * 255 + 0.5).astype(np.uint8)
     again = isf_of(ctx, path) if ending == "fs" else toy_of(ctx, path)
-    assert apart(np.repeat(wanted[..., None], 3, axis=2), again) <= ROUNDING
+    assert apart(np.repeat(expected[..., None], 3, axis=2), again) <= ROUNDING

@@ -54,13 +54,13 @@ def sketch(tmp_path: Path):
 @pytest.mark.parametrize(("fps", "last"), [(60, 119), (24, 117), (120, 119)])
 def test_a_film_runs_each_frame_once(any_engine: Engine, sketch, fps, last):
     film = film_of(sketch, seconds=2, fps=fps, size=SIZE)
-    found = list(frames(any_engine, film))
+    result = list(frames(any_engine, film))
     assert any_engine.runs["trail"] == last + 1
     with Engine(any_engine.ctx) as cold:
         for number in (0, film.count // 2, film.count - 1):
             alone = cold.render(sketch, size=SIZE, time=film.time(number)).array
-            np.testing.assert_array_equal(found[number], alone)
-    assert (found[0] != found[-1]).any()
+            np.testing.assert_array_equal(result[number], alone)
+    assert (result[0] != result[-1]).any()
 
 
 def test_a_film_that_begins_later_runs_what_is_before_it_once(any_engine: Engine, sketch):
@@ -102,10 +102,10 @@ def test_a_sequence_runs_each_frame_once_and_goes_on_where_it_stopped(any_engine
 
 
 def test_shots_in_the_order_of_their_times_go_on(any_engine: Engine, sketch):
-    found = [render_shot(any_engine, case).array for case in shots_of([sketch])]
+    arrays = [render_shot(any_engine, case).array for case in shots_of([sketch])]
     assert any_engine.runs["trail"] == 121
     backwards = [render_shot(any_engine, case).array for case in reversed(shots_of([sketch]))]
-    np.testing.assert_array_equal(found, backwards[::-1])
+    np.testing.assert_array_equal(arrays, backwards[::-1])
     assert any_engine.runs["trail"] < 121 + 31 + 121
 
 
@@ -114,6 +114,6 @@ def test_a_sheet_of_what_the_state_does_not_depend_on_runs_it_once(any_engine: E
     assert len(list(pictures(any_engine, rows, SIZE, time=1.0))) == 3
     assert any_engine.runs["trail"] == 61
     rows = swept(sketch, [read_sweep(sketch, "trail.fade=0.05,0.2", 2)])
-    one, other = pictures(any_engine, rows, SIZE, time=1.0)
-    assert (one != other).any()
+    first, other = pictures(any_engine, rows, SIZE, time=1.0)
+    assert (first != other).any()
     assert any_engine.runs["trail"] == 3 * 61, "with another value, each frame is another"

@@ -1,4 +1,4 @@
-"""Sweeps: the given values are drawn, and written below; mistakes in one sentence."""
+"""Sweeps: the given values are drawn, and written below; mistakes in one message."""
 
 from __future__ import annotations
 
@@ -45,14 +45,15 @@ def test_what_a_sweep_says(sketch):
 
 
 def test_a_part_of_a_vector_leaves_the_rest(sketch):
-    begun = sketch.with_values({"light.sun": (200.0, 40.0)})
-    rows = swept(begun, [read_sweep(begun, "light.sun.elevation=5,60")])
-    found = [dict(one.sketch.overrides)["light.sun"] for row in rows for one in row]
-    assert found == [(200.0, 5.0), (200.0, 60.0)]
+    started = sketch.with_values({"light.sun": (200.0, 40.0)})
+    rows = swept(started, [read_sweep(started, "light.sun.elevation=5,60")])
+    overrides = [dict(item.sketch.overrides)["light.sun"] for row in rows for item in row]
+    assert overrides == [(200.0, 5.0), (200.0, 60.0)]
     both = swept(
-        begun, [read_sweep(begun, "light.sun.elevation=5,60"), read_sweep(begun, "light.sun.azimuth=0,90")]
+        started,
+        [read_sweep(started, "light.sun.elevation=5,60"), read_sweep(started, "light.sun.azimuth=0,90")],
     )
-    assert [[dict(one.sketch.overrides)["light.sun"] for one in row] for row in both] == [
+    assert [[dict(item.sketch.overrides)["light.sun"] for item in row] for row in both] == [
         [(0.0, 5.0), (0.0, 60.0)],
         [(90.0, 5.0), (90.0, 60.0)],
     ]
@@ -90,27 +91,27 @@ def test_a_mistake_is_one_sentence(sketch, text, message):
 
 
 def test_too_many(sketch):
-    one, other = read_sweep(sketch, "light.gain=1..2,21"), read_sweep(sketch, "view.haze=0..1,20")
+    first, other = read_sweep(sketch, "light.gain=1..2,21"), read_sweep(sketch, "view.haze=0..1,20")
     with pytest.raises(ParameterError, match="420 pictures are more than the 400"):
-        swept(sketch, [one, other])
+        swept(sketch, [first, other])
     with pytest.raises(ParameterError, match="expected two parameters"):
-        swept(sketch, [one, one])
+        swept(sketch, [first, first])
     with pytest.raises(ParameterError, match="3 sweeps"):
-        swept(sketch, [one, other, one])
+        swept(sketch, [first, other, first])
 
 
 def test_a_sheet_holds_the_pictures_and_words_below_them(any_engine: Engine, sketch, tmp_path: Path):
     rows = swept(sketch, [read_sweep(sketch, "light.gain=1,2,3,4")])
     path = write_sheet(any_engine, rows, tmp_path / "sheet.png", size=(160, 90))
-    found = read_png(path)[0][..., :3]
-    pitch = 90 + (found.shape[0] - 8) // 2 - 90
-    assert found.shape[1] == 2 * (160 + 8) + 8
+    png = read_png(path)[0][..., :3]
+    pitch = 90 + (png.shape[0] - 8) // 2 - 90
+    assert png.shape[1] == 2 * (160 + 8) + 8
     for number, value in enumerate((1.0, 2.0, 3.0, 4.0)):
         down, along = divmod(number, 2)
         y, x = 8 + down * pitch, 8 + along * 168
         alone = any_engine.render(sketch.with_values({"light.gain": value}), size=(160, 90)).array
-        np.testing.assert_array_equal(found[y : y + 90, x : x + 160], alone[..., :3])
-        words = found[y + 90 : y + pitch - 8, x : x + 160]
+        np.testing.assert_array_equal(png[y : y + 90, x : x + 160], alone[..., :3])
+        words = png[y + 90 : y + pitch - 8, x : x + 160]
         assert words.max() > 180 and words.min() < 40 and 0.01 < (words > 120).mean() < 0.4
         edges = words[:, [0, -1]]
         assert edges.max() < 60, "the words fit under the picture"
@@ -119,14 +120,14 @@ def test_a_sheet_holds_the_pictures_and_words_below_them(any_engine: Engine, ske
 def test_small_pictures_have_legible_words(sketch):
     rows = swept(sketch, [read_sweep(sketch, "light.sun.elevation=5..60,4")])
     grey = np.full((54, 96, 4), 128, np.uint8)
-    found = sheet(rows, iter([grey] * 4))
-    assert (found[8 + 54 : 8 + 54 + 14] > 150).any()
+    result = sheet(rows, iter([grey] * 4))
+    assert (result[8 + 54 : 8 + 54 + 14] > 150).any()
 
 
 def test_pictures_come_in_order_and_the_terrain_is_made_once(any_engine: Engine, sketch):
     rows = swept(sketch, [read_sweep(sketch, "light.gain=1..4,4")])
-    found = list(pictures(any_engine, rows, (32, 18)))
-    means = [picture[..., :3].mean() for picture in found]
+    result = list(pictures(any_engine, rows, (32, 18)))
+    means = [picture[..., :3].mean() for picture in result]
     assert means == sorted(means) and any_engine.runs["height"] == 1
 
 

@@ -38,13 +38,13 @@ def test_each_case_is_what_its_values_give(engine, sketch, alone):
         return  # the workers choose drivers by themselves; the numbers are compared with one
     for seed in SEEDS:
         for relief in RELIEFS:
-            one = sketch.with_values({"height.seed": seed, "relief": relief})
-            metres = engine.metres(one, "height").astype(np.float64)
+            item = sketch.with_values({"height.seed": seed, "relief": relief})
+            metres = engine.metres(item, "height").astype(np.float64)
             case = alone.sel({"height.seed": seed, "relief": relief})
             for name in ("mean", "min", "max", "std"):
-                wanted = getattr(np, name)(metres)
-                assert float(case[f"height.{name}"]) == pytest.approx(wanted, rel=1e-5), name
-            picture = engine.render(one, size=SIZE).array.astype(int)
+                expected = getattr(np, name)(metres)
+                assert float(case[f"height.{name}"]) == pytest.approx(expected, rel=1e-5), name
+            picture = engine.render(item, size=SIZE).array.astype(int)
             assert np.abs(case["picture"].values.astype(int) - picture).max() <= 1
 
 
@@ -53,13 +53,13 @@ def test_more_workers_find_the_same(sketch, alone):
     several = sweep(sketch, {"height.seed": SEEDS, "relief": RELIEFS}, size=SIZE, workers=2)
     xarray.testing.assert_identical(several, alone)
     pictures = alone["picture"].values.reshape(6, -1)
-    assert len({one.tobytes() for one in pictures}) == 6, "no two are the same picture"
+    assert len({picture.tobytes() for picture in pictures}) == 6, "no two are the same picture"
 
 
 @pytest.mark.slow
 def test_vectors_parts_menus_and_arrays_are_coordinates(tmp_path):
     hills = np.hypot(*np.mgrid[-1:1:9j, -1:1:9j])
-    found = sweep(
+    dataset = sweep(
         "jacksboro",
         {
             "height.elevation": [hills, hills * hills],
@@ -70,13 +70,13 @@ def test_vectors_parts_menus_and_arrays_are_coordinates(tmp_path):
         pictures=False,
         workers=1,
     )
-    assert found["light.sun"].values.tolist() == ["135,25", "250,12.5"]
-    assert found["light.sun.azimuth"].dims == ("light.sun",)
-    assert found["light.sun.elevation"].values.tolist() == [25.0, 12.5]
-    assert found["height.no_data"].values.tolist() == ["fill"]
-    assert found.sizes["height.elevation"] == 2 and "picture" not in found
-    assert (found["light.mean"].isel({"light.sun": 0}) > found["light.mean"].isel({"light.sun": 1})).all()
-    means = found["height.mean"].isel({"light.sun": 0, "height.no_data": 0}).values
+    assert dataset["light.sun"].values.tolist() == ["135,25", "250,12.5"]
+    assert dataset["light.sun.azimuth"].dims == ("light.sun",)
+    assert dataset["light.sun.elevation"].values.tolist() == [25.0, 12.5]
+    assert dataset["height.no_data"].values.tolist() == ["fill"]
+    assert dataset.sizes["height.elevation"] == 2 and "picture" not in dataset
+    assert (dataset["light.mean"].isel({"light.sun": 0}) > dataset["light.mean"].isel({"light.sun": 1})).all()
+    means = dataset["height.mean"].isel({"light.sun": 0, "height.no_data": 0}).values
     np.testing.assert_allclose(means, [hills.mean(), (hills * hills).mean()], rtol=1e-5)  # metres
 
 

@@ -26,8 +26,8 @@ STEP = (HIGH - LOW) / 65535.0  # [m] of 16 bits
 
 
 def exr(path: Path) -> dict[str, np.ndarray]:
-    with OpenEXR.File(str(path), separate_channels=True) as found:
-        return {name: channel.pixels.copy() for name, channel in found.channels().items()}
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        return {name: channel.pixels.copy() for name, channel in file.channels().items()}
 
 
 # ── heights ──────────────────────────────────────────────────────────────────
@@ -44,10 +44,10 @@ def test_floats_are_metres_from_the_north(
     }
     for ending, reader in read.items():
         done = playground.export(lop, tmp_path / f"terrain.{ending}", engine=any_engine)
-        found = reader(done.path)
-        assert found.dtype == np.float32
-        np.testing.assert_allclose(found, heightmap, rtol=1e-6)
-        assert found.argmax() == 0, "the north-western corner is the highest"
+        result = reader(done.path)
+        assert result.dtype == np.float32
+        np.testing.assert_allclose(result, heightmap, rtol=1e-6)
+        assert result.argmax() == 0, "the north-western corner is the highest"
         assert "metres above sea level" in done.summary
 
 
@@ -110,11 +110,11 @@ def test_the_terrain_comes_back_by_the_playground_s_own_reader(
         ("d.png", 16, True),
     ):
         playground.export(lop, tmp_path / name, bits=bits, engine=any_engine)
-        found = read_elevation(tmp_path / name)
+        elevation = read_elevation(tmp_path / name)
         np.testing.assert_allclose(
-            found.heights[::-1], heightmap, atol=1e-4 if bits == 32 else 0.51 * STEP + 1e-4
+            elevation.heights[::-1], heightmap, atol=1e-4 if bits == 32 else 0.51 * STEP + 1e-4
         )
-        assert (found.spacing == (100.0, 75.0)) if spacing else found.spacing is None
+        assert (elevation.spacing == (100.0, 75.0)) if spacing else elevation.spacing is None
 
 
 @pytest.mark.parametrize("ending", ["tif", "png", "r16", "npy"])
@@ -178,16 +178,16 @@ def test_colours_are_srgb_pictures(ending: str, bound: int, any_engine: Engine, 
     done = playground.export(lop, tmp_path / f"a.{ending}", texture="colour", engine=any_engine)
     with PIL.Image.open(done.path) as picture:
         assert picture.mode == "RGB"
-        found = np.array(picture).astype(int)
-    assert np.abs(found - np.rint(255 * srgb(tint()))).max() <= bound
+        result = np.array(picture).astype(int)
+    assert np.abs(result - np.rint(255 * srgb(tint()))).max() <= bound
     assert "sRGB" in done.summary and not done.warnings
 
 
 def test_colours_in_floats_stay_linear_and_whole(any_engine: Engine, lop: Sketch, tmp_path: Path):
     playground.export(lop, tmp_path / "a.exr", texture="colour", engine=any_engine)
-    found = exr(tmp_path / "a.exr")
-    assert set(found) == set("RGB")
-    np.testing.assert_allclose(np.stack([found[c] for c in "RGB"], axis=-1), tint(), atol=1e-7)
+    arrays = exr(tmp_path / "a.exr")
+    assert set(arrays) == set("RGB")
+    np.testing.assert_allclose(np.stack([arrays[c] for c in "RGB"], axis=-1), tint(), atol=1e-7)
     playground.export(lop, tmp_path / "b.exr", texture="light", bits=16, engine=any_engine)
     light = exr(tmp_path / "b.exr")["R"]
     assert light.dtype == np.float16
@@ -237,8 +237,8 @@ def test_what_is_no_number_is_for_floats(any_engine: Engine, lop: Sketch, tmp_pa
             playground.export(torn, tmp_path / f"a.{ending}", engine=any_engine)
     assert [p.name for p in tmp_path.iterdir()] == ["lop"]
     playground.export(torn, tmp_path / "a.tif", engine=any_engine)
-    found = tifffile.imread(tmp_path / "a.tif")
-    assert np.argwhere(np.isnan(found)).tolist() == [[2, 4]]
+    result = tifffile.imread(tmp_path / "a.tif")
+    assert np.argwhere(np.isnan(result)).tolist() == [[2, 4]]
     assert read_elevation(tmp_path / "a.tif").missing == 1
 
 

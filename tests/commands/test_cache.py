@@ -11,7 +11,7 @@ import pytest
 
 from playground import cli
 from playground.commands.cache import in_bytes
-from playground.engine.disk_cache import CachedTextures, DiskCache, place
+from playground.engine.disk_cache import CachedTextures, DiskCache, cache_directory
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="the folder is set by XDG_CACHE_HOME"
@@ -23,34 +23,34 @@ def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Make a cache with the textures of two passes, a damaged file, and something else."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.delenv("PLAYGROUND_CACHE", raising=False)
-    store = DiskCache(place())
+    store = DiskCache(cache_directory())
     data = memoryview(bytes(256 * 256 * 4))
     store.write("one", CachedTextures((256, 256), (("height", "r32f"),), 1234.5, "alps: height", (data,)))
     store.write("two", CachedTextures((256, 256), (("light", "rgba8"),), 80.25, "alps: light", (data,)))
     store.close()
     os.utime(store._path("two"), (1e9, 1e9))
-    (place() / "broken.land").write_bytes(b"x")
-    os.utime(place() / "broken.land", (9e8, 9e8))
+    (cache_directory() / "broken.land").write_bytes(b"x")
+    os.utime(cache_directory() / "broken.land", (9e8, 9e8))
     (tmp_path / "terrain-shader-playground" / "packs").mkdir()
     return tmp_path
 
 
 def test_show_names_every_pass_used_last_first(cached: Path, capsys: pytest.CaptureFixture[str]):
     assert cli.main(["cache", "show"]) == 0
-    first, one, two, broken = capsys.readouterr().out.splitlines()
-    assert first == f"3 files, 512 KiB of at most 1.0 GiB, in {place()}"
-    assert one == "alps: height\t256x256\t256 KiB\t1.2 s\tjust now"
+    first, item, two, broken = capsys.readouterr().out.splitlines()
+    assert first == f"3 files, 512 KiB of at most 1.0 GiB, in {cache_directory()}"
+    assert item == "alps: height\t256x256\t256 KiB\t1.2 s\tjust now"
     assert two.startswith("alps: light\t256x256\t256 KiB\t80 ms\t") and two.endswith("days ago")
     assert broken.startswith("(damaged)\t\t1 byte\t\t")
 
 
 def test_show_as_json(cached: Path, capsys: pytest.CaptureFixture[str]):
     assert cli.main(["cache", "show", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["folder"] == str(place()) and found["most_bytes"] == 2**30
-    assert found["bytes"] == sum(each["bytes"] for each in found["files"])
-    one, two, broken = found["files"]
-    assert (one["made_for"], one["size"], one["outputs"], one["cost_ms"]) == (
+    result = json.loads(capsys.readouterr().out)
+    assert result["folder"] == str(cache_directory()) and result["most_bytes"] == 2**30
+    assert result["bytes"] == sum(each["bytes"] for each in result["files"])
+    item, two, broken = result["files"]
+    assert (item["made_for"], item["size"], item["outputs"], item["cost_ms"]) == (
         "alps: height",
         [256, 256],
         {"height": "r32f"},
@@ -60,13 +60,13 @@ def test_show_as_json(cached: Path, capsys: pytest.CaptureFixture[str]):
 
 
 def test_clear_removes_terrain_and_nothing_else(cached: Path, capsys: pytest.CaptureFixture[str]):
-    (place() / "notes.txt").write_text("mine")
+    (cache_directory() / "notes.txt").write_text("mine")
     assert cli.main(["cache", "clear"]) == 0
     assert capsys.readouterr().out == "3 files removed, 512 KiB\n"
-    assert [path.name for path in place().iterdir()] == ["notes.txt"]
-    assert (place().parent / "packs").is_dir()
+    assert [path.name for path in cache_directory().iterdir()] == ["notes.txt"]
+    assert (cache_directory().parent / "packs").is_dir()
     assert cli.main(["cache", "show"]) == 0
-    assert capsys.readouterr().out == f"0 files, 0 bytes of at most 1.0 GiB, in {place()}\n"
+    assert capsys.readouterr().out == f"0 files, 0 bytes of at most 1.0 GiB, in {cache_directory()}\n"
     assert cli.main(["cache", "clear"]) == 0
     assert capsys.readouterr().out == "0 files removed, 0 bytes\n"
 
@@ -92,11 +92,16 @@ def test_the_bound_is_the_environments(
 @pytest.mark.slow
 def test_the_doctor_says_size_and_place(cached: Path, capsys: pytest.CaptureFixture[str]):
     assert cli.main(["doctor", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)["cache"]
-    assert found == {"folder": str(place()), "files": 3, "bytes": found["bytes"], "most_bytes": 2**30}
-    assert found["bytes"] == sum(path.stat().st_size for path in place().iterdir())
+    result = json.loads(capsys.readouterr().out)["cache"]
+    assert result == {
+        "folder": str(cache_directory()),
+        "files": 3,
+        "bytes": result["bytes"],
+        "most_bytes": 2**30,
+    }
+    assert result["bytes"] == sum(path.stat().st_size for path in cache_directory().iterdir())
     assert cli.main(["doctor"]) == 0
-    assert f"3 files, 512 KiB of at most 1.0 GiB, in {place()}" in capsys.readouterr().out
+    assert f"3 files, 512 KiB of at most 1.0 GiB, in {cache_directory()}" in capsys.readouterr().out
 
 
 def test_a_mistake_is_one_sentence(cached: Path, capsys: pytest.CaptureFixture[str]):
@@ -118,4 +123,4 @@ def test_a_picture_for_a_file_keeps_nothing(tmp_path: Path, monkeypatch: pytest.
     assert (
         cli.main(["render", "contours_map", "-o", "terrain.png", "--size", "64x36", "--set", "size=65"]) == 0
     )
-    assert (tmp_path / "terrain.png").is_file() and not place().exists()
+    assert (tmp_path / "terrain.png").is_file() and not cache_directory().exists()

@@ -19,8 +19,8 @@ TYPES = re.compile(r"<\w+(\|\w+)*>|\b(INTEGER|FLOAT|BOOLEAN|TEXT)\b|\[[\d.]*<?=?
 
 def commands(command: Any, name: str = "") -> Iterator[str]:
     yield name
-    for child, found in getattr(command, "commands", {}).items():
-        yield from commands(found, f"{name} {child}".strip())
+    for child, result in getattr(command, "commands", {}).items():
+        yield from commands(result, f"{name} {child}".strip())
 
 
 ALL = list(commands(cli.command_line()))
@@ -43,8 +43,8 @@ def test_every_help_has_these_options_and_names_no_type(
     shown = capsys.readouterr().out
     for long, short in (("--verbose", "-v"), ("--quiet", "-q"), ("--help", "-h")):
         assert len(re.findall(rf"{long}\s+{short}\s", shown)) == 1
-    found = TYPES.search(shown.replace("--token     TEXT", "").replace("TEXT        The remote's token", ""))
-    assert not found, found
+    result = TYPES.search(shown.replace("--token     TEXT", "").replace("TEXT        The remote's token", ""))
+    assert not result, result
 
 
 @pytest.mark.slow
@@ -97,10 +97,10 @@ def test_what_each_loudness_prints(capsys: pytest.CaptureFixture[str]):
         printed[chosen] = [line.split()[-1] for line in capsys.readouterr().err.splitlines()]
     assert printed == {
         Loudness.QUIET: ["error"],
-        Loudness.USUAL: ["error", "warning", "note"],
+        Loudness.DEFAULT: ["error", "warning", "note"],
         Loudness.VERBOSE: ["error", "warning", "note", "detail"],
     }
-    assert loudness() is Loudness.USUAL
+    assert loudness() is Loudness.DEFAULT
 
 
 @pytest.mark.parametrize("words", [["-v", "list", "-q"], ["list", "-qv"]])

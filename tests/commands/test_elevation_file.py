@@ -40,7 +40,7 @@ def test_a_page_of_a_file_has_its_sketch_to_edit(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("name", "content", "words"),
     [
-        ("a.tif", b"hello", "a.tif: not a TIFF file, although its name says so"),
+        ("a.tif", b"hello", "a.tif: not a TIFF file, although its name ends like one"),
         ("a.hgt", b"x" * 7, "a.hgt: is no SRTM tile; expected 1201 x 1201"),
         ("a.asc", b"what is this", "a.asc: is no ESRI grid; expected a header of ncols"),
         ("a.bil", b"0000", "a.bil: needs a.hdr next to it"),

@@ -98,8 +98,8 @@ def test_the_terrain_is_that_of_the_settings_the_preset_the_shot(folder: Path):
         (["--as", "numbers"], 1.0),
     ):
         assert cli.main(["export", "rise", "--to", "a.npy", *options]) == 0
-        found = np.load(folder / "a.npy")
-        assert found[0].max() == found.max() == highest and found[-1].max() == 0.0
+        result = np.load(folder / "a.npy")
+        assert result[0].max() == result.max() == highest and result[-1].max() == 0.0
 
 
 def test_bits_range_grid_and_driver_are_heard(folder: Path, capsys: pytest.CaptureFixture[str]):

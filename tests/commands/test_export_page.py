@@ -70,9 +70,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def page_in(path: Path) -> dict[str, Any]:
     """Return the data of a page."""
-    found = re.search(r'id="playground-pressed">(.*?)</script>', path.read_text("utf-8"))
-    assert found
-    page: dict[str, Any] = json.loads(parts_of(found[1])[1])
+    result = re.search(r'id="playground-pressed">(.*?)</script>', path.read_text("utf-8"))
+    assert result
+    page: dict[str, Any] = json.loads(parts_of(result[1])[1])
     return page
 
 
@@ -127,9 +127,9 @@ def test_the_same_sketch_gives_the_same_file(folder: Path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("wanted", ["height=./flat", pytest.param("height", marks=pytest.mark.slow)])
-def test_a_menu_of_techniques_has_a_sketch_for_each(folder: Path, wanted: str):
-    assert cli.main(["export", "rise", "--technique", wanted, "--to", "a.html"]) == 0
+@pytest.mark.parametrize("expected", ["height=./flat", pytest.param("height", marks=pytest.mark.slow)])
+def test_a_menu_of_techniques_has_a_sketch_for_each(folder: Path, expected: str):
+    assert cli.main(["export", "rise", "--technique", expected, "--to", "a.html"]) == 0
     page = page_in(folder / "a.html")
     [menu] = page["sketches"][0]["choices"]
     assert (menu["pass"], menu["label"], menu["now"]) == ("height", "Height", "./rise")
@@ -203,7 +203,7 @@ def test_what_the_page_does_otherwise_is_said(capfd: pytest.CaptureFixture[str])
 def test_a_page_that_would_be_too_large_is_refused(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], folder: Path
 ):
-    monkeypatch.setattr("playground.capture.web_page.LARGEST", 2**10)
+    monkeypatch.setattr("playground.capture.web_page.MAX_PAGE_BYTES", 2**10)
     assert cli.main(["export", "delaunay_flips", "--to", "a.html"]) == 2
     assert "a smaller terrain, image or film would do" in capfd.readouterr().err
     assert not (folder / "a.html").exists()

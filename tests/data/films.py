@@ -67,11 +67,11 @@ def sound(path: Path, samples: np.ndarray, rate: int = RATE) -> Path:
         written = 48_000 if path.suffix == ".ogg" else rate  # Opus has no other near it
         stream = container.add_stream(codec[path.suffix], rate=written, layout=layout)
         form = {"flac": "s16", "pcm_s16le": "s16", "libopus": "flt"}.get(codec[path.suffix], "fltp")
-        given = av.AudioFrame.from_ndarray(samples.astype(np.float32), format="fltp", layout=layout)
-        given.sample_rate, given.pts = rate, 0
+        value = av.AudioFrame.from_ndarray(samples.astype(np.float32), format="fltp", layout=layout)
+        value.sample_rate, value.pts = rate, 0
         stream.codec_context.format = form
         resampler = av.AudioResampler(format=form, layout=layout, rate=written, frame_size=960)
-        for part in (*resampler.resample(given), *resampler.resample(None)):
+        for part in (*resampler.resample(value), *resampler.resample(None)):
             container.mux(stream.encode(part))
         container.mux(stream.encode(None))
     return path

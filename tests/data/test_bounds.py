@@ -15,7 +15,7 @@ import numpy as np
 import PIL.Image
 import pytest
 
-from playground.data.bounds import ALWAYS_FINE, MOST_RATIO, refuse_bomb, webp_size
+from playground.data.bounds import ALWAYS_FINE, MAX_RATIO, refuse_bomb, webp_size
 from playground.data.elevation import read_elevation
 from playground.data.image_files import chunk, read_image, read_samples
 from playground.errors import DataError
@@ -136,7 +136,7 @@ def test_what_is_flat_and_not_large_is_read(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("packed", [1, 2**20, 2**30])
 def test_the_bound_is_what_it_says(tmp_path: Path, packed: int) -> None:
-    most = max(ALWAYS_FINE, MOST_RATIO * packed)
+    most = max(ALWAYS_FINE, MAX_RATIO * packed)
     refuse_bomb(tmp_path / "a", most, packed)
     with pytest.raises(DataError, match="of more than 200 times its size"):
         refuse_bomb(tmp_path / "a", most + 1, packed)

@@ -31,9 +31,9 @@ class in_bands(ArrayRows):  # noqa: N801
 def test_it_is_what_resample_gives(size, count):
     made = decimate(in_bands(HILLS, count), size, as_they_are)
     low, high = float(HILLS.min()), float(HILLS.max())
-    wanted = resample(HILLS, size, within=(low, high))
+    expected = resample(HILLS, size, within=(low, high))
     # Sums in float64 in another order, rounded to float32 once.
-    np.testing.assert_allclose(made.heights, wanted, rtol=0, atol=1e-6 * (high - low))
+    np.testing.assert_allclose(made.heights, expected, rtol=0, atol=1e-6 * (high - low))
     assert (made.lowest, made.highest) == (low, high)
 
 
@@ -42,8 +42,8 @@ def test_a_constant_is_exact_and_a_plane_stays_one():
     assert (decimate(in_bands(constant, 8), (9, 13), as_they_are).heights == constant[0, 0]).all()
     plane = np.add.outer(3.0 * np.arange(90.0), 0.25 * np.arange(70.0))
     made = decimate(in_bands(plane, 8), (24, 12), as_they_are).heights
-    wanted = np.add.outer(3.0 * np.linspace(0, 89, 12), 0.25 * np.linspace(0, 69, 24))
-    np.testing.assert_allclose(made, wanted, rtol=1e-6)
+    expected = np.add.outer(3.0 * np.linspace(0, 89, 12), 0.25 * np.linspace(0, 69, 24))
+    np.testing.assert_allclose(made, expected, rtol=1e-6)
 
 
 def test_around_gaps_only_what_is_known_counts():
@@ -62,9 +62,9 @@ def test_around_gaps_only_what_is_known_counts():
     np.testing.assert_allclose(made[away > beyond], whole[away > beyond], atol=1e-3)
     assert np.isnan(made[away < 30 - max(step) * np.sqrt(2)]).all(), "nothing is known there"
     # What is averaged lies within a step along each axis, so the plane's slopes bound how far it may be off.
-    known = ~np.isnan(made)
-    assert np.abs(made - whole)[known].max() <= step[1] + 2.0 * step[0]
-    assert known.sum() > (away > 30).sum(), "texels on the rim are not lost"
+    existing = ~np.isnan(made)
+    assert np.abs(made - whole)[existing].max() <= step[1] + 2.0 * step[0]
+    assert existing.sum() > (away > 30).sum(), "texels on the rim are not lost"
 
 
 def test_nothing_known_is_nothing():
@@ -80,13 +80,13 @@ def test_an_overview_of_means_is_read_at_its_own_places(factor):
     means = waves.reshape(320 // factor, factor, 400 // factor, factor).mean(axis=(1, 3))
     size = 45, 37
     made = decimate(ArrayRows(means), size, as_they_are, whole=(400, 320)).heights
-    wanted = decimate(ArrayRows(waves), size, as_they_are).heights
+    expected = decimate(ArrayRows(waves), size, as_they_are).heights
     inner = np.s_[2:-2, 2:-2]
     bound = 2 * (1 - np.sinc(factor / 40)) + 1e-3
-    assert np.abs(made - wanted)[inner].max() < bound
+    assert np.abs(made - expected)[inner].max() < bound
     # Taken for nodes, they would be off by half a texel less one: that is seen.
     wrong = decimate(ArrayRows(means), size, as_they_are).heights
-    assert np.abs(wrong - wanted)[inner].max() > 2 * bound
+    assert np.abs(wrong - expected)[inner].max() > 2 * bound
 
 
 def test_a_plane_from_an_overview_is_a_plane_to_its_corners():
@@ -94,5 +94,5 @@ def test_a_plane_from_an_overview_is_a_plane_to_its_corners():
     means = plane.reshape(16, 4, 24, 4).mean(axis=(1, 3))
     made = decimate(ArrayRows(means), (11, 7), as_they_are, whole=(96, 64)).heights
     # Only the lowest and the highest mean bound it.
-    wanted = np.add.outer(3.0 * np.linspace(0, 63, 7), 0.5 * np.linspace(0, 95, 11))
-    np.testing.assert_allclose(made, np.clip(wanted, means.min(), means.max()), rtol=1e-6)
+    expected = np.add.outer(3.0 * np.linspace(0, 63, 7), 0.5 * np.linspace(0, 95, 11))
+    np.testing.assert_allclose(made, np.clip(expected, means.min(), means.max()), rtol=1e-6)

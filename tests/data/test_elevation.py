@@ -29,9 +29,9 @@ def refused(path: Path, words: str, **options: object) -> None:
     assert "\n" not in str(caught.value) and str(path) in str(caught.value)
 
 
-def assert_heightmap(found: Elevation, north_first: np.ndarray) -> None:
-    assert found.heights.dtype == np.float32 and found.heights.flags.c_contiguous
-    np.testing.assert_array_equal(found.heights[::-1], north_first.astype(np.float32))
+def assert_heightmap(elevation: Elevation, north_first: np.ndarray) -> None:
+    assert elevation.heights.dtype == np.float32 and elevation.heights.flags.c_contiguous
+    np.testing.assert_array_equal(elevation.heights[::-1], north_first.astype(np.float32))
 
 
 # PNG
@@ -41,22 +41,22 @@ def assert_heightmap(found: Elevation, north_first: np.ndarray) -> None:
 def test_grey_png(tmp_path, bits):
     heightmap = RNG.integers(0, 2**bits, (6, 9)).astype(f"u{bits // 8}")
     PillowImage.fromarray(heightmap).save(tmp_path / "a.png")
-    found = read_elevation(tmp_path / "a.png")
-    assert_heightmap(found, heightmap)
-    assert (found.size, found.name, found.missing) == ((9, 6), "a.png", 0)
-    assert found.code_range == (0, 2**bits - 1)
-    assert found.spacing is None and found.extent is None and not found.in_metres
-    assert (found.lowest, found.highest) == (heightmap.min(), heightmap.max())
+    elevation = read_elevation(tmp_path / "a.png")
+    assert_heightmap(elevation, heightmap)
+    assert (elevation.size, elevation.name, elevation.missing) == ((9, 6), "a.png", 0)
+    assert elevation.code_range == (0, 2**bits - 1)
+    assert elevation.spacing is None and elevation.extent is None and not elevation.in_metres
+    assert (elevation.lowest, elevation.highest) == (heightmap.min(), heightmap.max())
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
 def test_a_png_that_says_what_its_numbers_stand_for_is_metres(tmp_path, dtype):
     path, heightmap = tmp_path / "a.png", (HEIGHTMAP % 200).astype(dtype)
     path.write_bytes(encode_samples(heightmap, {"scale_m": "0.5", "offset_m": "-40.0", "spacing_m": "30 20"}))
-    found = read_elevation(path)
-    assert_heightmap(found, heightmap * 0.5 - 40.0)
-    assert found.in_metres and found.spacing == (30.0, 20.0)
-    assert found.code_range == (-40.0, np.iinfo(dtype).max * 0.5 - 40.0)
+    elevation = read_elevation(path)
+    assert_heightmap(elevation, heightmap * 0.5 - 40.0)
+    assert elevation.in_metres and elevation.spacing == (30.0, 20.0)
+    assert elevation.code_range == (-40.0, np.iinfo(dtype).max * 0.5 - 40.0)
 
 
 @pytest.mark.parametrize(
@@ -66,9 +66,9 @@ def test_texts_of_a_png_that_are_not_understood_are_ignored(tmp_path, texts):
     path = tmp_path / "a.png"
     chunks = dict(zip(("scale_m", "offset_m", "spacing_m"), texts, strict=True))
     path.write_bytes(encode_samples(HEIGHTMAP.astype(np.uint16), chunks))
-    found = read_elevation(path)
-    assert_heightmap(found, HEIGHTMAP)
-    assert not found.in_metres and found.spacing is None and found.code_range == (0, 65535)
+    elevation = read_elevation(path)
+    assert_heightmap(elevation, HEIGHTMAP)
+    assert not elevation.in_metres and elevation.spacing is None and elevation.code_range == (0, 65535)
     path.write_bytes(
         encode_samples(HEIGHTMAP.astype(np.uint16), {"scale_m": "2", "offset_m": "3", "spacing_m": "-1 5"})
     )
@@ -94,9 +94,9 @@ def test_heights_packed_in_three_channels(tmp_path, ending):
     heightmap[0, 0], heightmap[0, 1] = 2**24 - 1, 2**24 - 2
     colour = np.stack([heightmap >> 16, (heightmap >> 8) & 255, heightmap & 255], axis=-1).astype(np.uint8)
     PillowImage.fromarray(colour).save(tmp_path / f"a.{ending}")
-    found = read_elevation(tmp_path / f"a.{ending}", packing="rgb")
-    assert_heightmap(found, heightmap)
-    assert found.code_range == (0, 2**24 - 1)
+    elevation = read_elevation(tmp_path / f"a.{ending}", packing="rgb")
+    assert_heightmap(elevation, heightmap)
+    assert elevation.code_range == (0, 2**24 - 1)
     refused(tmp_path / f"a.{ending}", "in colour; expected grey, or packing 'rgb'")
 
 
@@ -110,8 +110,8 @@ def test_transparent_texels_have_no_data(tmp_path):
     heightmap = np.stack([HEIGHTMAP.astype(np.uint8), np.full(HEIGHTMAP.shape, 255, np.uint8)], axis=-1)
     heightmap[1, 2, 1] = 0
     PillowImage.fromarray(heightmap).save(tmp_path / "a.png")
-    found = read_elevation(tmp_path / "a.png")
-    assert found.missing == 1 and np.isnan(found.heights[6 - 1 - 1, 2])
+    elevation = read_elevation(tmp_path / "a.png")
+    assert elevation.missing == 1 and np.isnan(elevation.heights[6 - 1 - 1, 2])
 
 
 def test_packing_must_fit_the_file(tmp_path):
@@ -133,18 +133,18 @@ def test_packing_must_fit_the_file(tmp_path):
 def test_tiff_of_every_kind_of_number(tmp_path, dtype, order):
     heightmap = (HEIGHTMAP % 200).astype(dtype)
     tifffile.imwrite(tmp_path / "a.tif", heightmap, byteorder=order, photometric="minisblack")
-    found = read_elevation(tmp_path / "a.tif")
-    assert_heightmap(found, heightmap)
-    assert found.code_range == {"u1": (0, 255), "u2": (0, 65535)}.get(dtype)
+    elevation = read_elevation(tmp_path / "a.tif")
+    assert_heightmap(elevation, heightmap)
+    assert elevation.code_range == {"u1": (0, 255), "u2": (0, 65535)}.get(dtype)
 
 
 @pytest.mark.parametrize("bands", [2, 3, 5])
 def test_of_several_bands_the_first_is_read_and_that_is_reported(tmp_path, bands):
     heightmap = np.stack([HEIGHTMAP.astype(np.float32) + 100 * k for k in range(bands)])
     tifffile.imwrite(tmp_path / "a.tif", heightmap, planarconfig="separate", photometric="minisblack")
-    found = read_elevation(tmp_path / "a.tif")
-    assert_heightmap(found, HEIGHTMAP)
-    assert found.notes == (f"the first of its {bands} bands was read",)
+    elevation = read_elevation(tmp_path / "a.tif")
+    assert_heightmap(elevation, HEIGHTMAP)
+    assert elevation.notes == (f"the first of its {bands} bands was read",)
 
 
 def test_a_damaged_tag_is_one_sentence_and_no_log(tmp_path, capfd):
@@ -162,9 +162,9 @@ def test_the_first_of_several_pictures_is_read_and_that_is_reported(tmp_path):
     with tifffile.TiffWriter(tmp_path / "a.tif") as tif:
         tif.write(HEIGHTMAP)
         tif.write(2 * HEIGHTMAP)
-    found = read_elevation(tmp_path / "a.tif")
-    assert_heightmap(found, HEIGHTMAP)
-    assert found.notes == ("the first of 2 pictures was read",)
+    elevation = read_elevation(tmp_path / "a.tif")
+    assert_heightmap(elevation, HEIGHTMAP)
+    assert elevation.notes == ("the first of 2 pictures was read",)
 
 
 def geotiff(
@@ -196,17 +196,19 @@ def geotiff(
 
 
 def test_a_projected_geotiff_gives_metres(tmp_path):
-    found = read_elevation(
+    elevation = read_elevation(
         geotiff(tmp_path / "a.tif", HEIGHTMAP, {1024: 1, 3072: 32633, 3076: 9001}, (30.0, 20.0))
     )
-    assert_heightmap(found, HEIGHTMAP)
-    assert found.spacing == (30.0, 20.0) and found.extent == (8 * 30.0, 5 * 20.0)
-    assert found.in_metres and found.code_range is None and found.notes == ()
+    assert_heightmap(elevation, HEIGHTMAP)
+    assert elevation.spacing == (30.0, 20.0) and elevation.extent == (8 * 30.0, 5 * 20.0)
+    assert elevation.in_metres and elevation.code_range is None and elevation.notes == ()
 
 
 def test_16_bits_without_a_sign_are_metres_in_a_geotiff_only(tmp_path):
-    found = read_elevation(geotiff(tmp_path / "a.tif", HEIGHTMAP.astype(np.uint16), {1024: 1, 3076: 9001}))
-    assert found.in_metres and found.code_range is None
+    elevation = read_elevation(
+        geotiff(tmp_path / "a.tif", HEIGHTMAP.astype(np.uint16), {1024: 1, 3076: 9001})
+    )
+    assert elevation.in_metres and elevation.code_range is None
 
 
 def gdal(*items: str) -> str:
@@ -222,13 +224,13 @@ def test_whole_numbers_that_gdal_s_metadata_scale_become_metres(tmp_path, dtype)
     other = '<Item name="SCALE" sample="1" role="scale">9</Item>'
     keys, heightmap = {1024: 1, 3076: 9001, 4099: 9002}, (HEIGHTMAP % 200).astype(dtype)
     path = geotiff(tmp_path / "a.tif", heightmap, keys, metadata=gdal(offset, scale, other))
-    found = read_elevation(path)
-    assert found.in_metres and found.code_range is None
-    np.testing.assert_allclose(found.heights[::-1], (heightmap * 0.5 - 40.0) * 0.3048, rtol=1e-6)
+    elevation = read_elevation(path)
+    assert elevation.in_metres and elevation.code_range is None
+    np.testing.assert_allclose(elevation.heights[::-1], (heightmap * 0.5 - 40.0) * 0.3048, rtol=1e-6)
     # Heights and cells are two facts: scaled numbers are heights, whether cells have metres or not.
-    found = read_elevation(geotiff(tmp_path / "b.tif", heightmap, {}, metadata=gdal(offset, scale)))
-    assert found.in_metres and "metres are assumed" in found.assumed
-    np.testing.assert_allclose(found.heights[::-1], heightmap * 0.5 - 40.0, rtol=1e-6)
+    elevation = read_elevation(geotiff(tmp_path / "b.tif", heightmap, {}, metadata=gdal(offset, scale)))
+    assert elevation.in_metres and "metres are assumed" in elevation.assumed
+    np.testing.assert_allclose(elevation.heights[::-1], heightmap * 0.5 - 40.0, rtol=1e-6)
     refused(
         geotiff(tmp_path / "c.tif", heightmap, keys, metadata=gdal(scale.replace("0.5", "much"))),
         "a scale or an offset that is no number",
@@ -238,20 +240,20 @@ def test_whole_numbers_that_gdal_s_metadata_scale_become_metres(tmp_path, dtype)
 @pytest.mark.parametrize(("unit", "epsg", "metres"), [(9002, 2222, 0.3048), (9003, 2264, 1200 / 3937)])
 def test_feet_become_metres(tmp_path, unit, epsg, metres):
     keys = {1024: 1, 3072: epsg, 4099: unit}
-    found = read_elevation(geotiff(tmp_path / "a.tif", HEIGHTMAP, keys, (10.0, 10.0)))
-    assert found.spacing == pytest.approx((10 * metres, 10 * metres))
-    np.testing.assert_allclose(found.heights[::-1], HEIGHTMAP * metres, rtol=1e-6)
+    elevation = read_elevation(geotiff(tmp_path / "a.tif", HEIGHTMAP, keys, (10.0, 10.0)))
+    assert elevation.spacing == pytest.approx((10 * metres, 10 * metres))
+    np.testing.assert_allclose(elevation.heights[::-1], HEIGHTMAP * metres, rtol=1e-6)
 
 
 @pytest.mark.parametrize("raster", [1, 2])
 def test_a_geographic_geotiff_has_its_middle_latitude(tmp_path, raster):
     tie = (0, 0, 0, 10.0, 61.0, 0)
     keys = {1024: 2, 1025: raster, 2048: 4326}
-    found = read_elevation(geotiff(tmp_path / "a.tif", HEIGHTMAP, keys, (0.1, 0.1), tie))
+    elevation = read_elevation(geotiff(tmp_path / "a.tif", HEIGHTMAP, keys, (0.1, 0.1), tie))
     middle = 61.0 - (0.3 if raster == 1 else 0.25)  # six pixels, or five steps from node to node
     east, north = degree_lengths(middle)
-    assert found.spacing == pytest.approx((0.1 * east, 0.1 * north), rel=1e-12)
-    assert found.in_metres
+    assert elevation.spacing == pytest.approx((0.1 * east, 0.1 * north), rel=1e-12)
+    assert elevation.in_metres
 
 
 def test_a_matrix_gives_the_same_as_scale_and_tie_point(tmp_path):
@@ -269,14 +271,14 @@ def test_web_mercator_is_brought_back_to_true_metres(tmp_path):
     # At 60 degrees its unit is half a metre of the sphere it draws.
     y = 6378137.0 * math.log(math.tan(math.pi / 4 + math.radians(60) / 2))
     keys = {1024: 1, 1025: 1, 3072: 3857, 3076: 9001}
-    found = read_elevation(geotiff(tmp_path / "a.tif", HEIGHTMAP, keys, (10.0, 10.0), (0, 3, 0, 0, y, 0)))
-    assert found.spacing == pytest.approx((5.0, 5.0), rel=1e-6)
+    elevation = read_elevation(geotiff(tmp_path / "a.tif", HEIGHTMAP, keys, (10.0, 10.0), (0, 3, 0, 0, y, 0)))
+    assert elevation.spacing == pytest.approx((5.0, 5.0), rel=1e-6)
 
 
 def test_a_texel_size_without_a_unit_is_not_believed(tmp_path):
-    found = read_elevation(geotiff(tmp_path / "a.tif", HEIGHTMAP, {}, (10.0, 10.0)))
-    assert found.spacing is None and "does not say" in found.notes[0]
-    assert found.in_metres and "metres are assumed" in found.assumed
+    elevation = read_elevation(geotiff(tmp_path / "a.tif", HEIGHTMAP, {}, (10.0, 10.0)))
+    assert elevation.spacing is None and "does not say" in elevation.notes[0]
+    assert elevation.in_metres and "metres are assumed" in elevation.assumed
     at_the_pole = geotiff(tmp_path / "b.tif", HEIGHTMAP, {1024: 2}, (0.1, 0.1), (0, 0, 0, 0, 90.3, 0))
     assert read_elevation(at_the_pole).spacing is None
 
@@ -297,17 +299,17 @@ def test_a_texel_size_without_a_unit_is_not_believed(tmp_path):
 def test_no_data_becomes_nan(tmp_path, dtype, value, text):
     heightmap = HEIGHTMAP.astype(dtype)
     heightmap[1, 3] = value
-    found = read_elevation(geotiff(tmp_path / "a.tif", heightmap, {1024: 1}, no_data=text))
+    elevation = read_elevation(geotiff(tmp_path / "a.tif", heightmap, {1024: 1}, no_data=text))
     expected = HEIGHTMAP.astype(np.float32)
     expected[1, 3] = np.nan
-    assert_heightmap(found, expected)
-    assert found.missing == 1 and found.lowest == np.nanmin(expected)
+    assert_heightmap(elevation, expected)
+    assert elevation.missing == 1 and elevation.lowest == np.nanmin(expected)
 
 
 @pytest.mark.parametrize("text", ["-9999", "0.5", "nonsense", "nan", "1e99"])
 def test_a_no_data_value_that_the_numbers_cannot_have_is_ignored(tmp_path, text):
-    found = read_elevation(geotiff(tmp_path / "a.tif", HEIGHTMAP.astype("u2"), {1024: 1}, no_data=text))
-    assert found.missing == 0
+    elevation = read_elevation(geotiff(tmp_path / "a.tif", HEIGHTMAP.astype("u2"), {1024: 1}, no_data=text))
+    assert elevation.missing == 0
 
 
 # NumPy
@@ -318,9 +320,9 @@ def test_a_no_data_value_that_the_numbers_cannot_have_is_ignored(tmp_path, text)
 def test_npy_of_every_kind_of_number(tmp_path, dtype, by_columns):
     heightmap = np.asarray((HEIGHTMAP % 200).astype(dtype), order="F" if by_columns else "C")
     np.save(tmp_path / "a.npy", heightmap)
-    found = read_elevation(tmp_path / "a.npy")
-    assert_heightmap(found, heightmap)
-    assert found.spacing is None and found.in_metres and "metres are assumed" in found.assumed
+    elevation = read_elevation(tmp_path / "a.npy")
+    assert_heightmap(elevation, heightmap)
+    assert elevation.spacing is None and elevation.in_metres and "metres are assumed" in elevation.assumed
 
 
 def test_the_jacksboro_fault_has_its_true_size(on_ellipsoid, tmp_path):
@@ -331,28 +333,32 @@ def test_the_jacksboro_fault_has_its_true_size(on_ellipsoid, tmp_path):
         bounds = dict(xmin=-84.41375, xmax=-84.07791666666667, ymin=36.73291666666667, ymax=36.44625)
         heightmap = np.arange(344 * 403).reshape(344, 403) % 840 + 236
         np.savez(path, elevation=heightmap.astype(np.int16), dx=1 / 1200, dy=1 / 1200, **bounds)
-    found = read_elevation(path)
-    assert found.size == (403, 344) and found.in_metres
-    assert (found.lowest, found.highest, found.missing) == (236, 1076 if found.highest == 1076 else 1075, 0)
+    elevation = read_elevation(path)
+    assert elevation.size == (403, 344) and elevation.in_metres
+    assert (elevation.lowest, elevation.highest, elevation.missing) == (
+        236,
+        1076 if elevation.highest == 1076 else 1075,
+        0,
+    )
     with np.load(path) as file:
-        np.testing.assert_array_equal(found.heights, file["elevation"][::-1])  # row 0 in the south
+        np.testing.assert_array_equal(elevation.heights, file["elevation"][::-1])  # row 0 in the south
     # From one edge to the other, by steps along the ellipsoid.
     latitudes = np.linspace(36.73291666666667 - 0.5 / 1200, 36.44625 + 0.5 / 1200, 344)
     points = np.array([on_ellipsoid(v, 0.0) for v in latitudes])
     depth = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
     width = 402 * np.linalg.norm(on_ellipsoid(36.58958333, 1 / 1200) - on_ellipsoid(36.58958333, 0.0))
-    assert found.extent == pytest.approx((width, depth), rel=1e-6)
+    assert elevation.extent == pytest.approx((width, depth), rel=1e-6)
 
 
 def test_npz_in_metres_and_other_names(tmp_path):
     np.savez(tmp_path / "a.npz", dem=HEIGHTMAP, dx=25, dy=np.array([30.0]), title=np.array("x"))
-    found = read_elevation(tmp_path / "a.npz")
-    assert_heightmap(found, HEIGHTMAP)
-    assert found.spacing == (25.0, 30.0) and found.in_metres and not found.assumed
+    elevation = read_elevation(tmp_path / "a.npz")
+    assert_heightmap(elevation, HEIGHTMAP)
+    assert elevation.spacing == (25.0, 30.0) and elevation.in_metres and not elevation.assumed
     np.savez_compressed(tmp_path / "b.npz", other=2 * HEIGHTMAP, elevation=HEIGHTMAP)
-    found = read_elevation(tmp_path / "b.npz")
-    assert_heightmap(found, HEIGHTMAP)
-    assert found.spacing is None and found.in_metres and "metres are assumed" in found.assumed
+    elevation = read_elevation(tmp_path / "b.npz")
+    assert_heightmap(elevation, HEIGHTMAP)
+    assert elevation.spacing is None and elevation.in_metres and "metres are assumed" in elevation.assumed
 
 
 def test_npz_bounds_in_metres_are_not_degrees(tmp_path):
@@ -388,9 +394,9 @@ def test_npz_without_one_grid_is_refused(tmp_path):
 def test_raw_numbers_are_square_unless_told(tmp_path, ending):
     heightmap = RNG.integers(0, 65536, (7, 7)).astype("<u2")
     (tmp_path / f"a.{ending}").write_bytes(heightmap.tobytes())
-    found = read_elevation(tmp_path / f"a.{ending}")
-    assert_heightmap(found, heightmap)
-    assert found.code_range == (0, 65535) and not found.in_metres
+    elevation = read_elevation(tmp_path / f"a.{ending}")
+    assert_heightmap(elevation, heightmap)
+    assert elevation.code_range == (0, 65535) and not elevation.in_metres
     (tmp_path / f"b.{ending}").write_bytes(HEIGHTMAP.astype("<u2").tobytes())
     assert_heightmap(read_elevation(tmp_path / f"b.{ending}", raw_size=(9, 6)), HEIGHTMAP)
 
@@ -418,10 +424,10 @@ def test_srtm_tiles_cover_a_degree(tmp_path, name, middle):
     heightmap = RNG.integers(-100, 4000, (1201, 1201)).astype(">i2")
     heightmap[5, 7] = -32768
     (tmp_path / name).write_bytes(heightmap.tobytes())
-    found = read_elevation(tmp_path / name)
-    assert found.extent == pytest.approx(degree_lengths(middle), rel=1e-12)
-    assert found.in_metres and found.missing == 1 and np.isnan(found.heights[1200 - 5, 7])
-    assert found.heights[1200, 60] == heightmap[0, 60]
+    elevation = read_elevation(tmp_path / name)
+    assert elevation.extent == pytest.approx(degree_lengths(middle), rel=1e-12)
+    assert elevation.in_metres and elevation.missing == 1 and np.isnan(elevation.heights[1200 - 5, 7])
+    assert elevation.heights[1200, 60] == heightmap[0, 60]
 
 
 def test_a_tile_whose_name_says_no_corner_is_refused(tmp_path):
@@ -455,8 +461,8 @@ def test_permission_denied_is_a_sentence(tmp_path, monkeypatch):
     def denied(*_: object, **__: object) -> None:
         raise PermissionError(13, "Permission denied")
 
-    for place in ("pathlib.Path.open", "io.open", "builtins.open", "os.open", "numpy.fromfile"):
-        monkeypatch.setattr(place, denied)
+    for name in ("pathlib.Path.open", "io.open", "builtins.open", "os.open", "numpy.fromfile"):
+        monkeypatch.setattr(name, denied)
     for ending in ("png", "npy", "npz", "r16"):
         refused(tmp_path / f"a.{ending}", "cannot be read: Permission denied", raw_size=(3, 3))
 
@@ -557,9 +563,9 @@ def test_monsters_are_refused_by_their_header(tmp_path):
     with tifffile.TiffFile(tmp_path / "a.tif") as tif:
         places = [tif.pages[0].tags[code].valueoffset for code in (256, 257)]
         kinds = [tif.pages[0].tags[code].dtype for code in (256, 257)]
-    for place, kind in zip(places, kinds, strict=True):
+    for position, kind in zip(places, kinds, strict=True):
         huge = (60_000).to_bytes(2 if kind == 3 else 4, "little")
-        content = content[:place] + huge + content[place + len(huge) :]
+        content = content[:position] + huge + content[position + len(huge) :]
     (tmp_path / "a.tif").write_bytes(content)
     refused(tmp_path / "a.tif", r"60000 x 60000 texels; the most is 2\*\*28")
 

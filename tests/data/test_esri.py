@@ -46,40 +46,40 @@ def refused(path, words):
 
 @pytest.mark.parametrize("per_line", [0, 1, 3, 35])
 def test_a_grid_of_text_however_its_lines_part_it(tmp_path, per_line):
-    found = read_elevation(asc(tmp_path / "a.asc", per_line=per_line))
-    np.testing.assert_array_equal(found.heights[::-1], HEIGHTS)
-    assert found.spacing == (25.0, 25.0) and found.in_metres and found.notes == ()
+    elevation = read_elevation(asc(tmp_path / "a.asc", per_line=per_line))
+    np.testing.assert_array_equal(elevation.heights[::-1], HEIGHTS)
+    assert elevation.spacing == (25.0, 25.0) and elevation.in_metres and elevation.notes == ()
     # The corner is the cell's: its middle, the node, lies half a cell inside.
-    assert found.place.bounds == (1012.5, 2012.5, 1112.5, 2162.5)
-    assert found.place.crs.facts.epsg == 32633
+    assert elevation.place.bounds == (1012.5, 2012.5, 1112.5, 2162.5)
+    assert elevation.place.crs.facts.epsg == 32633
 
 
 def test_the_corner_or_the_middle_of_the_cell_and_cells_that_are_not_square(tmp_path):
     header = "xllcenter 1000\nyllcenter 2000\ndx 10\ndy 20"
-    found = read_elevation(asc(tmp_path / "a.asc", header=header))
-    assert found.spacing == (10.0, 20.0) and found.place.bounds == (1000.0, 2000.0, 1040.0, 2120.0)
+    elevation = read_elevation(asc(tmp_path / "a.asc", header=header))
+    assert elevation.spacing == (10.0, 20.0) and elevation.place.bounds == (1000.0, 2000.0, 1040.0, 2120.0)
 
 
 def test_cells_in_degrees_and_in_feet(tmp_path):
     header = "xllcenter 7\nyllcenter 46\ncellsize 0.01"
-    found = read_elevation(asc(tmp_path / "a.asc", header=header, prj=DEGREES))
+    elevation = read_elevation(asc(tmp_path / "a.asc", header=header, prj=DEGREES))
     east, north = degree_lengths(46.03)
-    assert found.spacing == pytest.approx((0.01 * east, 0.01 * north), rel=1e-9)
-    found = read_elevation(asc(tmp_path / "b.asc", prj=FEET))
-    assert found.spacing == pytest.approx((25 * 1200 / 3937,) * 2, rel=1e-9)
+    assert elevation.spacing == pytest.approx((0.01 * east, 0.01 * north), rel=1e-9)
+    elevation = read_elevation(asc(tmp_path / "b.asc", prj=FEET))
+    assert elevation.spacing == pytest.approx((25 * 1200 / 3937,) * 2, rel=1e-9)
 
 
 def test_without_a_prj_the_cells_are_not_believed_and_that_is_said(tmp_path):
-    found = read_elevation(asc(tmp_path / "a.asc", prj=""))
-    assert found.spacing is None and found.in_metres
-    assert "there is no a.prj next to it" in found.notes[0]
+    elevation = read_elevation(asc(tmp_path / "a.asc", prj=""))
+    assert elevation.spacing is None and elevation.in_metres
+    assert "there is no a.prj next to it" in elevation.notes[0]
 
 
 def test_no_data_of_text_becomes_nan(tmp_path):
     heights = HEIGHTS.copy()
     heights[2, 3] = -9999
-    found = read_elevation(asc(tmp_path / "a.asc", heights))
-    assert np.isnan(found.heights[::-1][2, 3]) and found.missing == 1
+    elevation = read_elevation(asc(tmp_path / "a.asc", heights))
+    assert np.isnan(elevation.heights[::-1][2, 3]) and elevation.missing == 1
 
 
 @pytest.mark.parametrize(
@@ -107,9 +107,9 @@ def flt(path, heights=HEIGHTS, order="LSBFIRST", prj=UTM):
 
 @pytest.mark.parametrize("order", ["LSBFIRST", "MSBFIRST"])
 def test_floats_with_a_header(tmp_path, order):
-    found = read_elevation(flt(tmp_path / "a.flt", order=order))
-    np.testing.assert_array_equal(found.heights[::-1], HEIGHTS)
-    assert found.place.bounds == (1012.5, 2012.5, 1112.5, 2162.5)
+    elevation = read_elevation(flt(tmp_path / "a.flt", order=order))
+    np.testing.assert_array_equal(elevation.heights[::-1], HEIGHTS)
+    assert elevation.place.bounds == (1012.5, 2012.5, 1112.5, 2162.5)
 
 
 def test_floats_without_their_header_or_cut_short(tmp_path):
@@ -127,9 +127,9 @@ def test_floats_without_their_header_or_cut_short(tmp_path):
 @pytest.mark.parametrize("name", ["a.asc", "a.flt"])
 def test_gdal_reads_the_same_in_the_same_place(tmp_path, name):
     path = (asc if name == "a.asc" else flt)(tmp_path / name)
-    found = read_elevation(path)
+    elevation = read_elevation(path)
     with rasterio.open(path) as raster:
-        np.testing.assert_array_equal(raster.read(1), found.heights[::-1])
-        west, south, east, north = found.place.bounds
+        np.testing.assert_array_equal(raster.read(1), elevation.heights[::-1])
+        west, south, east, north = elevation.place.bounds
         assert tuple(raster.bounds) == (west - 12.5, south - 12.5, east + 12.5, north + 12.5)
-        assert raster.crs.to_epsg() == found.place.crs.facts.epsg
+        assert raster.crs.to_epsg() == elevation.place.crs.facts.epsg

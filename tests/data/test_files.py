@@ -449,9 +449,9 @@ def test_samples_are_stored_as_they_are_with_texts(dtype, shape, tmp_path):
     samples = RNG.integers(0, np.iinfo(dtype).max, shape, dtype=dtype, endpoint=True)
     path = tmp_path / "a.png"
     path.write_bytes(encode_samples(samples, {"scale_m": "0.25", "Title": "Grès"}))
-    found = read_samples(path)
-    assert found.dtype == dtype
-    np.testing.assert_array_equal(found, samples.reshape(found.shape))
+    result = read_samples(path)
+    assert result.dtype == dtype
+    np.testing.assert_array_equal(result, samples.reshape(result.shape))
     with PillowImage.open(path) as picture:
         assert picture.text == {"scale_m": "0.25", "Title": "Grès"}
     with pytest.raises(DataError, match="cannot name a text"):

@@ -45,10 +45,10 @@ def test_a_film_of_uneven_times_shows_what_a_player_would(tmp_path, codec):
     film = Film(uneven_film(tmp_path / "v.mkv", STAMPS, codec))
     assert film.count == len(STAMPS)
     for milliseconds in range(0, 2100, 7):
-        wanted = max(i for i, stamp in enumerate(STAMPS) if stamp <= milliseconds)
+        expected = max(i for i, stamp in enumerate(STAMPS) if stamp <= milliseconds)
         number = film.frame_at(milliseconds / 1000, loop=False)
-        assert number == wanted
-        np.testing.assert_allclose(at_corner(film.pixels(number, film.size)), colour(wanted), atol=6)
+        assert number == expected
+        np.testing.assert_allclose(at_corner(film.pixels(number, film.size)), colour(expected), atol=6)
 
 
 @pytest.mark.parametrize("name", ["a.mp4", "a.webm", "a.gif", "v.mkv", "v.avi", "v.mov"])
@@ -176,17 +176,17 @@ def test_what_cannot_be_shown_is_a_sentence(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("name", "known", "message"),
+    ("name", "existing", "message"),
     [
         ("a.mp4", b"avc1", "its picture is in a codec that this FFmpeg cannot decode"),
         ("a.webm", b"V_VP9", "it has no picture"),  # FFmpeg leaves the stream out
     ],
 )
-def test_a_film_of_an_unknown_codec_is_a_sentence(tmp_path, name, known, message):
+def test_a_film_of_an_unknown_codec_is_a_sentence(tmp_path, name, existing, message):
     path = own_film(tmp_path / name, count=2)
     data = path.read_bytes()
-    assert known in data
-    path.write_bytes(data.replace(known, b"zzzzz"[: len(known)]))
+    assert existing in data
+    path.write_bytes(data.replace(existing, b"zzzzz"[: len(existing)]))
     with pytest.raises(DataError, match=message):
         Film(path)
 
@@ -194,7 +194,7 @@ def test_a_film_of_an_unknown_codec_is_a_sentence(tmp_path, name, known, message
 def test_a_film_that_would_become_monstrous_is_refused(tmp_path, monkeypatch):
     path = own_film(tmp_path / "a.mp4", count=2)
     monkeypatch.setattr(bounds, "ALWAYS_FINE", 1000)
-    monkeypatch.setattr(bounds, "MOST_RATIO", 1)
+    monkeypatch.setattr(bounds, "MAX_RATIO", 1)
     with pytest.raises(DataError, match="would become"):
         Film(path)
 

@@ -36,12 +36,12 @@ def test_a_hole_in_a_plane_is_filled_by_the_plane(n):
     y, x = np.mgrid[:n, :n] / (n - 1)
     heights = plane(n)
     heights[(x - 0.5) ** 2 + (y - 0.45) ** 2 < 0.09] = np.nan
-    found = fill_no_data(Elevation(heights, "hill", spacing=(2.0, 2.0), in_metres=True), "fill")
-    assert np.abs(found.heights - plane(n)).max() < 0.005 * 500.0
-    known = ~np.isnan(heights)
-    np.testing.assert_array_equal(found.heights[known], heights[known])
-    assert found.missing == 0 and found.spacing == (2.0, 2.0) and found.in_metres
-    assert "were filled" in found.notes[0]
+    elevation = fill_no_data(Elevation(heights, "hill", spacing=(2.0, 2.0), in_metres=True), "fill")
+    assert np.abs(elevation.heights - plane(n)).max() < 0.005 * 500.0
+    existing = ~np.isnan(heights)
+    np.testing.assert_array_equal(elevation.heights[existing], heights[existing])
+    assert elevation.missing == 0 and elevation.spacing == (2.0, 2.0) and elevation.in_metres
+    assert "were filled" in elevation.notes[0]
 
 
 def test_a_fill_is_smooth_within_range_and_the_same_each_time():
@@ -50,11 +50,11 @@ def test_a_fill_is_smooth_within_range_and_the_same_each_time():
     heightmap = heights.copy()
     heightmap[:40, :50] = heightmap[60:90, 100:160] = np.nan
     heightmap[RNG.random(heightmap.shape) < 0.2] = np.nan
-    one, two = (fill_no_data(Elevation(heightmap, "hill"), "fill").heights for _ in range(2))
-    np.testing.assert_array_equal(one, two)
-    assert np.nanmin(heightmap) <= one.min() and one.max() <= np.nanmax(heightmap)
+    item, two = (fill_no_data(Elevation(heightmap, "hill"), "fill").heights for _ in range(2))
+    np.testing.assert_array_equal(item, two)
+    assert np.nanmin(heightmap) <= item.min() and item.max() <= np.nanmax(heightmap)
     steepest = np.abs(np.diff(heights, axis=1)).max()
-    assert np.abs(np.diff(one, axis=1)).max() < 3 * steepest
+    assert np.abs(np.diff(item, axis=1)).max() < 3 * steepest
 
 
 def test_one_known_texel_fills_the_terrain():

@@ -70,7 +70,7 @@ def test_every_form_of_geotiff_has_its_numbers_and_its_place(tmp_path, form, dty
     values = (HEIGHTS if dtype[0] == "f" else HEIGHTS % 120).astype(dtype)
     file = open_elevation(raster(tmp_path / "a.tif", values, **options))
     np.testing.assert_array_equal(file.read().heights[::-1], values.astype(np.float32))
-    west, south, east, north = file.found.place.bounds
+    west, south, east, north = file.grid.place.bounds
     assert (west, north) == (400_005.0, 5_299_993.75), "the corner's node is half a texel inside"
     assert (east, south) == (400_005.0 + 1300.0, 5_299_993.75 - 950.0)
     assert file.extent == (1300.0, 950.0)
@@ -89,26 +89,26 @@ def test_a_sparse_file_has_no_data_where_nothing_is_stored(tmp_path):
         tmp_path / "a.tif", "w", **facts, transform=NORTH_UP, nodata=-9999, SPARSE_OK=True, **TILES
     ) as file:
         file.write(HEIGHTS[:16, :32], 1, window=rasterio.windows.Window(0, 16, 32, 16))
-    found = read_elevation(tmp_path / "a.tif").heights[::-1]
-    np.testing.assert_array_equal(found[16:32, :32], HEIGHTS[:16, :32])
-    assert np.isnan(found).sum() == 50 * 70 - 16 * 32
+    heights = read_elevation(tmp_path / "a.tif").heights[::-1]
+    np.testing.assert_array_equal(heights[16:32, :32], HEIGHTS[:16, :32])
+    assert np.isnan(heights).sum() == 50 * 70 - 16 * 32
 
 
 def test_scale_offset_and_no_data(tmp_path):
     values = HEIGHTS.astype("i2")
     values[3, 5] = -1
     path = raster(tmp_path / "a.tif", values, nodata=-1, scale=0.25, offset=-10.0)
-    found = read_elevation(path).heights[::-1]
-    wanted = values * 0.25 - 10.0
-    wanted[values == -1] = np.nan
-    np.testing.assert_allclose(found, wanted, rtol=1e-6)
+    heights = read_elevation(path).heights[::-1]
+    expected = values * 0.25 - 10.0
+    expected[values == -1] = np.nan
+    np.testing.assert_allclose(heights, expected, rtol=1e-6)
 
 
 def test_a_raster_from_the_south_is_turned(tmp_path):
     south_up = Affine(10.0, 0.0, 400_000.0, 0.0, 12.5, 5_300_000.0)
-    found = read_elevation(raster(tmp_path / "a.tif", transform=south_up))
-    np.testing.assert_array_equal(found.heights, HEIGHTS)  # the first row is the south's
-    west, south, _, north = found.place.bounds
+    elevation = read_elevation(raster(tmp_path / "a.tif", transform=south_up))
+    np.testing.assert_array_equal(elevation.heights, HEIGHTS)  # the first row is the south's
+    west, south, _, north = elevation.place.bounds
     assert (west, south, north) == (400_005.0, 5_300_006.25, 5_300_006.25 + 76 * 12.5)
 
 
@@ -126,8 +126,8 @@ def test_a_rotated_raster_is_refused(tmp_path, transform, angle):
 
 
 def test_a_raster_without_a_reference_system_says_so(tmp_path):
-    found = read_elevation(raster(tmp_path / "a.tif", crs=None))
-    assert found.spacing is None and "does not say whether that is metres" in found.notes[0]
+    elevation = read_elevation(raster(tmp_path / "a.tif", crs=None))
+    assert elevation.spacing is None and "does not say whether that is metres" in elevation.notes[0]
 
 
 # Large files, which a bound of a few texels makes of small ones.
@@ -136,12 +136,12 @@ def test_a_raster_without_a_reference_system_says_so(tmp_path):
 @pytest.fixture
 def values(monkeypatch):
     monkeypatch.setattr(file_sources, "LARGE", 1000)
-    monkeypatch.setattr(file_sources, "USUAL_SIDE", 61)
+    monkeypatch.setattr(file_sources, "DEFAULT_SIDE", 61)
     monkeypatch.setattr(gis, "_BAND", 400)
 
     def values_(path, **changes):
-        found = {"raw_size": (0, 0), "packing": 0, "no_data": 0, "first_row": 0, "metres": (0.0, 0.0)}
-        return found | {"elevation": str(path), "longest": 0} | changes
+        result = {"raw_size": (0, 0), "packing": 0, "no_data": 0, "first_row": 0, "metres": (0.0, 0.0)}
+        return result | {"elevation": str(path), "longest": 0} | changes
 
     return values_
 
@@ -159,13 +159,13 @@ def test_a_large_file_is_read_at_the_size_of_the_terrain(tmp_path, values, monke
     heights = smooth()
     path = raster(tmp_path / "a.tif", heights, **FORMS[form])
     asked = values(path, longest=57)
-    known = KIND.describe(asked)
-    assert known.size == (57, 41) and known.extent == (4190.0, 3737.5)
-    assert (known.base_elevation, known.relief) == (heights.min(), np.ptp(heights))
+    terrain = KIND.describe(asked)
+    assert terrain.size == (57, 41) and terrain.extent == (4190.0, 3737.5)
+    assert (terrain.base_elevation, terrain.relief) == (heights.min(), np.ptp(heights))
     made = KIND.make(asked, (57, 41))["height"]
     monkeypatch.setattr(file_sources, "LARGE", 2**24)
-    wanted = KIND.make(asked, (57, 41))["height"]
-    np.testing.assert_allclose(made, wanted, rtol=0, atol=1e-6)
+    expected = KIND.make(asked, (57, 41))["height"]
+    np.testing.assert_allclose(made, expected, rtol=0, atol=1e-6)
     assert KIND.notes(asked) == ()
 
 
@@ -213,7 +213,7 @@ def test_an_overview_is_read_where_it_is_fine_enough(tmp_path, values, monkeypat
     with rasterio.open(path, "r+") as file:
         file.build_overviews([2, 4, 8], Resampling.average)
     file = open_elevation(path)
-    assert [rows.shape for rows in file.found.overviews] == [(320, 400), (160, 200), (80, 100)]
+    assert [rows.shape for rows in file.grid.overviews] == [(320, 400), (160, 200), (80, 100)]
     read = []
     monkeypatch.setattr(
         "playground.data.elevation.decimate",
@@ -221,9 +221,9 @@ def test_an_overview_is_read_where_it_is_fine_enough(tmp_path, values, monkeypat
     )
     made = file.read_at((90, 70)).heights
     assert read == [(160, 200)], "twice as fine as what is wanted"
-    wanted = decimate(ArrayRows(heights), (90, 70), lambda _, band: band).heights[::-1]
+    expected = decimate(ArrayRows(heights), (90, 70), lambda _, band: band).heights[::-1]
     # Waves of 195 texels: means of 4 are 1 - sinc(4 / 195) lower, 0.07 % of 300 m each way.
-    assert np.abs(made - wanted)[2:-2, 2:-2].max() < 0.5
+    assert np.abs(made - expected)[2:-2, 2:-2].max() < 0.5
     file.read_at((600, 500))
     assert read[1] == (640, 800)
 
@@ -253,11 +253,11 @@ def netcdf(path, names=("elevation",), up=1, unit="m"):
 @pytest.mark.parametrize("up", [1, -1])
 def test_netcdf_from_the_south_or_the_north(tmp_path, up):
     path, heights = netcdf(tmp_path / "a.nc", up=up)
-    found = read_elevation(path)
-    np.testing.assert_array_equal(found.heights, heights[::up])
-    assert found.place.bounds == pytest.approx((7.0, 46.0, 7.6, 46.4))
-    assert found.place.crs.facts.epsg == 4326 and found.in_metres
-    assert found.notes == ("its degrees are of no named system; WGS 84 is assumed",)
+    elevation = read_elevation(path)
+    np.testing.assert_array_equal(elevation.heights, heights[::up])
+    assert elevation.place.bounds == pytest.approx((7.0, 46.0, 7.6, 46.4))
+    assert elevation.place.crs.facts.epsg == 4326 and elevation.in_metres
+    assert elevation.notes == ("its degrees are of no named system; WGS 84 is assumed",)
 
 
 def test_netcdf_of_several_grids_needs_one_of_a_usual_name(tmp_path):
@@ -313,12 +313,14 @@ def test_every_format_has_what_rasterio_reads_of_it(tmp_path, name):
     source = raster(tmp_path / "source.tif", values, Affine(10.0, 0.0, 4e5, 0.0, -10.0, 5.3e6))
     path = copied(source, tmp_path / name, driver, **options)
     beside = sorted(tmp_path.iterdir())
-    found = read_elevation(path)
+    elevation = read_elevation(path)
     with rasterio.open(path) as same:
-        np.testing.assert_array_equal(found.heights[::-1], same.read(1).astype(np.float32))
-        west, south, east, north = found.place.bounds
+        np.testing.assert_array_equal(elevation.heights[::-1], same.read(1).astype(np.float32))
+        west, south, east, north = elevation.place.bounds
         np.testing.assert_allclose(same.bounds, (west - 5, south - 5, east + 5, north + 5), rtol=1e-15)
-    assert found.spacing == (10.0, 10.0) and found.in_metres and found.place.crs.name == "EPSG:32633"
+    assert (
+        elevation.spacing == (10.0, 10.0) and elevation.in_metres and elevation.place.crs.name == "EPSG:32633"
+    )
     assert sorted(tmp_path.iterdir()) == beside, "nothing is written next to it"
 
 
@@ -328,9 +330,9 @@ def test_what_a_mask_leaves_out_has_no_data(tmp_path, internal):
     kept = HEIGHTS > 700.0
     with rasterio.Env(GDAL_TIFF_INTERNAL_MASK=internal), rasterio.open(path, "r+") as file:
         file.write_mask(kept)
-    found = read_elevation(path).heights[::-1]
-    np.testing.assert_array_equal(np.isnan(found), ~kept)
-    np.testing.assert_array_equal(found[kept], HEIGHTS.astype("i2")[kept])
+    heights = read_elevation(path).heights[::-1]
+    np.testing.assert_array_equal(np.isnan(heights), ~kept)
+    np.testing.assert_array_equal(heights[kept], HEIGHTS.astype("i2")[kept])
     assert (tmp_path / "a.tif.msk").exists() is (internal == "NO")
 
 
@@ -348,8 +350,8 @@ def test_a_mosaic_is_read_as_one(tmp_path, monkeypatch):
     west = raster(tmp_path / "tiles" / "w.tif", heights[:, :40])
     east = raster(tmp_path / "tiles" / "e.tif", heights[:, 40:], NORTH_UP @ Affine.translation(40, 0))
     (tmp_path / "a.vrt").write_text(mosaic((west, 0, 40), (east, 40, 60), size=(100, 60)))
-    found = read_elevation(tmp_path / "a.vrt")
-    np.testing.assert_array_equal(found.heights[::-1], heights)
+    elevation = read_elevation(tmp_path / "a.vrt")
+    np.testing.assert_array_equal(elevation.heights[::-1], heights)
     assert set(sidecars(tmp_path / "a.vrt")) == {west, east}, "they go where it goes"
     for large in (2**26, 1):  # judged by contents, or by times and sizes
         monkeypatch.setattr(hashes, "_LARGE", large)
@@ -366,17 +368,17 @@ def mosaic(*parts, size):
         for path, left, width in parts
     )
     band = f'<VRTRasterBand dataType="Float32" band="1">{sources}</VRTRasterBand>'
-    place = "<GeoTransform>400000, 10, 0, 5300000, 0, -12.5</GeoTransform><SRS>EPSG:32633</SRS>"
-    return f'<VRTDataset rasterXSize="{size[0]}" rasterYSize="{size[1]}">{place}{band}</VRTDataset>'
+    position = "<GeoTransform>400000, 10, 0, 5300000, 0, -12.5</GeoTransform><SRS>EPSG:32633</SRS>"
+    return f'<VRTDataset rasterXSize="{size[0]}" rasterYSize="{size[1]}">{position}{band}</VRTDataset>'
 
 
 def test_a_warp_is_read(tmp_path):
     path = raster(tmp_path / "a.tif", smooth(60, 100), Affine(10.0, 5.0, 4e5, 5.0, -10.0, 5.3e6))
     with rasterio.open(path) as turned, WarpedVRT(turned, crs="EPSG:32633", nodata=-1) as straight:
         rasterio.shutil.copy(straight, tmp_path / "a.vrt", driver="VRT")
-        wanted = straight.read(1)
-    found = read_elevation(tmp_path / "a.vrt").heights[::-1]
-    np.testing.assert_array_equal(np.where(np.isnan(found), -1, found), wanted)
+        expected = straight.read(1)
+    heights = read_elevation(tmp_path / "a.vrt").heights[::-1]
+    np.testing.assert_array_equal(np.where(np.isnan(heights), -1, heights), expected)
 
 
 # What a stranger's file may name

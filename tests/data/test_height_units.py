@@ -27,8 +27,8 @@ DEGREES = Affine(1e-3, 0.0, 10.0, 0.0, -1e-3, 46.0)
 def raster(path, crs="EPSG:32633", unit="", driver="GTiff", values=NUMBERS, scale=1.0, offset=0.0, **options):
     rows, cols = values.shape
     facts = {"driver": driver, "width": cols, "height": rows, "count": 1, "dtype": values.dtype}
-    place = DEGREES if crs and CRS.from_user_input(crs).is_geographic else PLACE
-    with rasterio.open(path, "w", **facts, crs=crs, transform=place, **options) as file:
+    degrees = DEGREES if crs and CRS.from_user_input(crs).is_geographic else PLACE
+    with rasterio.open(path, "w", **facts, crs=crs, transform=degrees, **options) as file:
         file.write(values, 1)
         if unit:
             file.set_band_unit(1, unit)
@@ -54,10 +54,10 @@ def keyed(path, keys, metadata="", aux=""):
 
 
 def assert_metres(path, factor, numbers=NUMBERS):
-    found = read_elevation(path)
-    assert found.in_metres
-    np.testing.assert_allclose(found.heights[::-1], numbers * factor, rtol=1e-6)
-    return found
+    elevation = read_elevation(path)
+    assert elevation.in_metres
+    np.testing.assert_allclose(elevation.heights[::-1], numbers * factor, rtol=1e-6)
+    return elevation
 
 
 def rows_of_proj(query):
@@ -151,8 +151,8 @@ def test_grids_have_their_unit_next_to_them(tmp_path, driver, ending):
 def test_a_prj_of_lines_says_the_unit_of_its_cells(tmp_path, lines, factor, cell):
     path = raster(tmp_path / "a.asc", driver="AAIGrid")
     path.with_suffix(".prj").write_text(lines)
-    found = assert_metres(path, factor)
-    assert found.spacing == pytest.approx((cell, cell), rel=1e-5) and found.assumed
+    result = assert_metres(path, factor)
+    assert result.spacing == pytest.approx((cell, cell), rel=1e-5) and result.assumed
 
 
 UTM = {1024: 1, 1025: 1, 3072: 32633}
@@ -183,8 +183,8 @@ def test_keys_and_metadata_count_as_in_gdal(tmp_path, keys, metadata, aux, facto
 
 @pytest.mark.parametrize(("code", "metres"), [(2264, SURVEY_FOOT), (2222, FOOT)])
 def test_a_code_in_feet_scales_cells_without_a_unit(tmp_path, code, metres):
-    found = read_elevation(keyed(tmp_path / "a.tif", {1024: 1, 1025: 1, 3072: code}))
-    assert found.spacing == pytest.approx((30 * metres,) * 2)
+    elevation = read_elevation(keyed(tmp_path / "a.tif", {1024: 1, 1025: 1, 3072: code}))
+    assert elevation.spacing == pytest.approx((30 * metres,) * 2)
 
 
 @pytest.mark.parametrize(("driver", "ending"), [("GTiff", "tif"), ("EHdr", "bil")])
@@ -192,8 +192,8 @@ def test_a_system_stated_beside_a_file_counts(tmp_path, driver, ending):
     path = raster(tmp_path / f"a.{ending}", None, driver=driver)
     wkt = CRS.from_user_input("EPSG:2264+8228").to_wkt().replace('"', "&quot;")
     Path(f"{path}.aux.xml").write_text(f"<PAMDataset>\n  <SRS>{wkt}</SRS>\n</PAMDataset>")
-    found = assert_metres(path, FOOT)
-    assert found.spacing == pytest.approx((30 * SURVEY_FOOT,) * 2) and not found.assumed
+    result = assert_metres(path, FOOT)
+    assert result.spacing == pytest.approx((30 * SURVEY_FOOT,) * 2) and not result.assumed
 
 
 @pytest.mark.parametrize("crs", ["EPSG:4807", "EPSG:4901"])
@@ -207,20 +207,20 @@ def test_cells_in_grads_are_nine_tenths_of_degrees(tmp_path, crs):
 
 @pytest.mark.parametrize(("crs", "factor"), [("EPSG:2264", SURVEY_FOOT), ("EPSG:2222", FOOT)])
 def test_a_map_in_feet_has_heights_in_feet(tmp_path, crs, factor):
-    found = assert_metres(raster(tmp_path / "a.tif", crs=crs), factor)
-    assert found.assumed == "nothing says the unit of its heights; feet, as of its cells, are assumed"
-    assert found.spacing == pytest.approx((30 * factor,) * 2)
+    result = assert_metres(raster(tmp_path / "a.tif", crs=crs), factor)
+    assert result.assumed == "nothing says the unit of its heights; feet, as of its cells, are assumed"
+    assert result.spacing == pytest.approx((30 * factor,) * 2)
 
 
 @pytest.mark.parametrize("crs", ["EPSG:32633", "EPSG:4326", None])
 def test_heights_without_a_unit_are_taken_for_metres(tmp_path, crs):
-    found = assert_metres(raster(tmp_path / "a.tif", crs=crs), 1.0)
-    assert found.assumed == "nothing says the unit of its heights; metres are assumed"
+    result = assert_metres(raster(tmp_path / "a.tif", crs=crs), 1.0)
+    assert result.assumed == "nothing says the unit of its heights; metres are assumed"
 
 
 def test_an_unknown_unit_is_named(tmp_path):
-    found = assert_metres(raster(tmp_path / "a.tif", unit="furlong"), 1.0)
-    assert found.assumed == "its heights are in 'furlong', no unit of length here; metres are assumed"
+    result = assert_metres(raster(tmp_path / "a.tif", unit="furlong"), 1.0)
+    assert result.assumed == "its heights are in 'furlong', no unit of length here; metres are assumed"
 
 
 @pytest.mark.parametrize(
@@ -273,8 +273,8 @@ WITHOUT_METRES = {
 def test_numbers_keep_their_heights_without_cells(tmp_path, any_engine, name):
     """Heights and cells are two facts: what has heights in numbers keeps them."""
     WITHOUT_METRES[name](tmp_path / name)
-    found = any_engine.metres(playground.load(tmp_path / name), "height")
-    np.testing.assert_allclose(found[::-1], HEIGHTS, atol=1e-4)
+    metres = any_engine.metres(playground.load(tmp_path / name), "height")
+    np.testing.assert_allclose(metres[::-1], HEIGHTS, atol=1e-4)
 
 
 PICTURES = {
@@ -289,7 +289,7 @@ PICTURES = {
 def test_a_picture_is_stretched_and_that_is_reported_once(tmp_path, any_engine, name):
     PICTURES[name](tmp_path / name)
     reports: list[str] = []
-    any_engine.warnings.report = lambda found: reports.append(found.message)
+    any_engine.warnings.report = lambda result: reports.append(result.message)
     sketch = playground.load(tmp_path / name)
     for size in ((16, 9), (9, 16)):
         any_engine.render(sketch, size=size)
@@ -305,7 +305,7 @@ def test_a_picture_is_stretched_and_that_is_reported_once(tmp_path, any_engine, 
 
 def test_what_is_assumed_of_a_unit_is_reported_once(tmp_path, any_engine):
     reports: list[str] = []
-    any_engine.warnings.report = lambda found: reports.append(found.message)
+    any_engine.warnings.report = lambda result: reports.append(result.message)
     sketch = playground.load(raster(tmp_path / "a.tif"))
     for size in ((16, 9), (9, 16)):
         any_engine.render(sketch, size=size)

@@ -28,7 +28,7 @@ COLOURS = np.array([[255, 0, 0], [0, 255, 0], [0, 0, 255], [51, 102, 204]], "u1"
 def document(**changes):
     """Return a glTF of two triangles; ``changes`` replace entries by "path.to.it"."""
     blob = PLACES.tobytes() + INDICES.tobytes() + COLOURS.tobytes()
-    found = {
+    result = {
         "asset": {"version": "2.0"},
         "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0}],
@@ -47,16 +47,16 @@ def document(**changes):
     }
     for path, value in changes.items():
         at, *keys = [int(key) if key.isdigit() else key for key in path.split("__")]
-        inner, key = found, at
+        inner, key = result, at
         for following in keys:
             inner, key = inner[key], following
         inner[key] = value
-    return found
+    return result
 
 
-def rough(given):
+def rough(value):
     """Return a document whose material has that in place of an object."""
-    return document(meshes__0__primitives__0__material=0, materials=[{"pbrMetallicRoughness": given}])
+    return document(meshes__0__primitives__0__material=0, materials=[{"pbrMetallicRoughness": value}])
 
 
 def with_blob(data, **changes):
@@ -88,9 +88,9 @@ def nested(scale, deep):
 
 @pytest.fixture
 def read(tmp_path):
-    def read_(found, name="a.gltf"):
+    def read_(result, name="a.gltf"):
         path = tmp_path / name
-        path.write_bytes(found if isinstance(found, bytes) else json.dumps(found).encode())
+        path.write_bytes(result if isinstance(result, bytes) else json.dumps(result).encode())
         return read_model(path)
 
     return read_
@@ -116,8 +116,8 @@ def test_colours_are_the_material_s_times_the_corners(read):
             materials=[{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 1, 0.25, 1]}}],
         )
     )
-    wanted = COLOURS[INDICES].reshape(2, 3, 3) / 255 * [0.5, 1, 0.25]
-    np.testing.assert_allclose(model.colours, wanted, atol=1e-6)
+    expected = COLOURS[INDICES].reshape(2, 3, 3) / 255 * [0.5, 1, 0.25]
+    np.testing.assert_allclose(model.colours, expected, atol=1e-6)
 
 
 def test_nodes_move_what_is_in_them(read):
@@ -224,7 +224,7 @@ def test_what_is_wrong_is_said_in_a_sentence(read, wrong, message):
 def test_a_model_has_a_bound(read, tmp_path):
     indices = np.zeros(3 * (MAX_TRIANGLES // 2 + 1), "<u2")
     blob = PLACES.tobytes() + indices.tobytes()
-    found = document(
+    result = document(
         buffers=[{"byteLength": len(blob), "uri": "data:a/b;base64," + base64.b64encode(blob).decode()}],
         accessors__1__count=len(indices),
         bufferViews__1__byteLength=indices.nbytes,
@@ -232,7 +232,7 @@ def test_a_model_has_a_bound(read, tmp_path):
         scenes=[{"nodes": [0, 1]}],
     )
     with pytest.raises(DataError, match=f"has more than {MAX_TRIANGLES} triangles"):
-        read(found)
+        read(result)
     with pytest.raises(DataError, match="cannot be read: No such file"):
         read_model(tmp_path / "none.glb")
 
@@ -242,11 +242,11 @@ def test_what_nothing_is_left_of_has_its_own_normals(read):
     model = read(nested([1e-200] * 3, 2))
     np.testing.assert_allclose(np.linalg.norm(model.normals, axis=-1), 1, atol=1e-6)
     small = read(nested([1e-9] * 3, 1))
-    wanted = np.where(PLACES.any(1)[:, None], PLACES, [0, 0, 1])[INDICES]
-    wanted = wanted / np.linalg.norm(wanted, axis=1, keepdims=True)
+    expected = np.where(PLACES.any(1)[:, None], PLACES, [0, 0, 1])[INDICES]
+    expected = expected / np.linalg.norm(expected, axis=1, keepdims=True)
     corners = np.any(PLACES[INDICES], axis=1)
-    found = small.normals.reshape(-1, 3)
-    np.testing.assert_allclose(found[corners], upright(wanted)[corners], atol=1e-6)
+    result = small.normals.reshape(-1, 3)
+    np.testing.assert_allclose(result[corners], upright(expected)[corners], atol=1e-6)
 
 
 PART = {"attributes": {"POSITION": 0, "NORMAL": 0, "COLOR_0": 0}, "indices": 1}
@@ -278,13 +278,13 @@ def test_parts_and_numbers_have_bounds(read):
     with pytest.raises(DataError, match=f"has more than {MAX_PARTS} parts"):
         read(much(nodes=MAX_PARTS // 64 + 1, parts=64))
     # Accessor after accessor over the same bytes, each of which would be read.
-    found = much()
-    found["accessors"] += [found["accessors"][0]] * 64
-    found["meshes"][0]["primitives"] = [
+    result = much()
+    result["accessors"] += [result["accessors"][0]] * 64
+    result["meshes"][0]["primitives"] = [
         {"attributes": {"POSITION": k}, "indices": 1} for k in range(3, 3 + 64)
     ]
     with pytest.raises(DataError, match=f"has more than {MAX_NUMBERS} numbers"):
-        read(found)
+        read(result)
 
 
 def test_a_whole_number_is_a_share_where_that_is_stated(read):
@@ -307,10 +307,10 @@ def test_a_whole_number_is_a_share_where_that_is_stated(read):
 
 
 def test_a_file_of_pictures_and_of_other_files_opens_none(read, tmp_path, monkeypatch):
-    found = document(images=[{"uri": "secret.png"}], textures=[{"source": 0}])
+    result = document(images=[{"uri": "secret.png"}], textures=[{"source": 0}])
     (tmp_path / "secret.png").write_bytes(b"no picture")
     monkeypatch.setattr("PIL.Image.open", None)
-    assert len(read(found).corners) == 2
+    assert len(read(result).corners) == 2
 
 
 def test_without_trimesh_the_extra_is_named(read, monkeypatch):
@@ -323,19 +323,19 @@ def test_a_file_is_read_again_only_when_it_changes(tmp_path, monkeypatch):
     path = tmp_path / "a.gltf"
     path.write_text(json.dumps(document()))
     read_ = []
-    monkeypatch.setattr(file_sources, "read_model", lambda given: read_.append(given) or read_model(given))
+    monkeypatch.setattr(file_sources, "read_model", lambda value: read_.append(value) or read_model(value))
     values = {"model": str(path)}
     for _ in range(3):
         make_model(values, size_of_model(values))
     assert read_ == [path]
-    found = document()
-    found["nodes"][0]["translation"] = [5, 0, 0]
-    path.write_text(json.dumps(found))
+    result = document()
+    result["nodes"][0]["translation"] = [5, 0, 0]
+    path.write_text(json.dumps(result))
     assert make_model(values, size_of_model(values))["place"][0, 0, 0] == 5
     assert read_ == [path] * 2
     for far in range(6, 10):  # saves that keep inode, size and time of change
         time = path.stat().st_mtime_ns
-        found["nodes"][0]["translation"] = [far, 0, 0]
-        path.write_text(json.dumps(found))
+        result["nodes"][0]["translation"] = [far, 0, 0]
+        path.write_text(json.dumps(result))
         os.utime(path, ns=(time, time))
         assert make_model(values, size_of_model(values))["place"][0, 0, 0] == far

@@ -35,9 +35,9 @@ def test_every_ending_has_its_format():
 def test_a_frame_is_saved_as_what_its_name_says(tmp_path: Path, ending: str, upper: bool):
     path = tmp_path / f"a{ending.upper() if upper else ending}"
     assert Frame(picture()).save(path) == path
-    with PIL.Image.open(path) as found:
-        assert found.format == FORMATS[ending]
-        pixels = np.asarray(found.convert("RGB")).astype(int)
+    with PIL.Image.open(path) as result:
+        assert result.format == FORMATS[ending]
+        pixels = np.asarray(result.convert("RGB")).astype(int)
     worst = np.abs(pixels - picture()[..., :3]).max()
     assert worst == 0 if FORMATS[ending] != "JPEG" else worst <= 8, "top row first, sRGB as it is"
     assert [each.name for each in tmp_path.iterdir()] == [path.name]

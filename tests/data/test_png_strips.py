@@ -22,18 +22,18 @@ def picture(rows: int, cols: int, channels: int) -> np.ndarray:
 @pytest.mark.parametrize("channels", [3, 4])
 @pytest.mark.parametrize("heights", [[7], [1, 1, 1, 4], [5, 2], [0, 7]])
 def test_pillow_reads_what_was_written(channels, heights):
-    wanted = picture(7, 11, channels)
+    total = picture(7, 11, channels)
     stream = io.BytesIO()
     writer = PngStrips(stream, (11, 7), channels, {"Title": "Terrain – hills"})
     done = 0
     for rows in heights:
-        writer.write(wanted[done : done + rows])
+        writer.write(total[done : done + rows])
         done += rows
     writer.close()
     stream.seek(0)
-    found = PIL.Image.open(stream)
-    np.testing.assert_array_equal(np.array(found), wanted)
-    assert found.mode == {3: "RGB", 4: "RGBA"}[channels] and found.text == {"Title": "Terrain – hills"}
+    result = PIL.Image.open(stream)
+    np.testing.assert_array_equal(np.array(result), total)
+    assert result.mode == {3: "RGB", 4: "RGBA"}[channels] and result.text == {"Title": "Terrain – hills"}
 
 
 def test_smooth_rows_pack_well():

@@ -17,17 +17,17 @@ SIZES = [(65, 65), (33, 129), (17, 17), (200, 31), (2, 2), (64, 66), (5, 300), (
 
 @pytest.mark.parametrize("size", SIZES)
 def test_a_constant_stays_exactly_constant(size):
-    found = resample(np.full((40, 65), 0.1, np.float32), size)
-    assert found.shape == size[::-1] and found.dtype == np.float32 and found.flags.c_contiguous
-    assert (found == np.float32(0.1)).all()
+    heights = resample(np.full((40, 65), 0.1, np.float32), size)
+    assert heights.shape == size[::-1] and heights.dtype == np.float32 and heights.flags.c_contiguous
+    assert (heights == np.float32(0.1)).all()
 
 
 @pytest.mark.parametrize("size", SIZES)
 def test_a_plane_stays_a_plane_with_its_corners(size):
     y, x = np.meshgrid(np.linspace(0, 1, 40), np.linspace(0, 1, 65), indexing="ij")
     v, u = np.meshgrid(np.linspace(0, 1, size[1]), np.linspace(0, 1, size[0]), indexing="ij")
-    found = resample(700.0 + 250.0 * x - 90.0 * y, size)
-    np.testing.assert_allclose(found, 700.0 + 250.0 * u - 90.0 * v, atol=2e-4)
+    heights = resample(700.0 + 250.0 * x - 90.0 * y, size)
+    np.testing.assert_allclose(heights, 700.0 + 250.0 * u - 90.0 * v, atol=2e-4)
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -84,9 +84,9 @@ def test_tiles_that_share_an_edge_share_it_afterwards():
 def test_turning_the_terrain_turns_the_result():
     heightmap = RNG.random((40, 65))
     for size in ((31, 90), (100, 20)):
-        found = resample(heightmap, size)
-        np.testing.assert_allclose(resample(heightmap[::-1, ::-1], size), found[::-1, ::-1], atol=1e-6)
-        np.testing.assert_allclose(resample(heightmap.T, size[::-1]), found.T, atol=1e-6)
+        heights = resample(heightmap, size)
+        np.testing.assert_allclose(resample(heightmap[::-1, ::-1], size), heights[::-1, ::-1], atol=1e-6)
+        np.testing.assert_allclose(resample(heightmap.T, size[::-1]), heights.T, atol=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -124,8 +124,8 @@ def test_silence_has_no_spectrum_and_a_flat_wave():
 def test_the_wave_is_the_window_s_first_samples_one_a_texel():
     ramp = np.linspace(-1, 1, SPAN, dtype=np.float32)[None]
     wave = media.channel(ramp)[1]
-    wanted = np.floor(128 * (1 + ramp[0, -WINDOW:][:SHOWN].astype(float)))
-    np.testing.assert_array_equal(wave, wanted)
+    expected = np.floor(128 * (1 + ramp[0, -WINDOW:][:SHOWN].astype(float)))
+    np.testing.assert_array_equal(wave, expected)
     assert media.wave(np.array([-2.0, -1.0, 1.0, 2.0], np.float32)).tolist() == [0, 0, 255, 255]
 
 
@@ -153,7 +153,7 @@ def test_what_cannot_be_heard_is_a_sentence(tmp_path, monkeypatch):
     with pytest.raises(DataError, match="it has no sound"):
         Sound(own_film(tmp_path / "a.mp4", count=2))
     path = write(tmp_path / "a.wav", tone(10)[None])
-    monkeypatch.setattr(media, "_MOST_BYTES", 1000)
+    monkeypatch.setattr(media, "_MAX_BYTES", 1000)
     with pytest.raises(DataError, match="minutes of sound are too many; the limit is"):
         Sound(path)
 

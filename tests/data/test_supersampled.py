@@ -37,17 +37,17 @@ def test_a_pixel_is_the_mean_light_of_its_square(times, opaque):
     large = random.integers(0, 256, (5 * times, 7 * times, 4), dtype=np.uint8)
     if opaque:
         large[..., 3] = 255
-    found = reduced(large, times)
-    assert found.shape == (5, 7, 4)
+    array = reduced(large, times)
+    assert array.shape == (5, 7, 4)
     if times == 1:
-        np.testing.assert_array_equal(found, large)
+        np.testing.assert_array_equal(array, large)
         return
     for row, column in ((0, 0), (4, 6), (2, 3)):
         square = large[times * row : times * (row + 1), times * column : times * (column + 1)].reshape(-1, 4)
         weights = None if opaque else [float(a) for a in square[:, 3]]
         expected = [byte_of_mean(square[:, c].tolist(), weights) for c in range(3)]
-        np.testing.assert_array_equal(found[row, column, :3], expected)
-        assert found[row, column, 3] == round(square[:, 3].mean())
+        np.testing.assert_array_equal(array[row, column, :3], expected)
+        assert array[row, column, 3] == round(square[:, 3].mean())
 
 
 def test_half_white_is_not_half_of_255():

@@ -49,8 +49,8 @@ def test_numbers_are_those_of_the_file(tmp_path, kind, channels):
             how = {"compression": "zlib"}
         path = written(tmp_path / "a.tif", stored, **how)
         image = read_image(path)
-        found = image.pixels / 255 if image.pixels.dtype == np.uint8 else image.pixels
-        np.testing.assert_allclose(found, four(stored.astype(np.float64) / most), atol=6e-8, rtol=6e-8)
+        pixels = image.pixels / 255 if image.pixels.dtype == np.uint8 else image.pixels
+        np.testing.assert_allclose(pixels, four(stored.astype(np.float64) / most), atol=6e-8, rtol=6e-8)
         assert image.has_alpha == (channels == 4)
         assert picture_size(path) == image.size == (9, 6)
 
@@ -65,8 +65,8 @@ def test_every_orientation_is_obeyed(tmp_path, kind):
     for number, expected in enumerate(shown, 1):
         path = written(tmp_path / "a.tif", stored, extratags=[(274, 3, 1, number, True)])
         image = read_image(path)
-        found = image.pixels / 255 if kind == "uint8" else image.pixels
-        np.testing.assert_allclose(found[..., :3] * most, expected, atol=1e-3, err_msg=str(number))
+        pixels = image.pixels / 255 if kind == "uint8" else image.pixels
+        np.testing.assert_allclose(pixels[..., :3] * most, expected, atol=1e-3, err_msg=str(number))
         assert picture_size(path) == image.size
 
 
@@ -75,14 +75,14 @@ def test_planes_inverse_grey_and_premultiplied_alpha(tmp_path):
     path = written(tmp_path / "a.tif", planes, photometric="rgb", planarconfig="separate")
     np.testing.assert_array_equal(read_image(path).pixels[..., :3], planes.transpose(1, 2, 0))
     grey = RNG.integers(0, 65536, SHAPE).astype(np.uint16)
-    found = read_image(written(tmp_path / "b.tif", grey, photometric="miniswhite")).pixels
-    np.testing.assert_allclose(found[..., 0], 1 - grey / 65535, atol=1e-7)
+    pixels = read_image(written(tmp_path / "b.tif", grey, photometric="miniswhite")).pixels
+    np.testing.assert_allclose(pixels[..., 0], 1 - grey / 65535, atol=1e-7)
     straight = RNG.random((*SHAPE, 4)).astype(np.float32)
     straight[0, 0, 3] = 0.0
     stored = np.concatenate([straight[..., :3] * straight[..., 3:], straight[..., 3:]], -1)
-    found = read_image(written(tmp_path / "c.tif", stored, extrasamples=["assocalpha"])).pixels
+    pixels = read_image(written(tmp_path / "c.tif", stored, extrasamples=["assocalpha"])).pixels
     straight[0, 0, :3] = 0.0
-    np.testing.assert_allclose(found, straight, rtol=1e-6)
+    np.testing.assert_allclose(pixels, straight, rtol=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ import tifffile
 
 from playground.allowed_files import VECTORS
 from playground.data import vectors
-from playground.data.vectors import Grid, Shape, draw, read_vectors
+from playground.data.vectors import Grid, VectorShape, draw, read_vectors
 from playground.engine.sources import source_kind
 from playground.errors import DataError
 from playground.extras import install_command
@@ -24,7 +24,7 @@ FINE = 16  # texels of the truth in one, along each side
 
 
 def shape(kind, *lines):
-    return Shape(kind, tuple(np.array(line, np.float64) for line in lines))
+    return VectorShape(kind, tuple(np.array(line, np.float64) for line in lines))
 
 
 # What covers a texel, counted on a fine grid.
@@ -44,15 +44,15 @@ def in_texels(fine):
 def within(places, lines, radius, spacing):
     """Return which places are so near to lines, each piece by itself."""
     x, y = places[0] * spacing[0], places[1] * spacing[1]
-    found = np.zeros(x.shape, bool)
+    result = np.zeros(x.shape, bool)
     for line in lines:
         line = line * np.array(spacing)
         for a, b in zip(line, line[1:] if len(line) > 1 else line, strict=False):
             along = b - a
             part = ((x - a[0]) * along[0] + (y - a[1]) * along[1]) / (along @ along or 1.0)
             part = np.clip(part, 0.0, 1.0)
-            found |= np.hypot(x - a[0] - part * along[0], y - a[1] - part * along[1]) <= radius
-    return found
+            result |= np.hypot(x - a[0] - part * along[0], y - a[1] - part * along[1]) <= radius
+    return result
 
 
 def inside(places, rings):
@@ -72,7 +72,7 @@ def inside(places, rings):
 def test_a_line_covers_as_much_of_each_texel_as_it_does(spacing, texels):
     size, width = (41, 29), texels * math.sqrt(spacing[0] * spacing[1])
     lines = [np.array([(-9.0, 3.3), (18.2, 11.7), (22.0, 40.0)]), np.array([(3.0, 26.0), (37.5, 20.25)])]
-    made = draw([Shape("line", (line,)) for line in lines], Grid(size, spacing), width, filled=True)
+    made = draw([VectorShape("line", (line,)) for line in lines], Grid(size, spacing), width, filled=True)
     truth = in_texels(within(fine_places(size), lines, width / 2, spacing))
     # Straight edges to 0.05; at ends, bends and crossings two of them share a texel.
     assert np.abs(made - truth).max() < 0.35
@@ -133,7 +133,7 @@ def test_what_goes_far_beyond_the_terrain_is_drawn_where_it_is_on_it():
 @pytest.mark.slow
 def test_a_long_and_winding_line_is_drawn_in_a_moment():
     walk = 300 + RNG.standard_normal((50_000, 2)).cumsum(0)
-    made = draw([Shape("line", (walk,))], Grid((601, 601), (10.0, 10.0)), 15.0, filled=True)
+    made = draw([VectorShape("line", (walk,))], Grid((601, 601), (10.0, 10.0)), 15.0, filled=True)
     on = np.rint(walk[(walk > 1).all(axis=1) & (walk < 599).all(axis=1)]).astype(int)
     assert made[on[:, 1], on[:, 0]].min() > 0.5
 
@@ -141,12 +141,12 @@ def test_a_long_and_winding_line_is_drawn_in_a_moment():
 def test_shapes_are_not_compared_with_one_another():
     compared = []
 
-    class Compared(Shape):
+    class Compared(VectorShape):
         def __eq__(self, other):
             compared.append(other)
             return self is other
 
-        __hash__ = Shape.__hash__
+        __hash__ = VectorShape.__hash__
 
     ring = np.array([(2.5, 2.5), (12.5, 2.5), (12.5, 12.5)])
     shapes = [Compared(kind, (ring,)) for kind in ("polygon", "line") for _ in range(50)]
@@ -180,12 +180,12 @@ def test_every_kind_of_geometry_is_read_with_and_without_heights(tmp_path):
         {"type": "GeometryCollection", "geometries": [geometry("Point", [7, 8])]},
         None,
     )
-    found = read_vectors(path)
+    result = read_vectors(path)
     kinds = ["point"] * 3 + ["line"] * 3 + ["polygon"] * 3 + ["point"]
-    assert [s.kind for s in found.shapes] == kinds
-    assert [len(s.lines) for s in found.shapes] == [1, 1, 1, 1, 1, 1, 2, 1, 2, 1]
-    np.testing.assert_array_equal(found.shapes[5].lines[0], [[5, 6], [7, 8], [0, 0]])
-    assert found.crs == "EPSG:4326"
+    assert [s.kind for s in result.shapes] == kinds
+    assert [len(s.lines) for s in result.shapes] == [1, 1, 1, 1, 1, 1, 2, 1, 2, 1]
+    np.testing.assert_array_equal(result.shapes[5].lines[0], [[5, 6], [7, 8], [0, 0]])
+    assert result.crs == "EPSG:4326"
 
 
 @pytest.mark.parametrize(
@@ -230,7 +230,7 @@ def test_what_is_wrong_with_a_file_is_a_sentence(tmp_path, text, words):
 
 def test_too_big_or_of_another_kind_is_a_sentence(tmp_path, monkeypatch):
     path = geojson(tmp_path / "a.geojson", geometry("Point", [1, 2]))
-    monkeypatch.setattr(vectors, "MOST_BYTES", 20)
+    monkeypatch.setattr(vectors, "MAX_BYTES", 20)
     with pytest.raises(DataError, match="of GeoJSON 0 are read at most"):
         read_vectors(path)
     with pytest.raises(DataError, match=r"'\.dxf' is no format of vector data; readable are \.geojson"):
@@ -253,11 +253,11 @@ def test_other_formats_are_read_by_ogr_or_name_the_extra(tmp_path, monkeypatch, 
         layer="routes" if ending == ".gpx" else None,
         driver="KML" if ending == ".kml" else None,
     )
-    found = read_vectors(path)
-    assert found.crs == "EPSG:4326" and [s.kind for s in found.shapes] == ["line"]
-    np.testing.assert_allclose(found.shapes[0].lines[0], lines, atol=1e-9)
+    result = read_vectors(path)
+    assert result.crs == "EPSG:4326" and [s.kind for s in result.shapes] == ["line"]
+    np.testing.assert_allclose(result.shapes[0].lines[0], lines, atol=1e-9)
     path.write_bytes(b"<OGRVRTDataSource></OGRVRTDataSource>")
-    with pytest.raises(DataError, match=f"is no {ending[1:]} file, although its name says so"):
+    with pytest.raises(DataError, match=f"is no {ending[1:]} file, although its name ends like one"):
         read_vectors(path)
     monkeypatch.setattr(vectors, "find_spec", lambda _: None)
     with pytest.raises(
@@ -293,7 +293,7 @@ def test_a_list_of_other_sources_does_not_pass_for_a_file_of_shapes(tmp_path, en
     private = geojson(tmp_path / "private.geojson", geometry("Point", [1, 2]))
     path = tmp_path / f"a{ending}"
     path.write_text(text.format("", private, ending[1:]))
-    with pytest.raises(DataError, match=f"is no {ending[1:]} file, although its name says so"):
+    with pytest.raises(DataError, match=f"is no {ending[1:]} file, although its name ends like one"):
         read_vectors(path)
 
 
@@ -341,8 +341,10 @@ def terrain(path, epsg, west, north, step, size=(61, 41), model=1):
 @pytest.fixture
 def values(tmp_path):
     def values_(vector, elevation, **changes):
-        found = {p.name: p.default for p in read_technique("texturing/vectors/drawn", GLSL, GLSL).parameters}
-        return found | {"vectors": str(vector), "elevation": str(elevation)} | changes
+        defaults = {
+            p.name: p.default for p in read_technique("texturing/vectors/drawn", GLSL, GLSL).parameters
+        }
+        return defaults | {"vectors": str(vector), "elevation": str(elevation)} | changes
 
     return values_
 
@@ -417,10 +419,10 @@ def test_a_parallel_is_bent_on_terrain_in_utm(tmp_path, values):
     made = KIND.make(values(path, dem, width=200.0), (61, 41))["mask"]
     for column, longitude in ((15, 12.25), (30, 12.5), (45, 12.75)):
         x, y = utm(longitude, 47.5, 15.0)
-        place = (x - west) / step[0], 20 + (y - middle[1]) / step[1]
-        assert abs(place[0] - column) < 0.3
+        position = (x - west) / step[0], 20 + (y - middle[1]) / step[1]
+        assert abs(position[0] - column) < 0.3
         rows = made[:, column]
-        assert (rows * np.arange(41)).sum() / rows.sum() == pytest.approx(place[1], abs=0.6)
+        assert (rows * np.arange(41)).sum() / rows.sum() == pytest.approx(position[1], abs=0.6)
     straight = utm(12.0, 47.5, 15.0)[1] / 2 + utm(13.0, 47.5, 15.0)[1] / 2
     assert abs(straight - middle[1]) > 2 * step[1], "a straight line would miss the middle by two texels"
 

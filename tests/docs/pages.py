@@ -41,8 +41,8 @@ class Block:
     @property
     def name(self) -> str:
         """How a test is called that runs it."""
-        place = f"{self.page.relative_to(ROOT).as_posix()}:{self.line}"
-        return f"{place}:{self.title}" if self.title else place
+        text = f"{self.page.relative_to(ROOT).as_posix()}:{self.line}"
+        return f"{text}:{self.title}" if self.title else text
 
 
 @cache

@@ -85,15 +85,15 @@ FLIGHT = {
 
 def quoted() -> list[str]:
     """Return the commands of all texts, each once, in the order of the texts."""
-    found: dict[str, None] = {}
+    result: dict[str, None] = {}
     for path in (*PAGES, *LESSONS):
         for block in blocks_of(path):
             if not block.reason:
-                found |= dict.fromkeys(lines_of(block.language, block.text))
+                result |= dict.fromkeys(lines_of(block.language, block.text))
             if path in LESSONS:  # exercises lie in TOML blocks
-                found |= dict.fromkeys(INLINE.findall(block.text))
-        found |= dict.fromkeys(INLINE.findall(outside_of_blocks(path)))
-    once = {re.sub(r"^\./play\b(?! test)", "playground", command): command for command in reversed(found)}
+                result |= dict.fromkeys(INLINE.findall(block.text))
+        result |= dict.fromkeys(INLINE.findall(outside_of_blocks(path)))
+    once = {re.sub(r"^\./play\b(?! test)", "playground", command): command for command in reversed(result)}
     return [command for command in reversed(once.values()) if not FORM.search(command)]
 
 
@@ -224,32 +224,32 @@ def furnish(folder: Path, command: str) -> None:
 
 def smaller(words: list[str]) -> list[str]:
     """Return a command's arguments with small pictures, short films, few values and one lesson."""
-    found = list(words)
+    names = list(words)
     for at, word in enumerate(words):
-        if word == "--size" and found[0] == "bench":
-            found[at + 1] = "65"
+        if word == "--size" and names[0] == "bench":
+            names[at + 1] = "65"
         elif word == "--size":
             width, height = (int(n) for n in words[at + 1].split("x"))
-            found[at + 1] = f"{max(width // 100, 32)}x{max(height // 100, 32)}"
+            names[at + 1] = f"{max(width // 100, 32)}x{max(height // 100, 32)}"
         if word == "--frames" and ".." in words[at + 1]:
-            found[at + 1] = "0..1"
+            names[at + 1] = "0..1"
         if word == "-n":
-            found[at + 1] = "2"
-    if "--video" in found:
-        found += ["--seconds", "0.1"]
-    if found[0] == "render" and "--size" not in found:
-        found += ["--size", "64x36"]
-    if found[:2] == ["shots", "mutants"]:
-        found += ["--size", "64x36", "--mutant", "no-shadow"]
-    if "--again" in found:
-        found[found.index("--again") + 1] = "1"
-    if found[:2] in (["variants", "verify"], ["variants", "renew"]) and "my-land" not in found:
-        found = ["variants", "verify", "generation/smooth"]  # and nothing is written into the library
-    if found == ["check"]:
-        found += ["my-land"]
-    if found[:2] in (["lesson", "build"], ["lesson", "check"]):
-        found += ["heightfield"]
-    return found
+            names[at + 1] = "2"
+    if "--video" in names:
+        names += ["--seconds", "0.1"]
+    if names[0] == "render" and "--size" not in names:
+        names += ["--size", "64x36"]
+    if names[:2] == ["shots", "mutants"]:
+        names += ["--size", "64x36", "--mutant", "no-shadow"]
+    if "--again" in names:
+        names[names.index("--again") + 1] = "1"
+    if names[:2] in (["variants", "verify"], ["variants", "renew"]) and "my-land" not in names:
+        names = ["variants", "verify", "generation/smooth"]  # and nothing is written into the library
+    if names == ["check"]:
+        names += ["my-land"]
+    if names[:2] in (["lesson", "build"], ["lesson", "check"]):
+        names += ["heightfield"]
+    return names
 
 
 @pytest.mark.parametrize(
@@ -286,8 +286,8 @@ def test_without_a_display_only_the_display_is_missing(
 def shape_of(command: str) -> tuple[str, ...]:
     """Return what of a command that opens a window tells it from others: of names, only what they end in."""
     words = arguments(command)
-    known = {"live", "fly", "lesson", "open", "present"}
-    return tuple(w if w in known or w.startswith("-") else Path(w).suffix for w in words)
+    known_names = {"live", "fly", "lesson", "open", "present"}
+    return tuple(w if w in known_names or w.startswith("-") else Path(w).suffix for w in words)
 
 
 @pytest.mark.slow
@@ -331,9 +331,9 @@ def test_every_option_that_is_named_exists():
 
     plugin = (ROOT / "playground" / "shots" / "plugin.py").read_text("utf-8")
     own_tests = (ROOT / "tests" / "conftest.py").read_text("utf-8")
-    known = options(cli.command_line()) | set(re.findall(r'"(--shots-[a-z-]+)"', plugin))
-    known |= set(re.findall(r'addoption\(\s*"(--[a-z-]+)"', own_tests))
-    known |= {
+    existing = options(cli.command_line()) | set(re.findall(r'"(--shots-[a-z-]+)"', plugin))
+    existing |= set(re.findall(r'addoption\(\s*"(--[a-z-]+)"', own_tests))
+    existing |= {
         "--help",
         "--reuse-window",
         "--at",
@@ -345,7 +345,7 @@ def test_every_option_that_is_named_exists():
         "--execute",
     }  # of others
     named = {o for page in PAGES for o in re.findall(r"(?<![\w-])--[a-z][a-z-]+", page.read_text("utf-8"))}
-    assert named and not named - known - {"--no-install-recommends", "--no-deps"}
+    assert named and not named - existing - {"--no-install-recommends", "--no-deps"}
 
 
 # Programs other than the playground
@@ -408,9 +408,9 @@ def test_frames_of_a_page_are_compared_with_the_engines():
 def test_the_pictures_of_hills_from_none_to_accepted(folder: Path):
     """As the tutorial has it: no reference fails, an update writes it, then it passes; a turned sun fails."""
     assert cli.main(["new", "hills"]) == 0
-    for command, wanted in (("pytest hills", 1), (UPDATE, None), ("pytest hills", 0)):
+    for command, total in (("pytest hills", 1), (UPDATE, None), ("pytest hills", 0)):
         done = run(folder, shlex.split(command))
-        assert wanted is None or done.returncode == wanted, done.stdout
+        assert total is None or done.returncode == total, done.stdout
     assert list((folder / "hills" / "screenshots").rglob("*.png"))
     others = {f"pytest hills{c.partition(' hills')[2]}" for c in IN_HILLS} - {"pytest hills", UPDATE}
     done = run(folder, ["python", "-c", COLLECT, *others])

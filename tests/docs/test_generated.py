@@ -33,8 +33,8 @@ def test_every_command_and_each_of_its_options_is_there():
         for parameter in command.params:  # type: ignore[attr-defined]
             for option in parameter.opts if parameter.param_type_name == "option" else ():
                 assert f"<code>{option}</code>" in part, (name, option)
-        for child, found in getattr(command, "commands", {}).items():
-            walk(f"{name} {child}", found)
+        for child, result in getattr(command, "commands", {}).items():
+            walk(f"{name} {child}", result)
 
     walk("playground", command_line())
 

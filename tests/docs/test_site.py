@@ -37,10 +37,10 @@ class Loads(HTMLParser):
         self.found: list[str] = []
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        given = {name: value or "" for name, value in attrs}
-        self.found += [given[name] for name in ("src", "srcset", "data", "poster") if name in given]
-        if tag == "link" and given.get("rel") not in ("canonical", "next", "prev"):
-            self.found.append(given.get("href", ""))
+        values = {name: value or "" for name, value in attrs}
+        self.found += [values[name] for name in ("src", "srcset", "data", "poster") if name in values]
+        if tag == "link" and values.get("rel") not in ("canonical", "next", "prev"):
+            self.found.append(values.get("href", ""))
 
 
 def test_nothing_is_loaded_from_the_network(site: Path):
@@ -52,14 +52,14 @@ def test_nothing_is_loaded_from_the_network(site: Path):
         assert not re.search(r"(?:@import|url\()\s*['\"]?(?:https?:)?//", style.read_text("utf-8")), style
 
 
-MOST = 28e6  # bytes: 24 MB now; with every page's whole navigation in each page it is 45 MB
+MAX_SITE_BYTES = 28e6  # bytes: 24 MB now; with every page's whole navigation in each page it is 45 MB
 
 
 def test_every_image_is_there_and_pages_stay_small(site: Path):
     for page in site.rglob("*.html"):
         for image in re.findall(r'<img [^>]*src="([^"]+)"', page.read_text("utf-8")):
             assert (page.parent / image).is_file(), (page, image)
-    assert sum(path.stat().st_size for path in site.rglob("*") if path.is_file()) < MOST
+    assert sum(path.stat().st_size for path in site.rglob("*") if path.is_file()) < MAX_SITE_BYTES
 
 
 def test_the_search_knows_english_and_french(site: Path):
@@ -92,11 +92,11 @@ class Quiet(SimpleHTTPRequestHandler):
 
 @pytest.fixture
 def server(site: Path) -> Iterator[str]:
-    with ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(site))) as found:
-        thread = Thread(target=found.serve_forever)
+    with ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(site))) as result:
+        thread = Thread(target=result.serve_forever)
         thread.start()
-        yield f"http://127.0.0.1:{found.server_port}"
-        found.shutdown()
+        yield f"http://127.0.0.1:{result.server_port}"
+        result.shutdown()
         thread.join()
 
 

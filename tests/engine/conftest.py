@@ -45,12 +45,12 @@ def on_both_kinds(
     any_engine: Engine, monkeypatch: pytest.MonkeyPatch, sketch: Sketch, texture: str
 ) -> list[np.ndarray]:
     """Return a texture as it is made on what passes for a software renderer, and for a GPU."""
-    found = []
+    arrays = []
     for software in (True, False):
         monkeypatch.setattr(ContextInfo, "software", software)
         with Engine(any_engine.ctx) as engine:
-            found.append(engine.read(sketch, texture))
-    return found
+            arrays.append(engine.read(sketch, texture))
+    return arrays
 
 
 @pytest.fixture

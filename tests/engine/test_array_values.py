@@ -71,8 +71,8 @@ def file_of(sketch: playground.Sketch) -> Path:
 
 @pytest.mark.parametrize("dtype", ["f4", "f8", ">f4", "i2", "u1", "f2"])
 def test_heights_come_back_as_they_were_given(any_engine, sketch, dtype):
-    found = any_engine.read(given(sketch, HEIGHTS.astype(dtype)), "height")
-    np.testing.assert_allclose(found, SHARES, atol=1e-6)  # (ny, nx), row 0 in the south both ways
+    result = any_engine.read(given(sketch, HEIGHTS.astype(dtype)), "height")
+    np.testing.assert_allclose(result, SHARES, atol=1e-6)  # (ny, nx), row 0 in the south both ways
 
 
 def test_what_was_read_can_be_given_again(any_engine, sketch):
@@ -90,13 +90,13 @@ def test_an_array_is_copied(any_engine, sketch):
 
 
 def test_a_sketch_with_an_array_is_a_value(any_engine, sketch):
-    one, same = given(sketch, HEIGHTS), given(sketch, np.asfortranarray(HEIGHTS))
+    first, same = given(sketch, HEIGHTS), given(sketch, np.asfortranarray(HEIGHTS))
     other = given(sketch, HEIGHTS + np.eye(4, 5, dtype=np.float32))
-    assert one == same and hash(one) == hash(same) and one != other
-    assert pickle.loads(pickle.dumps(one)) == one
-    marks = [any_engine.fingerprint(s, size=(32, 18)) for s in (one, same, other)]
+    assert first == same and hash(first) == hash(same) and first != other
+    assert pickle.loads(pickle.dumps(first)) == first
+    marks = [any_engine.fingerprint(s, size=(32, 18)) for s in (first, same, other)]
     assert marks[0] == marks[1] != marks[2]
-    any_engine.read(one, "height")
+    any_engine.read(first, "height")
     any_engine.read(same, "height")
     assert any_engine.record.ran == [], "the same numbers are not read again"
     np.testing.assert_array_equal(any_engine.read(other, "height").shape, (4, 5))
@@ -163,8 +163,8 @@ SOUTH_FIRST = NORTH_FIRST | {"y": NORTH_FIRST["y"][::-1]}
     ],
 )
 def test_coordinates_say_where_rows_go_and_how_far_apart_they_are(any_engine, sketch, labelled):
-    found = any_engine.metres(given(sketch, labelled), "height")
-    np.testing.assert_allclose(found, HEIGHTS, atol=1e-5)
+    metres = any_engine.metres(given(sketch, labelled), "height")
+    np.testing.assert_allclose(metres, HEIGHTS, atol=1e-5)
     terrain = any_engine.record.plan.terrain
     assert terrain.extent == pytest.approx((120.0, 60.0)) and terrain.size == (5, 4)
     assert terrain.relief == pytest.approx(19.0)
@@ -173,17 +173,17 @@ def test_coordinates_say_where_rows_go_and_how_far_apart_they_are(any_engine, sk
 @pytest.mark.parametrize("places", [{}, SOUTH_FIRST])
 def test_an_array_s_own_unit_counts(any_engine, sketch, places):
     labelled = Labelled(HEIGHTS, places=places, attrs={"units": "ft"})
-    found = any_engine.metres(given(sketch, labelled), "height")
-    np.testing.assert_allclose(found, HEIGHTS * 0.3048, atol=1e-5)
+    metres = any_engine.metres(given(sketch, labelled), "height")
+    np.testing.assert_allclose(metres, HEIGHTS * 0.3048, atol=1e-5)
 
 
 def test_a_reference_system_of_rioxarray_is_kept(any_engine, sketch):
     rio = SimpleNamespace(crs=SimpleNamespace(to_wkt=lambda: UTM), nodata=8.0)
     labelled = Labelled(HEIGHTS[::-1], places=NORTH_FIRST, rio=rio)
-    found = given(sketch, labelled).with_values({"height.no_data": "fill"})
-    any_engine.read(found, "height")
-    place = any_engine.record.plan.terrain.place
-    assert place.crs.name == "EPSG:32633" and place.bounds == (500.0, 30.0, 620.0, 90.0)
+    result = given(sketch, labelled).with_values({"height.no_data": "fill"})
+    any_engine.read(result, "height")
+    position = any_engine.record.plan.terrain.place
+    assert position.crs.name == "EPSG:32633" and position.bounds == (500.0, 30.0, 620.0, 90.0)
     with pytest.raises(playground.DataError, match="1 of 20 texels have no data"):  # the 8 is a gap
         any_engine.read(given(sketch, labelled), "height")
 
@@ -259,11 +259,11 @@ def test_a_picture_has_its_top_row_first(any_engine, shown, most):
     dtype = {255: np.uint8, 65535: np.uint16, 1: np.float32}[most]
     shares = np.linspace(0.0, 1.0, 18).reshape(2, 3, 3)
     array = (shares * most).round().astype(dtype) if most > 1 else shares.astype(dtype)
-    found = any_engine.read(shown.with_values({"a.image": array}), "a")
+    result = any_engine.read(shown.with_values({"a.image": array}), "a")
     exact = linear(array.astype(np.float64) / most)[::-1]
     # Bytes are eight bits; the rest is a half float on the card, of 11 bits.
-    np.testing.assert_allclose(found[..., :3], exact, atol=1 / 255 if most == 255 else 2.0**-11)
-    np.testing.assert_array_equal(found[..., 3], 1.0)
+    np.testing.assert_allclose(result[..., :3], exact, atol=1 / 255 if most == 255 else 2.0**-11)
+    np.testing.assert_array_equal(result[..., 3], 1.0)
 
 
 def test_what_is_no_picture_is_refused(shown, tmp_path):
@@ -311,25 +311,25 @@ def adding(tmp_path: Path) -> playground.Sketch:
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
 def test_an_input_takes_an_array_of_any_numbers(any_engine, adding, channels):
     array = (HEIGHTS[..., None] * np.arange(1, channels + 1) - 30.0).astype(np.float32)
-    found = any_engine.read(adding.with_inputs({"b.first": array, "b.other": HEIGHTS}), "b")
+    result = any_engine.read(adding.with_inputs({"b.first": array, "b.other": HEIGHTS}), "b")
     exact = np.zeros((4, 5, 4), np.float32)
     exact[..., 3] = 1.0  # what a texture without alpha reads
     exact[..., :channels] = array
     exact[..., 0] += 10.0 * HEIGHTS
     exact[..., 3] += 10.0
-    np.testing.assert_array_equal(found, exact)
+    np.testing.assert_array_equal(result, exact)
 
 
 def test_an_array_on_an_input_is_a_value_like_any_other(any_engine, adding):
-    one, same = (adding.with_inputs({"b.first": HEIGHTS}) for _ in range(2))
-    assert one == same and hash(one) == hash(same) != hash(adding)
-    assert pickle.loads(pickle.dumps(one)) == one
-    other = one.with_inputs({"b.first": HEIGHTS + 1})
-    assert len(other.graph.passes) == len(one.graph.passes), "it takes the earlier one's place"
-    marks = {any_engine.fingerprint(s, size=(8, 8)) for s in (adding, one, same, other)}
+    first, same = (adding.with_inputs({"b.first": HEIGHTS}) for _ in range(2))
+    assert first == same and hash(first) == hash(same) != hash(adding)
+    assert pickle.loads(pickle.dumps(first)) == first
+    other = first.with_inputs({"b.first": HEIGHTS + 1})
+    assert len(other.graph.passes) == len(first.graph.passes), "it takes the earlier one's place"
+    marks = {any_engine.fingerprint(s, size=(8, 8)) for s in (adding, first, same, other)}
     assert len(marks) == 3
     np.testing.assert_array_equal(any_engine.read(other, "b")[..., 0], HEIGHTS + 1)
-    np.testing.assert_array_equal(any_engine.read(one, "b")[..., 0], HEIGHTS)
+    np.testing.assert_array_equal(any_engine.read(first, "b")[..., 0], HEIGHTS)
 
 
 def test_an_array_of_another_size_keeps_its_own(any_engine, adding):
@@ -356,7 +356,7 @@ def test_an_input_that_is_not_there_and_what_is_no_texture_are_refused(adding, t
 def test_a_web_page_has_the_arrays_and_no_sketch_to_download(engine, sketch):
     changed = sketch.with_values({"height.elevation": np.pad(HEIGHTS, 2)})
     lit = changed.with_inputs({"view.light": np.full((8, 9, 3), 0.5)})
-    for one in (changed, lit):
-        (found,) = page_data([one], packed=True, engine=engine)["sketches"]
-        assert "pack" not in found and "array" in json.dumps(found)
+    for item in (changed, lit):
+        (result,) = page_data([item], packed=True, engine=engine)["sketches"]
+        assert "pack" not in result and "array" in json.dumps(result)
     assert "pack" in page_data([sketch], packed=True, engine=engine)["sketches"][0]

@@ -35,7 +35,7 @@ def test_bytes_are_those_of_what_is_cached(ctx):
 
 @pytest.mark.slow
 def test_small_results_are_bounded_in_number_too(ctx, monkeypatch):
-    monkeypatch.setattr(cache, "MOST", 24)
+    monkeypatch.setattr(cache, "MAX_ENTRIES", 24)
     sketch = load("diamond_square").with_values({"size": 17, "view.grid": 17})
     with Engine(ctx) as engine:
         for seed in range(5):
@@ -91,20 +91,20 @@ def test_versions_that_a_frame_uses_stay(ctx):
 @pytest.mark.parametrize(("passes", "made"), [("a", 3), ("abcd", 4)])
 def test_large_textures_of_the_last_frame_are_used_again(ctx, passes, made):
     """One texture fits three times, but no spare one; of a frame of four, the fourth is over the bound."""
-    output, one = Output("height", "r32f"), 64 * 64 * 4
-    pool = Pool(ctx, one // 8)
-    kept = cache.Cache(3 * one, pool)
+    output, item = Output("height", "r32f"), 64 * 64 * 4
+    pool = Pool(ctx, item // 8)
+    kept = cache.Cache(3 * item, pool)
     for number in range(6):
         kept.begin()
         for name in passes:
             kept.put(f"{name} {number}", cache.Cached({name: pool.take((64, 64), [output])}))
-            assert kept.bytes + pool.bytes <= max(3, len(passes)) * one, "never more than a frame needs"
+            assert kept.bytes + pool.bytes <= max(3, len(passes)) * item, "never more than a frame needs"
         kept.end()
         assert pool.made <= made, number
     kept.begin()
     kept.put("small", cache.Cached({"small": pool.take((4, 4), [output])}))
     kept.end()
-    assert kept.bytes <= 3 * one and pool.bytes <= pool.limit, "a frame of less has the bound hold again"
+    assert kept.bytes <= 3 * item and pool.bytes <= pool.limit, "a frame of less has the bound hold again"
     kept.clear()
     pool.clear()
 
@@ -115,8 +115,8 @@ def test_a_texture_that_is_used_again_shows_nothing_of_its_old_mipmaps(ctx):
     suns = [sketch.with_values({"light.sun": (20.0 * number, 15.0)}) for number in range(cache.VERSIONS + 4)]
     with Engine(ctx) as engine, Engine(ctx) as fresh:
         for moved in suns:
-            found = engine.render(moved, size=(80, 45)).array
-        np.testing.assert_array_equal(found, fresh.render(suns[-1], size=(80, 45)).array)
+            array = engine.render(moved, size=(80, 45)).array
+        np.testing.assert_array_equal(array, fresh.render(suns[-1], size=(80, 45)).array)
 
 
 def test_levels_of_a_texture_that_is_used_again_are_weighed(ctx):

@@ -46,9 +46,9 @@ def by_hand(camera: Camera, point, target, distance, size=WIDE) -> tuple[float, 
 def test_points_are_where_angles_put_them(azimuth, elevation, size):
     camera = Camera(azimuth, elevation, 30_000.0, (6_000.0, 4_000.0, 700.0), 40.0)
     for point in [(0, 0, 0), (12_000, 0, 0), (12_000, 8_000, 1_500), (0, 8_000, 300), (6_000, 4_000, 700)]:
-        found = place(camera, point, size)[:2]
+        result = place(camera, point, size)[:2]
         expected = by_hand(camera, point, camera.target, camera.distance, size)
-        np.testing.assert_allclose(found, expected, atol=2e-6)
+        np.testing.assert_allclose(result, expected, atol=2e-6)
 
 
 @pytest.mark.parametrize(
@@ -78,9 +78,9 @@ def test_all_of_the_terrain_is_in_the_picture_and_fills_it(size, elevation, heig
     for azimuth in range(0, 360, 15):
         for field in (20.0, 35.0, 70.0):
             camera = Camera(float(azimuth), elevation, field_of_view=field)
-            found = places(camera, corners, size, (east, north), relief)
-            assert np.abs(found).max() < 1.0, f"azimuth {azimuth}, field of view {field}"
-            reach.append(np.abs(found[:, :2]).max())
+            result = places(camera, corners, size, (east, north), relief)
+            assert np.abs(result).max() < 1.0, f"azimuth {azimuth}, field of view {field}"
+            reach.append(np.abs(result[:, :2]).max())
     assert max(reach) > 0.8, "and not lost in the middle of it"
 
 

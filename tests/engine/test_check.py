@@ -46,10 +46,10 @@ def test_a_header_that_is_wrong_is_reported_at_its_line(folder, sandbox, what):
     path = folder.write(
         "hills.glsl", f'// hills\n{before}\n#pragma kernel(output = "a:r32f"{option})\n{body}\n'
     )
-    found = wrong(path, sandbox)
-    assert (Path(found.file).name, found.line) == ("hills.glsl", 3), found
-    assert found.message.startswith(f"pass 'hills': {what}")
-    assert found.excerpt.startswith("#pragma kernel")
+    result = wrong(path, sandbox)
+    assert (Path(result.file).name, result.line) == ("hills.glsl", 3), result
+    assert result.message.startswith(f"pass 'hills': {what}")
+    assert result.excerpt.startswith("#pragma kernel")
 
 
 def test_a_compute_variant_s_groups_are_reported_at_its_own_line(folder, sandbox):
@@ -59,8 +59,8 @@ def test_a_compute_variant_s_groups_are_reported_at_its_own_line(folder, sandbox
         "hills.glsl", '#pragma kernel(output = "a:r32f")\nfloat kernel(ivec2 texel) { return 1.0; }\n'
     )
     text = '\n#pragma compute(groups = "size.x / (size.x - size.y), 1")\nvoid main() {}\n'
-    found = wrong(folder.write("hills.comp", text), sandbox)
-    assert (Path(found.file).name, found.line) == ("hills.comp", 2), found
+    result = wrong(folder.write("hills.comp", text), sandbox)
+    assert (Path(result.file).name, result.line) == ("hills.comp", 2), result
 
 
 def trial_has_no_compute(folder, sandbox: Sandbox) -> bool:
@@ -77,8 +77,8 @@ def test_a_sketch_s_own_kernel_is_reported_at_its_header_too(any_engine, folder)
     )
     with pytest.raises(PlaygroundError, match="gives -15") as caught:
         any_engine.read(sketch, "a")
-    found = caught.value.diagnostics[0]
-    assert (Path(found.file).name, found.line) == ("one.glsl", 2)
+    diagnostic = caught.value.diagnostics[0]
+    assert (Path(diagnostic.file).name, diagnostic.line) == ("one.glsl", 2)
 
 
 def test_a_part_of_a_sketch_is_checked_and_opened_by_one_rule(folder, sandbox):
@@ -111,9 +111,9 @@ SOME = HOLE + "float kernel(ivec2 texel) { return texel.x == 1 ? sqrt(root) : 0.
 
 
 def test_a_technique_of_nothing_but_nan_fails_and_one_hole_may_be_the_stand_ins_own(folder, sandbox):
-    found = wrong(folder.write("all.glsl", ALL), sandbox)
-    assert "output 'height': none of its 1089 texels is finite; the first is NaN" in found.message
-    assert (Path(found.file).name, found.line) == ("all.glsl", 2)
+    result = wrong(folder.write("all.glsl", ALL), sandbox)
+    assert "output 'height': none of its 1089 texels is finite; the first is NaN" in result.message
+    assert (Path(result.file).name, result.line) == ("all.glsl", 2)
     assert check_file(folder.write("some.glsl", SOME), sandbox).ok
     assert check_file(folder.write("none.glsl", ALL.replace("= -1.0;", "= 1.0;")), sandbox).ok
 
@@ -122,9 +122,9 @@ def test_a_sketch_may_have_no_hole_at_all(folder, sandbox):
     folder.write("some.glsl", SOME)
     text = 'format = 1\nsize = 33\n[[pass]]\nname = "height"\nuse = "./some"\n'
     sketch = folder.write("sketch.toml", text)
-    found = wrong(sketch, sandbox)
-    assert "pass 'height', output 'height': NaN at texel (1, 0)" in found.message
-    assert (Path(found.file).name, found.line) == ("some.glsl", 2)
+    result = wrong(sketch, sandbox)
+    assert "pass 'height', output 'height': NaN at texel (1, 0)" in result.message
+    assert (Path(result.file).name, result.line) == ("some.glsl", 2)
     folder.write("sketch.toml", text + "set = { root = 1.0 }\n")
     assert check_file(sketch, sandbox).ok
 
@@ -150,8 +150,8 @@ def test_a_file_that_the_child_does_not_survive_is_not_read_here(
     )
     monkeypatch.setattr(file_sources, "open_elevation", refuse)
     with Sandbox(memory_bytes=2**30) as small:
-        found = wrong(tmp_path / "sketch.toml", small)
-    assert "not enough memory to read it" in found.message and "heights.npy" in found.message
+        result = wrong(tmp_path / "sketch.toml", small)
+    assert "not enough memory to read it" in result.message and "heights.npy" in result.message
 
 
 LIBRARY = "float height_at(ivec2 texel);\nvoid count_step(inout int steps);\n"
@@ -160,8 +160,8 @@ READS = "float twice(ivec2 texel) { int n = 0; count_step(n); return 2.0 * heigh
 
 def test_a_library_file_may_declare_what_the_file_that_includes_it_defines(folder, sandbox):
     assert check_file(folder.write("march.glsl", LIBRARY + READS), sandbox).ok
-    found = wrong(folder.write("slip.glsl", LIBRARY + READS.replace("height_at(", "hight_at(")), sandbox)
-    assert (Path(found.file).name, found.line) == ("slip.glsl", 3), found
+    result = wrong(folder.write("slip.glsl", LIBRARY + READS.replace("height_at(", "hight_at(")), sandbox)
+    assert (Path(result.file).name, result.line) == ("slip.glsl", 3), result
 
 
 COUNTED = """#pragma draw(mesh = "sheet", instances = "min(list.y, 6)", output = "drawn:rgba32f")

@@ -23,8 +23,8 @@ def sandbox():
         yield made
 
 
-def placed(found: Diagnostic) -> tuple[str, int]:
-    return Path(found.file).name, found.line
+def placed(diagnostic: Diagnostic) -> tuple[str, int]:
+    return Path(diagnostic.file).name, diagnostic.line
 
 
 def checked(path: Path, sandbox: Sandbox) -> FileReport:
@@ -103,8 +103,8 @@ def test_includes_in_a_circle_and_texts_that_are_not_utf_8_have_their_line(folde
     report = checked(folder.path / "latin.glsl", sandbox)
     assert placed(report.errors[0]) == ("latin.glsl", 2) and report.errors[0].column == 12
     report = checked(folder.write("a.glsl", f'{KERNEL}#include "latin.glsl"\n'), sandbox)
-    found = report.errors[0]
-    assert placed(found) == ("latin.glsl", 2) and [Path(c).name for c in found.chain] == ["a.glsl:2"]
+    error = report.errors[0]
+    assert placed(error) == ("latin.glsl", 2) and [Path(c).name for c in error.chain] == ["a.glsl:2"]
     (folder.path / "sketch.toml").write_bytes(b"format = 1\n# \xff\n")
     assert placed(checked(folder.path / "sketch.toml", sandbox).errors[0]) == ("sketch.toml", 2)
 
@@ -127,9 +127,9 @@ uniform vec2 metres = vec2(0.0);
 def test_code_in_a_source_s_file_is_refused_at_its_line(folder, sandbox, code):
     assert checked(folder.write("source.glsl", SOURCE), sandbox).ok
     report = checked(folder.write("source.glsl", f"{SOURCE}#define N 3\n  {code}\n"), sandbox)
-    (found,) = report.errors
-    assert placed(found) == ("source.glsl", 10) and found.column == 3
-    assert "nothing runs this code" in found.message
+    (result,) = report.errors
+    assert placed(result) == ("source.glsl", 10) and result.column == 3
+    assert "nothing runs this code" in result.message
 
 
 # What is no file
@@ -142,13 +142,13 @@ def test_pipes_and_sockets_are_refused_in_a_sentence_and_never_waited_for(folder
     os.mkfifo(folder.path / "pipe.toml")
     os.mkfifo(folder.path / "pipe.png")
     near = tmp_path_factory.mktemp("s")
-    with socket.socket(socket.AF_UNIX) as one:
-        one.bind(str(near / "s.frag"))
+    with socket.socket(socket.AF_UNIX) as item:
+        item.bind(str(near / "s.frag"))
         (near / "s.frag").rename(folder.path / "socket.frag")
-        found = {path.name: checked(path, sandbox) for path, _ in find_files([folder.path])}
-    assert found.pop("good.glsl").ok
-    assert sorted(found) == ["pipe.glsl", "pipe.toml", "socket.frag"]
-    for name, report in found.items():
+        result = {path.name: checked(path, sandbox) for path, _ in find_files([folder.path])}
+    assert result.pop("good.glsl").ok
+    assert sorted(result) == ["pipe.glsl", "pipe.toml", "socket.frag"]
+    for name, report in result.items():
         (error,) = report.errors
         what = "a socket" if name == "socket.frag" else "a FIFO"
         assert placed(error)[0] == name and f"this is {what}, not a file" in error.message
@@ -177,10 +177,10 @@ def test_pipes_and_sockets_are_refused_in_a_sentence_and_never_waited_for(folder
 )
 def test_a_uniform_of_a_plain_shader_is_refused_in_a_kernel(folder, sandbox, declared, words):
     text = f"{KERNEL}\nuniform {declared};\nfloat kernel(ivec2 texel) {{ return 1.0; }}\n"
-    (found,) = checked(folder.write("a.glsl", text), sandbox).errors
+    (result,) = checked(folder.write("a.glsl", text), sandbox).errors
     name = declared.split()[1]
-    assert placed(found) == ("a.glsl", 3) and found.column == found.excerpt.index(name) + 1
-    assert f"'{name}' is given to plain shaders only" in found.message and words in found.message
+    assert placed(result) == ("a.glsl", 3) and result.column == result.excerpt.index(name) + 1
+    assert f"'{name}' is given to plain shaders only" in result.message and words in result.message
 
 
 @pytest.mark.parametrize("declared", ["vec2 u_mouse = vec2(0.5);  //! point", "float frame = 3.0;"])
@@ -204,8 +204,8 @@ def test_steps_beyond_the_repeat_are_refused_and_of_a_shot_at_its_line(folder, s
     with pytest.raises(Exception, match="steps: 'a' stops after 6 steps, but it has 5 in all"):
         any_engine.read(sketch, "a", steps={"a": 6})
     folder.one(REPEATS, more=shot.format(99))
-    (found,) = checked(folder.path / "sketch.toml", sandbox).errors
-    assert placed(found) == ("sketch.toml", 6) and "shot 'end': steps: 'a' stops after 99" in found.message
+    (result,) = checked(folder.path / "sketch.toml", sandbox).errors
+    assert placed(result) == ("sketch.toml", 6) and "shot 'end': steps: 'a' stops after 99" in result.message
 
 
 def test_of_a_repeat_that_grows_with_time_they_are_reached_later(folder, any_engine):

@@ -81,18 +81,18 @@ def test_it_runs_where_there_is_compute_and_agrees(ctx, sums, ran, driver):
         pytest.skip("this context has no compute shaders")
     with Engine(ctx, driver=driver) as engine:
         for scale in (1.0, 2.0):
-            found = engine.read(sums.with_values({"sums.scale": scale}), "sums")
-            np.testing.assert_allclose(found, truth(scale), rtol=1e-6)
+            result = engine.read(sums.with_values({"sums.scale": scale}), "sums")
+            np.testing.assert_allclose(result, truth(scale), rtol=1e-6)
         assert ("sums.comp" in ran) == (driver != "fragment")
         assert ("sums.glsl" in ran) == (driver == "fragment")
         assert engine.runs["sums"] == 2
 
 
 def test_its_iterations_are_shown_by_the_kernel(any_engine, sums, ran):
-    found = any_engine.read(sums, "sums", steps={"sums": 1})
+    result = any_engine.read(sums, "sums", steps={"sums": 1})
     west = np.pad(truth()[:, :-1], ((0, 0), (1, 0)))
     values = truth() - west
-    np.testing.assert_allclose(found, values + np.pad(values[:, :-1], ((0, 0), (1, 0))))
+    np.testing.assert_allclose(result, values + np.pad(values[:, :-1], ((0, 0), (1, 0))))
     assert "sums.comp" not in ran
     assert len(list(any_engine.steps(sums, "sums"))) == 5
 
@@ -110,8 +110,8 @@ def test_a_changed_variant_is_stale_and_so_is_a_removed_one(any_engine, folder, 
 def test_a_start_that_it_knows_nothing_of_keeps_it_out(any_engine, folder, sums, ran):
     folder.write("sums.glsl", SUMS.replace("iteration == 0", "false"))
     wired = BODY + 'inputs = { initial = "values", values = "values" }\n'
-    found = any_engine.read(folder.sketch(wired, size="size = 16"), "sums")
-    np.testing.assert_allclose(found, truth(), rtol=1e-6)
+    result = any_engine.read(folder.sketch(wired, size="size = 16"), "sums")
+    np.testing.assert_allclose(result, truth(), rtol=1e-6)
     assert "sums.comp" not in ran
 
 
@@ -231,16 +231,16 @@ def test_a_spare_buffer_serves_what_needs_a_little_less(any_engine, folder):
     text = FILL.replace("OPTION", "").replace("500", "size.x * size.y")
     folder.write("fill.comp", text.replace("+= 1.0", "+= float(work.length())"))
     spare = any_engine.runner.compute_variants._spare
-    found = []
+    result = []
     for side in (19, 18, 12):
         sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {side}")
         assert (any_engine.read(sketch, "a") == side * side).all()
-        found.append([one.buffer.size for one in spare])
-    assert found[0] == found[1] == [19 * 19 * 4] and found[2] == [19 * 19 * 4, 12 * 12 * 4]
+        result.append([item.buffer.size for item in spare])
+    assert result[0] == result[1] == [19 * 19 * 4] and result[2] == [19 * 19 * 4, 12 * 12 * 4]
 
 
 def test_of_spare_buffers_over_the_bound_the_largest_stays_while_it_is_used(any_engine, folder, monkeypatch):
-    """A frame's smaller passes do not have it made anew each time; once none asks for it, it goes."""
+    """A frame's smaller passes do not have it made again each time; once none asks for it, it goes."""
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
     folder.write("fill.glsl", PLAIN_FILL)
@@ -256,7 +256,7 @@ def test_of_spare_buffers_over_the_bound_the_largest_stays_while_it_is_used(any_
         for number, side in enumerate(sides):
             sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {side}")
             any_engine.read(sketch.with_values({"a.again": number / 9}), "a")
-        return [one.buffer.size // 4 for one in spare]
+        return [item.buffer.size // 4 for item in spare]
 
     assert sizes_after(19, 12, 4) == [19 * 19, 4 * 4], "of two the larger stays, and the last run's"
     kept = spare[0].buffer
@@ -296,10 +296,10 @@ def test_a_buffer_of_an_outputs_name_is_that_output(any_engine, folder, sums, si
         pytest.skip("this context has no compute shaders")
     folder.write("sums.glsl", SUMS.replace("log2(size.x)", "5"))
     folder.write("sums.comp", BUFFERED_HEAD + BUFFERED)
-    found = any_engine.read(folder.sketch(BODY, size=f"size = {size}"), "sums")
+    result = any_engine.read(folder.sketch(BODY, size=f"size = {size}"), "sums")
     nx, ny = size if isinstance(size, list) else (size, size)
     y, x = np.mgrid[0:ny, 0:nx]
-    np.testing.assert_array_equal(found, np.cumsum((x * 3 + y * 5) % 8, axis=1))
+    np.testing.assert_array_equal(result, np.cumsum((x * 3 + y * 5) % 8, axis=1))
 
 
 def test_a_buffer_too_small_for_its_output_has_a_sentence(any_engine, folder, sums):
@@ -359,9 +359,9 @@ def test_a_stage_with_no_groups_is_left_out(any_engine, folder):
     }
     """,
     )
-    for side, wanted in ((19, 134.0), (3, 134.0)):
+    for side, expected in ((19, 134.0), (3, 134.0)):
         sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {side}")
-        np.testing.assert_array_equal(any_engine.read(sketch, "a"), wanted)
+        np.testing.assert_array_equal(any_engine.read(sketch, "a"), expected)
 
 
 def test_a_stage_that_comes_back_reads_what_it_read_before(any_engine, folder):
@@ -434,9 +434,9 @@ def test_buffers_are_read_by_functions(any_engine, folder, size, fits, monkeypat
     folder.write("fill.comp", READ)
     sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {list(size)}")
     at = np.arange(size[0] * size[1])
-    wanted = (0.25 + at + at // 2 * np.where(at % 2, 200, 100)).reshape(size[::-1])
+    expected = (0.25 + at + at // 2 * np.where(at % 2, 200, 100)).reshape(size[::-1])
     for _ in range(2):  # the second time buffers are used again
-        np.testing.assert_array_equal(any_engine.read(sketch, "a"), wanted)
+        np.testing.assert_array_equal(any_engine.read(sketch, "a"), expected)
         any_engine.cache.clear()
     if software is not None:
         assert bool(software._textures) == fits
@@ -451,8 +451,8 @@ def test_a_variants_own_function_of_such_a_name_is_its_own(any_engine, folder):
     folder.write("fill.comp", READ.replace("void main", own))
     sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = [19, 7]")
     at = np.arange(19 * 7)
-    wanted = (0.25 + 2 * at + at // 2 * np.where(at % 2, 200, 100)).reshape(7, 19)
-    np.testing.assert_array_equal(any_engine.read(sketch, "a"), wanted)
+    expected = (0.25 + 2 * at + at // 2 * np.where(at % 2, 200, 100)).reshape(7, 19)
+    np.testing.assert_array_equal(any_engine.read(sketch, "a"), expected)
 
 
 def test_a_variant_whose_every_step_has_no_groups_is_told(any_engine, folder):
@@ -528,11 +528,11 @@ def in_place(folder, values=VALUES, plus=IN_PLACE, size=""):
 def test_a_buffer_may_begin_as_the_input_and_end_as_the_output(any_engine, folder, ran, form, kind):
     """Of an input in another format too, whose numbers become the output's."""
     sketch = in_place(folder, NUMBERS.replace("FORM", form).replace("KIND", kind))
-    found = any_engine.read(sketch, "a")
+    result = any_engine.read(sketch, "a")
     assert ("plus.comp" in ran) == any_engine.info.compute
     values = any_engine.read(sketch, "values").reshape(7, 19, -1)[..., 0]
-    np.testing.assert_array_equal(found, values + np.float32(100))
-    assert np.ptp(found) > 0.7
+    np.testing.assert_array_equal(result, values + np.float32(100))
+    assert np.ptp(result) > 0.7
 
 
 def test_a_buffer_does_not_begin_as_an_input_of_another_size(any_engine, folder):
@@ -610,9 +610,9 @@ def test_with_nothing_left_to_do_only_the_last_step_runs(any_engine, folder, ran
     """101 steps until nothing is left; that is noticed within their root of them, and one step ends it."""
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
-    found = any_engine.read(left(folder), "a")
-    assert (found == found[0, 0]).all()
-    assert 102 <= found[0, 0] <= 101 + 11 + 1
+    result = any_engine.read(left(folder), "a")
+    assert (result == result[0, 0]).all()
+    assert 102 <= result[0, 0] <= 101 + 11 + 1
 
 
 @pytest.mark.parametrize(

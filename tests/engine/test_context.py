@@ -71,21 +71,21 @@ def sketch(tmp_path_factory):
 @pytest.mark.slow
 def test_an_older_context_draws_the_same(sketch):
     """4.1 is what macOS has, 3.3 the least that will do: no compute, the same bits."""
-    found = {}
+    result = {}
     for version in ("", "4.1", "3.3"):
         environment = {"MESA_GL_VERSION_OVERRIDE": version} if version else {}
         done = in_a_child(SCRIPT, str(sketch), **environment)
         assert done.returncode == 0, done.stderr
-        found[version] = json.loads(done.stdout)
-    if found["4.1"]["version"] != 410:
+        result[version] = json.loads(done.stdout)
+    if result["4.1"]["version"] != 410:
         pytest.skip("this driver does not let itself be made older")
-    assert [found[v]["version"] for v in ("4.1", "3.3")] == [410, 330]
-    assert [found[v]["compute"] for v in ("", "4.1", "3.3")] == [True, False, False]
-    assert found["4.1"]["opengl"] == "OpenGL 4.1"
+    assert [result[v]["version"] for v in ("4.1", "3.3")] == [410, 330]
+    assert [result[v]["compute"] for v in ("", "4.1", "3.3")] == [True, False, False]
+    assert result["4.1"]["opengl"] == "OpenGL 4.1"
     for key in ("frame", "height"):
-        assert len({one[key] for one in found.values()}) == 1, f"{key} differs"
-    assert all(one["error"] == "GL_NO_ERROR" for one in found.values())
-    assert 20 < found[""]["mean"] < 250
+        assert len({item[key] for item in result.values()}) == 1, f"{key} differs"
+    assert all(item["error"] == "GL_NO_ERROR" for item in result.values())
+    assert 20 < result[""]["mean"] < 250
 
 
 @pytest.mark.slow

@@ -41,14 +41,16 @@ def truth() -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("repeat", ["", ', repeat = "2"'])
 def test_its_texels_are_those_of_the_kernel_as_it_is_written(engine: Engine, folder: Folder, repeat: str):
     sketch = folder.one(KERNEL.replace("REPEAT", repeat), size=TEXELS)
-    found, more = truth()
-    np.testing.assert_allclose(engine.read(sketch, "a:found"), found, atol=1e-6)
+    result, more = truth()
+    np.testing.assert_allclose(engine.read(sketch, "a:found"), result, atol=1e-6)
     np.testing.assert_array_equal(engine.read(sketch, "a:more"), more)
 
 
 def test_a_kernel_of_one_output_returns_its_texel(engine: Engine, folder: Folder):
-    found = engine.read(folder.one(ONE, size=TEXELS), "a")
-    np.testing.assert_array_equal(found, np.where(np.arange(SIZE[0]) > 9, 0.25, 0.75) * np.ones((SIZE[1], 1)))
+    result = engine.read(folder.one(ONE, size=TEXELS), "a")
+    np.testing.assert_array_equal(
+        result, np.where(np.arange(SIZE[0]) > 9, 0.25, 0.75) * np.ones((SIZE[1], 1))
+    )
 
 
 def test_a_software_renderer_draws_each_texel_once(any_engine: Engine, folder: Folder, monkeypatch):

@@ -12,7 +12,15 @@ from scipy.interpolate import LinearNDInterpolator
 from scipy.spatial import Delaunay
 
 from playground.engine import delaunay
-from playground.engine.delaunay import LONGEST, MOST_POINTS, SIDE, Rules, Triangulation, tables, triangulate
+from playground.engine.delaunay import (
+    MAX_POINTS,
+    MAX_PROPORTION,
+    SIDE,
+    Rules,
+    Triangulation,
+    tables,
+    triangulate,
+)
 from playground.errors import DataError
 
 WAYS = [Rules(), Rules(random_weights=True, seed=1), Rules(random_weights=True, seed=2, proportion=0.3)]
@@ -20,9 +28,9 @@ WAYS = [Rules(), Rules(random_weights=True, seed=1), Rules(random_weights=True, 
 
 def sets(triangles):
     """Return triangles as a set of sets of points."""
-    found = {frozenset(t) for t in np.asarray(triangles).tolist()}
-    assert len(found) == len(triangles), "no triangle occurs twice"
-    return found
+    result = {frozenset(t) for t in np.asarray(triangles).tolist()}
+    assert len(result) == len(triangles), "no triangle occurs twice"
+    return result
 
 
 def circle(made: Triangulation, triangle) -> tuple[Fraction, Fraction, Fraction]:
@@ -45,12 +53,12 @@ def depth(made: Triangulation, triangle, point) -> Fraction:
 
 def twice_areas(made: Triangulation) -> list[int]:
     """Return twice the triangles' areas by the shoelace formula, above 0 where counter-clockwise."""
-    found = []
+    numbers = []
     for triangle in made.triangles.tolist():
         corners = [tuple(map(int, made.places[p])) for p in triangle]
         turned = zip(corners, corners[1:] + corners[:1], strict=True)
-        found.append(sum(px * qy - qx * py for (px, py), (qx, qy) in turned))
-    return found
+        numbers.append(sum(px * qy - qx * py for (px, py), (qx, qy) in turned))
+    return numbers
 
 
 @pytest.mark.parametrize("points", [1, 2, 3, 7, 60, 500, 3000])
@@ -113,8 +121,8 @@ def test_ties_are_left_alike_by_both_methods(monkeypatch):
         for p, q in ((a, b), (b, c), (c, a)):
             px, py = growing.x[p], growing.y[p]
             inside &= (growing.x[q] - px) * (y - py) > (growing.y[q] - py) * (x - px)
-        found = np.argwhere(inside)
-        j, i = found[delaunay.hash3(point, 2, growing.rules.seed)[0] % len(found)]
+        result = np.argwhere(inside)
+        j, i = result[delaunay.hash3(point, 2, growing.rules.seed)[0] % len(result)]
         return int(x[j, i]), int(y[j, i])
 
     monkeypatch.setattr(delaunay._Growing, "_barycentre", on_the_grid)
@@ -128,11 +136,11 @@ def test_ties_are_left_alike_by_both_methods(monkeypatch):
         assert sum(twice_areas(made[0])) == 2 * SIDE**2 and min(twice_areas(made[0])) > 0
         for triangle in made[0].triangles.tolist():
             for point in set(range(points + 4)) - set(triangle):
-                found = depth(made[0], triangle, point)
-                assert found <= 0
-                ties += found == 0
-        for one in made:
-            assert min(depth(one, t, points + 3) for t in one.destroyed.tolist()) > 0, "not those it is on"
+                fraction = depth(made[0], triangle, point)
+                assert fraction <= 0
+                ties += fraction == 0
+        for item in made:
+            assert min(depth(item, t, points + 3) for t in item.destroyed.tolist()) > 0, "not those it is on"
     assert ties > 20
 
 
@@ -173,12 +181,12 @@ def test_each_point_is_in_the_greatest_triangle_before_it(rules):
         np.testing.assert_array_equal(after.places[:-1], before.places)
         np.testing.assert_array_equal(after.heights[:-1], before.heights)
         areas = twice_areas(before)
-        place = np.array([*after.places[-1].tolist(), 1], object)
+        elements = np.array([*after.places[-1].tolist(), 1], object)
         fell = after.destroyed[0].tolist()
         (which,) = (t for t, c in enumerate(before.triangles.tolist()) if set(c) == set(fell))
         assert areas[which] == max(areas)
         corners = before.places[before.triangles[which]].astype(np.float64)
-        shares = np.linalg.solve(np.vstack([corners.T, np.ones(3)]), place.astype(np.float64))
+        shares = np.linalg.solve(np.vstack([corners.T, np.ones(3)]), elements.astype(np.float64))
         if rules.random_weights:
             assert shares.min() > 64 / 702 - 1e-6
         else:
@@ -263,7 +271,7 @@ def test_the_same_rules_make_the_same_and_another_seed_does_not():
     assert not np.array_equal(first.heights, triangulate(replace(rules, seed=8)).heights)
 
 
-@pytest.mark.parametrize("proportion", [1.0, 0.3, 3.0, 1 / LONGEST, LONGEST])
+@pytest.mark.parametrize("proportion", [1.0, 0.3, 3.0, 1 / MAX_PROPORTION, MAX_PROPORTION])
 def test_sides_are_as_given_and_lattice_numbers_are_floats(proportion):
     made = triangulate(Rules(points=20, proportion=proportion))
     assert max(made.sides) == SIDE and min(made.sides) % 4096 == 0
@@ -273,10 +281,10 @@ def test_sides_are_as_given_and_lattice_numbers_are_floats(proportion):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("proportion", [1.0, LONGEST])
+@pytest.mark.parametrize("proportion", [1.0, MAX_PROPORTION])
 def test_no_point_comes_near_an_edge(proportion):
     """As many as there may be: each stood a lattice spacing and more from the edges of its triangle."""
-    made = triangulate(Rules(points=MOST_POINTS, random_weights=True, proportion=proportion))
+    made = triangulate(Rules(points=MAX_POINTS, random_weights=True, proportion=proportion))
     corners = made.places[made.triangles].astype(np.int64)
     a, b, c = (corners[:, i] for i in range(3))
     doubled = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
@@ -288,22 +296,22 @@ def test_no_point_comes_near_an_edge(proportion):
 
 def test_tables_hold_the_entries_row_by_row():
     made = triangulate(Rules(points=9, by_flips=True))
-    found = {name: table.reshape(-1, 4) for name, table in tables(made, (4, 6)).items()}
+    result = {name: table.reshape(-1, 4) for name, table in tables(made, (4, 6)).items()}
     assert tables(made, (4, 6))["places"].shape == (6, 4, 4)
-    np.testing.assert_array_equal(found["places"][:13, :2], made.places)
-    np.testing.assert_array_equal(found["places"][:13, 2], made.heights.astype(np.float32))
-    np.testing.assert_array_equal(found["triangles"][:20, :3], made.triangles)
-    np.testing.assert_array_equal(found["neighbours"][:20, :3], made.neighbours)
-    assert found["last"][0].tolist() == [12, len(made.destroyed), made.replaced, 20]
-    np.testing.assert_array_equal(found["last"][1 : 1 + len(made.destroyed), :3], made.destroyed)
-    assert not found["places"][13:].any() and not found["triangles"][20:].any()
+    np.testing.assert_array_equal(result["places"][:13, :2], made.places)
+    np.testing.assert_array_equal(result["places"][:13, 2], made.heights.astype(np.float32))
+    np.testing.assert_array_equal(result["triangles"][:20, :3], made.triangles)
+    np.testing.assert_array_equal(result["neighbours"][:20, :3], made.neighbours)
+    assert result["last"][0].tolist() == [12, len(made.destroyed), made.replaced, 20]
+    np.testing.assert_array_equal(result["last"][1 : 1 + len(made.destroyed), :3], made.destroyed)
+    assert not result["places"][13:].any() and not result["triangles"][20:].any()
 
 
 def test_what_cannot_be_made_has_a_sentence():
     with pytest.raises(DataError, match="-1 points to triangulate; 0 to 10000"):
         triangulate(Rules(points=-1))
     with pytest.raises(DataError, match="10001 points"):
-        triangulate(Rules(points=MOST_POINTS + 1))
+        triangulate(Rules(points=MAX_POINTS + 1))
     for proportion in (0.0, 0.1, 9.0, float("nan")):
         with pytest.raises(DataError, match="sides 1 to"):
             triangulate(Rules(proportion=proportion))

@@ -59,9 +59,9 @@ def test_a_mistake_is_at_its_own_line(any_engine, folder, name):
     text, line = with_mistake(TEXTS[name])
     with pytest.raises(ShaderError) as caught:
         drawn(any_engine, folder.write(f"{name}.frag", text))
-    found = caught.value.diagnostics[0]
-    assert (found.line, found.file.endswith(f"{name}.frag")) == (line, True)
-    assert "not_declared" in found.message
+    diagnostic = caught.value.diagnostics[0]
+    assert (diagnostic.line, diagnostic.file.endswith(f"{name}.frag")) == (line, True)
+    assert "not_declared" in diagnostic.message
 
 
 @pytest.mark.parametrize("name", TEXTS)
@@ -82,8 +82,12 @@ def test_a_mistake_in_an_include_is_at_the_include_s_line(any_engine, folder):
     path = folder.write("lib/a/b.frag", top)
     with pytest.raises(ShaderError) as caught:
         drawn(any_engine, path)
-    found = caught.value.diagnostics[0]
-    assert (found.file.endswith("lib/deep/inner.glsl"), found.line, len(found.chain)) == (True, 2, 2)
+    diagnostic = caught.value.diagnostics[0]
+    assert (diagnostic.file.endswith("lib/deep/inner.glsl"), diagnostic.line, len(diagnostic.chain)) == (
+        True,
+        2,
+        2,
+    )
     folder.write("lib/deep/inner.glsl", "float inner() { return gl_FragCoord.x / 32.0; }\n")
     assert colours(drawn(any_engine, path)) == SIZE[0]
 
@@ -163,14 +167,14 @@ def test_uniforms_of_one_statement_and_of_several_lines_are_parameters(folder):
         "uniform vec3\n    tint;  //! colour What it is multiplied by\n"
         "void main() { gl_FragColor = vec4(tint * a, b + c.x + many[0].x + u_time); }\n"
     )
-    found = load(folder.write("t.frag", text)).graph.find("view").technique.parameters
-    assert {p.name: (p.default, p.line) for p in found} == {
+    parameters = load(folder.write("t.frag", text)).graph.find("view").technique.parameters
+    assert {p.name: (p.default, p.line) for p in parameters} == {
         "a": (0.5, 1),
         "b": (0.0, 1),
         "c": ((1.0, 2.0), 1),
         "tint": ((0.0, 0.0, 0.0), 3),
     }
-    assert found[-1].widget.kind == "colour"
+    assert parameters[-1].widget.kind == "colour"
 
 
 # ── channels ─────────────────────────────────────────────────────────────────
@@ -186,7 +190,7 @@ def test_uniforms_of_one_statement_and_of_several_lines_are_parameters(folder):
 )
 def test_stand_ins_differ_by_number(any_engine, folder, text):
     made = [drawn(any_engine, folder.write("t.frag", text.replace("N", str(n)))) for n in range(4)]
-    assert all(colours(one) > 4 for one in made)
+    assert all(colours(item) > 4 for item in made)
     assert all(not np.array_equal(a, b) for i, a in enumerate(made) for b in made[:i])
 
 
@@ -300,9 +304,9 @@ def test_a_picture_drawn_in_parts_is_the_picture_drawn_whole(any_engine, folder,
 def test_it_is_reduced_in_its_author_s_words(folder, name):
     text, _ = with_mistake(TEXTS[name])
     case = inline_sketch(load(folder.write("t.frag", text)), frame=SIZE)
-    (one,) = case.passes
-    assert one.name == "shader" and "not_declared" in one.text
-    assert set(one.text.splitlines()) <= set(text.splitlines())
+    (item,) = case.passes
+    assert item.name == "shader" and "not_declared" in item.text
+    assert set(item.text.splitlines()) <= set(text.splitlines())
 
 
 def test_a_text_that_replaces_the_file_is_read_as_its_dialect(any_engine, folder):
@@ -336,9 +340,9 @@ def test_a_made_up_sound_stands_in_for_one_and_is_named(any_engine, folder):
     colour = "vec4(100.0 * texture(texFFT, x).r, 100.0 * texture(texFFTSmoothed, x).r, 0.0, 1.0)"
     text = f"#version 410 core\n{lines}out vec4 c;\nvoid main() {{ {body} c = {colour}; }}\n"
     sketch = load(folder.write("t.glsl", text))
-    found = [any_engine.render(sketch, size=(64, 4), time=t).array[0, :, 0].astype(int) for t in (1.1, 1.3)]
-    assert found[0].max() > 60 and found[0][-4:].max() < 60, "tones in the west, fewer in the east"
-    assert not np.array_equal(*found)
+    result = [any_engine.render(sketch, size=(64, 4), time=t).array[0, :, 0].astype(int) for t in (1.1, 1.3)]
+    assert result[0].max() > 60 and result[0][-4:].max() < 60, "tones in the west, fewer in the east"
+    assert not np.array_equal(*result)
     plan = any_engine.plan(sketch, (64, 4))
     (warning,) = source_warnings(plan)
     assert "nothing feeds texFFT, texFFTSmoothed: a made-up sound stands in" in warning.message
@@ -348,8 +352,8 @@ def test_kodelife_s_three_bands_go_by_time_and_are_named(any_engine, folder):
     text = "uniform vec3 spectrum;\nvoid main() { gl_FragColor = vec4(spectrum, 1.0); }\n"
     sketch = load(folder.write("t.frag", text))
     pictures = [any_engine.render(sketch, size=(2, 2), time=t).array for t in (0.0, 0.2, 0.4)]
-    found = {tuple(picture[0, 0, :3].tolist()) for picture in pictures}
-    assert len(found) == 3 and all(min(one) > 0 for one in found)
+    result = {tuple(picture[0, 0, :3].tolist()) for picture in pictures}
+    assert len(result) == 3 and all(min(item) > 0 for item in result)
     assert traits_of(sketch).moves
     (warning,) = source_warnings(any_engine.plan(sketch, (2, 2)))
     assert "nothing feeds spectrum: a made-up sound stands in" in warning.message
@@ -375,8 +379,8 @@ def bits_of(engine, folder, expression, shift=0, head=""):
     """Return bits of a uint for each 16-bit number i, by a shader that computes it."""
     body = f"{INDEX} uint bits = {expression} >> {shift}; {BYTES}"
     text = f"{head}void mainImage(out vec4 c, in vec2 p) {{ {body} }}"
-    found = drawn(engine, folder.write("p.frag", text), size=(SIDE, SIDE))[::-1, :, :3].astype(np.uint32)
-    return ((found[..., 2] << 16 | found[..., 1] << 8 | found[..., 0]) << shift).ravel()
+    result = drawn(engine, folder.write("p.frag", text), size=(SIDE, SIDE))[::-1, :, :3].astype(np.uint32)
+    return ((result[..., 2] << 16 | result[..., 1] << 8 | result[..., 0]) << shift).ravel()
 
 
 @pytest.mark.parametrize("head", ["", "#version 300 es\nprecision highp float;\n"])
@@ -386,8 +390,8 @@ def test_half_floats_are_packed_to_the_bit(any_engine, folder, head):
     low, high = (
         bits_of(any_engine, folder, "floatBitsToUint(unpackHalf2x16(i).x)", shift, head) for shift in (0, 24)
     )
-    found = (high | low).view(np.float32)
-    np.testing.assert_array_equal(np.isnan(found), np.isnan(halves))
+    view = (high | low).view(np.float32)
+    np.testing.assert_array_equal(np.isnan(view), np.isnan(halves))
     there = ~np.isnan(halves)
     np.testing.assert_array_equal((high | low)[there], halves.astype(np.float32).view(np.uint32)[there])
     for rest in (0, 1, 0x0FFF, 0x1000, 0x1001, 0x3000, 0xFFFF):
@@ -395,11 +399,11 @@ def test_half_floats_are_packed_to_the_bit(any_engine, folder, head):
             values = (numbers << 16 | rest).view(np.float32)
             expected = values.astype(np.float16)
         pair = f"packHalf2x16(vec2(1.0, uintBitsToFloat(i << 16 | {rest}u)))"
-        found = bits_of(any_engine, folder, pair, 8, head) | bits_of(any_engine, folder, pair, 0, head)
-        assert set(found & 0xFFFF) == {0x3C00}, "1.0 in the lower half"
-        found = (found >> 16).astype(np.uint16)
-        np.testing.assert_array_equal(np.isnan(found.view(np.float16)), np.isnan(values))
-        np.testing.assert_array_equal(found[~np.isnan(values)], expected.view(np.uint16)[~np.isnan(values)])
+        view = bits_of(any_engine, folder, pair, 8, head) | bits_of(any_engine, folder, pair, 0, head)
+        assert set(view & 0xFFFF) == {0x3C00}, "1.0 in the lower half"
+        view = (view >> 16).astype(np.uint16)
+        np.testing.assert_array_equal(np.isnan(view.view(np.float16)), np.isnan(values))
+        np.testing.assert_array_equal(view[~np.isnan(values)], expected.view(np.uint16)[~np.isnan(values)])
 
 
 @pytest.mark.parametrize(("kind", "most", "low"), [("Unorm", 65535, 0), ("Snorm", 32767, -1)])
@@ -408,15 +412,15 @@ def test_normalised_integers_are_packed_to_the_bit(any_engine, folder, kind, mos
     values = (np.arange(2**16, dtype=number) - number(20000)) * number(2**-15)
     codes = np.rint(np.clip(values, low, 1).astype(number) * number(most)).astype(np.int32)
     pair = f"pack{kind}2x16(vec2(1.0, (float(i) - 20000.0) * exp2(-15.0)))"
-    found = bits_of(any_engine, folder, pair, 8) | bits_of(any_engine, folder, pair, 0)
-    np.testing.assert_array_equal(found & 0xFFFF, most)
-    np.testing.assert_array_equal(found >> 16, codes & 0xFFFF)
+    bits = bits_of(any_engine, folder, pair, 8) | bits_of(any_engine, folder, pair, 0)
+    np.testing.assert_array_equal(bits & 0xFFFF, most)
+    np.testing.assert_array_equal(bits >> 16, codes & 0xFFFF)
     stored = np.arange(2**16).astype(np.uint16)
     stored = stored if low == 0 else stored.view(np.int16)
     expected = np.clip(stored.astype(number) / number(most), low, 1)
     back = f"floatBitsToUint(unpack{kind}2x16(i << 16).y)"
-    found = bits_of(any_engine, folder, back, 24) | bits_of(any_engine, folder, back, 0)
-    np.testing.assert_allclose(found.view(number), expected, rtol=3e-7)  # of a quotient: 2.5 ULP
+    bits = bits_of(any_engine, folder, back, 24) | bits_of(any_engine, folder, back, 0)
+    np.testing.assert_allclose(bits.view(number), expected, rtol=3e-7)  # of a quotient: 2.5 ULP
 
 
 def test_a_text_s_own_packing_is_its_own(any_engine, ctx, folder):

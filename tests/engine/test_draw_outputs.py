@@ -33,14 +33,14 @@ def pairs(folder):
 
     def make(*layers, samples: int = 1):
         folder.write("back.glsl", BACK)
-        body, given = ['[[pass]]\nname = "back"\nuse = "./back"'], {}
+        body, value = ['[[pass]]\nname = "back"\nuse = "./back"'], {}
         for name, more, values, start in layers:
             folder.write(f"{name}.glsl", PAIR.replace("{more}", more))
             wired = f'\ninputs = {{ initial = "{start}" }}' if start else ""
             body.append(f'[[pass]]\nname = "{name}"\nuse = "./{name}"{wired}')
-            given |= {f"{name}.{key}": value for key, value in values.items()}
+            value |= {f"{name}.{key}": value for key, value in values.items()}
         sketch = folder.sketch("\n".join(body), size="size = 16")
-        return replace(sketch, samples=samples).with_values(given)
+        return replace(sketch, samples=samples).with_values(value)
 
     return make
 
@@ -163,8 +163,8 @@ def test_another_count_draws_again_and_the_same_does_not(any_engine, dots):
     sketch = dots("list.x")
     for many in (3, 16, 0, 3):
         changed = sketch.with_values({"list.many": many})
-        found = first_row(any_engine, changed)
-        np.testing.assert_array_equal(found, [*range(1, many + 1), *[0] * (16 - many)])
+        result = first_row(any_engine, changed)
+        np.testing.assert_array_equal(result, [*range(1, many + 1), *[0] * (16 - many)])
         any_engine.texture(changed, "dots")
         assert any_engine.record.ran == []
 

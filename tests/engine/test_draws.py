@@ -39,14 +39,14 @@ def plates(folder):
     def make(*layers, samples: int = 1, size: int = 16):
         folder.write("back.glsl", BACK)
         body = ['[[pass]]\nname = "back"\nuse = "./back"']
-        given = {}
+        value = {}
         for name, more, values, start in layers:
             folder.write(f"{name}.glsl", PLATE.replace("{more}", more))
             wired = f'\ninputs = {{ initial = "{start}" }}' if start else ""
             body.append(f'[[pass]]\nname = "{name}"\nuse = "./{name}"{wired}')
-            given |= {f"{name}.{key}": value for key, value in values.items()}
+            value |= {f"{name}.{key}": value for key, value in values.items()}
         sketch = folder.sketch("\n".join(body), size=f"size = {size}")
-        return replace(sketch, samples=samples).with_values(given)
+        return replace(sketch, samples=samples).with_values(value)
 
     return make
 
@@ -57,17 +57,17 @@ RED, GREEN = (1.0, 0.0, 0.0, 1.0), (0.0, 1.0, 0.0, 0.5)
 @pytest.mark.parametrize("samples", [1, 4])
 def test_it_covers_what_it_covers_and_is_clear_elsewhere(any_engine, plates, samples):
     sketch = plates(("one", "", {"right": 0.0, "colour": RED}, ""), samples=samples)
-    found = any_engine.read(sketch, "one")
-    np.testing.assert_array_equal(found[:, :8], np.broadcast_to(RED, (16, 8, 4)))
-    np.testing.assert_array_equal(found[:, 8:], 0.0)
+    result = any_engine.read(sketch, "one")
+    np.testing.assert_array_equal(result[:, :8], np.broadcast_to(RED, (16, 8, 4)))
+    np.testing.assert_array_equal(result[:, 8:], 0.0)
 
 
 @pytest.mark.parametrize("samples", [1, 4])
 def test_it_starts_from_a_texture(any_engine, plates, samples):
     sketch = plates(("one", "", {"right": 0.0}, "back"), samples=samples)
-    found, back = any_engine.read(sketch, "one"), any_engine.read(sketch, "back")
-    np.testing.assert_array_equal(found[:, :8], np.broadcast_to(RED, (16, 8, 4)))
-    np.testing.assert_array_equal(found[:, 8:], back[:, 8:])
+    result, back = any_engine.read(sketch, "one"), any_engine.read(sketch, "back")
+    np.testing.assert_array_equal(result[:, :8], np.broadcast_to(RED, (16, 8, 4)))
+    np.testing.assert_array_equal(result[:, 8:], back[:, 8:])
 
 
 @pytest.mark.parametrize("samples", [1, 4])
@@ -77,10 +77,10 @@ def test_nothing_is_left_of_what_was_drawn_on_before(any_engine, plates, samples
     near = plates(("one", "", {"depth": -0.9, "colour": GREEN}, start), samples=samples)
     any_engine.read(near, "one")
     far = plates(("one", "", {"right": 0.0, "depth": 0.9}, start), samples=samples)
-    found = any_engine.read(far, "one")
-    np.testing.assert_array_equal(found[:, :8], np.broadcast_to(RED, (16, 8, 4)))
+    result = any_engine.read(far, "one")
+    np.testing.assert_array_equal(result[:, :8], np.broadcast_to(RED, (16, 8, 4)))
     expected = any_engine.read(far, "back")[:, 8:] if start else np.zeros((16, 8, 4))
-    np.testing.assert_array_equal(found[:, 8:], expected)
+    np.testing.assert_array_equal(result[:, 8:], expected)
 
 
 def test_a_start_of_another_format_is_converted(any_engine, folder):
@@ -91,8 +91,8 @@ def test_a_start_of_another_format_is_converted(any_engine, folder):
     folder.write("one.glsl", PLATE.replace("{more}", ""))
     wiring = '[[pass]]\nname = "one"\nuse = "./one"\ninputs = { initial = "back" }\nset = { right = 0.0 }'
     sketch = folder.sketch(f'[[pass]]\nname = "back"\nuse = "./back"\n{wiring}', size="size = 16")
-    found = any_engine.read(replace(sketch, samples=1), "one")
-    np.testing.assert_array_equal(found[:, 8:], np.broadcast_to((0.75, 0.0, 0.0, 1.0), (16, 8, 4)))
+    result = any_engine.read(replace(sketch, samples=1), "one")
+    np.testing.assert_array_equal(result[:, 8:], np.broadcast_to((0.75, 0.0, 0.0, 1.0), (16, 8, 4)))
 
 
 @pytest.mark.parametrize("samples", [1, 2, 4])
@@ -103,11 +103,11 @@ def test_it_starts_from_an_earlier_draw_with_its_depth(any_engine, plates, sampl
         ("two", "", {"right": 0.0, "depth": depth, "colour": (0.0, 0.0, 1.0, 1.0)}, "one"),
         samples=samples,
     )
-    found = any_engine.read(sketch, "two")
-    assert found[8, 4, 2] == (0.0 if hidden else 1.0)
-    assert found[8, 12, 0] == 1.0
-    one = any_engine.read(sketch, "one")
-    assert one[8, 4, 2] == 0.0, "the earlier one is left alone"
+    result = any_engine.read(sketch, "two")
+    assert result[8, 4, 2] == (0.0 if hidden else 1.0)
+    assert result[8, 12, 0] == 1.0
+    item = any_engine.read(sketch, "one")
+    assert item[8, 4, 2] == 0.0, "the earlier one is left alone"
     assert any_engine.record.ran == []
 
 
@@ -131,10 +131,10 @@ def test_equal_depth_draws_over_what_has_that_depth(any_engine, plates, samples)
         ("over", ', depth = "equal", blend = "alpha"', {"depth": 0.25, "colour": GREEN}, "near"),
         samples=samples,
     )
-    found = any_engine.read(sketch, "over")
-    np.testing.assert_array_equal(found[:, :8], np.broadcast_to((0.5, 0.5, 0.0, 1.0), (16, 8, 4)))
-    np.testing.assert_array_equal(found[:, 8:12], np.broadcast_to(RED, (16, 4, 4)))
-    np.testing.assert_array_equal(found[:, 12:], 0.0)
+    result = any_engine.read(sketch, "over")
+    np.testing.assert_array_equal(result[:, :8], np.broadcast_to((0.5, 0.5, 0.0, 1.0), (16, 8, 4)))
+    np.testing.assert_array_equal(result[:, 8:12], np.broadcast_to(RED, (16, 4, 4)))
+    np.testing.assert_array_equal(result[:, 12:], 0.0)
 
 
 def test_without_a_depth_test_the_later_one_shows(any_engine, plates):
@@ -149,14 +149,14 @@ def test_without_a_depth_test_the_later_one_shows(any_engine, plates):
 @pytest.mark.parametrize("blend", ["none", "alpha", "add"])
 def test_blending(any_engine, plates, blend, samples):
     sketch = plates(("one", f', blend = "{blend}"', {"colour": GREEN}, "back"), samples=samples)
-    found, under = any_engine.read(sketch, "one"), any_engine.read(sketch, "back").astype(np.float64)
+    result, under = any_engine.read(sketch, "one"), any_engine.read(sketch, "back").astype(np.float64)
     over = np.broadcast_to(np.array(GREEN), under.shape)
     expected = {
         "none": over,
         "add": under + over,
         "alpha": over * 0.5 + under * 0.5 + (over * [0, 0, 0, 0.5]),  # alpha itself is not weighed by alpha
     }[blend]
-    np.testing.assert_allclose(found, expected, rtol=1e-6)
+    np.testing.assert_allclose(result, expected, rtol=1e-6)
 
 
 def test_samples_are_resolved_to_their_mean(any_engine, plates):
@@ -191,9 +191,9 @@ def test_a_draw_that_draws_nothing_hands_on_what_it_starts_from(any_engine, plat
         ("three", "", {"depth": 0.5, "colour": GREEN}, "two"),
         samples=4,
     )
-    found = any_engine.read(sketch, "three")
+    result = any_engine.read(sketch, "three")
     assert "two" not in any_engine.record.ran
-    assert found[3, 3, 0] == 1.0, "hidden by the first draw's depth"
+    assert result[3, 3, 0] == 1.0, "hidden by the first draw's depth"
     np.testing.assert_array_equal(any_engine.read(sketch, "two"), any_engine.read(sketch, "one"))
 
 
@@ -328,9 +328,9 @@ def stripes(folder):
 def test_triangles_take_their_places_from_a_texture(any_engine, stripes):
     sketch = stripes("2 * stripes + size.x - 16", ', depth = "none"')
     for number in (1, 3, 5):
-        found = any_engine.read(sketch.with_values({"a.stripes": number}), "a")[:, 1, 0]
+        result = any_engine.read(sketch.with_values({"a.stripes": number}), "a")[:, 1, 0]
         expected = [16 - row if row >= 16 - 2 * number else 0 for row in range(16)]
-        np.testing.assert_array_equal(found, expected)
+        np.testing.assert_array_equal(result, expected)
         assert any_engine.record.ran[-1:] == ["a"]
 
 
@@ -350,9 +350,9 @@ def test_a_draw_may_keep_to_one_sample(any_engine, plates):
     """Its texels are numbers, not colours: their mean over samples would be none of them."""
     edge = 0.5 / 8  # half a pixel right of the middle
     sketch = plates(("one", ", samples = 1", {"right": edge}, ""), samples=4)
-    found = any_engine.read(sketch, "one")
-    assert np.all(found % 1 == 0)
-    np.testing.assert_array_equal(any_engine.read(replace(sketch, samples=1), "one"), found)
+    result = any_engine.read(sketch, "one")
+    assert np.all(result % 1 == 0)
+    np.testing.assert_array_equal(any_engine.read(replace(sketch, samples=1), "one"), result)
     assert any_engine.record.ran == [], "the view's samples are nothing to it"
 
 
@@ -363,10 +363,10 @@ def test_a_draw_goes_on_from_one_with_other_samples(any_engine, plates, first, s
         ("two", second, {"left": 0.5, "colour": (0.0, 0.0, 1.0, 1.0)}, "one"),
         samples=4,
     )
-    found = any_engine.read(sketch, "two")
-    np.testing.assert_array_equal(found[:, :8], np.broadcast_to(RED, (16, 8, 4)))
-    np.testing.assert_array_equal(found[:, 12:, 2], 1.0)
-    np.testing.assert_array_equal(found[:, 8:12], any_engine.read(sketch, "back")[:, 8:12])
+    result = any_engine.read(sketch, "two")
+    np.testing.assert_array_equal(result[:, :8], np.broadcast_to(RED, (16, 8, 4)))
+    np.testing.assert_array_equal(result[:, 12:, 2], 1.0)
+    np.testing.assert_array_equal(result[:, 8:12], any_engine.read(sketch, "back")[:, 8:12])
 
 
 def test_a_mesh_as_large_as_it_gets_is_not_cached_for_ever(any_engine, folder):

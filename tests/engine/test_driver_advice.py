@@ -105,9 +105,9 @@ PLATFORMS = ["linux", "darwin", "win32"]
 
 @each(("name", "message"), MESSAGES)
 def test_a_real_message_is_known(name, message):
-    found = complaint(message)
-    assert found is not None
-    assert found.name == name
+    result = complaint(message)
+    assert result is not None
+    assert result.name == name
 
 
 def test_every_complaint_of_the_table_has_a_real_message():

@@ -28,8 +28,8 @@ def both(ctx):
         pytest.skip("this context has no compute shaders")
 
     def read(sketch, ref="a", **named):
-        with Engine(ctx, driver="fragment") as one, Engine(ctx, driver="compute") as two:
-            first, second = one.read(sketch, ref, **named), two.read(sketch, ref, **named)
+        with Engine(ctx, driver="fragment") as engine, Engine(ctx, driver="compute") as two:
+            first, second = engine.read(sketch, ref, **named), two.read(sketch, ref, **named)
         np.testing.assert_array_equal(first.view(np.uint32), second.view(np.uint32))
         return first
 
@@ -51,13 +51,13 @@ def test_every_format(both, folder, form, size):
         "    return previous(texel) * 0.9 + previous(texel + ivec2(1, 0)) * 0.25;\n"
         "}\n",
     )
-    found = both(folder.sketch(BODY, size=size))
-    assert np.isfinite(found).all()
+    result = both(folder.sketch(BODY, size=size))
+    assert np.isfinite(result).all()
     if form.endswith(("8", "16")):
-        assert found.min() >= 0.0
-        assert found.max() <= 1.0
-    elif found.size > 100:
-        assert found.min() < 0.0
+        assert result.min() >= 0.0
+        assert result.max() <= 1.0
+    elif result.size > 100:
+        assert result.min() < 0.0
 
 
 CHECKS = {
@@ -114,8 +114,8 @@ def test_every_way_to_read_a_texture(both, folder, way, wrap):
         "    return textureLod(start, uv, 0.0) + textureLod(start, uv, 1.0) + between;\n"
         "}\n",
     )
-    found = both(folder.sketch(BODY))
-    assert found.std() > 0.1
+    result = both(folder.sketch(BODY))
+    assert result.std() > 0.1
 
 
 TYPES = {

@@ -1,4 +1,4 @@
-"""Every mistake in a shader is a sentence with its file, line and column, by either driver."""
+"""Every mistake in a shader is a message with its file, line and column, by either driver."""
 
 from __future__ import annotations
 
@@ -128,8 +128,8 @@ def test_previous_by_the_wrong_name(engine, folder):
     )
     error = mistake(engine, folder, two + "    a = previous(texel);\n    b = 0.0;\n}\n")
     assert "previous_a and previous_b, not previous" in error.diagnostics[0].message
-    one = GOOD.replace('r32f"', 'r32f", repeat = "2"').replace("1.0", "previous_a(texel)")
-    assert "read by previous, not previous_a" in mistake(engine, folder, one).diagnostics[0].message
+    item = GOOD.replace('r32f"', 'r32f", repeat = "2"').replace("1.0", "previous_a(texel)")
+    assert "read by previous, not previous_a" in mistake(engine, folder, item).diagnostics[0].message
 
 
 @pytest.mark.parametrize(

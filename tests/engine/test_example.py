@@ -17,7 +17,7 @@ from playground.engine.by_example import (
     CELLS,
     Candidates,
     Fit,
-    Wishes,
+    SynthesisSettings,
     cut,
     features_of,
     in_cells,
@@ -37,7 +37,7 @@ from ..truth.drainage import drained_areas, exponent_of
 RNG = np.random.default_rng(7)
 JACKSBORO = GLSL / "sketches/data/jacksboro_fault_dem.npz"
 METRES = 80.0
-FEW = Wishes(candidates=50)
+FIFTY_CANDIDATES = SynthesisSettings(candidates=50)
 
 
 # ── fields ───────────────────────────────────────────────────────────────────
@@ -46,8 +46,8 @@ FEW = Wishes(candidates=50)
 @pytest.mark.parametrize("sigma", [3.0, 6.0])
 def test_smoothing_is_a_gaussian_of_the_mirrored_field(sigma):
     field = RNG.normal(size=(37, 52))
-    wanted = gaussian_filter(field, sigma, mode="reflect", truncate=9)
-    np.testing.assert_allclose(smoothed(field, sigma), wanted, atol=1e-9)
+    expected = gaussian_filter(field, sigma, mode="reflect", truncate=9)
+    np.testing.assert_allclose(smoothed(field, sigma), expected, atol=1e-9)
     assert smoothed(np.full((5, 9), 3.0), sigma) == pytest.approx(3.0)
 
 
@@ -55,14 +55,14 @@ def test_smoothing_is_a_gaussian_of_the_mirrored_field(sigma):
 def test_a_field_of_gradients_is_the_least_squares_one(nearness):
     ny, nx = 6, 9
     east, north, near = RNG.normal(size=(3, ny, nx))
-    rows, wanted = [], []
+    rows, expected = [], []
 
     def equation(weight, number, *places):
         row = np.zeros((ny, nx))
-        for place, sign in places:
-            row[place] = sign
+        for position, sign in places:
+            row[position] = sign
         rows.append(weight * row.ravel())
-        wanted.append(weight * number)
+        expected.append(weight * number)
 
     for y, x in product(range(ny), range(nx)):
         if x + 1 < nx:
@@ -70,8 +70,8 @@ def test_a_field_of_gradients_is_the_least_squares_one(nearness):
         if y + 1 < ny:
             equation(1, north[y, x], ((y + 1, x), 1), ((y, x), -1))
         equation(np.sqrt(nearness), near[y, x], ((y, x), 1))
-    found = np.linalg.lstsq(np.array(rows), np.array(wanted), rcond=None)[0].reshape(ny, nx)
-    np.testing.assert_allclose(integrated(east, north, near, nearness), found, atol=1e-9)
+    result = np.linalg.lstsq(np.array(rows), np.array(expected), rcond=None)[0].reshape(ny, nx)
+    np.testing.assert_allclose(integrated(east, north, near, nearness), result, atol=1e-9)
 
 
 def test_gradients_of_a_field_give_it_back():
@@ -95,24 +95,24 @@ def test_eight_orientations_keep_metres():
     """A plane that rises 0.3 to the east and 0.1 to the north rises so, turned and mirrored."""
     y, x = np.mgrid[0:40, 0:30]
     ways = oriented(0.3 * 50 * x + 0.1 * 80 * y, (50.0, 80.0), (40.0, 60.0))
-    found = set()
+    result = set()
     for way in ways:
         north, east = np.gradient(way, 60.0, 40.0)
         assert np.ptp(east) < 0.02 and np.ptp(north) < 0.02
-        found.add((round(float(east.mean()), 2), round(float(north.mean()), 2)))
-    wanted = {(a * s, b * t) for a, b in ((0.3, 0.1), (0.1, 0.3)) for s in (1, -1) for t in (1, -1)}
-    assert {(round(a, 2), round(b, 2)) for a, b in wanted} == found
+        result.add((round(float(east.mean()), 2), round(float(north.mean()), 2)))
+    expected = {(a * s, b * t) for a, b in ((0.3, 0.1), (0.1, 0.3)) for s in (1, -1) for t in (1, -1)}
+    assert {(round(a, 2), round(b, 2)) for a, b in expected} == result
 
 
 def test_cells_are_means():
     pieces = RNG.random((3, 19, 19))
     edges = [k * 19 // CELLS for k in range(CELLS)] + [19]
-    wanted = [
+    expected = [
         [p[a:b, c:d].mean() for a, b in pairwise(edges)
          for c, d in pairwise(edges)]
         for p in pieces
     ]  # fmt: skip
-    np.testing.assert_allclose(in_cells(pieces), wanted)
+    np.testing.assert_allclose(in_cells(pieces), expected)
 
 
 def test_the_best_piece_is_that_of_the_least_error():
@@ -120,16 +120,16 @@ def test_the_best_piece_is_that_of_the_least_error():
     example = gaussian_filter(RNG.normal(size=(60, 50)), 3) * 100
     side = 16
     pieces = Candidates(oriented(example, (1.0, 1.0), (1.0, 1.0)), side, 60, np.random.default_rng(2))
-    known = RNG.random((side, side)) < 0.4
+    existing = RNG.random((side, side)) < 0.4
     heights, features = 10 * RNG.normal(size=(side, side)) + 70, RNG.normal(size=CELLS * CELLS)
     errors = []
     for number in range(60):
         piece = pieces.with_border(number)[:-1, :-1]
-        a, b = piece[known], heights[known]
+        a, b = piece[existing], heights[existing]
         error = np.var(a - b) / (np.var(a) + np.var(b))
         errors.append(error)
-    assert pieces.best(Fit(known, heights)) == int(np.argmin(errors))
-    again = pieces.best(Fit(known, heights))
+    assert pieces.best(Fit(existing, heights)) == int(np.argmin(errors))
+    again = pieces.best(Fit(existing, heights))
     assert again != int(np.argmin(errors)), (
         "the same is not taken twice running where others are nearly as good"
     )
@@ -141,7 +141,7 @@ def test_the_best_piece_is_that_of_the_least_error():
         own = in_cells(of_ways[fresh.which[number]][y : y + side, x : x + side]) / whole.std()
         away = (abs(features) * (own - features) ** 2).sum() / (abs(features) * features**2).sum()
         errors[number] += 5.0 * away
-    assert fresh.best(Fit(known, heights, features, 5.0)) == int(np.argmin(errors))
+    assert fresh.best(Fit(existing, heights, features, 5.0)) == int(np.argmin(errors))
 
 
 def test_a_quilt_of_an_even_slope_has_no_seam():
@@ -166,16 +166,16 @@ def example() -> Elevation:
 def lines(n: int) -> np.ndarray:
     """Return a picture of three ridges that meet."""
     y, x = np.mgrid[0:n, 0:n] / (n - 1)
-    found = np.full((n, n), 1e9)
+    result = np.full((n, n), 1e9)
     for end in ((0.1, 0.1), (0.9, 0.2), (0.5, 0.95)):
         way = np.array(end) - 0.5
         t = np.clip(((x - 0.5) * way[0] + (y - 0.5) * way[1]) / (way @ way), 0, 1)
-        found = np.minimum(found, np.hypot(x - 0.5 - t * way[0], y - 0.5 - t * way[1]))
-    return (found < 0.02).astype(float)
+        result = np.minimum(result, np.hypot(x - 0.5 - t * way[0], y - 0.5 - t * way[1]))
+    return (result < 0.02).astype(float)
 
 
 def made(example: Elevation, n: int = 161, guide: np.ndarray | None = None, **wishes: object) -> np.ndarray:
-    wished = Wishes(**{"candidates": 400, **wishes})
+    wished = SynthesisSettings(**{"candidates": 400, **wishes})
     return made_like(example, example.spacing, (n, n), (METRES, METRES), wished, guide)
 
 
@@ -206,10 +206,10 @@ def parts(example: Elevation, n: int = 161) -> list[np.ndarray]:
 @pytest.mark.parametrize("guided", [False, True])
 def test_slopes_and_spectrum_are_those_of_the_example(example, guided):
     """As near to the whole example's as those of its own parts of that size are."""
-    found = made(example, guide=lines(161) if guided else None)
+    result = made(example, guide=lines(161) if guided else None)
     for measure in (slopes, spectrum):
         whole, *own = (measure(part) for part in parts(example))
-        assert (abs(measure(found) - whole) <= np.max([abs(part - whole) for part in own], axis=0)).all()
+        assert (abs(measure(result) - whole) <= np.max([abs(part - whole) for part in own], axis=0)).all()
 
 
 @pytest.mark.slow
@@ -225,9 +225,9 @@ def test_ridges_stand_where_they_are_drawn(example):
     guide = lines(129)
     near = gaussian_filter(guide, 6)
     for drawn in (guide, lines(43)):  # a guide may have any size
-        found = made(example, 129, drawn, follow=0.7)
-        assert np.mean(found[guide > 0]) > np.percentile(found[near < 0.01], 90)
-        assert np.corrcoef(near.ravel(), found.ravel())[0, 1] > 0.6
+        result = made(example, 129, drawn, follow=0.7)
+        assert np.mean(result[guide > 0]) > np.percentile(result[near < 0.01], 90)
+        assert np.corrcoef(near.ravel(), result.ravel())[0, 1] > 0.6
     valleys = made(example, 129, -guide, follow=0.7)
     assert np.mean(valleys[guide > 0]) < np.percentile(valleys[near < 0.01], 10)
 
@@ -257,12 +257,12 @@ def test_it_can_be_stopped_between_any_two_of_its_heavy_steps(example, monkeypat
     for name in ("oriented", "_features", "Candidates", "features_of", "quilted", "smoothed", "integrated"):
         act = getattr(by_example, name)
 
-        def noted(*given, _name=name, _act=act, **more):
+        def noted(*arguments, _name=name, _act=act, **more):
             if not running:  # what one of them calls is not a step of its own
                 order.append(_name)
             running.append(_name)
             try:
-                return _act(*given, **more)
+                return _act(*arguments, **more)
             finally:
                 running.pop()
 
@@ -270,7 +270,13 @@ def test_it_can_be_stopped_between_any_two_of_its_heavy_steps(example, monkeypat
     SOURCES.drop_of(by_example._ways)
     guide = lines(65)
     made_like(
-        example, example.spacing, (65, 65), (METRES, METRES), FEW, guide, lambda *at: order.append("report")
+        example,
+        example.spacing,
+        (65, 65),
+        (METRES, METRES),
+        FIFTY_CANDIDATES,
+        guide,
+        lambda *at: order.append("report"),
     )
     order = [name for name in order if name != "_features"]  # cached, so no step of its own
     heavy = ["oriented", "Candidates", "features_of", "quilted", "smoothed", "integrated"]
@@ -283,18 +289,25 @@ def test_it_can_be_stopped_between_any_two_of_its_heavy_steps(example, monkeypat
 
 def test_it_reports_how_far_it_is_and_can_be_stopped(example):
     seen = []
-    made_like(example, example.spacing, (65, 65), (METRES, METRES), FEW, report=lambda *at: seen.append(at))
-    assert len(seen) >= 5 and all(0 <= done < wanted for done, wanted in seen)
+    made_like(
+        example,
+        example.spacing,
+        (65, 65),
+        (METRES, METRES),
+        FIFTY_CANDIDATES,
+        report=lambda *at: seen.append(at),
+    )
+    assert len(seen) >= 5 and all(0 <= done < total for done, total in seen)
     assert [done for done, _ in seen] == sorted(done for done, _ in seen)
 
     class Stop(Exception):
         pass
 
-    def stop(done, wanted):
+    def stop(done, total):
         raise Stop
 
     with pytest.raises(Stop):
-        made_like(example, example.spacing, (65, 65), (METRES, METRES), FEW, report=stop)
+        made_like(example, example.spacing, (65, 65), (METRES, METRES), FIFTY_CANDIDATES, report=stop)
 
 
 def slow_order(strength):
@@ -303,21 +316,21 @@ def slow_order(strength):
     waiting = set(product(*map(range, strength.shape)))
     border = set()
 
-    def rank(place):
-        beside = sum((place[0] + dj, place[1] + di) not in waiting for dj, di in sides)
-        strong = float(strength[place]) if strength[place] > weak else 0.0
-        return strong, beside, (-place[0], -place[1])
+    def rank(position):
+        beside = sum((position[0] + dj, position[1] + di) not in waiting for dj, di in sides)
+        strong = float(strength[position]) if strength[position] > weak else 0.0
+        return strong, beside, (-position[0], -position[1])
 
     while waiting:
-        strong = [place for place in border if strength[place] > weak]
-        if not strong and any(strength[place] > weak for place in waiting):
-            place = max(waiting, key=rank)
+        strong = [position for position in border if strength[position] > weak]
+        if not strong and any(strength[position] > weak for position in waiting):
+            position = max(waiting, key=rank)
         else:
-            place = max(strong or border or waiting, key=rank)
-        waiting.remove(place)
-        border.discard(place)
-        border |= {(place[0] + dj, place[1] + di) for dj, di in sides} & waiting
-        yield place
+            position = max(strong or border or waiting, key=rank)
+        waiting.remove(position)
+        border.discard(position)
+        border |= {(position[0] + dj, position[1] + di) for dj, di in sides} & waiting
+        yield position
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 9), (7, 1), (12, 17)])
@@ -332,7 +345,7 @@ def calls(order, strength):
     """Return how many calls an order of all places makes."""
     count = 0
 
-    def note(frame, event, given):
+    def note(frame, event, value):
         nonlocal count
         count += event in ("call", "c_call")
 
@@ -359,12 +372,12 @@ def values(file: Path, **more: float) -> dict[str, object]:
 
 
 def test_the_file_says_the_relief_and_heights_are_in_it():
-    known = by_example.describe(values(JACKSBORO))
-    assert (known.relief, known.base_elevation, known.size) == (840.0, 236.0, None)
+    terrain = by_example.describe(values(JACKSBORO))
+    assert (terrain.relief, terrain.base_elevation, terrain.size) == (840.0, 236.0, None)
     for relief in (840.0, 420.0):
         material = Material({}, (METRES, METRES), relief)
-        found = relief * by_example.work(values(JACKSBORO), (65, 65), material)["height"]
-        assert found.min() == 0 and 300 < found.max() < 1200, "metres are metres"
+        result = relief * by_example.work(values(JACKSBORO), (65, 65), material)["height"]
+        assert result.min() == 0 and 300 < result.max() < 1200, "metres are metres"
     assert by_example.notes(values(JACKSBORO)) == ()
 
 
@@ -376,10 +389,10 @@ def test_a_file_without_metres_is_told_them(tmp_path):
     assert by_example.describe(values(file, rise=300.0)).relief == 300.0
     assert "it does not say how large it is" in by_example.notes(values(file))[0]
     assert by_example.notes(values(file, texel=30.0)) == ()
-    for rise, wanted in ((0.0, 1.0), (300.0, 0.3)):  # of a relief of 1000 m
+    for rise, expected in ((0.0, 1.0), (300.0, 0.3)):  # of a relief of 1000 m
         material = Material({}, (METRES, METRES), 1000.0)
         made = by_example.work(values(file, rise=rise, piece=1600.0), (65, 65), material)["height"]
-        assert 0.4 * wanted < made.max() < 1.6 * wanted
+        assert 0.4 * expected < made.max() < 1.6 * expected
 
 
 def test_of_a_large_file_no_more_is_read_than_an_example_needs(tmp_path):

@@ -117,8 +117,8 @@ def test_an_input_that_a_variant_does_not_have_has_the_plain_form_run(drawing, h
     assert ran_fast(engine)
     wired = hill.sketch(body + 'inputs = { more = "one" }\n')
     for scale in (1.0, 2.0):  # the second plan is the first with another value
-        found = engine.read(wired.with_values({"h.hill.scale" if around else "h.scale": scale}), "h")
-        np.testing.assert_array_equal(found, scale * slopes() + 8.0)
+        result = engine.read(wired.with_values({"h.hill.scale" if around else "h.scale": scale}), "h")
+        np.testing.assert_array_equal(result, scale * slopes() + 8.0)
     assert not ran_fast(engine)
     name, path = f"both{ending}", "h.hill" if around else "h"
     assert sentences == [
@@ -162,9 +162,9 @@ def test_a_size_that_a_variant_does_not_take_has_the_plain_form_run(drawing, hil
     for sides, fast in (((17, 16), True), ((17, 17), False), ((17, 18), False), ((17, 8), True)):
         sketch = hill.sketch(BODY, size=f"size = {list(sides)}")
         for scale in (1.0, 3.0):  # the second plan is the first with another value
-            found = engine.read(sketch.with_values({"h.scale": scale}), "h")
-            wanted = np.broadcast_to(np.arange(17), sides[::-1])
-            np.testing.assert_allclose(found / scale, wanted, atol=1e-5)
+            result = engine.read(sketch.with_values({"h.scale": scale}), "h")
+            expected = np.broadcast_to(np.arange(17), sides[::-1])
+            np.testing.assert_allclose(result / scale, expected, atol=1e-5)
             assert ran_fast(engine) is fast
     file = "hill.comp" if kind == "compute" else "part.glsl"
     assert sentences == [
@@ -229,9 +229,9 @@ def test_all_that_the_plain_text_is_made_of_counts(drawing, hill, what):
     assert before in text
     hill.write(name, text.replace(before, after))
     sketch = hill.sketch(BODY)
-    found = engine.read(sketch, "h")
+    result = engine.read(sketch, "h")
     assert not ran_fast(engine) and len(sentences) == 1
-    np.testing.assert_array_equal(found, engine.read(sketch.plainly(), "h"))
+    np.testing.assert_array_equal(result, engine.read(sketch.plainly(), "h"))
 
 
 def test_an_edited_variant_does_not_run_before_it_is_verified(drawing, hill, kind):
@@ -293,8 +293,8 @@ def test_plain_forces_the_plain_form(drawing, hill):
 def test_steps_are_those_of_the_plain_form(drawing, hill):
     engine, _ = drawing
     sketch = hill.sketch(BODY)
-    found = [values[0, 4] for _, values in engine.steps(sketch, "h")]
-    assert found == [0, 1, 2, 3, 4]
+    values = [values[0, 4] for _, values in engine.steps(sketch, "h")]
+    assert values == [0, 1, 2, 3, 4]
     assert not ran_fast(engine)
 
 
@@ -302,10 +302,10 @@ def test_which_form_ran_is_in_keys_and_hashes(drawing, hill):
     engine, _ = drawing
     sketch = hill.sketch(BODY)
     forms = [sketch, sketch.plainly()]
-    assert len({engine.fingerprint(one) for one in forms}) == 2
-    for one in forms:
-        engine.render(one, size=(32, 32))
-        assert engine.stale(one, size=(32, 32)) == []
+    assert len({engine.fingerprint(form) for form in forms}) == 2
+    for form in forms:
+        engine.render(form, size=(32, 32))
+        assert engine.stale(form, size=(32, 32)) == []
     engine.render(sketch, size=(32, 32))
     assert engine.stale(sketch.plainly(), size=(32, 32)) == []
     assert not any(path.startswith("h") for path in engine.record.ran), "both stay in memory"
@@ -359,8 +359,8 @@ def test_the_fastest_goes_first(ctx, folder):
 
 def verdicts(ctx, what, folder):
     with Engine(ctx) as engine:
-        found = subjects(str(what), folder / "stand-in.png")
-        return [verify(engine, s.variant, s.technique, s.places) for s in found]
+        result = subjects(str(what), folder / "stand-in.png")
+        return [verify(engine, s.variant, s.technique, s.places) for s in result]
 
 
 @pytest.mark.parametrize("of", ["the sketch", "the variant"])
@@ -369,9 +369,9 @@ def test_renewing_draws_both_and_records_what_agrees(ctx, drawing, hill, kind, t
     (hill.path / NAME).unlink()
     sketch = hill.sketch(BODY)
     own = next(hill.path.glob("hill.comp" if kind == "compute" else "hill.fast.toml"))
-    (found,) = verdicts(ctx, hill.path if of == "the sketch" else own, tmp_path)
-    assert found.ok and found.drawings > 10
-    assert recorded([found]) == [hill.path / NAME]
+    (result,) = verdicts(ctx, hill.path if of == "the sketch" else own, tmp_path)
+    assert result.ok and result.drawings > 10
+    assert recorded([result]) == [hill.path / NAME]
     engine.read(load(sketch.file), "h")
     assert ran_fast(engine) and sentences == []
 
@@ -398,9 +398,9 @@ def test_one_that_differs_is_not_recorded(ctx, folder, tmp_path, where):
     folder.write("hill.comp", COMPUTE.replace(before, after))
     trust(folder.path)
     sketch = folder.sketch(BODY)
-    (found,) = verdicts(ctx, folder.path, tmp_path)
-    assert not found.ok and words in found.wrong and "hill.glsl" in found.wrong
-    recorded([found])
+    (result,) = verdicts(ctx, folder.path, tmp_path)
+    assert not result.ok and words in result.wrong and "hill.glsl" in result.wrong
+    recorded([result])
     assert json.loads((folder.path / NAME).read_text())["variants"] == {}
     assert len(unverified(load(sketch.file))) == 1
 
@@ -411,8 +411,8 @@ def test_one_without_a_bound_is_refused_in_a_sentence(ctx, folder, tmp_path):
     folder.write("hill.comp", COMPUTE.replace(', agrees = "1e-5"', ""))
     (sentence,) = map(str, unverified(folder.sketch(BODY)))
     assert sentence.endswith('it does not say how closely it agrees, as agrees = "1e-5"')
-    (found,) = verdicts(ctx, folder.path, tmp_path)
-    assert not found.ok and "how closely" in found.wrong
+    (result,) = verdicts(ctx, folder.path, tmp_path)
+    assert not result.ok and "how closely" in result.wrong
 
 
 @pytest.mark.parametrize(

@@ -164,10 +164,10 @@ def test_what_is_read_by_fetches_alone(tmp_path: Path, how: str):
     marked, expected = TEXTS[how]
     source = source_of(tmp_path, marked.replace("■", ""))
     inputs = tuple(Input(name) for name in sorted(BOTH))
-    found = fetched_alone(TexelKernel("main", source, (), inputs=inputs))
+    result = fetched_alone(TexelKernel("main", source, (), inputs=inputs))
     lines = [line.code for line in source.lines]
-    for line, column in reversed(found.fetches):
+    for line, column in reversed(result.fetches):
         assert lines[line][column:].startswith("texelFetch")
         lines[line] = f"{lines[line][:column]}■{lines[line][column:]}"
     assert "\n".join(lines).split("//")[0].strip() == (HEAD + marked).split("//")[0].strip()
-    assert found.inputs == expected
+    assert result.inputs == expected

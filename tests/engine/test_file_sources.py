@@ -25,8 +25,8 @@ def values(tmp_path):
     np.save(tmp_path / "a.npy", HEIGHTS.astype(np.float32))
 
     def values_(**changes):
-        found = {p.name: p.default for p in read_technique("generation/heightmap", GLSL, GLSL).parameters}
-        return found | {"elevation": str(tmp_path / "a.npy")} | changes
+        defaults = {p.name: p.default for p in read_technique("generation/heightmap", GLSL, GLSL).parameters}
+        return defaults | {"elevation": str(tmp_path / "a.npy")} | changes
 
     return values_
 
@@ -91,9 +91,9 @@ def test_metres_that_the_user_gives_are_those_of_the_file_s_codes(values, tmp_pa
     from PIL import Image
 
     Image.fromarray(HEIGHTS).save(tmp_path / "a.png")
-    found = KIND.describe(values(elevation=str(tmp_path / "a.png"), metres=(100.0, 355.0)))
-    assert (found.size, found.extent) == ((3, 2), None)
-    assert (found.base_elevation, found.relief) == pytest.approx((110.0, 50.0))  # a metre a grey
+    terrain = KIND.describe(values(elevation=str(tmp_path / "a.png"), metres=(100.0, 355.0)))
+    assert (terrain.size, terrain.extent) == ((3, 2), None)
+    assert (terrain.base_elevation, terrain.relief) == pytest.approx((110.0, 50.0))  # a metre a grey
     silent = KIND.describe(values(elevation=str(tmp_path / "a.png")))
     assert (silent.base_elevation, silent.relief) == (None, None)
 
@@ -130,26 +130,26 @@ def test_a_file_of_the_same_size_and_time_is_read_anew(values, tmp_path, monkeyp
 def test_a_file_that_does_not_change_is_read_once(values, tmp_path, monkeypatch):
     file = tmp_path / "a.npy"
     os.utime(file, (0, 0))
-    given = values()
-    first = KIND.make(given, (3, 2))["height"]
+    value = values()
+    first = KIND.make(value, (3, 2))["height"]
     monkeypatch.setattr("playground.data.arrays.open_regular", None)
-    np.testing.assert_array_equal(KIND.make(given, (3, 2))["height"], first)
+    np.testing.assert_array_equal(KIND.make(value, (3, 2))["height"], first)
 
 
 def test_large_heights_are_not_kept_once_a_texture_was_made_and_are_known_all_the_same(
     values, tmp_path, monkeypatch
 ):
     os.utime(tmp_path / "a.npy", (0, 0))
-    given = values()
-    known, kept = KIND.describe(given), KIND.make(given, (3, 2))["height"]
+    value = values()
+    terrain, kept = KIND.describe(value), KIND.make(value, (3, 2))["height"]
     monkeypatch.setattr("playground.engine.file_sources.KEPT", 1)
-    np.testing.assert_array_equal(KIND.make(given, (3, 2))["height"], kept)
+    np.testing.assert_array_equal(KIND.make(value, (3, 2))["height"], kept)
     assert memo.SOURCES.count_of(file_sources._whole) == 0
     for module in ("arrays", "grid"):
         monkeypatch.setattr(f"playground.data.{module}.open_regular", None)
-    assert KIND.describe(given) == known
+    assert KIND.describe(value) == terrain
     with pytest.raises(DataError):
-        KIND.make(given, (3, 2))
+        KIND.make(value, (3, 2))
 
 
 def test_a_large_file_is_not_read_to_be_known(tmp_path, monkeypatch):
@@ -157,9 +157,9 @@ def test_a_large_file_is_not_read_to_be_known(tmp_path, monkeypatch):
     with file.open("wb") as handle:
         handle.truncate(2**31)
     monkeypatch.setattr("playground.data.content_hash.content_hash", None)
-    known = content_key(file)
+    text = content_key(file)
     os.utime(file, ns=(0, 0))
-    assert content_key(file) != known
+    assert content_key(file) != text
 
 
 def test_a_missing_file_and_an_unknown_source_are_sentences(values, tmp_path):

@@ -64,8 +64,8 @@ def test_their_values_are_those_of_the_fetches(any_engine: Engine, folder: Folde
     if driver == "compute" and not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
     with Engine(any_engine.ctx, driver=driver) as engine:
-        found = engine.read(sketch_of(folder), "a")
-    np.testing.assert_allclose(found, truth(), rtol=2e-6)
+        result = engine.read(sketch_of(folder), "a")
+    np.testing.assert_allclose(result, truth(), rtol=2e-6)
 
 
 @pytest.mark.parametrize("form", ["rgba32f", "rgba16f", "rgba8", "rgba16"])
@@ -85,8 +85,8 @@ def test_they_change_with_the_input_and_are_read_back_once(any_engine: Engine, f
     )
     with Engine(any_engine.ctx) as engine:
         for scale in (1.0, 2.0, 0.5, 2.0):
-            found = engine.read(sketch.with_values({"row.scale": scale}), "a")
-            np.testing.assert_allclose(found, truth(scale), rtol=2e-6)
+            result = engine.read(sketch.with_values({"row.scale": scale}), "a")
+            np.testing.assert_allclose(result, truth(scale), rtol=2e-6)
             own = [texture for texture in read if texture.size == (5, 2)]
             engine.read(sketch.with_values({"row.scale": scale}), "a")
     assert asked == {("row", 2, 1), ("row", 4, 0), ("row", 9, 0)}
@@ -98,9 +98,9 @@ def test_an_input_of_one_texel_answers_for_every_place_where_another_is_unwired(
 ):
     """As the fetches do: what is not wired has one texel, and they cannot tell the two apart."""
     with Engine(any_engine.ctx) as engine:
-        found = engine.read(sketch_of(folder, size="1, 1"), "a")
+        result = engine.read(sketch_of(folder, size="1, 1"), "a")
     expected = 111 * row_texel(0, 0) + np.arange(17, dtype=np.float32)[None, :, None]
-    np.testing.assert_allclose(found, expected * np.ones((17, 1, 1)), rtol=1e-5)
+    np.testing.assert_allclose(result, expected * np.ones((17, 1, 1)), rtol=1e-5)
 
 
 LOOP = """
@@ -135,8 +135,8 @@ def test_what_a_loop_feeds_back_is_fetched_in_each_iteration(any_engine: Engine,
     folder.write("sum.glsl", SUM)
     folder.write("grows.toml", GROWS)
     with Engine(any_engine.ctx) as engine:
-        found = engine.read(folder.sketch(LOOP), "a")
-    np.testing.assert_allclose(found, row_texel(1, 1)[0] + 3.0, rtol=1e-6)
+        result = engine.read(folder.sketch(LOOP), "a")
+    np.testing.assert_allclose(result, row_texel(1, 1)[0] + 3.0, rtol=1e-6)
 
 
 def test_no_line_and_no_column_changes(folder: Folder):
@@ -181,9 +181,9 @@ def test_a_pass_whose_texels_are_as_they_were_does_not_run_again(
 
         def look(**values: float) -> tuple[float, bool]:
             changed = {f"row.{name}" if name != "gain" else "a.gain": v for name, v in values.items()}
-            found = engine.read(sketch.with_values(changed), "a")
-            assert (found == found[0, 0]).all()
-            return float(found[0, 0]), "a" in engine.record.ran
+            result = engine.read(sketch.with_values(changed), "a")
+            assert (result == result[0, 0]).all()
+            return float(result[0, 0]), "a" in engine.record.ran
 
         assert look(day=7) == (21, True)
         assert look(day=7, hour=2) == (21, not software)

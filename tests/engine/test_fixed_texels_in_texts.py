@@ -80,11 +80,11 @@ def texels(folder: Path, text: str) -> list[tuple[str, int, int]]:
     path = folder / "k.glsl"
     path.write_text(HEAD + text + "\n", encoding="utf-8")
     source = read_source(path, (folder,))
-    found = fixed_texels(source)
-    for one in found:
-        written = source.lines[one.line].code[one.start : one.end]
-        assert written.startswith("texelFetch") and written.endswith(")") and one.input in written
-    return [(one.input, one.x, one.y) for one in found]
+    result = fixed_texels(source)
+    for item in result:
+        written = source.lines[item.line].code[item.start : item.end]
+        assert written.startswith("texelFetch") and written.endswith(")") and item.input in written
+    return [(item.input, item.x, item.y) for item in result]
 
 
 @pytest.mark.parametrize("where", FOUND)
@@ -158,5 +158,5 @@ def test_an_input_is_read_by_single_texels_alone_where_the_text_does_nothing_els
 )
 def test_what_a_text_takes_of_a_texel_is_noted(tmp_path: Path, taken: str, components: set[int]):
     text = f"vec4 kernel(ivec2 t) {{ return vec4(texelFetch(sun, ivec2(3), 0){taken}); }}"
-    (found,) = fixed_texels(source_of(tmp_path, text))
-    assert found.components == components
+    (result,) = fixed_texels(source_of(tmp_path, text))
+    assert result.components == components

@@ -33,11 +33,11 @@ def expected(red=None, green=None, blue=0.25):
     """Return the picture in 8 bits: by default x and y of its places, 0..1."""
     x, y = (np.arange(32) + 0.5) / 32, ((np.arange(18) + 0.5) / 18)[::-1, None]
     channels = [x if red is None else red, y if green is None else green, blue, 1.0]
-    return np.stack([np.broadcast_to(one, (18, 32)) for one in channels], axis=-1) * 255
+    return np.stack([np.broadcast_to(channel, (18, 32)) for channel in channels], axis=-1) * 255
 
 
-def check(found, **channels):
-    assert np.abs(found - expected(**channels)).max() <= 0.5 + 1e-3
+def check(result, **channels):
+    assert np.abs(result - expected(**channels)).max() <= 0.5 + 1e-3
 
 
 # ── entry points that are macros ─────────────────────────────────────────────
@@ -168,10 +168,10 @@ def test_a_body_of_a_macro_declares_nothing_by_itself(drawn, name):
 def test_a_hash_of_whole_numbers_is_that_of_numpy(drawn):
     text = "#define HASH_T uvec3(1597334673u, 3812015801u, 2798796415u)\n"
     text += "float h(uvec3 q) { q *= HASH_T; return float(q.x ^ q.y ^ q.z) / 4294967295.0; }\n"
-    found = drawn(f"{text}{IMAGE.replace(PICTURE, 'vec4(h(uvec3(p, iFrame)))')}")[..., 0]
+    result = drawn(f"{text}{IMAGE.replace(PICTURE, 'vec4(h(uvec3(p, iFrame)))')}")[..., 0]
     x, y = np.meshgrid(np.arange(32, dtype=np.uint64), np.arange(18, dtype=np.uint64)[::-1])
     mixed = (x * 1597334673 ^ y * 3812015801) % 2**32
-    assert np.abs(found - mixed / (2**32 - 1) * 255).max() <= 0.5 + 1e-3
+    assert np.abs(result - mixed / (2**32 - 1) * 255).max() <= 0.5 + 1e-3
 
 
 # ── what tools define ────────────────────────────────────────────────────────
@@ -226,8 +226,8 @@ def test_a_text_may_ask_what_its_tool_defines(drawn, name):
 def test_a_macro_s_uniform_is_a_parameter(drawn, folder):
     text = "#define KNOB(n, v) uniform float n = v;\nKNOB(level, 0.25)\n/* uniform float other; */\n"
     check(drawn(f"{text}{IMAGE.replace('0.25', 'level')}"))
-    found = load(folder.path / "a.frag").graph.find("view").technique.parameters
-    assert [(p.name, p.default) for p in found] == [("level", 0.25)]
+    parameters = load(folder.path / "a.frag").graph.find("view").technique.parameters
+    assert [(p.name, p.default) for p in parameters] == [("level", 0.25)]
 
 
 def test_a_keyboard_that_a_comment_asks_for_is_not_there(drawn, folder):

@@ -91,9 +91,9 @@ def states(engine: Engine, sketch, size: tuple[int, int], time: float) -> np.nda
 @pytest.mark.parametrize("size", [(8, 6), (13, 9)])
 @pytest.mark.parametrize("time", [0.0, 0.5, 1.0])
 def test_a_frame_is_that_of_a_twin_stepped_from_the_first(any_engine, sketch, time, size):
-    found = states(any_engine, sketch, size, time)
+    array = states(any_engine, sketch, size, time)
     # Two roundings a frame, of 2**-24 each; what is fed back comes back by 5 / 8.
-    np.testing.assert_allclose(found, twin(size, round(60 * time) + 1), rtol=2 * 2**-24 / (1 - 5 / 8))
+    np.testing.assert_allclose(array, twin(size, round(60 * time) + 1), rtol=2 * 2**-24 / (1 - 5 / 8))
 
 
 def test_what_reads_neither_time_nor_what_is_fed_back_runs_once(any_engine, sketch):
@@ -119,9 +119,9 @@ def test_the_picture_is_a_function_of_time_and_size_alone(ctx, sketch):
 
     with Engine(ctx) as warm:
         for time, size in ((2.0, (8, 6)), (1.0, (8, 6)), (1.0, (13, 9)), (0.0, (8, 6)), (1.5, (8, 6))):
-            found = states(warm, sketch, size, time), warm.render(sketch, size=size, time=time).array
-            for one, other, again in zip(found, cold(time, size), cold(time, size), strict=True):
-                assert one.tobytes() == other.tobytes() == again.tobytes()
+            result = states(warm, sketch, size, time), warm.render(sketch, size=size, time=time).array
+            for first, other, again in zip(result, cold(time, size), cold(time, size), strict=True):
+                assert first.tobytes() == other.tobytes() == again.tobytes()
 
 
 DRAW = """void mainImage(out vec4 colour, in vec2 place) {
@@ -139,8 +139,8 @@ def drawing(folder):
 
 
 def test_another_tools_shader_reads_zeros_of_its_own_size_before_the_first_frame(any_engine, drawing):
-    found = any_engine.read(drawing, "view.loop", size=(5, 4))
-    np.testing.assert_array_equal(np.round(255 * found), np.broadcast_to([0, 1, 50, 255], (4, 5, 4)))
+    result = any_engine.read(drawing, "view.loop", size=(5, 4))
+    np.testing.assert_array_equal(np.round(255 * result), np.broadcast_to([0, 1, 50, 255], (4, 5, 4)))
 
 
 def test_the_mouse_enters_at_its_frame_and_makes_no_frame_before_stale(any_engine, drawing):
@@ -148,9 +148,9 @@ def test_the_mouse_enters_at_its_frame_and_makes_no_frame_before_stale(any_engin
     any_engine.runner.drag = (2.0, 0.0, 0.0, 0.0)
     any_engine.read(drawing, "view.loop", size=(4, 4), time=4 / 60)
     assert any_engine.record.ran == []
-    found = any_engine.read(drawing, "view.loop", size=(4, 4), time=7 / 60)
+    result = any_engine.read(drawing, "view.loop", size=(4, 4), time=7 / 60)
     assert any_engine.record.ran == ["view.loop.view"] * 3
-    np.testing.assert_array_equal(np.round(255 * found[0, 0]), [6, 8, 47, 255])
+    np.testing.assert_array_equal(np.round(255 * result[0, 0]), [6, 8, 47, 255])
 
 
 def test_all_that_the_window_changes_from_frame_to_frame_belongs_to_a_frame(any_engine, drawing):

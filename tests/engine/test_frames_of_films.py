@@ -81,11 +81,11 @@ def sums(engine: Engine, sketch, time: float) -> np.ndarray:
 def test_each_frame_reads_what_was_shown_then(any_engine, sketch, time):
     frames = round(60 * time) + 1
     red = [colour(min(frame * 20 // 60, 29))[0] / 255 for frame in range(frames)]
-    found = sums(any_engine, sketch, time)
+    array = sums(any_engine, sketch, time)
     # A byte of the film is exact to a few of its steps: yuv420p keeps 219 of 256, and one is a flat patch.
-    np.testing.assert_allclose(found[0], sum(red), atol=frames * 5 / 255)
-    np.testing.assert_allclose(found[1], sum(frame / 60 for frame in range(frames)), rtol=frames * 2**-23)
-    assert found[3] == frames
+    np.testing.assert_allclose(array[0], sum(red), atol=frames * 5 / 255)
+    np.testing.assert_allclose(array[1], sum(frame / 60 for frame in range(frames)), rtol=frames * 2**-23)
+    assert array[3] == frames
 
 
 def test_a_later_moment_runs_only_the_frames_between(any_engine, sketch):
@@ -105,8 +105,8 @@ def test_the_picture_is_the_same_from_cold_and_from_warm(ctx, sketch):
     with Engine(ctx) as warm:
         for time in (0.7, 0.2, 1.0, 0.7):
             with Engine(ctx) as cold:
-                wanted = cold.render(sketch, size=(8, 8), time=time).array
-            np.testing.assert_array_equal(warm.render(sketch, size=(8, 8), time=time).array, wanted)
+                expected = cold.render(sketch, size=(8, 8), time=time).array
+            np.testing.assert_array_equal(warm.render(sketch, size=(8, 8), time=time).array, expected)
 
 
 def test_another_loop_between_them_keeps_them_outside(folder, sketch, any_engine):
@@ -114,5 +114,5 @@ def test_another_loop_between_them_keeps_them_outside(folder, sketch, any_engine
         'use = "./red"\ninputs', 'use = "./blur"\nrepeat = "2"\nfeedback = { film = "red" }\ninputs'
     )
     folder.write("blur.toml", '[[pass]]\nname = "red"\nuse = "./red"\n[inputs]\nfilm = "red.film"\n')
-    found = sums(any_engine, load(folder.write("other.toml", text)), 0.5)
-    assert found[3] == 31 and np.isfinite(found).all()
+    array = sums(any_engine, load(folder.write("other.toml", text)), 0.5)
+    assert array[3] == 31 and np.isfinite(array).all()

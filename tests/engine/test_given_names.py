@@ -57,10 +57,10 @@ def truth(azimuth, elevation):
 
 @pytest.mark.parametrize("sun", [(30, 60), (-250, -20), (0, 90), (450, 0), (180, -90), (720, 3)], ids=str)
 def test_the_vector_towards_a_direction(any_engine, asked, sun):
-    given = any_engine.read(asked.with_values({"asked.sun": sun}), "asked")[3, 5]
-    np.testing.assert_allclose(given[:3], truth(*sun), atol=1e-7)
+    value = any_engine.read(asked.with_values({"asked.sun": sun}), "asked")[3, 5]
+    np.testing.assert_allclose(value[:3], truth(*sun), atol=1e-7)
     if sun[0] % 90 == 0 and sun[1] % 90 == 0:
-        assert sorted(np.abs(given[:3])) == [0, 0, 1]
+        assert sorted(np.abs(value[:3])) == [0, 0, 1]
 
 
 def test_moving_the_direction_is_seen_though_only_its_vector_is_read(any_engine, asked):
@@ -90,9 +90,9 @@ def test_kernels_draws_and_compute_variants_get_them(each_engine, folder, form):
         (folder.sketch('[[pass]]\nname = "wind"\nuse = "./blows"\n' + PASS), 1),
     ):
         for sun in ((30, 60), (200, 5)):
-            given = each_engine.read(sketch.with_values({"asked.sun": sun}), "asked")
-            np.testing.assert_allclose(given[..., :3], np.broadcast_to(truth(*sun), (17, 17, 3)), atol=1e-7)
-            assert (given[..., 3] == wired).all()
+            value = each_engine.read(sketch.with_values({"asked.sun": sun}), "asked")
+            np.testing.assert_allclose(value[..., :3], np.broadcast_to(truth(*sun), (17, 17, 3)), atol=1e-7)
+            assert (value[..., 3] == wired).all()
 
 
 SIZES = """#pragma kernel(output = "given:rg32f")
@@ -104,9 +104,9 @@ vec2 kernel(ivec2 texel) { return vec2(matches_wind ? 1.0 : 0.0, wired_wind ? 1.
 def test_whether_an_input_has_the_size_of_the_pass(each_engine, folder):
     folder.write("asks.glsl", SIZES)
     folder.write("blows.glsl", WIND)
-    for size, given in (("", (1, 1)), ("size = 9\n", (0, 1)), ("size = [17, 9]\n", (0, 1))):
+    for size, value in (("", (1, 1)), ("size = 9\n", (0, 1)), ("size = [17, 9]\n", (0, 1))):
         sketch = folder.sketch(f'[[pass]]\nname = "wind"\nuse = "./blows"\n{size}{PASS}')
-        assert tuple(each_engine.read(sketch, "asked")[3, 2]) == given
+        assert tuple(each_engine.read(sketch, "asked")[3, 2]) == value
     assert tuple(each_engine.read(folder.sketch(PASS), "asked")[0, 0]) == (0, 0)
 
 

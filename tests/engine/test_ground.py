@@ -76,9 +76,9 @@ def test_an_eye_under_the_terrain_is_raised_just_over_it(any_engine, sketch):
     ids=["above", "beside", "default"],
 )
 def test_any_other_eye_stays(any_engine, sketch, camera):
-    wanted = any_engine.plan(sketch.with_camera(camera), (64, 36)).eye
+    expected = any_engine.plan(sketch.with_camera(camera), (64, 36)).eye
     any_engine.render(sketch.with_camera(camera), size=(64, 36))
-    assert any_engine.record.plan.eye.position == wanted.position and any_engine.eye_height.message == ""
+    assert any_engine.record.plan.eye.position == expected.position and any_engine.eye_height.message == ""
 
 
 def test_an_eye_straight_over_its_target_may_be_raised_too(any_engine, sketch):
@@ -93,7 +93,7 @@ def test_the_terrain_is_read_once_for_a_place_and_made_once(any_engine, sketch, 
 
     reads = []
     real = module._height_at
-    monkeypatch.setattr(module, "_height_at", lambda *given: reads.append(1) or real(*given))
+    monkeypatch.setattr(module, "_height_at", lambda *value: reads.append(1) or real(*value))
     for _ in range(3):
         any_engine.render(sketch.with_camera(UNDER), size=(64, 36))
     assert len(reads) == 1 and any_engine.runs["height"] == 1

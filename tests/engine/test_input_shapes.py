@@ -75,8 +75,8 @@ def test_an_edge_reads_both_of_its_faces(any_engine, folder):
                     direction = np.insert([first * (1 - shift[0]), second * (1 - shift[1])], axis, along)
                     face, s, t = face_and_place(direction)
                     beside.append(face)
-                    place = min(int(s * SIDE), SIDE - 1), min(int(t * SIDE), SIDE - 1)
-                    expected += read.texels[face * SIDE + place[1], place[0]] / 2
+                    position = min(int(s * SIDE), SIDE - 1), min(int(t * SIDE), SIDE - 1)
+                    expected += read.texels[face * SIDE + position[1], position[0]] / 2
                 assert len(set(beside)) == 2
                 np.testing.assert_allclose(read(np.insert([first, second], axis, along)), expected, atol=2)
 
@@ -88,10 +88,10 @@ def test_the_smallest_level_is_the_mean_of_each_face(any_engine, folder):
         np.testing.assert_allclose(read(direction), mean, atol=2)
 
 
-@pytest.mark.parametrize("place", [(0, 0, 0), (3, 1, 2), (2, 3, 3)])
-def test_a_volume_and_an_array_are_slices_above_each_other(any_engine, folder, place):
+@pytest.mark.parametrize("position", [(0, 0, 0), (3, 1, 2), (2, 3, 3)])
+def test_a_volume_and_an_array_are_slices_above_each_other(any_engine, folder, position):
     for shape in ("volume", "layers"):
-        column, row, layer = (*place[:2], min(place[2], 2) if shape == "layers" else place[2])
+        column, row, layer = (*position[:2], min(position[2], 2) if shape == "layers" else position[2])
         exact = Reader(any_engine, folder, shape, "texelFetch(data, ivec3(at), 0)")
         np.testing.assert_allclose(
             exact((column, row, layer)), exact.texels[layer * SIDE + row, column], atol=1
@@ -140,7 +140,7 @@ def test_what_nothing_feeds_is_black_and_opaque(any_engine, folder, shape):
 
 
 def test_a_texture_that_cannot_be_a_cube_is_one_sentence_at_the_wire(folder):
-    for shape, size, wanted in [
+    for shape, size, expected in [
         ("cube", (8, 32), r"data reads 'data', 8 x 32 texels; .*1 : 6, as 8 x 48"),
         ("volume", (8, 32), r"n slices above each other, as 8 x 64"),
         ("layers", (8, 33), r"square layers above each other, as 8 x 32"),
@@ -150,18 +150,18 @@ def test_a_texture_that_cannot_be_a_cube_is_one_sentence_at_the_wire(folder):
         folder.write("reads.frag", text)
         write_png(folder.path / "data.png", np.zeros((2, 2, 4), np.uint8))
         sketch = load(folder.write("sketch.toml", SKETCH.format(*size)))
-        with pytest.raises(SketchError, match=wanted) as caught:
+        with pytest.raises(SketchError, match=expected) as caught:
             make_plan(sketch, PlanRequest(frame_size=(4, 4)))
-        found = caught.value.diagnostics[0]
+        diagnostic = caught.value.diagnostics[0]
         assert (
-            found.file.endswith("sketch.toml")
-            and found.line == SKETCH.count("\n", 0, SKETCH.index("[view]")) + 1
+            diagnostic.file.endswith("sketch.toml")
+            and diagnostic.line == SKETCH.count("\n", 0, SKETCH.index("[view]")) + 1
         )
 
 
 def test_a_copy_is_made_once_for_all_who_read_it(any_engine, folder, monkeypatch):
     made = []
-    monkeypatch.setattr(binder, "copied", lambda *given: made.append(given[1]) or copied(*given))
+    monkeypatch.setattr(binder, "copied", lambda *value: made.append(value[1]) or copied(*value))
     read = Reader(any_engine, folder, "cube", "textureLod(data, at, 0.0)")
     for way in ((1, 0, 0), (0, 1, 0), (0, 0, -1)):
         read(way)

@@ -66,9 +66,9 @@ def test_a_mistake_is_at_its_own_line(any_engine, isf, name):
     text, line = with_mistake(TEXTS[name])
     with pytest.raises(ShaderError) as caught:
         drawn(any_engine, isf(text, VERTEX.get(name, "")))
-    found = caught.value.diagnostics[0]
-    assert (found.line, found.file.endswith("shader.fs")) == (line, True)
-    assert "not_declared" in found.message
+    diagnostic = caught.value.diagnostics[0]
+    assert (diagnostic.line, diagnostic.file.endswith("shader.fs")) == (line, True)
+    assert "not_declared" in diagnostic.message
 
 
 @pytest.mark.parametrize("name", VERTEX)
@@ -76,9 +76,9 @@ def test_a_mistake_of_a_vertex_shader_is_at_its_own_line(any_engine, isf, name):
     vertex, line = with_mistake(VERTEX[name])
     with pytest.raises(ShaderError) as caught:
         drawn(any_engine, isf(TEXTS[name], vertex))
-    found = caught.value.diagnostics[0]
-    assert (found.line, found.file.endswith("shader.vs")) == (line, True)
-    assert "not_declared" in found.message
+    diagnostic = caught.value.diagnostics[0]
+    assert (diagnostic.line, diagnostic.file.endswith("shader.vs")) == (line, True)
+    assert "not_declared" in diagnostic.message
 
 
 def test_a_mistake_of_an_include_is_at_its_own_line(any_engine, isf, folder):
@@ -86,8 +86,8 @@ def test_a_mistake_of_an_include_is_at_its_own_line(any_engine, isf, folder):
     folder.write("waves.glsl", WAVES.replace("level", "not_declared"))
     with pytest.raises(ShaderError) as caught:
         drawn(any_engine, path)
-    found = caught.value.diagnostics[0]
-    assert (found.line, found.file.endswith("waves.glsl"), len(found.chain)) == (2, True, 1)
+    diagnostic = caught.value.diagnostics[0]
+    assert (diagnostic.line, diagnostic.file.endswith("waves.glsl"), len(diagnostic.chain)) == (2, True, 1)
 
 
 @pytest.mark.parametrize("name", TEXTS)
@@ -140,8 +140,8 @@ def test_a_colour_is_as_it_is_written_and_shown(any_engine, isf):
 
 def test_values_of_inputs(any_engine, isf):
     path = isf("inputs")
-    found = {p.name: p for p in load(path).graph.find("view").technique.parameters}
-    assert {name: (p.widget.kind, p.default) for name, p in found.items()} == {
+    result = {p.name: p for p in load(path).graph.find("view").technique.parameters}
+    assert {name: (p.widget.kind, p.default) for name, p in result.items()} == {
         "level": ("slider", 0.5),
         "on": ("checkbox", True),
         "go": ("button", False),
@@ -149,7 +149,7 @@ def test_values_of_inputs(any_engine, isf):
         "centre": ("point", (0.25, 0.0)),
         "tint": ("colour", (1.0, 0.5, 0.25, 1.0)),
     }
-    assert (found["level"].title, found["level"].line) == ("Level of red", 4)
+    assert (result["level"].title, result["level"].line) == ("Level of red", 4)
     off = drawn(any_engine, path, **{"view.on": False, "view.level": 0.25, "view.mode": "nine"})
     np.testing.assert_allclose(off[0, 0, :3], 255 * 0.25 * 9 / 4, atol=1)
     any_engine.runner.pressed = frozenset({"view.go"})
@@ -165,8 +165,8 @@ def test_a_value_that_the_text_names_once_counts(any_engine, isf):
 
 
 def test_no_defaults(isf):
-    found = {p.name: p for p in load(isf("no_defaults")).graph.find("view").technique.parameters}
-    assert {name: p.default for name, p in found.items()} == {
+    result = {p.name: p for p in load(isf("no_defaults")).graph.find("view").technique.parameters}
+    assert {name: p.default for name, p in result.items()} == {
         "a": 0.5,
         "b": 3.0,
         "c": True,
@@ -177,16 +177,16 @@ def test_no_defaults(isf):
 
 
 def test_menus_of_every_form(isf):
-    found = {p.name: p for p in load(isf("long_alone")).graph.find("view").technique.parameters}
-    assert (found["a"].widget.choices, found["a"].default) == (("zero", "one"), 1)
-    assert (found["b"].widget.values, found["b"].default) == ((2, 2, 7), 0)
-    assert len(set(found["b"].widget.choices)) == 3
-    assert (found["c"].widget.kind, found["c"].default) == ("number", 0)
+    result = {p.name: p for p in load(isf("long_alone")).graph.find("view").technique.parameters}
+    assert (result["a"].widget.choices, result["a"].default) == (("zero", "one"), 1)
+    assert (result["b"].widget.values, result["b"].default) == ((2, 2, 7), 0)
+    assert len(set(result["b"].widget.choices)) == 3
+    assert (result["c"].widget.kind, result["c"].default) == ("number", 0)
 
 
 def test_places_in_pixels_without_a_range_are_kept(isf):
-    (found,) = load(isf("pixels_1")).graph.find("view").technique.parameters
-    assert (found.default, found.widget.axes) == ((16.0, 9.0), ((0.0, 16.0), (0.0, 9.0)))
+    (result,) = load(isf("pixels_1")).graph.find("view").technique.parameters
+    assert (result.default, result.widget.axes) == ((16.0, 9.0), ((0.0, 16.0), (0.0, 9.0)))
 
 
 # ── passes ───────────────────────────────────────────────────────────────────
@@ -288,8 +288,8 @@ def test_a_kept_target_counts_the_frames(any_engine, isf):
     passes = ', "PASSES": [{"TARGET": "a", "PERSISTENT": 1, "FLOAT": "true", "WIDTH": 1, "HEIGHT": 1}, {}]'
     text = ONE.format("", passes, "IMG_PIXEL(a, vec2(0.5)) + (PASSINDEX == 0 ? 1.0 / 128.0 : 0.0)")
     for time, frames in ((0.0, 1), (0.5, 31), (1.0, 61), (0.5, 31)):
-        found = drawn(any_engine, isf(text), time)[0, 0, 0]
-        assert found == round(255 * frames / 128)
+        result = drawn(any_engine, isf(text), time)[0, 0, 0]
+        assert result == round(255 * frames / 128)
 
 
 def test_cells_live_and_die_as_numpy_s_do(any_engine, isf):
@@ -377,7 +377,7 @@ MAIN = "\nvoid main() { gl_FragColor = vec4(1.0); }\n"
 
 
 @pytest.mark.parametrize(
-    ("header", "words", "place"),
+    ("header", "words", "position"),
     [
         (
             '/*{"INPUTS": [\n  {"NAME": "a" "TYPE": "float"}]}*/',
@@ -402,11 +402,11 @@ MAIN = "\nvoid main() { gl_FragColor = vec4(1.0); }\n"
         ('/*{"INPUTS": [], "IMPORTED": {"a": {}}}*/', "needs the path of its file", (1, 0)),
     ],
 )
-def test_a_wrong_description_is_one_sentence_at_its_place(isf, header, words, place):
+def test_a_wrong_description_is_one_sentence_at_its_place(isf, header, words, position):
     with pytest.raises(ShaderError, match=words) as caught:
         load(isf(header + MAIN))
-    found = caught.value.diagnostics[0]
-    assert (found.line, found.column) == place
+    diagnostic = caught.value.diagnostics[0]
+    assert (diagnostic.line, diagnostic.column) == position
 
 
 def test_no_main_is_one_sentence(isf):

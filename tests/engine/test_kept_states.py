@@ -68,8 +68,8 @@ def test_any_order_of_times_gives_the_bits_that_a_cold_engine_gives(ctx, sketch,
     with Engine(ctx) as warm:
         for frame in frames:
             np.testing.assert_array_equal(after(warm, sketch, int(frame)), truth[frame])
-    with Engine(ctx) as one:
-        np.testing.assert_array_equal(after(one, sketch, int(frames[0])), truth[frames[0]])
+    with Engine(ctx) as engine:
+        np.testing.assert_array_equal(after(engine, sketch, int(frames[0])), truth[frames[0]])
 
 
 @pytest.mark.slow
@@ -91,10 +91,10 @@ def test_a_jump_back_costs_a_share_of_its_distance(any_engine, sketch):
 
 class FakePool:
     def __init__(self) -> None:
-        self.given: list[Result] = []
+        self.released: list[Result] = []
 
     def give(self, result: Result) -> None:
-        self.given.append(result)
+        self.released.append(result)
 
 
 class Sized(Result):
@@ -150,9 +150,9 @@ def test_states_are_bounded_in_bytes_and_of_the_last_two_keys():
     assert len(kept.numbers("loop", "one")) in (5, 6, 7), "they share"
     kept.keep("loop", "three", 1, of_bytes(8), 2)
     assert not kept.numbers("loop", "one"), "gone when the key has changed twice"
-    assert len(pool.given) == 99 - len(kept), "each is given back, once"
+    assert len(pool.released) == 99 - len(kept), "each is given back, once"
     kept.clear()
-    assert (len(pool.given), len(kept), kept.bytes) == (99, 0, 0)
+    assert (len(pool.released), len(kept), kept.bytes) == (99, 0, 0)
 
 
 def test_a_state_that_is_larger_than_the_bound_is_not_kept():

@@ -50,8 +50,8 @@ def once(engine: Engine) -> Engine:
 def test_the_picture_is_the_same_and_what_is_read_no_more_is_gone(ctx, chain):
     with Engine(ctx) as usual, Engine(ctx) as engine:
         expected = usual.render(chain(), size=(40, 30))
-        found = once(engine).render(chain(), size=(40, 30))
-        np.testing.assert_array_equal(found.array, expected.array)
+        render = once(engine).render(chain(), size=(40, 30))
+        np.testing.assert_array_equal(render.array, expected.array)
         assert set(usual.record.results) == {"first", "second", "third", "both", "last", "view"}
         assert set(engine.record.results) == {"view"}
         assert engine.cache.bytes == 40 * 30 * 4
@@ -93,8 +93,8 @@ def test_what_was_not_finite_in_a_texture_that_is_gone_is_told(ctx, chain):
         usual.render(broken, size=(16, 16))
         once(engine).render(broken, size=(16, 16))
         assert engine.record.results.keys() == {"view"}
-        expected = [str(one) for one in usual.not_finite_by_pass()]
-        assert [str(one) for one in engine.not_finite_by_pass()] == expected
+        expected = [str(not_finite) for not_finite in usual.not_finite_by_pass()]
+        assert [str(not_finite) for not_finite in engine.not_finite_by_pass()] == expected
         assert "pass 'second', output 'height'" in str(engine.not_finite())
 
 

@@ -29,16 +29,16 @@ def sketch_of(folder: Path, name: str) -> Sketch:
     return load(folder / "s.toml")
 
 
-def in_triangle(place: tuple[float, float], corners: list[tuple[float, float, float]]) -> float | None:
+def in_triangle(position: tuple[float, float], corners: list[tuple[float, float, float]]) -> float | None:
     """Return the height at a place of a triangle's plane; None outside."""
     (ax, ay, ah), (bx, by, bh), (cx, cy, ch) = corners
-    share = np.linalg.solve([[ax, bx, cx], [ay, by, cy], [1, 1, 1]], [*place, 1.0])
+    share = np.linalg.solve([[ax, bx, cx], [ay, by, cy], [1, 1, 1]], [*position, 1.0])
     return float(share @ [ah, bh, ch]) if share.min() > -1e-9 else None
 
 
 def joined(raw: NDArray[np.float32], stride: int, form: str) -> NDArray[np.float64]:
     """Join the nodes of a lattice, texel by texel, square by square."""
-    found = np.full(raw.shape, np.nan)
+    array = np.full(raw.shape, np.nan)
     side = 2 * stride if form == "centres" else stride
     for y in range(raw.shape[0]):
         for x in range(raw.shape[1]):
@@ -48,7 +48,7 @@ def joined(raw: NDArray[np.float32], stride: int, form: str) -> NDArray[np.float
             if form == "squares":
                 u, v = (x - west) / side, (y - south) / side
                 low, high = sw[2] + u * (se[2] - sw[2]), nw[2] + u * (ne[2] - nw[2])
-                found[y, x] = low + v * (high - low)
+                array[y, x] = low + v * (high - low)
                 continue
             middle = (west + side / 2, south + side / 2, float(raw[south + side // 2, west + side // 2]))
             triangles = [[sw, se, middle], [se, ne, middle], [ne, nw, middle], [nw, sw, middle]]
@@ -56,8 +56,8 @@ def joined(raw: NDArray[np.float32], stride: int, form: str) -> NDArray[np.float
                 triangles = [[sw, se, ne], [sw, nw, ne]]
             heights = [h for t in triangles if (h := in_triangle((x, y), t)) is not None]
             assert heights and np.ptp(heights) < 1e-6
-            found[y, x] = heights[0]
-    return found
+            array[y, x] = heights[0]
+    return array
 
 
 @pytest.mark.parametrize(
@@ -81,9 +81,11 @@ def test_a_stopped_run_is_joined_up_between_what_is_known(
     raw = engine.read(sketch, "height.raw", steps=steps)
     shown = engine.read(sketch, "height.raw", steps=steps, interpolated=True)
     np.testing.assert_allclose(shown, joined(raw, stride, form), atol=2e-6)
-    known = raw != 0
-    assert known.sum() > 2
-    np.testing.assert_array_equal(shown[known], raw[known], "what is known stays as it is, to the last bit")
+    existing = raw != 0
+    assert existing.sum() > 2
+    np.testing.assert_array_equal(
+        shown[existing], raw[existing], "what is known stays as it is, to the last bit"
+    )
 
 
 @pytest.mark.parametrize("name", NAMES)

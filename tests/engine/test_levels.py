@@ -13,7 +13,7 @@ from playground.engine.plan import PlanRequest
 from playground.engine.planner import make_plan, repeats_of
 from playground.errors import PlaygroundError
 
-# What it reads, as a share of the terrain, its own size, and where it is in the loop.
+# What it reads, as a fraction of the terrain, its own size, and where it is in the loop.
 GROW = """#pragma kernel(output = "ground:r32f")
 uniform sampler2D ground_before; //! input("black")
 uniform float rise = 1.0;        //! slider(0, 10)
@@ -56,12 +56,12 @@ feedback = {{ ground_before = "ground" }}
 
 
 def by_hand(sides: list[int], use: str = "./grow") -> str:
-    found, before = '\n[[pass]]\nname = "start"\nuse = "./start"\n', "start"
+    text, before = '\n[[pass]]\nname = "start"\nuse = "./start"\n', "start"
     for number, side in enumerate(sides):
-        found += f'[[pass]]\nname = "level{number}"\nuse = "{use}"\nsize = {side}\n'
-        found += f'inputs = {{ ground_before = "{before}" }}\n'
+        text += f'[[pass]]\nname = "level{number}"\nuse = "{use}"\nsize = {side}\n'
+        text += f'inputs = {{ ground_before = "{before}" }}\n'
         before = f"level{number}"
-    return found
+    return text
 
 
 @pytest.fixture
@@ -81,28 +81,28 @@ def levels(folder):
 
 
 def test_each_iteration_has_its_size_and_reads_the_coarser_texture(engine, levels):
-    found = engine.read(levels.sketch(LOOP, size="size = 33"), "a")
+    result = engine.read(levels.sketch(LOOP, size="size = 33"), "a")
     hand = engine.read(levels.sketch(by_hand([5, 9, 17, 33]), size="size = 33"), "level3")
-    assert found.shape == (33, 33)
-    np.testing.assert_array_equal(found, hand)
+    assert result.shape == (33, 33)
+    np.testing.assert_array_equal(result, hand)
 
 
 def test_sizes_may_differ_along_the_axes(engine, levels):
     both = '["2 + 3 * iteration", "(size.y - 1) // 2 ** (iterations - 1 - iteration) + 1"]'
-    found = engine.read(levels.sketch(LOOP.replace(COARSE, both)), "a")
+    result = engine.read(levels.sketch(LOOP.replace(COARSE, both)), "a")
     hand = by_hand([0, 1, 2, 3])
     for number, size in enumerate(([2, 3], [5, 5], [8, 9], [11, 17])):
         hand = hand.replace(f"size = {number}\n", f"size = {size}\n")
-    np.testing.assert_array_equal(found, engine.read(levels.sketch(hand), "level3"))
+    np.testing.assert_array_equal(result, engine.read(levels.sketch(hand), "level3"))
 
 
 @pytest.mark.parametrize("steps", [1, 2, 3])
 def test_stopped_early_it_leaves_the_smaller_texture(engine, levels, steps):
     sides = [5, 9, 17, 33][:steps]
     sketch = levels.sketch(LOOP, size="size = 33")
-    found = engine.read(sketch, "a", steps={"a": steps})
+    result = engine.read(sketch, "a", steps={"a": steps})
     hand = engine.read(levels.sketch(by_hand(sides), size="size = 33"), f"level{steps - 1}")
-    np.testing.assert_array_equal(found, hand)
+    np.testing.assert_array_equal(result, hand)
 
 
 def test_steps_yield_every_level_and_run_each_once(engine, levels):
@@ -116,7 +116,7 @@ def test_steps_yield_every_level_and_run_each_once(engine, levels):
 
 def test_a_technique_in_the_loop_has_its_sizes_and_counts(engine, levels):
     sketch = levels.sketch(LOOP.replace("./grow", "./one"), size="size = 33")
-    found = engine.read(sketch, "a")
+    result = engine.read(sketch, "a")
     hand, before = '\n[[pass]]\nname = "start"\nuse = "./start"\n', "start"
     for number, (side, count) in enumerate([(5, 5), (9, 3), (17, 2), (33, 1)]):
         hand += f'[[pass]]\nname = "g{number}"\nuse = "./grow"\nsize = {side}\n'
@@ -124,7 +124,7 @@ def test_a_technique_in_the_loop_has_its_sizes_and_counts(engine, levels):
         hand += f'[[pass]]\nname = "s{number}"\nuse = "./smooth"\nsize = {side}\nrepeat = {count}\n'
         hand += f'inputs = {{ ground_before = "g{number}" }}\nfeedback = {{ ground_before = "ground" }}\n'
         before = f"s{number}"
-    np.testing.assert_array_equal(found, engine.read(levels.sketch(hand, size="size = 33"), "s3"))
+    np.testing.assert_array_equal(result, engine.read(levels.sketch(hand, size="size = 33"), "s3"))
     assert repeats_of(sketch) == {"a": 4, "a.smooth": 5}
     assert [len(v) for _, v in engine.steps(sketch, "a.smooth")] == [33] * 6
 
@@ -141,9 +141,9 @@ def test_the_innermost_loop_gives_the_names(engine, levels):
     )
     sides = [2**j + n for n in (1, 2, 3) for j in range(1, n + 1)]
     hand = by_hand(sides).replace('inputs = { ground_before = "start" }\n', "")
-    found = engine.read(sketch, "a")
-    assert found.shape == (11, 11)
-    np.testing.assert_array_equal(found, engine.read(levels.sketch(hand), f"level{len(sides) - 1}"))
+    result = engine.read(sketch, "a")
+    assert result.shape == (11, 11)
+    np.testing.assert_array_equal(result, engine.read(levels.sketch(hand), f"level{len(sides) - 1}"))
 
 
 def test_an_input_that_is_fed_back_has_the_size_of_the_iteration_before(engine, levels):
@@ -186,9 +186,9 @@ def test_what_stays_runs_once_and_what_has_another_size_runs_in_each(engine, lev
         f'[[pass]]\nname = "a"\nuse = "./both"\nrepeat = 3\nsize = {COARSE}\n'
         'feedback = { ground_before = "ground" }\n'
     )
-    found = engine.read(sketch, "a")
+    result = engine.read(sketch, "a")
     assert engine.runs == {"a.once": 1, "a.each": 3, "a.two": 3}
-    assert found[0, 0] == 3 * 6 + 4 + 8 + 16
+    assert result[0, 0] == 3 * 6 + 4 + 8 + 16
 
 
 def test_only_what_is_stale_runs_again(engine, levels):
@@ -197,29 +197,29 @@ def test_only_what_is_stale_runs_again(engine, levels):
     engine.texture(sketch, "a")
     assert engine.record.ran == []
     changed = sketch.with_values({"a.rise": 2.0})
-    found = engine.read(changed, "a").copy()
+    result = engine.read(changed, "a").copy()
     assert engine.record.ran == ["a"] * 4
     with Engine(engine.ctx, driver=engine.driver) as fresh:
-        np.testing.assert_array_equal(found, fresh.read(changed, "a"))
+        np.testing.assert_array_equal(result, fresh.read(changed, "a"))
 
 
 def test_more_levels_begin_again_since_the_first_have_other_sizes(engine, levels):
     engine.texture(levels.sketch(LOOP, size="size = 33"), "a")
     more = levels.sketch(LOOP.replace("repeat = 4", "repeat = 5"), size="size = 33")
-    found = engine.read(more, "a")
+    result = engine.read(more, "a")
     assert engine.record.ran == ["a"] * 5
     hand = engine.read(levels.sketch(by_hand([3, 5, 9, 17, 33]), size="size = 33"), "level4")
-    np.testing.assert_array_equal(found, hand)
+    np.testing.assert_array_equal(result, hand)
 
 
 def test_a_size_of_a_later_iteration_is_in_the_key(engine, levels):
-    found = []
+    result = []
     for side in (9, 8):
         sketch = levels.sketch(LOOP.replace(COARSE, f'"{side} if iteration == 2 else 5"'))
-        found.append(engine.read(sketch, "a").copy())
+        result.append(engine.read(sketch, "a").copy())
         hand = levels.sketch(by_hand([5, 5, side, 5]))
-        np.testing.assert_array_equal(found[-1], engine.read(hand, "level3"))
-    assert not np.array_equal(*found)
+        np.testing.assert_array_equal(result[-1], engine.read(hand, "level3"))
+    assert not np.array_equal(*result)
 
 
 def test_a_value_that_a_size_names_makes_the_plan_anew(engine, levels):
@@ -252,12 +252,12 @@ def test_one_plan_has_one_step_for_one_size(levels):
         (
             '[[pass]]\nname = "a"\nuse = "./start"\nsize = "2 + iteration"\n',
             "pass 'a': size names 'iteration', which is for the size of a pass with a repeat "
-            "and for what is inside it",
+            "and for the passes inside it",
         ),
         (
             LOOP.replace("repeat = 4", 'repeat = "iterations"'),
             "pass 'a': repeat names 'iterations', which is for the size of a pass with a repeat "
-            "and for what is inside it",
+            "and for the passes inside it",
         ),
         (
             LOOP.replace(COARSE, '"2 - iteration"'),

@@ -63,12 +63,12 @@ def test_a_tile_is_covered_once_with_any_neighbours(piece):
     edges = Counter((tuple(f[k]), tuple(f[(k + 1) % 3])) for f in faces.tolist() for k in range(3))
     assert max(edges.values()) == 1
     open_edges = {edge for edge in edges if edge[::-1] not in edges}
-    wanted = set()
+    expected = set()
     for side in lod.SIDES:
         step = 1 << (piece[1] + bool(piece[2] & side) if piece[1] < 4 else 4)
         nodes = [(*divmod(int(node), lod.CELLS + 1)[::-1], 0) for node in lod._side(side, step)]
-        wanted |= set(pairwise(nodes))
-    assert open_edges == wanted, "its sides are those of its neighbours"
+        expected |= set(pairwise(nodes))
+    assert open_edges == expected, "its sides are those of its neighbours"
 
 
 def test_a_tile_s_quarters_are_its_finest_triangles():
@@ -113,9 +113,9 @@ def corners_of(around: lod.Boxes) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_any_levels_make_one_surface_closed_but_for_the_ground(seed):
-    wanted = np.random.default_rng(seed).integers(0, 9, (5, 7)).clip(0, 4)
+    expected = np.random.default_rng(seed).integers(0, 9, (5, 7)).clip(0, 4)
     j, i = np.indices((5, 7))
-    levels = (wanted + abs(j[..., None, None] - j) + abs(i[..., None, None] - i)).min(axis=(2, 3))
+    levels = (expected + abs(j[..., None, None] - j) + abs(i[..., None, None] - i)).min(axis=(2, 3))
     assert len(set(levels.ravel().tolist())) >= 3
     view = far_view()
     around = boxes(5, 7, view)

@@ -130,9 +130,9 @@ def test_a_cached_loop_runs_nothing(engine, rain):
 def test_more_iterations_go_on_from_those_that_are_cached(engine, rain):
     engine.texture(rain("3"), "rain:water")
     assert engine.runs["rain.move"] == 3
-    found = engine.read(rain("5"), "rain:water")
+    result = engine.read(rain("5"), "rain:water")
     assert engine.runs["rain.move"] == 5
-    np.testing.assert_allclose(found, expected(5)[0], rtol=1e-6)
+    np.testing.assert_allclose(result, expected(5)[0], rtol=1e-6)
     np.testing.assert_allclose(engine.read(rain("5"), "after"), expected(5)[0] * 0.5, rtol=1e-6)
     engine.texture(rain("2"), "rain:water")
     assert engine.runs["rain.move"] == 7, "fewer iterations begin again"
@@ -156,8 +156,8 @@ def test_a_repeat_that_reads_time_goes_on_and_goes_back_to_an_earlier_state(engi
     sketch = rain("floor(time * 2)")
     counts = []
     for time in (0.0, 1.0, 1.2, 4.0, 4.0, 1.0, 1.5):
-        found = engine.read(sketch, "rain:water", time=time)
-        np.testing.assert_allclose(found, expected(int(time * 2))[0], rtol=1e-6)
+        result = engine.read(sketch, "rain:water", time=time)
+        np.testing.assert_allclose(result, expected(int(time * 2))[0], rtol=1e-6)
         counts.append(engine.record.ran.count("rain.move"))
     assert counts == [0, 2, 0, 6, 0, 1, 1]
 
@@ -296,7 +296,7 @@ def test_nested_loops(engine, folder):
         np.testing.assert_allclose(engine.read(sketch, "o:slow", time=time), slow, rtol=1e-6)
         np.testing.assert_allclose(engine.read(sketch, "o.round.still", time=time), y * 0.125, rtol=1e-6)
         np.testing.assert_allclose(engine.read(sketch, "o", time=time), v, rtol=1e-6)
-    iterations = 5 + 1  # 2, then 3 more, then 1 anew
+    iterations = 5 + 1  # 2, then 3 more, then 1 again
     assert engine.runs == {
         "o.round.still": 1,  # nothing changes it
         "o.round.slow": iterations,  # once in an iteration of the outer loop
@@ -331,10 +331,10 @@ def test_a_loop_that_no_loop_around_it_changes_runs_once(engine, folder):
 def test_what_changes_with_an_outer_loop_by_way_of_what_is_fed_back(engine, folder):
     """Inside, ``a`` reads only what the inner loop feeds back;
     that comes from ``b``, which reads the outer loop."""
-    one = '#pragma kernel(output = "{out}:r32f")\nuniform sampler2D {of}; //! input("black")\n'
-    one += "float kernel(ivec2 texel) {{ return texelFetch({of}, texel, 0).r {more}; }}\n"
-    folder.write("a.glsl", one.format(out="a", of="back", more="+ 1.0"))
-    folder.write("c.glsl", one.format(out="c", of="seen", more="* 10.0"))
+    item = '#pragma kernel(output = "{out}:r32f")\nuniform sampler2D {of}; //! input("black")\n'
+    item += "float kernel(ivec2 texel) {{ return texelFetch({of}, texel, 0).r {more}; }}\n"
+    folder.write("a.glsl", item.format(out="a", of="back", more="+ 1.0"))
+    folder.write("c.glsl", item.format(out="c", of="seen", more="* 10.0"))
     folder.write(
         "b.glsl",
         '#pragma kernel(output = "b:r32f")\nuniform sampler2D a; //! input\n'
@@ -402,8 +402,8 @@ def test_passes_of_one_text_in_a_loop_keep_their_own_values_and_wires(engine, fo
             a = gain * v + 1.0 + 0.25
             b = 0.5 * a + a[0, 0] + 0.5
             v = -(0.25 * b + 1.0) + iteration
-        found = engine.read(sketch.with_values({"l.a.gain": gain}), "l")
-        np.testing.assert_allclose(found, v, rtol=1e-6)
+        result = engine.read(sketch.with_values({"l.a.gain": gain}), "l")
+        np.testing.assert_allclose(result, v, rtol=1e-6)
 
 
 def test_an_iteration_sets_only_what_changes(engine, rain, monkeypatch):

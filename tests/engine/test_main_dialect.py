@@ -47,9 +47,9 @@ def test_a_mistake_is_at_its_own_line(any_engine, folder, name):
     text, line = with_mistake(MAIN_TEXTS[name])
     with pytest.raises(ShaderError) as caught:
         drawn(any_engine, folder.write(f"{name}.frag", text))
-    found = caught.value.diagnostics[0]
-    assert (found.line, found.file.endswith(f"{name}.frag")) == (line, True)
-    assert "not_declared" in found.message
+    diagnostic = caught.value.diagnostics[0]
+    assert (diagnostic.line, diagnostic.file.endswith(f"{name}.frag")) == (line, True)
+    assert "not_declared" in diagnostic.message
 
 
 @pytest.mark.parametrize("name", MAIN_TEXTS)
@@ -100,8 +100,8 @@ void main() {
     gl_FragColor = time < 0.01 ? vec4(floor(gl_FragCoord.x) == 2.0) : texture2D(backbuffer, p);
 }
 """
-    found = drawn(any_engine, folder.write("t.frag", text), 3 / 60, (8, 2))
-    assert np.flatnonzero(found[0, :, 0]).tolist() == [5]
+    result = drawn(any_engine, folder.write("t.frag", text), 3 / 60, (8, 2))
+    assert np.flatnonzero(result[0, :, 0]).tolist() == [5]
 
 
 def test_a_double_buffer_counts_in_floats_and_a_buffer_keeps_what_it_wrote(any_engine, folder):
@@ -120,10 +120,10 @@ void main() {
 #endif
 }
 """
-    found = drawn(any_engine, folder.write("t.frag", text), 0.5, (4, 3))[0, 0, :3] / 255 * 100
+    result = drawn(any_engine, folder.write("t.frag", text), 0.5, (4, 3))[0, 0, :3] / 255 * 100
     # In frame n the double buffer was written n + 1 times. Buffers come before it: buffer 1 reads n
     # of them, buffer 0 what buffer 1 read in the frame before.
-    np.testing.assert_allclose(found, [31, 29, 30], atol=0.5 * 100 / 255)
+    np.testing.assert_allclose(result, [31, 29, 30], atol=0.5 * 100 / 255)
 
 
 def test_a_change_of_a_parameter_draws_the_state_anew(any_engine, folder):
@@ -139,9 +139,9 @@ def test_a_change_of_a_parameter_draws_the_state_anew(any_engine, folder):
 
 def test_what_a_vertex_shader_gave_under_names_of_glsl_s_own(any_engine, folder):
     text = "void main() { gl_FragColor = vec4(gl_TexCoord[3].xy, gl_FogFragCoord, 1.0) * gl_Color; }\n"
-    found = drawn(any_engine, folder.write("t.frag", text), size=(4, 2))
-    np.testing.assert_allclose(found[1, :, 0], [32, 96, 159, 223], atol=1)
-    np.testing.assert_allclose(found[:, 0, 1], [191, 64], atol=1)
+    result = drawn(any_engine, folder.write("t.frag", text), size=(4, 2))
+    np.testing.assert_allclose(result[1, :, 0], [32, 96, 159, 223], atol=1)
+    np.testing.assert_allclose(result[:, 0, 1], [191, 64], atol=1)
 
 
 def test_names_that_are_ours_belong_to_the_file(any_engine, folder):
@@ -215,8 +215,8 @@ camera = { azimuth = 90.0, elevation = 0.0, distance = 500000.0, target = [0.0, 
 @pytest.mark.parametrize("name", ["viewer_ripples", "viewer_pyramid", "viewer_conditions", "viewer_flood"])
 def test_what_is_reduced_is_the_whole_text_in_its_author_s_words(folder, name):
     text, _ = with_mistake(MAIN_TEXTS[name])
-    (one,) = inline_sketch(load(folder.write("t.frag", text)), frame=SIZE).passes
-    assert one.text.splitlines() == [line for line in text.splitlines() if line.strip()]
+    (item,) = inline_sketch(load(folder.write("t.frag", text)), frame=SIZE).passes
+    assert item.text.splitlines() == [line for line in text.splitlines() if line.strip()]
 
 
 def test_a_picture_that_reads_smaller_ones_is_drawn_in_parts(any_engine, folder):
@@ -265,9 +265,9 @@ out vec4 c;
 void main() { imageStore(computeTex[0], ivec2(0), uvec4(1)); c = vec4(fGlobalTime); }
 """
     plan = make_plan(load(folder.write("a.frag", text)), PlanRequest(frame_size=SIZE))
-    (found,) = source_warnings(plan)
-    assert (found.message, found.line) == (
-        "nothing feeds computeTex: it reads 0, and nothing keeps what is written",
+    (result,) = source_warnings(plan)
+    assert (result.message, result.line) == (
+        "nothing feeds computeTex: it reads 0, and nothing stores what it writes",
         2,
     )
 
@@ -298,12 +298,12 @@ def test_a_given_name_of_another_type_is_the_text_s_own(any_engine, folder, kind
         declared = f"struct Own {{ float a; }};\nuniform {base} {name}{bracket}{count};"
         text = form.format(declared, OTHER_TYPES[kind].format(name))
         sketch = load(folder.write("a.frag" if "ISF" not in form else "a.fs", text))
-        found = any_engine.render(sketch, size=(8, 4), time=2.0).array
-        assert (found[..., :3] == 0).all(), name
+        array = any_engine.render(sketch, size=(8, 4), time=2.0).array
+        assert (array[..., :3] == 0).all(), name
         said = [str(d) for d in source_warnings(make_plan(sketch, PlanRequest(frame_size=(8, 4))))]
         said += [str(d) for _, k in kernels_of(sketch.graph) for d in warnings_of_kernel(k)]
         if "version" not in form or "sampler" in kind:
-            assert sum(name in one for one in said) == 1, (name, said)
+            assert sum(name in item for item in said) == 1, (name, said)
 
 
 def test_a_sampler_s_name_as_a_number_is_a_parameter(any_engine, folder):

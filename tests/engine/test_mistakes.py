@@ -53,8 +53,8 @@ def files(error: PlaygroundError) -> list[str]:
 
 
 def test_two_passes_that_fail_are_both_reported_in_order(engine: Engine, tmp_path: Path) -> None:
-    found = files(drawn(engine, sketch_in(tmp_path, "first_name", "second_name")))
-    assert found[0] == "first.glsl" and set(found) == {"first.glsl", "second.glsl"}
+    result = files(drawn(engine, sketch_in(tmp_path, "first_name", "second_name")))
+    assert result[0] == "first.glsl" and set(result) == {"first.glsl", "second.glsl"}
 
 
 def test_a_pass_that_the_picture_does_not_need_is_reported_too(engine: Engine, tmp_path: Path) -> None:
@@ -65,9 +65,9 @@ def test_a_pass_that_the_picture_does_not_need_is_reported_too(engine: Engine, t
 
 
 def test_a_mistake_in_a_file_that_all_include_is_reported_once(engine: Engine, tmp_path: Path) -> None:
-    found = drawn(engine, sketch_in(tmp_path, "both()", "both()", "missing_name")).diagnostics
-    assert len({(d.file, d.line, d.column, d.message) for d in found}) == len(found)
-    assert {Path(d.file).name for d in found} == {"both.glsl"}
+    diagnostics = drawn(engine, sketch_in(tmp_path, "both()", "both()", "missing_name")).diagnostics
+    assert len({(d.file, d.line, d.column, d.message) for d in diagnostics}) == len(diagnostics)
+    assert {Path(d.file).name for d in diagnostics} == {"both.glsl"}
 
 
 def test_an_error_of_another_kind_comes_back_as_it_is(any_engine: Engine, tmp_path: Path) -> None:

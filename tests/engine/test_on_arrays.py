@@ -82,14 +82,14 @@ def slumps(sketch, folder):
 
 
 def test_it_gives_the_bits_of_the_same_technique_on_a_terrain(engine, sketch, slumps):
-    wanted = {name: engine.read(sketch, f"a:{name}").copy() for name in ("height", "moved")}
+    expected = {name: engine.read(sketch, f"a:{name}").copy() for name in ("height", "moved")}
     hills, rain = engine.read(sketch, "hills").copy(), engine.read(sketch, "rain").copy()
     inputs = {"height_before": hills, "rain": rain}
-    found = OnArrays(engine, slumps).run(inputs, values={"rate": 0.25}, **OPTIONS)
-    assert found.keys() == wanted.keys()
-    for name, values in wanted.items():
-        assert found[name].dtype == np.float32
-        np.testing.assert_array_equal(found[name], values)
+    result = OnArrays(engine, slumps).run(inputs, values={"rate": 0.25}, **OPTIONS)
+    assert result.keys() == expected.keys()
+    for name, values in expected.items():
+        assert result[name].dtype == np.float32
+        np.testing.assert_array_equal(result[name], values)
 
 
 def test_steps_values_and_arrays_are_those_of_each_run(engine, sketch, slumps):
@@ -106,24 +106,24 @@ def test_steps_values_and_arrays_are_those_of_each_run(engine, sketch, slumps):
         seen.append(brush.run({"height_before": array}, **options, **OPTIONS)["height"])
     np.testing.assert_array_equal(seen[0], seen[4])
     assert all(not np.array_equal(seen[0], other) for other in seen[1:4])
-    wanted = engine.read(sketch.with_values({"a.rate": 0.25}), "a:height", steps={"a.slump": 3})
+    expected = engine.read(sketch.with_values({"a.rate": 0.25}), "a:height", steps={"a.slump": 3})
     rain = engine.read(sketch, "rain").copy()
     inputs = {"height_before": hills, "rain": rain}
     options |= {"values": {"rate": 0.25}, "steps": {"slump": 3}}
-    np.testing.assert_array_equal(brush.run(inputs, **options, **OPTIONS)["height"], wanted)
+    np.testing.assert_array_equal(brush.run(inputs, **options, **OPTIONS)["height"], expected)
 
 
 def test_a_technique_of_the_library_is_named(any_engine):
     sketch = load("l_dot_n").with_values({"size": 33, "height.seed": 5})
     product = any_engine.read(sketch, "product").copy()
     height = any_engine.read(sketch, "height").copy()
-    found = OnArrays(any_engine, "lighting/l_dot_n").run(
+    result = OnArrays(any_engine, "lighting/l_dot_n").run(
         {"height": height},
         spacing=(10240.0 / 32, 10240.0 / 32),
         relief=1800.0,
         values={"sun": (120.0, 25.0)},
     )
-    np.testing.assert_array_equal(found["light"], product)
+    np.testing.assert_array_equal(result["light"], product)
 
 
 def test_the_picture_stays_the_last_frame_and_nothing_of_the_arrays_stays_cached(engine, sketch, slumps):

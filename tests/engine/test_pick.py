@@ -42,8 +42,8 @@ def test_what_is_projected_is_found_again(camera):
     heights = hills()
     eye = look(camera, EXTENT, RELIEF, SIZE)
     for x, y in np.random.default_rng(1).random((40, 2)):
-        found = ground_under(eye, projected(eye, heights, x, y), heights, EXTENT, RELIEF)
-        np.testing.assert_allclose(found, (x, y), atol=2e-4)
+        ground = ground_under(eye, projected(eye, heights, x, y), heights, EXTENT, RELIEF)
+        np.testing.assert_allclose(ground, (x, y), atol=2e-4)
 
 
 def test_the_nearer_of_two_slopes_is_taken():
@@ -65,5 +65,5 @@ def test_in_the_sky_and_outside_the_terrain_there_is_none():
 def test_the_smallest_terrain():
     eye = look(Camera(45, 60), EXTENT, RELIEF, SIZE)
     flat = np.full((2, 2), 0.5, np.float32)
-    found = ground_under(eye, projected(eye, flat, 0.3, 0.6), flat, EXTENT, RELIEF)
-    np.testing.assert_allclose(found, (0.3, 0.6), atol=2e-4)
+    ground = ground_under(eye, projected(eye, flat, 0.3, 0.6), flat, EXTENT, RELIEF)
+    np.testing.assert_allclose(ground, (0.3, 0.6), atol=2e-4)

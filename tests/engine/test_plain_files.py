@@ -21,10 +21,10 @@ void main() { colour = texture(tex, gl_FragCoord.xy / u_resolution); }
 
 @pytest.fixture
 def pixels(folder):
-    found = np.random.default_rng(5).integers(0, 256, (6, 8, 4), dtype=np.uint8)
-    found[..., 3] = 255
-    write_png(folder.path / "x.png", found)
-    return found
+    result = np.random.default_rng(5).integers(0, 256, (6, 8, 4), dtype=np.uint8)
+    result[..., 3] = 255
+    write_png(folder.path / "x.png", result)
+    return result
 
 
 def kernel_of(path):
@@ -100,8 +100,8 @@ def test_a_sampler_that_nothing_feeds_is_a_warning_once_at_its_line(any_engine, 
     text = COPY.replace("out vec4", "uniform sampler2D iChannel0, other;\nuniform samplerCube sky;\nout vec4")
     text = text.replace("u_resolution);", "u_resolution) + texture(iChannel0, vec2(0.5)) * 0.0;")
     kernel = kernel_of(folder.write("t.frag", text))
-    found = [(d.line, d.severity, d.message.partition(",")[0]) for d in warnings_of_kernel(kernel)]
-    assert found == [
+    warnings = [(d.line, d.severity, d.message.partition(",")[0]) for d in warnings_of_kernel(kernel)]
+    assert warnings == [
         (4, "warning", "nothing feeds 'iChannel0'"),
         (4, "warning", "nothing feeds 'other'"),
         (5, "warning", "nothing feeds 'sky'"),
@@ -158,7 +158,7 @@ def test_a_version_that_the_driver_refuses_is_one_sentence_at_its_line(any_engin
     try:
         any_engine.render(load(folder.write("t.frag", SINCE.format(version, ""))), size=(4, 2))
     except ShaderError as error:
-        (found,) = error.diagnostics
-        assert found.line == 2 and found.message.startswith("this driver refuses the version: ")
+        (result,) = error.diagnostics
+        assert result.line == 2 and result.message.startswith("this driver refuses the version: ")
     else:
         pytest.skip("this driver takes it")

@@ -49,18 +49,18 @@ def sketch(folder, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_an_engine_reports_each_once(any_engine, sketch):
     reports: list[tuple[str, str]] = []
-    any_engine.warnings.report = lambda found: reports.append((found.place, found.message))
+    any_engine.warnings.report = lambda result: reports.append((result.location, result.message))
     for size in ((8, 8), (9, 9)):
         any_engine.render(load(sketch), size=size)
-    place = next(place for place, message in reports if message == SECOND)
-    assert len(reports) == 2 and place.endswith("sketch.toml:5")
+    report = next(position for position, message in reports if message == SECOND)
+    assert len(reports) == 2 and report.endswith("sketch.toml:5")
     assert sum("#line is left out" in message for _, message in reports) == 1
 
 
 def test_steps_past_the_end_of_a_repeat_that_follows_the_time_are_said_once(any_engine, folder):
     """One whose number stays is refused; this one may grow."""
     reports: list[str] = []
-    any_engine.warnings.report = lambda found: reports.append(f"{found.severity}: {found.message}")
+    any_engine.warnings.report = lambda result: reports.append(f"{result.severity}: {result.message}")
     text = '#pragma kernel(output = "a:r32f", repeat = "floor(2 * time)")\n'
     text += "float kernel(ivec2 texel) { return previous(texel) + 1.0; }\n"
     for time, expected in ((1.0, 2), (1.5, 3), (6.0, 5)):
@@ -98,13 +98,13 @@ def test_check_shows_them_and_fails_for_none(sketch, capsys):
 
 
 def test_the_window_lists_them(any_engine, sketch):
-    known = Warnings(lambda kernel: ())
+    known_names = Warnings(lambda kernel: ())
     loaded = load(sketch)
     any_engine.render(loaded, size=(8, 8))
-    assert [w.message for w in known.of(loaded, any_engine.record.plan)] == [SECOND]
-    while known.waiting:
-        known.look()
-    assert [w.line for w in known.of(loaded, any_engine.record.plan)] == [2, 3, 5]
+    assert [w.message for w in known_names.of(loaded, any_engine.record.plan)] == [SECOND]
+    while known_names.waiting:
+        known_names.look()
+    assert [w.line for w in known_names.of(loaded, any_engine.record.plan)] == [2, 3, 5]
 
 
 def test_a_file_that_goes_while_its_picture_is_shown_is_no_mistake_of_the_list(any_engine, sketch):
@@ -157,15 +157,15 @@ def test_a_shot_that_stops_beyond_the_repeat_is_refused_at_its_line(folder, monk
 )
 def test_parameters_that_make_no_sense_together_are_warned_of(any_engine, folder, use, values, message):
     """Each by its kernel's own condition, whichever of its fast variants runs."""
-    found: list[str] = []
-    any_engine.warnings.report = lambda warning: found.append(warning.message)
+    names: list[str] = []
+    any_engine.warnings.report = lambda warning: names.append(warning.message)
     sketch = folder.sketch(
         f'[[pass]]\nname = "a"\nuse = "generation/{use}"\nset = {{ {values} }}\n', size="size = 33"
     )
     any_engine.read(sketch, "a")
     any_engine.read(sketch, "a")
-    assert len(found) == (message is not None)
-    assert all(each.startswith("pass 'a': ") and str(message) in each for each in found)
+    assert len(names) == (message is not None)
+    assert all(each.startswith("pass 'a': ") and str(message) in each for each in names)
 
 
 @pytest.mark.parametrize(

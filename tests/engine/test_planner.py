@@ -33,7 +33,7 @@ SKETCHES = (
 )
 
 
-def described(plan: Plan) -> list[object]:
+def facts_of(plan: Plan) -> list[object]:
     """Return all that a plan says; matrices by their numbers."""
     eye = plan.eye.clip_from_world.tolist(), plan.eye.position, plan.eye.target
     return [
@@ -49,21 +49,21 @@ def described(plan: Plan) -> list[object]:
 
 def other_values(sketch: Sketch) -> list[tuple[str, Value]]:
     """Return a value for each parameter with a range or choices, other than its default."""
-    found: list[tuple[str, Value]] = []
+    result: list[tuple[str, Value]] = []
     for shown in shown_parameters(sketch):
         parameter, widget = shown.parameter, shown.parameter.widget
         if parameter.name == "packing":
             continue  # another than the file has
         if parameter.type == "bool":
-            found.append((shown.path, not parameter.default))
+            result.append((shown.path, not parameter.default))
         elif widget.kind == "menu":
-            found.append((shown.path, (int(parameter.default) + 1) % len(widget.choices)))  # type: ignore[arg-type]
+            result.append((shown.path, (int(parameter.default) + 1) % len(widget.choices)))  # type: ignore[arg-type]
         elif (
             parameter.type in ("float", "int", "uint") and widget.high is not None and widget.low is not None
         ):
             middle = (widget.low + widget.high) / 2
-            found.append((shown.path, middle if parameter.type == "float" else int(middle)))
-    return found
+            result.append((shown.path, middle if parameter.type == "float" else int(middle)))
+    return result
 
 
 @pytest.fixture
@@ -84,7 +84,7 @@ def test_a_renewed_plan_is_the_one_made_from_nothing(name, wholes):
         changed = sketch.with_values({path: value})
         time = 0.5 * (number % 3)
         from_nothing = make_plan(changed, PlanRequest(SIZE, time))
-        assert described(plan_of(changed, time)) == described(from_nothing), path
+        assert facts_of(plan_of(changed, time)) == facts_of(from_nothing), path
     assert len(wholes) <= 1 + 2 * number, "some were renewed"
 
 
@@ -120,7 +120,7 @@ def test_a_value_that_a_count_names_plans_anew(wholes):
     for path in counts:
         more = sketch.with_values({path: 7})
         plan = plan_of(more)
-        assert described(plan) == described(make_plan(more, PlanRequest(SIZE))) != described(first)
+        assert facts_of(plan) == facts_of(make_plan(more, PlanRequest(SIZE))) != facts_of(first)
     assert len(wholes) == 1 + 2 * len(counts)
 
 

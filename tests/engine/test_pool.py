@@ -21,10 +21,10 @@ def test_a_pool_that_clears_gives_zeros_for_what_was_full(ctx: moderngl.Context,
     pool.give(first)
     again = pool.take((5, 3), outputs)
     assert pool.made == 1 and again.textures["height"] is first.textures["height"]
-    found = {name: texture.read() for name, texture in again.textures.items()}
+    result = {name: texture.read() for name, texture in again.textures.items()}
     full = np.ones(15, np.float32).tobytes(), np.ones(60, np.float16).tobytes()
-    wanted = (bytes(60), bytes(120)) if clears else full  # without clearing, it is as it was left
-    assert (found["height"], found["colour"]) == wanted
+    expected = (bytes(60), bytes(120)) if clears else full  # without clearing, it is as it was left
+    assert (result["height"], result["colour"]) == expected
     again.release()
 
 

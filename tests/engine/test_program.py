@@ -54,9 +54,9 @@ def test_a_kernel_is_wrapped_once(programs, kernel, monkeypatch):
 
     calls = []
     monkeypatch.setattr(module, "wrap", lambda *a: (calls.append(a), wrap(*a))[1])
-    one = kernel()
+    item = kernel()
     for _ in range(5):
-        programs.get(one, FRAGMENT)
+        programs.get(item, FRAGMENT)
     assert len(calls) == 1
 
 

@@ -67,11 +67,11 @@ def test_texels_are_those_at_their_places_and_zero_outside(
     sketch = sketch_of(folder, form)
     with Engine(any_engine.ctx, driver=driver) as engine:
         rough = engine.read(sketch, "rough")
-        found, total = engine.read(sketch, "a"), engine.read(sketch, "a:sum")
+        result, total = engine.read(sketch, "a"), engine.read(sketch, "a:sum")
     y, x = np.mgrid[0:17, 0:17] * 2 - 9
     # A driver may make a fraction of a byte by a product, which rounds once more; the sums are below 16.
     exact = {"rtol": 0, "atol": 2**-20 if form == "rgba8" else 0}
-    np.testing.assert_allclose(found, around(rough, y, x) + np.float32(1), **exact)
+    np.testing.assert_allclose(result, around(rough, y, x) + np.float32(1), **exact)
     tall, wide = np.minimum(np.floor(np.arange(17) / 17 * [[11], [23]]).astype(int), [[10], [22]])
     nearest = rough[tall[:, None], wide[None, :]]
     handed = np.where((x < 0)[..., None], np.float32(7), around(rough, x, y))
@@ -105,30 +105,30 @@ def test_the_iteration_before_is_read_so_too(any_engine: Engine, folder: Folder,
     )
     with Engine(any_engine.ctx) as engine:
         rough = engine.read(sketch, "rough")
-        found, second = engine.read(sketch, "a"), engine.read(sketch, "a:two")
+        result, second = engine.read(sketch, "a"), engine.read(sketch, "a:two")
     y, x = np.mgrid[0:17, 0:17]
     start = around(rough, y, x)
-    one, two = start[..., 0], start[..., 1:3]
+    position, two = start[..., 0], start[..., 1:3]
     for _ in range(5):
-        one, two = (
-            np.float32(0.5) * one[:, np.maximum(x[0] - 1, 0)] + two[np.minimum(y[:, 0] + 2, 16)][..., 1],
-            np.modf(two[np.minimum(y + 1, 16), np.minimum(x + 1, 16)] + one[..., None])[0],
+        position, two = (
+            np.float32(0.5) * position[:, np.maximum(x[0] - 1, 0)] + two[np.minimum(y[:, 0] + 2, 16)][..., 1],
+            np.modf(two[np.minimum(y + 1, 16), np.minimum(x + 1, 16)] + position[..., None])[0],
         )
-    np.testing.assert_allclose(found, one, rtol=1e-5)
+    np.testing.assert_allclose(result, position, rtol=1e-5)
     np.testing.assert_allclose(second, two, atol=1e-5)
 
 
 @pytest.mark.parametrize("own", ["4095, 2", "8193, 2"])
 def test_no_texel_is_missed_where_there_are_many(any_engine: Engine, folder: Folder, monkeypatch, own: str):
-    """The middle of a texel as a share of the width is rounded, by far less than half a texel."""
+    """The middle of a texel as a fraction of the width is rounded, by far less than half a texel."""
     monkeypatch.setattr(ContextInfo, "software", True)
     folder.write("rough.glsl", ROUGH.replace("FORMAT", "rgba32f"))
     folder.write("reads.glsl", ASKS)
     passes = PASSES.replace("[23, 11]", "[8193, 2]").partition("inputs")[0]
     with Engine(any_engine.ctx) as engine:
         sketch = folder.sketch(f"{passes}size = [{own}]\n")
-        rough, found = engine.read(sketch, "rough"), engine.read(sketch, "a")
-    np.testing.assert_array_equal(found[..., :2], rough[:, : found.shape[1], :2])
+        rough, result = engine.read(sketch, "rough"), engine.read(sketch, "a")
+    np.testing.assert_array_equal(result[..., :2], rough[:, : result.shape[1], :2])
 
 
 ASKS = """#pragma kernel(output = "found:rgba32f")
@@ -147,8 +147,8 @@ def test_sizes_are_those_of_the_textures_whether_known_or_asked_for(
     with Engine(any_engine.ctx) as engine:
         for width, height in ((9, 4), (6, 2), (9, 4)):
             passes = PASSES.replace("[23, 11]", f"[{width}, {height}]").partition("inputs")[0]
-            found = engine.read(folder.sketch(f"{passes}size = [9, 4]\n"), "a")
-            np.testing.assert_array_equal(found[0, 0, 2:], [width, height])
+            result = engine.read(folder.sketch(f"{passes}size = [9, 4]\n"), "a")
+            np.testing.assert_array_equal(result[0, 0, 2:], [width, height])
 
 
 def test_a_texture_of_the_passs_own_size_is_not_asked_for_it(folder: Folder):
@@ -213,10 +213,10 @@ def test_a_text_with_a_macro_of_such_a_name_compiles(any_engine: Engine, folder:
     own = ASKS.replace("uniform", "#define textureSize(a, b) ivec2(b + 7)\nuniform", 1)
     folder.write("reads.glsl", own)
     with Engine(any_engine.ctx) as engine:
-        found = engine.read(
+        result = engine.read(
             folder.sketch(PASSES.replace("size = [23, 11]\n", "").partition("inputs")[0]), "a"
         )
-    np.testing.assert_array_equal(found[2, 4, 2:], [7, 7])
+    np.testing.assert_array_equal(result[2, 4, 2:], [7, 7])
 
 
 FILTERS = """#pragma kernel(output = "found:r32f")
@@ -252,7 +252,7 @@ def test_each_texel_knows_its_place(any_engine: Engine, folder: Folder, monkeypa
     written = specialise(wrap(kernel, FRAGMENT), [(PLACE, 1)]).stages["fragment"]
     assert "ivec2(k_place_at)" in written.text and written.locate(written.first) == kernel.source.lines[0]
     with Engine(any_engine.ctx, driver=FRAGMENT) as engine:
-        found = engine.read(sketch, "a")
-    height, width = found.shape[:2]
-    np.testing.assert_array_equal(found[..., 0], np.tile(np.arange(width), (height, 1)))
-    np.testing.assert_array_equal(found[..., 1].T, np.tile(np.arange(height), (width, 1)))
+        result = engine.read(sketch, "a")
+    height, width = result.shape[:2]
+    np.testing.assert_array_equal(result[..., 0], np.tile(np.arange(width), (height, 1)))
+    np.testing.assert_array_equal(result[..., 1].T, np.tile(np.arange(height), (width, 1)))

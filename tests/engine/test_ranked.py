@@ -19,29 +19,29 @@ def test_normal_deviates_are_scipy_s():
 
 def test_ranks_become_normal_and_heights_are_sorted():
     heights = RNG.permutation(13 * 17).reshape(13, 17).astype(np.float32)
-    found = rank_heights({"widest": 0.0}, (17, 13), Material({"example": heights}))
-    np.testing.assert_array_equal(found["sorted"].ravel(), np.sort(heights, axis=None))
+    arrays = rank_heights({"widest": 0.0}, (17, 13), Material({"example": heights}))
+    np.testing.assert_array_equal(arrays["sorted"].ravel(), np.sort(heights, axis=None))
     heights = heights.astype(np.float64)  # SciPy 1.18 gives ranks in the dtype of what is ranked
     shares = (rankdata(heights) - 0.5) / heights.size
-    np.testing.assert_allclose(found["normal"], ndtri(shares).reshape(13, 17), atol=1e-6)
+    np.testing.assert_allclose(arrays["normal"], ndtri(shares).reshape(13, 17), atol=1e-6)
 
 
 def test_what_is_too_wide_is_left_out():
     heights = RNG.normal(size=(60, 80)).astype(np.float32)
-    found = rank_heights({"widest": 0.2}, (80, 60), Material({"example": heights[..., None]}))
-    wanted = heights - gaussian_filter(heights.astype(np.float64), 4.0, mode="reflect", truncate=9)
-    np.testing.assert_allclose(found["sorted"].ravel(), np.sort(wanted, axis=None), atol=1e-5)
+    arrays = rank_heights({"widest": 0.2}, (80, 60), Material({"example": heights[..., None]}))
+    expected = heights - gaussian_filter(heights.astype(np.float64), 4.0, mode="reflect", truncate=9)
+    np.testing.assert_allclose(arrays["sorted"].ravel(), np.sort(expected, axis=None), atol=1e-5)
 
 
-@pytest.mark.parametrize("given", [{}, {"example": np.full((1, 1), 3.0, np.float32)}], ids=["none", "texel"])
-def test_no_example_is_flat(given):
-    assert not rank_heights({"widest": 0.1}, (4, 3), Material(given))["sorted"].any()
+@pytest.mark.parametrize("value", [{}, {"example": np.full((1, 1), 3.0, np.float32)}], ids=["none", "texel"])
+def test_no_example_is_flat(value):
+    assert not rank_heights({"widest": 0.1}, (4, 3), Material(value))["sorted"].any()
 
 
 def test_numbers_that_are_none_count_as_0():
     heights = np.array([[1, np.nan], [np.inf, -np.inf]], np.float32)
-    found = rank_heights({"widest": 0.0}, (2, 2), Material({"example": heights}))
-    np.testing.assert_array_equal(found["sorted"].ravel(), [0, 0, 0, 1])
+    arrays = rank_heights({"widest": 0.0}, (2, 2), Material({"example": heights}))
+    np.testing.assert_array_equal(arrays["sorted"].ravel(), [0, 0, 0, 1])
 
 
 def test_it_says_how_far_it_is_and_stops_where_it_is_told_to():
@@ -55,7 +55,7 @@ def test_it_says_how_far_it_is_and_stops_where_it_is_told_to():
 
     for last in range(len(seen)):
 
-        def stop(done, wanted, last=last):
+        def stop(done, total, last=last):
             if done == last:
                 raise Stop
 

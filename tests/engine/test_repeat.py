@@ -64,8 +64,8 @@ def test_stopping_early_gives_the_state_on_the_way(engine, folder):
     """``iterations`` stays the count of all iterations: a picture on the way is one of the way."""
     sketch = folder.one(COUNT)
     for iteration in (0, 1, 3, 5, 2):
-        found = engine.read(sketch, "a", steps={"a": iteration})
-        assert found[3, 4] == counted(iteration, whole=5)
+        result = engine.read(sketch, "a", steps={"a": iteration})
+        assert result[3, 4] == counted(iteration, whole=5)
 
 
 def test_steps_go_on_from_iteration_to_iteration(engine, folder):
@@ -171,10 +171,10 @@ def test_visits_give_the_same_in_place_and_by_every_texel(engine, folder):
 def test_steps_of_visits_go_on_in_place(engine, folder):
     sketch = folder.one(VISITS)
     whole = engine.read(sketch, "a:a").copy()
-    found = [values for _, values in engine.steps(sketch, "a")]
-    assert len(found) == 4
-    np.testing.assert_array_equal(found[-1], whole)
-    assert not found[0].any()
+    values = [values for _, values in engine.steps(sketch, "a")]
+    assert len(values) == 4
+    np.testing.assert_array_equal(values[-1], whole)
+    assert not values[0].any()
 
 
 def test_a_repeat_that_reads_time_goes_on_and_starts_again(engine, folder):
@@ -217,8 +217,8 @@ def test_iterations_taken_at_once_give_what_they_give_one_by_one(engine, folder,
     value = np.float32(0)
     for iteration in range(stopped):
         value = value * np.float32(1.5) + np.float32(iteration) + np.float32(0.25 * 11)
-    found = engine.read(sketch, "a", steps={"a": stopped})
-    np.testing.assert_array_equal(found, np.full((17, 17), value, np.float32))
+    result = engine.read(sketch, "a", steps={"a": stopped})
+    np.testing.assert_array_equal(result, np.full((17, 17), value, np.float32))
 
 
 @pytest.mark.parametrize(("most", "runs"), [(1, 11), (4, 3), (50, 1)])
@@ -284,7 +284,7 @@ float kernel(ivec2 texel) {
 
 @pytest.mark.parametrize("size", ["2", "17", "[17, 33]"])
 def test_a_lattice_that_closes_gives_the_same_bits_with_and_without_its_stride(ctx, folder, size):
-    found = []
+    result = []
     for stride, driver in (("", "fragment"), (' stride = "(size.x - 1) // 2**iteration",', "fragment")):
         text = LATTICE.replace("STRIDE", stride)
         with Engine(ctx, driver=driver) as engine:
@@ -297,13 +297,13 @@ def test_a_lattice_that_closes_gives_the_same_bits_with_and_without_its_stride(c
             ]
         with Engine(ctx, driver=driver) as engine:
             iterations.append(engine.read(sketch, "a").copy())
-            found.append(iterations)
-    assert len(found[0]) == len(found[1]) > 2
-    for plain, strided in zip(*found, strict=True):
+            result.append(iterations)
+    assert len(result[0]) == len(result[1]) > 2
+    for plain, strided in zip(*result, strict=True):
         np.testing.assert_array_equal(plain, strided)
     if ctx.version_code >= 430:
         with Engine(ctx, driver="compute") as engine:
-            np.testing.assert_array_equal(engine.read(sketch, "a"), found[0][-1])
+            np.testing.assert_array_equal(engine.read(sketch, "a"), result[0][-1])
 
 
 def test_a_stride_that_is_no_power_of_two_is_refused(ctx, folder):
@@ -317,8 +317,8 @@ def test_an_iteration_is_not_touched_by_what_an_earlier_one_left_in_its_texture(
     text = """#pragma kernel(output = "a:r32f", repeat = "4")
     float kernel(ivec2 texel) { return iteration < 2 ? LEFT : 0.123 + 0.0 * previous(texel); }
     """.replace("LEFT", f"{left:.1e}").replace("\n    ", "\n")
-    found = engine.read(folder.one(text), "a")
-    np.testing.assert_array_equal(found, np.full((17, 17), 0.123, np.float32))
+    result = engine.read(folder.one(text), "a")
+    np.testing.assert_array_equal(result, np.full((17, 17), 0.123, np.float32))
 
 
 def test_keyframes_may_change_how_many_steps_there_are_to_stop_at(any_engine):
@@ -355,18 +355,18 @@ def test_more_iterations_go_on_from_those_that_are_cached(ctx, engine, folder):
     sketch = folder.one(ADD)
     taken = []
     for count in (3, 10, 11, 4, 20):
-        found = engine.read(sketch.with_values({"a.count": count}), "a:a").copy()
+        result = engine.read(sketch.with_values({"a.count": count}), "a:a").copy()
         taken.append(engine.record.texels // 17**2)
         with Engine(ctx, driver=engine.driver) as fresh:
-            np.testing.assert_array_equal(found, fresh.read(sketch.with_values({"a.count": count}), "a:a"))
+            np.testing.assert_array_equal(result, fresh.read(sketch.with_values({"a.count": count}), "a:a"))
     assert taken == [3, 7, 1, 4, 16]
 
 
 def test_what_names_iterations_begins_again(engine, folder):
     sketch = folder.one(COUNT)
     for count in (3, 5):
-        found = engine.read(sketch.with_values({"a.count": count}), "a")
-        assert found[2, 3] == counted(count) and engine.record.texels == 17 * 17 * count
+        result = engine.read(sketch.with_values({"a.count": count}), "a")
+        assert result[2, 3] == counted(count) and engine.record.texels == 17 * 17 * count
 
 
 def test_another_value_begins_again(engine, folder):
@@ -384,10 +384,10 @@ def test_visits_and_iterations_at_once_go_on_as_well(ctx, engine, folder, text):
         kernel = kernel.replace("ivec2 visit(", "uniform int count = 3; //! slider(0, 50)\nivec2 visit(")
     sketch, ref = folder.one(kernel), "a:a"
     engine.read(sketch.with_values({"a.count": 2}), ref)
-    found = engine.read(sketch.with_values({"a.count": 5}), ref).copy()
+    result = engine.read(sketch.with_values({"a.count": 5}), ref).copy()
     assert engine.record.texels == 17 * 17 * 3
     with Engine(ctx, driver=engine.driver) as fresh:
-        np.testing.assert_array_equal(found, fresh.read(sketch.with_values({"a.count": 5}), ref))
+        np.testing.assert_array_equal(result, fresh.read(sketch.with_values({"a.count": 5}), ref))
 
 
 def test_a_stride_that_names_iterations_begins_again(ctx, folder):
@@ -410,12 +410,12 @@ def test_the_earlier_result_is_taken_over_and_copied_only_where_another_pass_rea
     engine.read(both, "sum")
     assert engine.record.ran == ["a", "sum"], "both are the same"
     before = engine.read(both, "b:a").copy()
-    found = engine.read(both.with_values({"a.count": 8}), "sum").copy()
+    result = engine.read(both.with_values({"a.count": 8}), "sum").copy()
     assert engine.record.ran == ["a", "sum"] and engine.record.texels == 17 * 17 * (5 + 1)
     np.testing.assert_array_equal(engine.read(both, "b:a"), before)
     assert engine.record.ran == []
     alone = engine.read(both.with_values({"a.count": 8}), "a:a") + before
-    np.testing.assert_array_equal(found, alone)
+    np.testing.assert_array_equal(result, alone)
 
 
 def test_going_on_step_by_step_makes_no_more_textures(engine, folder):
@@ -446,6 +446,6 @@ def test_what_goes_on_from_fewer_iterations_has_mipmaps_of_its_own(any_engine, f
     folder.write("mean.glsl", MEAN)
     sketch = folder.sketch(passes(a="./one", mean="./mean"), size="size = 16").with_values({"a.count": 9})
     for stop in (1, 3, 9):
-        found = any_engine.read(sketch, "mean", steps={"a": stop})
+        result = any_engine.read(sketch, "mean", steps={"a": stop})
         expected = value(stop) if kernel is VISITED else value(stop, 9)
-        np.testing.assert_allclose(found, expected, rtol=1e-6)
+        np.testing.assert_allclose(result, expected, rtol=1e-6)

@@ -100,7 +100,7 @@ def test_a_loop_gives_the_same_replayed_or_not(ctx, written, driver, name, monke
         pytest.skip("this context has no compute shaders")
     replays = []
     usual = Replay.run
-    monkeypatch.setattr(Replay, "run", lambda self, *given: replays.append(self) or usual(self, *given))
+    monkeypatch.setattr(Replay, "run", lambda self, *value: replays.append(self) or usual(self, *value))
     sketch = written[name]
     with Engine(ctx, driver=driver) as quick, Engine(ctx, driver=driver) as slow:
         slow.options.profiling = True  # each pass is measured, so each runs by itself
@@ -115,17 +115,17 @@ def test_a_loop_gives_the_same_replayed_or_not(ctx, written, driver, name, monke
 
 def test_a_loop_that_is_stopped_in_between_goes_on_where_it_was(any_engine, written):
     sketch = written["goes on"]
-    wanted = any_engine.read(sketch, "l:v", time=0.5).copy()
+    expected = any_engine.read(sketch, "l:v", time=0.5).copy()
     with Engine(any_engine.ctx) as hasty:
         hasty.options.patience = -1.0
         stops = 0
         for _ in range(20):
             try:
-                found = hasty.read(sketch, "l:v", time=0.5)
+                result = hasty.read(sketch, "l:v", time=0.5)
                 break
             except Unfinished:
                 stops += 1
-        np.testing.assert_array_equal(found, wanted)
+        np.testing.assert_array_equal(result, expected)
         assert stops == 7, "every four iterations of thirty"
         assert hasty.runs["l.a"] == 30
 

@@ -9,7 +9,7 @@ from playground.sketch.model import Sampling
 
 
 @pytest.mark.parametrize(
-    ("software", "sampling", "wanted"),
+    ("software", "sampling", "expected"),
     [
         (False, Sampling("linear", "repeat", True), 8.0),
         (False, Sampling("linear", "repeat", False), 1.0),
@@ -17,9 +17,9 @@ from playground.sketch.model import Sampling
         (True, Sampling("linear", "repeat", True), 1.0),
     ],
 )
-def test_anisotropy_is_for_mipmaps_on_a_graphics_card(ctx, software, sampling, wanted):
+def test_anisotropy_is_for_mipmaps_on_a_graphics_card(ctx, software, sampling, expected):
     binder = Binder(ctx, software=software)
     try:
-        assert binder._new_sampler(sampling).anisotropy == min(wanted, ctx.max_anisotropy)
+        assert binder._new_sampler(sampling).anisotropy == min(expected, ctx.max_anisotropy)
     finally:
         binder.release()

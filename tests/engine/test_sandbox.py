@@ -284,9 +284,9 @@ def test_what_takes_too_long_is_stopped(sandbox, folder, monkeypatch):
 def test_check_takes_a_limit_and_names_it_where_it_is_passed(folder, capsys):
     path = folder.write("slow.glsl", SLOW)
     assert cli.main(["check", "--limit", "0.1", str(path)]) == 1
-    found = capsys.readouterr().out
-    assert "took longer than 0.1 s" in found and "--limit 0.2 gives it more time" in found
-    assert "endless" not in found
+    result = capsys.readouterr().out
+    assert "took longer than 0.1 s" in result and "--limit 0.2 gives it more time" in result
+    assert "endless" not in result
     assert cli.main(["check", "--limit", "300", str(folder.write("good.glsl", GOOD))]) == 0
 
 

@@ -71,9 +71,9 @@ def flood(folder):
 def test_a_flood_ends_few_steps_after_it_has_settled(engine, flood, size, waits):
     """A graphics card is not waited for: there an answer is read at the next comparison."""
     engine.runner.kernels.settling.software = waits
-    found = engine.read(flood(size=f"size = {size}"), "a")
-    truth = serpentine(*found.shape)
-    np.testing.assert_array_equal(found > 0, truth > 0)
+    result = engine.read(flood(size=f"size = {size}"), "a")
+    truth = serpentine(*result.shape)
+    np.testing.assert_array_equal(result > 0, truth > 0)
     settled, ran = int(truth.max()), engine.record.iterations["a"]
     assert settled < ran <= settled + (1 if waits else 2) * (isqrt(settled) + 4)
     assert engine.record.results["a"].iterations == 4096
@@ -83,18 +83,18 @@ def test_a_flood_ends_few_steps_after_it_has_settled(engine, flood, size, waits)
 @pytest.mark.slow
 def test_its_bits_are_those_of_every_step_run(ctx, engine, flood):
     blur = SPREAD.replace("max(previous(texel), max(", "max(0.5 * previous(texel), 0.999 * max(")
-    found = engine.read(flood(blur), "a").copy()
+    result = engine.read(flood(blur), "a").copy()
     ran = engine.record.iterations["a"]
     with Engine(ctx, driver=engine.driver) as whole:
-        np.testing.assert_array_equal(found, whole.read(flood(blur.replace(UNTIL, "")), "a"))
+        np.testing.assert_array_equal(result, whole.read(flood(blur.replace(UNTIL, "")), "a"))
         assert ran < whole.record.iterations["a"] == 4096
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 3, 7, 100])
 def test_a_count_below_is_kept(ctx, engine, flood, count):
     sketch = flood().with_values({"a.count": count})
-    found = engine.read(sketch, "a").copy()
-    np.testing.assert_array_equal(found > 0, (serpentine(33, 33) <= count) & (serpentine(33, 33) > 0))
+    result = engine.read(sketch, "a").copy()
+    np.testing.assert_array_equal(result > 0, (serpentine(33, 33) <= count) & (serpentine(33, 33) > 0))
     assert engine.record.iterations["a"] == count
 
 
@@ -121,9 +121,9 @@ def test_nan_that_stays_is_unchanged_and_minus_zero_is_not_zero(engine, folder):
         b = texel.x == 0 ? 1.0 : far;
     }
     """
-    found = engine.read(folder.one(text.replace("\n    ", "\n")), "a:a")
-    assert np.isnan(found[..., 0]).all()
-    assert np.signbit(found[..., 1]).all()
+    result = engine.read(folder.one(text.replace("\n    ", "\n")), "a:a")
+    assert np.isnan(result[..., 0]).all()
+    assert np.signbit(result[..., 1]).all()
     assert 18 <= engine.record.iterations["a"] <= 18 + 2 * (isqrt(18) + 3)
 
 
@@ -134,8 +134,8 @@ def test_an_output_that_changes_alone_is_seen(engine, folder):
         b = vec4(0.0, 0.0, 0.0, previous_b(texel).a + 1.0 / 255.0);
     }
     """
-    found = engine.read(folder.one(text.replace("\n    ", "\n")), "a:b")
-    assert (found[..., 3] == 1.0).all()
+    result = engine.read(folder.one(text.replace("\n    ", "\n")), "a:b")
+    assert (result[..., 3] == 1.0).all()
     assert 255 < engine.record.iterations["a"] < 300
 
 
@@ -162,10 +162,10 @@ def test_in_a_loop_each_run_of_it_ends_by_itself(ctx, engine, folder, flood):
     flood()
     loop = '[[pass]]\nname = "again"\nuse = "./spread"\ninputs = { wall = "wall" }\nrepeat = 3\n'
     sketch = folder.sketch(PASSES + loop + 'feedback = { wall = "wet" }\n')
-    found = engine.read(sketch, "again").copy()
+    result = engine.read(sketch, "again").copy()
     assert engine.record.iterations["again"] < 3 * 4096
     folder.write("spread.glsl", SPREAD.replace(UNTIL, ""))
     with Engine(ctx, driver=engine.driver) as whole:
         np.testing.assert_array_equal(
-            found, whole.read(folder.sketch(PASSES + loop + 'feedback = { wall = "wet" }\n'), "again")
+            result, whole.read(folder.sketch(PASSES + loop + 'feedback = { wall = "wet" }\n'), "again")
         )

@@ -74,20 +74,20 @@ def total(engine: Engine, folder: Path) -> float:
 def test_an_expression_names_the_size_of_what_feeds_an_input(engine: Engine, folder: Path):
     sketch = load(folder)
     assert engine.read(sketch, "sum.rows").shape == (12, 1)
-    found = engine.read(sketch, "sum")
-    assert found.shape == (1, 1)
-    assert float(found[0, 0]) == total(engine, folder)
+    result = engine.read(sketch, "sum")
+    assert result.shape == (1, 1)
+    assert float(result[0, 0]) == total(engine, folder)
 
 
 @pytest.mark.usefixtures("trusted_variants")
 def test_a_compute_variant_has_the_size_of_the_pass_that_it_replaces(engine: Engine, folder: Path):
     (folder / "sum.comp").write_text(VARIANT, encoding="utf-8")
     sketch = load(folder)
-    found = engine.read(sketch, "sum")
+    result = engine.read(sketch, "sum")
     stood_in = engine.driver == "compute"
     assert ("sum" in engine.runs) == stood_in
-    assert found.shape == (1, 1)
-    assert float(found[0, 0]) == total(engine, folder)
+    assert result.shape == (1, 1)
+    assert float(result[0, 0]) == total(engine, folder)
 
 
 @pytest.mark.usefixtures("trusted_variants")

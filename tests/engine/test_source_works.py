@@ -121,8 +121,8 @@ def until_drawn(engine, sketch, most=500):
 def test_it_gets_the_texels_of_another_pass_and_the_terrain(any_engine, sketch, turned):
     assert any_engine.read(sketch, "height").max() == 24.0
     [material] = turned.materials
-    wanted = np.add.outer(10 * np.arange(3), np.arange(5))
-    np.testing.assert_array_equal(material.inputs["given"], wanted.astype(np.float32))
+    expected = np.add.outer(10 * np.arange(3), np.arange(5))
+    np.testing.assert_array_equal(material.inputs["given"], expected.astype(np.float32))
     assert material.spacing == (20.0, 20.0) and material.relief == 70.0
 
 
@@ -140,9 +140,9 @@ def test_it_runs_again_when_what_it_reads_changes_and_only_then(any_engine, sket
         ({"height.gain": 2.0}, 3),
         ({}, 3),  # cached
     ):
-        found = any_engine.read(sketch.with_values(values), "height")
+        result = any_engine.read(sketch.with_values(values), "height")
         assert len(turned.materials) == runs
-        assert found.max() == 24.0 * values.get("ramp.rise", 1.0) * values.get("height.gain", 1.0)
+        assert result.max() == 24.0 * values.get("ramp.rise", 1.0) * values.get("height.gain", 1.0)
     any_engine.read(replace(sketch, relief=71.0), "height")
     any_engine.read(replace(sketch, extent=(80.0, 320.0)), "height")
     assert [(m.relief, m.spacing[0]) for m in turned.materials[3:]] == [(71.0, 20.0), (70.0, 10.0)]
@@ -183,7 +183,7 @@ def test_a_window_draws_on_while_it_is_at_work(patient, sketch, turned):
     for _ in range(3):
         with pytest.raises(SourceUnfinished) as met:
             patient.read(sketch, "height")
-    assert (met.value.path, met.value.done, met.value.wanted) == ("height", 0, 4)
+    assert (met.value.path, met.value.done, met.value.total) == ("height", 0, 4)
     assert patient.read(sketch, "ramp").max() == 24.0, "what needs it not is drawn"
     turned.may_go_on.set()
     assert until_drawn(patient, sketch)[0].max() == 24.0
@@ -270,12 +270,12 @@ def test_works_are_one_for_each_step():
 
 def test_of_a_step_one_work_runs_at_a_time_however_often_it_is_cancelled():
     """One that does not look whether it is cancelled goes on to its end; no other begins meanwhile."""
-    works, may_end, begun = SourceWorks(), threading.Event(), []
+    works, may_end, started = SourceWorks(), threading.Event(), []
     works.waits = False
 
     def task(name):
         def begin():
-            begun.append(name)
+            started.append(name)
 
             def work(report):
                 may_end.wait(10.0)
@@ -294,7 +294,7 @@ def test_of_a_step_one_work_runs_at_a_time_however_often_it_is_cancelled():
         works.made("p", "e", task("e"))
     with pytest.raises(SourceUnfinished):
         works.made("q", "f", task("f"))
-    assert begun == ["a", "f"]
+    assert started == ["a", "f"]
     may_end.set()
     for _ in range(100):
         try:
@@ -302,7 +302,7 @@ def test_of_a_step_one_work_runs_at_a_time_however_often_it_is_cancelled():
             break
         except SourceUnfinished:
             continue
-    assert begun == ["a", "f", "g"]
+    assert started == ["a", "f", "g"]
 
 
 # ── where it is not made ─────────────────────────────────────────────────────

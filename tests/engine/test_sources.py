@@ -30,9 +30,9 @@ def heightmap(folder):
 def test_a_file_becomes_heights_row_0_in_the_south(any_engine, heightmap):
     folder, heights = heightmap
     sketch = folder.sketch('[[pass]]\nname = "height"\nuse = "./terrain"\n', size="")
-    found = any_engine.read(sketch, "height")
+    result = any_engine.read(sketch, "height")
     span = heights.max() - heights.min()
-    np.testing.assert_allclose(found, (heights[::-1] - heights.min()) / span, atol=1e-6)
+    np.testing.assert_allclose(result, (heights[::-1] - heights.min()) / span, atol=1e-6)
     plan = any_engine.record.plan
     assert plan is not None
     assert plan.terrain.size == (7, 5)
@@ -41,10 +41,10 @@ def test_a_file_becomes_heights_row_0_in_the_south(any_engine, heightmap):
 def test_the_sketch_may_ask_for_another_size(any_engine, heightmap):
     folder, _ = heightmap
     sketch = folder.sketch('[[pass]]\nname = "height"\nuse = "./terrain"\n', size="size = [13, 9]")
-    found = any_engine.read(sketch, "height")
-    assert found.shape == (9, 13)
-    assert found.min() == pytest.approx(0.0, abs=1e-6)
-    assert found.max() == pytest.approx(1.0, abs=1e-6)
+    result = any_engine.read(sketch, "height")
+    assert result.shape == (9, 13)
+    assert result.min() == pytest.approx(0.0, abs=1e-6)
+    assert result.max() == pytest.approx(1.0, abs=1e-6)
 
 
 def test_it_is_read_again_when_the_file_changes_and_not_before(any_engine, heightmap):
@@ -54,9 +54,9 @@ def test_it_is_read_again_when_the_file_changes_and_not_before(any_engine, heigh
     any_engine.texture(sketch, "height")
     assert any_engine.record.ran == []
     np.save(folder.path / "heights.npy", heights[:, ::-1])
-    found = any_engine.read(sketch, "height")
+    result = any_engine.read(sketch, "height")
     assert any_engine.record.ran == ["height"]
-    assert found[0, 0] > found[0, -1]
+    assert result[0, 0] > result[0, -1]
 
 
 def test_a_source_without_its_parameters_has_a_sentence(any_engine, heightmap):
@@ -90,9 +90,9 @@ def refused(any_engine, sketch) -> str:
     """Draw what is wrong; check that the error is at the sketch's pass, and return its sentence."""
     with pytest.raises(DataError) as caught:
         any_engine.read(sketch, "height")
-    (found,) = caught.value.diagnostics
-    assert (Path(found.file).name, found.line) == ("sketch.toml", 3), found
-    return found.message
+    (result,) = caught.value.diagnostics
+    assert (Path(result.file).name, result.line) == ("sketch.toml", 3), result
+    return result.message
 
 
 @pytest.mark.parametrize(

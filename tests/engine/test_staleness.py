@@ -59,11 +59,11 @@ def four(folder):
 
 def ran_after(engine: Engine, sketch, time: float = 0.0) -> set[str]:
     """Return what runs to bring every pass up to date."""
-    found: set[str] = set()
+    names: set[str] = set()
     for path in (*EVERYTHING, "view:frame"):
         engine.texture(sketch, path, size=(32, 18), time=time)
-        found |= set(engine.record.ran)
-    return found
+        names |= set(engine.record.ran)
+    return names
 
 
 def test_the_same_sketch_twice_runs_nothing(engine, four):
@@ -180,14 +180,14 @@ float kernel(ivec2 texel) { return previous(texel) + 1.0; }
 
 
 def test_the_driver_and_the_form_enter_the_key(ctx, four):
-    with Engine(ctx, driver="fragment") as one, Engine(ctx, driver="auto") as two:
-        one.texture(four, "height")
+    with Engine(ctx, driver="fragment") as engine, Engine(ctx, driver="auto") as two:
+        engine.texture(four, "height")
         two.texture(four, "height")
-        assert set(one.cache._cached) == set(two.cache._cached), "auto draws a plain kernel by fragment"
+        assert set(engine.cache._cached) == set(two.cache._cached), "auto draws a plain kernel by fragment"
     if ctx.version_code >= 430:
         with Engine(ctx, driver="compute") as three:
             three.texture(four, "height")
-            assert set(three.cache._cached) != set(one.cache._cached)
+            assert set(three.cache._cached) != set(engine.cache._cached)
 
 
 # ── the bound ────────────────────────────────────────────────────────────────

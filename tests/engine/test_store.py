@@ -218,8 +218,8 @@ def test_reopened_textures_of_every_format_have_the_same_bits(shelf, folder):
     assert picture(second, sketch) == seen
     assert second.record.ran == ["all", "view"]
     for form in FORMATS:
-        found = read_raw(second.record.results[form].textures["bits"])
-        assert found.dtype == made[form].dtype and found.tobytes() == made[form].tobytes(), form
+        raw = read_raw(second.record.results[form].textures["bits"])
+        assert raw.dtype == made[form].dtype and raw.tobytes() == made[form].tobytes(), form
         assert len(np.unique(made[form])) > 100, f"{form}: these are bits"
     floats = made["rgba32f"]
     assert np.isnan(floats).any() and (floats.view(np.uint32) & 0x7F800000 == 0).any()
@@ -411,13 +411,13 @@ def test_what_made_it_is_part_of_the_key(cached, worn, monkeypatch):
         assert names(disk_cache_for(other, 1, cached.folder)) != names(disk_cache_for(ours, 1, cached.folder))
     monkeypatch.setattr("playground.engine.context.processor", lambda: ("Other", "avx"))
     software = ContextInfo(450, "llvmpipe", "Mesa", "4.5", 4)
-    one = names(disk_cache_for(software, 1, cached.folder))
+    first = names(disk_cache_for(software, 1, cached.folder))
     monkeypatch.setattr("playground.engine.context.processor", lambda: ("Other", "avx fma"))
-    assert names(disk_cache_for(software, 1, cached.folder)) != one
+    assert names(disk_cache_for(software, 1, cached.folder)) != first
     card = replace(software, renderer="NVIDIA H200")
-    one = names(disk_cache_for(card, 1, cached.folder))
+    first = names(disk_cache_for(card, 1, cached.folder))
     monkeypatch.undo()
-    assert names(disk_cache_for(card, 1, cached.folder)) == one, (
+    assert names(disk_cache_for(card, 1, cached.folder)) == first, (
         "a card's bits do not depend on the processor"
     )
 
@@ -578,8 +578,8 @@ def test_nothing_is_cached_unless_somebody_asks(any_engine, worn, monkeypatch, t
 
 def break_at(where: float) -> Callable[[bytes], bytes]:
     def broken(data: bytes) -> bytes:
-        place = min(int(where * len(data)), len(data) - 1)
-        return data[:place] + bytes([data[place] ^ 0x10]) + data[place + 1 :]
+        position = min(int(where * len(data)), len(data) - 1)
+        return data[:position] + bytes([data[position] ^ 0x10]) + data[position + 1 :]
 
     return broken
 
@@ -619,10 +619,10 @@ def test_where_files_are_damaged_the_terrain_is_computed(cached, worn):
 
 
 def test_a_file_under_anothers_name_is_dropped(cached, worn):
-    one, other = (each.path for each in listed(cached.folder))
-    one.write_bytes(other.read_bytes())
+    first, other = (each.path for each in listed(cached.folder))
+    first.write_bytes(other.read_bytes())
     assert reopened(cached, worn) in ({"light"}, {"terrain", "worn.add"})
-    assert not one.exists()
+    assert not first.exists()
 
 
 def test_a_texture_of_another_size_is_not_taken(cached, folder):
@@ -657,7 +657,7 @@ def test_only_what_costs_more_than_to_read_it_is_cached(any_shelf, worn, monkeyp
         any_shelf.keep(engine)
         return {each.textures.made_for.partition(": ")[2] for each in listed(any_shelf.folder)}
 
-    # The view reads worn and light. Wearing is cheap: the terrain is cached, and worn anew.
+    # The view reads worn and light. Wearing is cheap: the terrain is cached, and worn again.
     assert cached_with(20.0) == {"terrain", "light"}
     assert cached_with(20.0, worn=30.0) == {"worn.add", "light"}
     assert cached_with(20.0, worn=30.0, light=19.0) == {"worn.add"}, "what it reads is read anyway"
@@ -667,7 +667,7 @@ def test_only_what_costs_more_than_to_read_it_is_cached(any_shelf, worn, monkeyp
 
 
 def test_what_has_mipmaps_is_worth_more_on_a_software_renderer(any_shelf, worn, monkeypatch):
-    """To make the first of a format is compiled anew in each process, unless no texture needs it."""
+    """To make the first of a format is compiled again in each process, unless no texture needs it."""
     engine = any_shelf.engine(MIPMAPS / 2)
     if not engine.info.software:
         pytest.skip("a graphics card has nothing to compile")
@@ -676,8 +676,8 @@ def test_what_has_mipmaps_is_worth_more_on_a_software_renderer(any_shelf, worn, 
     for key in engine.disk_caching._costs:
         engine.disk_caching._costs.put(key, 1.0)
     any_shelf.keep(engine)
-    (found,) = [each.textures for each in listed(any_shelf.folder)]
-    assert found.made_for.endswith("worn.add") and found.cost == pytest.approx(2.0)
+    (result,) = [each.textures for each in listed(any_shelf.folder)]
+    assert result.made_for.endswith("worn.add") and result.cost == pytest.approx(2.0)
 
 
 def test_costs_are_measured_where_terrain_is_made_and_a_loop_counts_as_one(any_shelf, worn):
@@ -761,8 +761,8 @@ def test_a_store_gives_back_what_it_was_given(tmp_path):
     store = DiskCache(tmp_path / "deep" / "terrain")
     store.write("one", some(1))
     store.close()
-    found = store.read("one")
-    assert found == replace(some(1), data=found.data) and bytes(found.data[0]) == bytes(some(1).data[0])
+    result = store.read("one")
+    assert result == replace(some(1), data=result.data) and bytes(result.data[0]) == bytes(some(1).data[0])
     assert "one" in store and "two" not in store and store.read("two") is None
     assert [(each.textures, each.bytes) for each in listed(store.folder)] == [
         (replace(some(1), data=()), bytes_in(store.folder)[1])
@@ -817,8 +817,8 @@ def test_sessions_write_read_and_clear_at_once(tmp_path):
         store = DiskCache(tmp_path)
         while not ends.is_set():
             for number in range(4):
-                found = store.read(str(number))
-                if found is not None and bytes(found.data[0]) != bytes(some(number).data[0]):
+                result = store.read(str(number))
+                if result is not None and bytes(result.data[0]) != bytes(some(number).data[0]):
                     wrong.append(number)
 
     readers = [threading.Thread(target=reads) for _ in range(2)]
@@ -882,7 +882,7 @@ def test_a_file_that_cannot_be_removed_is_no_trouble(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("given", "size"),
+    ("value", "size"),
     [
         ("", 2**30),
         ("0", 0),
@@ -893,14 +893,14 @@ def test_a_file_that_cannot_be_removed_is_no_trouble(tmp_path, monkeypatch):
         ("64kb", 2**16),
     ],
 )
-def test_the_environment_says_how_much(given, size):
-    assert limit_in({"PLAYGROUND_CACHE": given}) == size
+def test_the_environment_says_how_much(value, size):
+    assert limit_in({"PLAYGROUND_CACHE": value}) == size
 
 
-@pytest.mark.parametrize("given", ["much", "-1", "nan", "inf", "1e40", "1X", "M"])
-def test_what_is_no_size_is_refused_in_a_sentence(given):
-    with pytest.raises(ParameterError, match=f"PLAYGROUND_CACHE={given}: expected a size, as 500M"):
-        limit_in({"PLAYGROUND_CACHE": given})
+@pytest.mark.parametrize("value", ["much", "-1", "nan", "inf", "1e40", "1X", "M"])
+def test_what_is_no_size_is_refused_in_a_sentence(value):
+    with pytest.raises(ParameterError, match=f"PLAYGROUND_CACHE={value}: expected a size, as 500M"):
+        limit_in({"PLAYGROUND_CACHE": value})
 
 
 def test_a_writer_that_hangs_does_not_keep_a_session_from_ending(tmp_path, monkeypatch):

@@ -34,11 +34,11 @@ def test_what_is_written_is_read(ctx, form, size):
     shape = (size[1], size[0]) if components == 1 else (size[1], size[0], components)
     values = np.random.default_rng(1).random(shape).astype(np.float32)
     write_texture(texture, values)
-    found = read_texture(texture)
-    assert found.dtype == np.float32
-    assert found.shape == shape
+    array = read_texture(texture)
+    assert array.dtype == np.float32
+    assert array.shape == shape
     bits = form.lstrip("rgba")
-    np.testing.assert_allclose(found, values, atol=STEP[bits] * 0.51)
+    np.testing.assert_allclose(array, values, atol=STEP[bits] * 0.51)
     assert (
         bytes_of(size, form) == size[0] * size[1] * components * {"8": 1, "16": 2, "16f": 2, "32f": 4}[bits]
     )
@@ -78,9 +78,9 @@ def test_the_first_row_is_the_south_and_a_picture_s_the_north(ctx):
 def test_numbers_that_do_not_fit_are_clamped(ctx, form):
     texture = make_texture(ctx, (4, 1), form)
     write_texture(texture, np.array([[-1.0, 2.0, 1e6, 1e-30]], np.float32))
-    found = read_texture(texture)[0]
+    result = read_texture(texture)[0]
     expected = {"r16f": [-1, 2, 65504, 0], "r32f": [-1, 2, 1e6, 1e-30]}.get(form, [0, 1, 1, 0])
-    np.testing.assert_allclose(found, np.array(expected, np.float32), rtol=1e-6)
+    np.testing.assert_allclose(result, np.array(expected, np.float32), rtol=1e-6)
     texture.release()
 
 

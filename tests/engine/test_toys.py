@@ -79,9 +79,9 @@ def test_a_mistake_is_at_its_line_and_pass(any_engine, opened, name):
     files, line = TOYS[name].with_mistake()
     with pytest.raises(ShaderError) as caught:
         drawn(any_engine, opened(files, TOYS[name].opens))
-    found = caught.value.diagnostics[0]
-    assert (found.file.rpartition("/")[2], found.line) == (TOYS[name].at, line)
-    assert "not_declared" in found.message and "not_declared" in found.excerpt
+    diagnostic = caught.value.diagnostics[0]
+    assert (diagnostic.file.rpartition("/")[2], diagnostic.line) == (TOYS[name].at, line)
+    assert "not_declared" in diagnostic.message and "not_declared" in diagnostic.excerpt
 
 
 # ── exports ──────────────────────────────────────────────────────────────────
@@ -133,13 +133,13 @@ def test_feedback_counts_the_frames(any_engine, opened):
 def test_a_sampler_says_how_a_buffer_is_read(any_engine, opened):
     ramp = "void mainImage(out vec4 c, in vec2 p) { c = vec4(floor(p.x) / 3.0); }"
     image = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, vec2(1.03, 0.5)); }"
-    wanted = {
+    expected = {
         ("nearest", "clamp"): 255,
         ("nearest", "repeat"): 0,
         ("linear", "clamp"): 255,
         ("linear", "repeat"): (0.5 - 4 * 0.03) * 255,
     }
-    for (form, wrap), value in wanted.items():
+    for (form, wrap), value in expected.items():
         text = export(
             one("Image", image, read(257, sampler={"filter": form, "wrap": wrap})),
             one("Buffer A", ramp, output=257),
@@ -183,10 +183,10 @@ def test_a_buffer_may_be_read_beside_a_cube_or_a_volume(any_engine, opened, kind
         one("Buffer A", fills, output=257),
         *([cube(CUBE)] if kind == "Cube A" else []),
     ]
-    found = drawn(any_engine, opened({"a.json": export(*passes)}, "a.json"))
+    result = drawn(any_engine, opened({"a.json": export(*passes)}, "a.json"))
     rows, columns = np.mgrid[SIZE[1] - 0.5 : 0 : -1, 0.5 : SIZE[0]]
     expected = np.dstack([columns / SIZE[0], rows / SIZE[1], np.full(rows.shape, 0.25)])
-    np.testing.assert_allclose(found[..., :3] / 255, expected, atol=0.51 / 255 + 1e-6)
+    np.testing.assert_allclose(result[..., :3] / 255, expected, atol=0.51 / 255 + 1e-6)
 
 
 def test_pixels_of_a_cube_map_pass_are_those_of_its_face(any_engine, opened):
@@ -201,8 +201,8 @@ def test_pixels_of_a_cube_map_pass_are_those_of_its_face(any_engine, opened):
         ("vec3(-0.5, 0.0, -1.0)", (0.75, 0.5)),
     ]:
         text = export(one("Image", image.format(way), wire), cube(where))
-        found = first_texel(any_engine, opened({"a.json": text}, "a.json"))
-        np.testing.assert_allclose(found[:2], 255 * np.array(expected), atol=2)
+        result = first_texel(any_engine, opened({"a.json": text}, "a.json"))
+        np.testing.assert_allclose(result[:2], 255 * np.array(expected), atol=2)
 
 
 def test_an_image_next_to_an_export_is_read_as_its_sampler_says(any_engine, opened, folder):
@@ -216,8 +216,8 @@ def test_an_image_next_to_an_export_is_read_as_its_sampler_says(any_engine, open
         ({"vflip": False}, 255),
         ({"vflip": "true", "srgb": "true"}, 255 * ((128 / 255 + 0.055) / 1.055) ** 2.4),
     ]:
-        given = {"id": "a", "src": "x.png", "ctype": "texture", "channel": 0, "sampler": sampler}
-        sketch = opened({"a.json": export(one("Image", image, given))}, "a.json")
+        value = {"id": "a", "src": "x.png", "ctype": "texture", "channel": 0, "sampler": sampler}
+        sketch = opened({"a.json": export(one("Image", image, value))}, "a.json")
         np.testing.assert_allclose(first_texel(any_engine, sketch)[0], level, atol=1)
         assert notes(sketch) == []
 
@@ -229,15 +229,15 @@ def test_what_makes_no_picture_is_named(opened):
         ({"a.json": export(one("Image", text))}, "a.json"),
         ({"a.frag": f"#iKeyboard\n{text}"}, "a.frag"),
     ]:
-        found = notes(opened(files, opens))
-        assert [note.split(",")[0] for note in found if "not drawn" in note] == [
+        names = notes(opened(files, opens))
+        assert [note.split(",")[0] for note in names if "not drawn" in note] == [
             "mainSound is sound",
             "mainVR is for VR",
         ]
 
 
 def test_what_is_not_there_is_named_once_with_its_channel(opened):
-    for name, wanted in {
+    for name, expected in {
         "site": ["iChannel0: '/media/a/1.jpg' is a file of the site", "iChannel3: it is a video"],
         "devices": [
             "iChannel0: it is music",
@@ -246,9 +246,9 @@ def test_what_is_not_there_is_named_once_with_its_channel(opened):
         ],
         "sound": ["Sound is sound, which is not drawn"],
     }.items():
-        found = "\n".join(notes(opened(TOYS[name].files, TOYS[name].opens)))
-        for words in wanted:
-            assert found.count(words) == 1, found
+        text = "\n".join(notes(opened(TOYS[name].files, TOYS[name].opens)))
+        for words in expected:
+            assert text.count(words) == 1, text
 
 
 def test_the_title_is_the_export_s_or_the_folder_s(opened, folder):
@@ -304,7 +304,7 @@ def test_a_sketch_may_use_an_export_or_a_folder_and_feed_its_channels(any_engine
 
 
 @pytest.mark.parametrize(
-    ("text", "words", "place"),
+    ("text", "words", "position"),
     [
         ('{"Shader": {"renderpass": [{"code": "void\\n"}}', "damaged JSON", (1, 46)),
         ('{"renderpass": ' + "[" * 200_000, "damaged JSON: it is nested deeper than 64 levels", (0, 0)),
@@ -325,16 +325,16 @@ def test_a_sketch_may_use_an_export_or_a_folder_and_feed_its_channels(any_engine
         ),
     ],
 )
-def test_a_damaged_export_is_one_sentence(folder, text, words, place):
+def test_a_damaged_export_is_one_sentence(folder, text, words, position):
     with pytest.raises(PlaygroundError) as caught:
         load(folder.write("a.json", text))
-    (found,) = caught.value.diagnostics
-    assert words in found.message and "\n" not in found.message
-    assert (found.line, found.column) == place and found.file.endswith("a.json")
+    (result,) = caught.value.diagnostics
+    assert words in result.message and "\n" not in result.message
+    assert (result.line, result.column) == position and result.file.endswith("a.json")
 
 
 def test_a_pass_without_its_function_or_what_it_reads_is_named(folder):
-    for text, place, words in [
+    for text, position, words in [
         (export(one("Image", PLAIN), one("Buffer A", "\nfloat x;\n", output=257)), ("a.json:Buffer A", 2),
          "Buffer A has no mainImage"),
         (export(one("Image", PLAIN), cube(PLAIN)), ("a.json:Cube A", 1), "no mainCubemap, but a mainImage"),
@@ -343,9 +343,9 @@ def test_a_pass_without_its_function_or_what_it_reads_is_named(folder):
     ]:  # fmt: skip
         with pytest.raises(ShaderError) as caught:
             load(folder.write("a.json", text))
-        (found,) = caught.value.diagnostics
-        assert words in found.message
-        assert (found.file.rpartition("/")[2], found.line) == place
+        (result,) = caught.value.diagnostics
+        assert words in result.message
+        assert (result.file.rpartition("/")[2], result.line) == position
 
 
 def test_an_export_reads_nothing_outside_its_folder(folder, any_engine):
@@ -353,9 +353,9 @@ def test_an_export_reads_nothing_outside_its_folder(folder, any_engine):
     text = export(one("Image", '#include "../secret.glsl"\n' + PLAIN))
     with pytest.raises(ShaderError, match="outside"):
         load(folder.write("own/a.json", text))
-    given = {"id": "a", "src": "../x.png", "ctype": "texture", "channel": 0}
+    value = {"id": "a", "src": "../x.png", "ctype": "texture", "channel": 0}
     folder.write("x.png", "not read")
-    drawn(any_engine, load(folder.write("own/b.json", export(one("Image", IMAGE, given)))))
+    drawn(any_engine, load(folder.write("own/b.json", export(one("Image", IMAGE, value)))))
 
 
 def test_growth_differs_from_frame_to_frame(any_engine, opened):
@@ -397,10 +397,10 @@ def test_a_channel_that_only_common_reads_is_a_buffer(any_engine, opened):
     files = {"Common.glsl": common, "Image.glsl": image}
     files |= {"Buffer A.glsl": fills % "vec4(1, 0, 0, 1)", "Buffer C.glsl": fills % "vec4(0, 1, 0, 1)"}
     sketch = opened(files)
-    found = drawn(any_engine, sketch)[..., :3] / 255
+    result = drawn(any_engine, sketch)[..., :3] / 255
     rows, columns = np.mgrid[SIZE[1] - 0.5 : 0 : -1, 0.5 : SIZE[0]]
     expected = np.dstack([columns / SIZE[0], rows / SIZE[1], np.zeros(rows.shape)])
-    np.testing.assert_allclose(found, expected, atol=0.51 / 255 + 1e-6)
+    np.testing.assert_allclose(result, expected, atol=0.51 / 255 + 1e-6)
     (said,) = notes(sketch)
     assert "iChannel0 reads Buffer A, iChannel2 reads Buffer C" in said
     view = sketch.graph.find("view")
@@ -418,10 +418,10 @@ def test_a_channel_that_is_handed_on_is_a_cube_map_or_a_volume(any_engine, opene
         sketch = opened({name: text}, name)
         technique = sketch.graph.find("view").technique
         assert {i.name: i.shape for i in technique.inputs} == {"iChannel0": "cube", "iChannel1": "volume"}
-        found = drawn(any_engine, sketch)[..., :3] / 255
+        result = drawn(any_engine, sketch)[..., :3] / 255
         rows, columns = np.mgrid[SIZE[1] - 0.5 : 0 : -1, 0.5 : SIZE[0]]
         expected = np.dstack([columns / SIZE[0], rows / SIZE[1], np.full(rows.shape, 0.25)])
-        np.testing.assert_allclose(found, expected, atol=0.51 / 255 + 1e-6)
+        np.testing.assert_allclose(result, expected, atol=0.51 / 255 + 1e-6)
 
 
 def test_a_channel_that_is_read_by_direction_is_the_cube_map_or_a_sky(any_engine, opened, folder):
@@ -469,8 +469,8 @@ def test_a_pass_that_comes_or_changes_is_read(any_engine, opened, folder):
 
 @pytest.mark.parametrize("name", FOLDERS)
 def test_every_file_of_a_folder_is_one_of_the_sketch_so_that_a_pack_has_it(opened, name):
-    found = {path.rpartition("/")[2] for path in opened(TOYS[name].files, TOYS[name].opens).files}
-    assert found >= set(TOYS[name].files)
+    names = {path.rpartition("/")[2] for path in opened(TOYS[name].files, TOYS[name].opens).files}
+    assert names >= set(TOYS[name].files)
 
 
 def test_a_comment_gives_a_channel_the_keyboard(opened):
@@ -502,8 +502,8 @@ def test_a_pass_of_a_folder_without_its_function_is_named(opened):
 
 def test_uniforms_are_parameters_with_their_ranges(any_engine, opened):
     sketch = opened(VSCODE["code_uniforms"].files, "a.glsl")
-    found = {p.name: p for p in sketch.graph.find("view").technique.parameters}
-    level, count = found["level"], found["count"]
+    result = {p.name: p for p in sketch.graph.find("view").technique.parameters}
+    level, count = result["level"], result["count"]
     assert (level.default, level.widget.kind, level.widget.low, level.widget.high) == (
         1.0,
         "slider",
@@ -512,13 +512,17 @@ def test_uniforms_are_parameters_with_their_ranges(any_engine, opened):
     )
     assert (level.step, level.tooltip, level.line) == (0.1, "how bright", 1)
     assert (count.type, count.default, count.widget.high) == ("int", 3, 15)
-    assert (found["tint"].type, found["tint"].default, found["tint"].widget.kind) == (
+    assert (result["tint"].type, result["tint"].default, result["tint"].widget.kind) == (
         "vec3",
         (1.0, 0.5, 0.0),
         "colour",
     )
-    assert (found["other"].type, found["other"].default) == ("vec4", (1.0, 1.0, 1.0, 1.0))
-    assert (found["place"].default, found["on"].default, found["free"].default) == ((0.25, 0.25), True, 2.0)
+    assert (result["other"].type, result["other"].default) == ("vec4", (1.0, 1.0, 1.0, 1.0))
+    assert (result["place"].default, result["on"].default, result["free"].default) == (
+        (0.25, 0.25),
+        True,
+        2.0,
+    )
     dark = drawn(any_engine, sketch.with_values({"view.on": False, "view.place": (0.0, 0.0)}))
     assert dark[..., 2].max() == 0 < drawn(any_engine, sketch)[..., 0].max()
 
@@ -538,9 +542,9 @@ def test_uniforms_are_parameters_with_their_ranges(any_engine, opened):
 def test_a_directive_that_cannot_be_read_is_one_sentence_at_its_line(opened, line, words):
     with pytest.raises(ShaderError) as caught:
         opened({"a.glsl": f"// first\n{line}\n{PLAIN}", "b.glsl": PLAIN}, "a.glsl")
-    (found,) = caught.value.diagnostics
-    assert (found.line, found.file.endswith("a.glsl")) == (2, True)
-    assert words in found.message
+    (result,) = caught.value.diagnostics
+    assert (result.line, result.file.endswith("a.glsl")) == (2, True)
+    assert words in result.message
 
 
 @pytest.mark.parametrize(
@@ -557,10 +561,10 @@ def test_a_directive_that_does_nothing_here_is_named_once(any_engine, opened, li
         "void mainImage(out vec4 c, in vec2 p) { c = iViewMatrix * vec4(p / iResolution.xy, 0.25, 1.0); }\n"
     )
     sketch = opened({"a.frag": f"{line}\n{text}"}, "a.frag")
-    found = drawn(any_engine, sketch)[..., :3] / 255
+    result = drawn(any_engine, sketch)[..., :3] / 255
     rows, columns = np.mgrid[SIZE[1] - 0.5 : 0 : -1, 0.5 : SIZE[0]]
     expected = np.dstack([columns / SIZE[0], rows / SIZE[1], np.full(rows.shape, 0.25)])
-    np.testing.assert_allclose(found, expected, atol=0.51 / 255 + 1e-6)
+    np.testing.assert_allclose(result, expected, atol=0.51 / 255 + 1e-6)
     said = notes(sketch)
     assert len(said) == bool(names) and all(name in said[0] for name in names)
 
@@ -570,7 +574,7 @@ def test_an_image_of_a_channel_has_its_own_size_and_filters(any_engine, opened, 
     pixels[..., 3], pixels[:, 2:, 0], pixels[0, :, 1] = 255, 255, 255
     write_png(folder.path / "x.png", pixels)
     read_it = "void mainImage(out vec4 c, in vec2 p) {{ c = texture(iChannel0, {}); }}"
-    for more, place, expected in [
+    for more, position, expected in [
         ("", "vec2(0.5, 0.25)", [128, 0]),
         ('#iChannel0::MagFilter "Nearest"\n', "vec2(0.51, 0.25)", [255, 0]),
         (
@@ -582,7 +586,7 @@ def test_an_image_of_a_channel_has_its_own_size_and_filters(any_engine, opened, 
         ('#iChannel0::WrapMode "Repeat"\n', "vec2(1.125, 1.25)", [0, 0]),
         ('#iChannel0::WrapMode "Mirror"\n', "vec2(1.125, 1.25)", [255, 255]),
     ]:
-        sketch = opened({"a.glsl": f'#iChannel0 "file://x.png"\n{more}{read_it.format(place)}'}, "a.glsl")
+        sketch = opened({"a.glsl": f'#iChannel0 "file://x.png"\n{more}{read_it.format(position)}'}, "a.glsl")
         np.testing.assert_allclose(first_texel(any_engine, sketch)[:2], expected, atol=1)
     size = read_it.replace(
         "texture(iChannel0, {})", "vec4(iChannelResolution[0] / 8.0, 1.0) + 0.0 * texture(iChannel0, p)"
@@ -604,8 +608,8 @@ def test_a_channel_reads_a_tiff_of_any_numbers(any_engine, opened, folder, kind)
         '#iChannel0 "file://x.tiff"\nvoid mainImage(out vec4 c, in vec2 p) {\n'
         "    c = texelFetch(iChannel0, ivec2(p.x < 16.0 ? 0 : 1, 0), 0) * 0.25 + 0.25; }\n"
     )
-    found = drawn(any_engine, opened({"a.frag": text}, "a.frag"))[0, [0, -1], :3] / 255
-    np.testing.assert_allclose(found, texels[0] * 0.25 + 0.25, atol=0.51 / 255 + 2e-3 / 4)
+    result = drawn(any_engine, opened({"a.frag": text}, "a.frag"))[0, [0, -1], :3] / 255
+    np.testing.assert_allclose(result, texels[0] * 0.25 + 0.25, atol=0.51 / 255 + 2e-3 / 4)
 
 
 def test_two_passes_may_read_two_files_by_one_channel(any_engine, opened, folder):
@@ -640,8 +644,8 @@ def test_a_cube_of_six_files_has_each_where_it_belongs_and_the_right_way_up(any_
             '#iChannel0 "file://six/sky_{}.png"\n#iChannel0::Type "CubeMap"\n'
             f"void mainImage(out vec4 c, in vec2 p) {{ c = texture(iChannel0, vec3({way})); }}\n"
         )
-        found = first_texel(any_engine, opened({"a.glsl": text}, "a.glsl"))
-        np.testing.assert_allclose(found[:2], [levels[face], 255], atol=1)
+        result = first_texel(any_engine, opened({"a.glsl": text}, "a.glsl"))
+        np.testing.assert_allclose(result[:2], [levels[face], 255], atol=1)
 
 
 @pytest.mark.parametrize("row", range(3))

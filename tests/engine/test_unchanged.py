@@ -147,7 +147,7 @@ CHANGES += ["relief", "mouse", "repeated.steps", "grown.wide", *VALUES]
 
 def computed_from_nothing(engine: Engine, plan: Plan) -> Keys:
     maker = KeyMaker(content=engine.painted.content)
-    engine.runner.look_at(plan)
+    engine.runner.set_frame(plan)
     return maker.keys_of(plan, engine.driver_for, engine.runner.given_for_key)
 
 
@@ -202,7 +202,7 @@ REACHED = {
 
 @pytest.mark.parametrize("what", REACHED)
 def test_keys_are_computed_for_what_a_change_reaches(any_engine, many, folder, what, monkeypatch):
-    of_one_plan = folder.sketch(TEXT.replace('"frames"', "5"))  # a count that names the time plans anew
+    of_one_plan = folder.sketch(TEXT.replace('"frames"', "5"))  # a count that names the time plans again
     frames, made = Frames(any_engine, of_one_plan, folder), []
     usual = cache_keys._KeyComputation.part
     any_engine.keys_of(frames.plan())

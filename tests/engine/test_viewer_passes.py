@@ -50,8 +50,8 @@ def read(any_engine, folder):
 @pytest.fixture
 def picture(any_engine, folder):
     def picture_(text, size=(24, 16), time=0.0):
-        found = any_engine.render(load(folder.write("t.frag", text)), size=size, time=time)
-        return found.array[::-1] / 255.0  # row 0 below
+        render = any_engine.render(load(folder.write("t.frag", text)), size=size, time=time)
+        return render.array[::-1] / 255.0  # row 0 below
 
     return picture_
 
@@ -61,10 +61,10 @@ def picture(any_engine, folder):
 
 def test_a_buffer_is_the_text_with_its_macro_and_is_read_by_its_sampler(picture):
     text = text_of("BUFFER_0", "vec4(st, 0.25, 1.0)", "texture2D(u_buffer0, st).grba")
-    found = picture(text)
+    result = picture(text)
     centres = (np.arange(24) + 0.5) / 24, (np.arange(16) + 0.5) / 16
-    np.testing.assert_allclose(found[..., 1], np.broadcast_to(centres[0], (16, 24)), atol=1 / 255)
-    np.testing.assert_allclose(found[..., 0], np.broadcast_to(centres[1][:, None], (16, 24)), atol=1 / 255)
+    np.testing.assert_allclose(result[..., 1], np.broadcast_to(centres[0], (16, 24)), atol=1 / 255)
+    np.testing.assert_allclose(result[..., 0], np.broadcast_to(centres[1][:, None], (16, 24)), atol=1 / 255)
 
 
 @pytest.mark.parametrize(
@@ -153,9 +153,9 @@ def test_a_parameter_of_several_passes_is_one(read):
     text = text_of("BUFFER_0", "vec4(gain)", "texture2D(u_buffer0, st) * gain", "uniform float gain = 0.5;\n")
     assert [p.name for p in read(text, "").graph.find("view").technique.parameters] == ["gain"]
     alone = text.replace("* gain", "* 2.0")  # one pass reads it, all declare it
-    found = read(alone, "")
-    assert [p.name for p in found.graph.find("view").technique.parameters] == ["gain"]
-    assert not [w.message for _, kernel in found.graph.kernels for w in warnings_of_kernel(kernel)]
+    result = read(alone, "")
+    assert [p.name for p in result.graph.find("view").technique.parameters] == ["gain"]
+    assert not [w.message for _, kernel in result.graph.kernels for w in warnings_of_kernel(kernel)]
     none = read(alone.replace("vec4(gain)", "vec4(1.0)"), "").graph.kernels
     assert any("nothing reads 'gain'" in w.message for _, kernel in none for w in warnings_of_kernel(kernel))
 
@@ -169,8 +169,8 @@ def test_a_mistake_in_a_pass_is_at_its_own_line(any_engine, folder, define):
     text += f"    gl_FragColor = texture2D({sampler}, vec2(0.5));\n#endif\n}}\n"
     with pytest.raises(ShaderError) as caught:
         any_engine.render(load(folder.write("t.frag", text)), size=(8, 8))
-    found = caught.value.diagnostics[0]
-    assert (found.line, "not_declared" in found.message) == (4, True)
+    diagnostic = caught.value.diagnostics[0]
+    assert (diagnostic.line, "not_declared" in diagnostic.message) == (4, True)
 
 
 def test_a_mistake_in_the_picture_and_in_an_include_of_a_pass(any_engine, folder):
@@ -181,8 +181,8 @@ def test_a_mistake_in_the_picture_and_in_an_include_of_a_pass(any_engine, folder
     )
     with pytest.raises(ShaderError) as caught:
         any_engine.render(load(path), size=(8, 8))
-    found = caught.value.diagnostics[0]
-    assert (found.line, found.file.endswith("inc.glsl")) == (2, True)
+    diagnostic = caught.value.diagnostics[0]
+    assert (diagnostic.line, diagnostic.file.endswith("inc.glsl")) == (2, True)
 
 
 def test_an_absurd_size_is_one_sentence(any_engine, folder):
@@ -203,8 +203,8 @@ def test_post_processing_reads_the_picture(picture):
     text = text_of(
         "POSTPROCESSING", "1.0 - texture2D(u_scene, st)", "vec4(st, 0.0, 0.0)", "uniform sampler2D u_scene;\n"
     )
-    found = picture(text)
-    np.testing.assert_allclose(found[2, 5, :3], [1 - 5.5 / 24, 1 - 2.5 / 16, 1.0], atol=1.5 / 255)
+    result = picture(text)
+    np.testing.assert_allclose(result[2, 5, :3], [1 - 5.5 / 24, 1 - 2.5 / 16, 1.0], atol=1.5 / 255)
 
 
 @pytest.mark.parametrize("frames", [1, 2, 5])
@@ -229,8 +229,8 @@ void main() {{
     for frame in range(frames):
         before = scene if frame else np.zeros_like(scene)
         kept = 0.75 * kept + 0.25 * before if define.startswith("D") else before
-    found = picture(text, time=(frames - 0.5) / 60)[..., :2]
-    np.testing.assert_allclose(found, kept, atol=1.01 / 255)
+    result = picture(text, time=(frames - 0.5) / 60)[..., :2]
+    np.testing.assert_allclose(result, kept, atol=1.01 / 255)
 
 
 def test_the_background_is_of_the_picture_alone(picture):
@@ -304,20 +304,20 @@ def flood_text(own):
 @pytest.mark.parametrize("own", [False, True])
 def test_a_flood_finds_the_nearest_seed(read, size, own):
     text, (width, height) = flood_text(own), size
-    seeds, found = read(text, "flood0_seeds", size), read(text, "flood0", size)
+    seeds, result = read(text, "flood0_seeds", size), read(text, "flood0", size)
     there = (seeds[..., :2] != 0).any(-1)
     assert there.any()
     truth = distance_transform_edt(~there, sampling=(1 / height, 1 / width))  # shares of the picture
     y, x = np.mgrid[:height, :width]
     places = np.stack([(x + 0.5) / width, (y + 0.5) / height], -1)
-    distances = np.hypot(*np.moveaxis(found[..., :2].astype(np.float64) - places, -1, 0))
+    distances = np.hypot(*np.moveaxis(result[..., :2].astype(np.float64) - places, -1, 0))
     near = 1e-6  # of single precision
     assert (distances >= truth - near).all(), "nearer than any seed"
     wrong = distances > truth + near
     assert wrong.mean() < 0.01  # Rong and Tan 2006: fewer than 1 % for seeds at random
-    np.testing.assert_array_equal(found[there], seeds[there])  # a seed is its own
-    known = {tuple(seed) for seed in seeds[there].tolist()}
-    assert all(tuple(one) in known for one in found.reshape(-1, 4).tolist())
+    np.testing.assert_array_equal(result[there], seeds[there])  # a seed is its own
+    known_names = {tuple(seed) for seed in seeds[there].tolist()}
+    assert all(tuple(item) in known_names for item in result.reshape(-1, 4).tolist())
 
 
 def test_the_rounds_of_a_flood_are_as_many_as_its_size_needs(read):
@@ -339,10 +339,10 @@ def test_a_flood_of_a_share_of_the_picture(read, own):
         "uniform sampler2D u_flood0, u_floodSrc,",
         "uniform sampler2D u_flood0; // 0.5\nuniform sampler2D u_floodSrc,",
     )
-    seeds, found = read(text, "flood0_seeds", (64, 40)), read(text, "flood0", (64, 40))
-    assert found.shape == (20, 32, 4) and (found[..., :2] != 0).all()
+    seeds, result = read(text, "flood0_seeds", (64, 40)), read(text, "flood0", (64, 40))
+    assert result.shape == (20, 32, 4) and (result[..., :2] != 0).all()
     there = (seeds[..., :2] != 0).any(-1)
-    np.testing.assert_array_equal(found[there], seeds[there])
+    np.testing.assert_array_equal(result[there], seeds[there])
 
 
 # ── pyramids ─────────────────────────────────────────────────────────────────
@@ -436,12 +436,12 @@ def pyramid_text(begins, macro, own):
 )
 def test_a_pyramid_is_that_of_numpy(read, size, begins, macro, own):
     text = pyramid_text(begins, macro, own)
-    foot, found = read(text, "pyramid0_foot", size), read(text, "pyramid0", size)
+    foot, result = read(text, "pyramid0_foot", size), read(text, "pyramid0", size)
     expected, levels = pyramid(foot.astype(np.float64))
     # Each level adds at most 34 products of numbers below 1.1 and divides: single precision, by level.
-    np.testing.assert_allclose(found, expected, atol=2 * max(levels, 1) * 40 * 2**-23)
+    np.testing.assert_allclose(result, expected, atol=2 * max(levels, 1) * 40 * 2**-23)
     if levels > 2:
-        assert (found[..., 3] == 1).mean() > 0.99 and (foot[..., 3] == 0).mean() > 0.8, "holes are filled"
+        assert (result[..., 3] == 1).mean() > 0.99 and (foot[..., 3] == 0).mean() > 0.8, "holes are filled"
 
 
 def test_each_level_is_told_which_it_is(read):
@@ -485,9 +485,9 @@ def test_what_only_an_algorithm_reads_is_not_missed_in_other_passes(folder):
 }
 """
     sketch = load(folder.write("t.frag", HEAD + head + body))
-    found = [w.message for _, kernel in sketch.graph.kernels for w in warnings_of_kernel(kernel)]
+    messages = [w.message for _, kernel in sketch.graph.kernels for w in warnings_of_kernel(kernel)]
     plan = make_plan(sketch, PlanRequest(frame_size=(32, 18)))
-    assert [*found, *(w.message for w in source_warnings(plan))] == []
+    assert [*messages, *(w.message for w in source_warnings(plan))] == []
     lonely = load(folder.write("t.frag", HEAD + head + "uniform bool u_idle;\n" + body))
-    found = {w.message for _, kernel in lonely.graph.kernels for w in warnings_of_kernel(kernel)}
-    assert found == {"nothing reads 'u_idle', so it has no effect"}
+    messages = {w.message for _, kernel in lonely.graph.kernels for w in warnings_of_kernel(kernel)}
+    assert messages == {"nothing reads 'u_idle', so it has no effect"}

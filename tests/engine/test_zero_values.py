@@ -187,10 +187,10 @@ OUTPUTS = {
 @pytest.mark.parametrize("name", OUTPUTS)
 def test_an_output_of_main_begins_at_zero(any_engine, folder, name):
     any_engine.render(load(folder.write("dirty.frag", DIRTY)), size=SIZE)
-    found = any_engine.render(
+    render = any_engine.render(
         load(folder.write("a.fs" if name == "ISF" else "a.frag", OUTPUTS[name])), size=SIZE
     )
-    np.testing.assert_array_equal(found.array[..., :3], np.broadcast_to([128, 0, 0], (18, 32, 3)))
+    np.testing.assert_array_equal(render.array[..., :3], np.broadcast_to([128, 0, 0], (18, 32, 3)))
 
 
 def test_a_varying_of_an_own_vertex_shader_begins_at_zero(any_engine, folder):
@@ -199,15 +199,15 @@ def test_a_varying_of_an_own_vertex_shader_begins_at_zero(any_engine, folder):
     )
     text = '/*{"CATEGORIES": ["a"]}*/\nvarying vec2 v; varying float w;\n'
     path = folder.write("a.fs", f"{text}void main() {{ gl_FragColor = vec4(v, w, 1.0); }}\n")
-    found = any_engine.render(load(path), size=SIZE).array[..., :3]
-    np.testing.assert_array_equal(found, np.broadcast_to([128, 0, 0], (18, 32, 3)))
+    array = any_engine.render(load(path), size=SIZE).array[..., :3]
+    np.testing.assert_array_equal(array, np.broadcast_to([128, 0, 0], (18, 32, 3)))
 
 
 def test_buffers_that_write_no_alpha_have_none(any_engine, folder):
     folder.write("Buffer A.glsl", "void mainImage(out vec4 c, in vec2 p) { c.rgb += 0.5; }\n")
     image = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0).aaar; }\n"
-    found = any_engine.render(load(folder.write("Image.glsl", image)), size=SIZE).array[..., :3]
-    assert not found.any()
+    array = any_engine.render(load(folder.write("Image.glsl", image)), size=SIZE).array[..., :3]
+    assert not array.any()
 
 
 def test_a_mistake_keeps_its_line_and_its_column(any_engine, folder):
@@ -243,8 +243,8 @@ def test_a_jump_past_a_declaration_in_a_switch_finds_zeros(folder):
 def test_a_text_that_zeros_would_break_is_drawn_as_it_is(any_engine, folder, caplog):
     before = "#define vec2 highp vec2\nfloat f(vec2 s) { vec2 a; a = s; return a.x; }\n#undef vec2"
     text = of_case(before, "", "f(s)")
-    found = any_engine.render(load(folder.write("a.frag", text)), size=SIZE).array
-    assert found[0, -1, 0] > 240
+    array = any_engine.render(load(folder.write("a.frag", text)), size=SIZE).array
+    assert array[0, -1, 0] > 240
     assert "a.frag: variables without a value are undefined here" in caplog.text
 
 

@@ -1,4 +1,4 @@
-"""``playground fly`` as a user meets it: pictures without a window, and mistakes in one sentence."""
+"""``playground fly`` as a user meets it: pictures without a window, and mistakes in one message."""
 
 from __future__ import annotations
 

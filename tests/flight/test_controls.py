@@ -35,8 +35,8 @@ def test_the_mouse_is_a_stick_around_where_its_button_went_down():
 def test_a_notch_of_the_wheel_is_some_steps_of_throttle_and_the_other_way_ends_it():
     wheel = Wheel()
     wheel.scroll(1.0)
-    found = [wheel.next().throttle for _ in range(NOTCH + 2)]
-    assert found == [100] * NOTCH + [0, 0]
+    result = [wheel.next().throttle for _ in range(NOTCH + 2)]
+    assert result == [100] * NOTCH + [0, 0]
     wheel.scroll(3.0)
     wheel.scroll(-1.0)
     assert [wheel.next().throttle for _ in range(NOTCH + 1)] == [-100] * NOTCH + [0]
@@ -52,12 +52,12 @@ def test_a_gamepad_at_rest_asks_for_nothing_and_pushed_out_for_all():
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_a_gamepad_s_stick_is_even_and_rises(axis):
-    found = []
+    result = []
     for way in (-1.0, -0.6, -0.3, 0.0, 0.3, 0.6, 1.0):
         axes = [0.0, 0.0, 0.0, 0.0, -1.0, -1.0]
         axes[axis] = way
-        found.append(sum(by_gamepad(axes).values))
-    assert found == sorted(found) and found == [-n for n in found[::-1]]
+        result.append(sum(by_gamepad(axes).values))
+    assert result == sorted(result) and result == [-n for n in result[::-1]]
 
 
 def test_several_hands_add_up_and_stay_within_bounds():

@@ -24,8 +24,8 @@ HIGH = Craft(up=3000.0)
 @pytest.mark.parametrize("throttle", [0.0, 0.5, 1.0])
 def test_in_level_flight_the_throttle_holds_a_speed(throttle):
     craft = flown(Craft(up=3000.0, throttle=throttle, speed=200.0), Controls(), 30)
-    wanted = model.SLOWEST + (model.FASTEST - model.SLOWEST) * throttle
-    assert craft.speed == pytest.approx(wanted, abs=0.5)
+    expected = model.SLOWEST + (model.FASTEST - model.SLOWEST) * throttle
+    assert craft.speed == pytest.approx(expected, abs=0.5)
     assert craft.up == pytest.approx(3000.0) and craft.east == pytest.approx(0.0)
 
 
@@ -74,8 +74,8 @@ def test_a_turn_is_a_circle():
 
 
 def test_the_same_hands_make_the_same_flight_to_the_last_bit():
-    one = flown(HIGH, Controls(20, 31, -40, 5), 20)
-    assert one == flown(HIGH, Controls(20, 31, -40, 5), 20) and one.steps == 1200
+    item = flown(HIGH, Controls(20, 31, -40, 5), 20)
+    assert item == flown(HIGH, Controls(20, 31, -40, 5), 20) and item.steps == 1200
 
 
 @pytest.mark.parametrize("pitch", [-100, 0])
@@ -113,10 +113,10 @@ def test_what_is_straight_ahead_is_in_the_middle_of_the_picture():
     craft = Craft(heading=2.0, pitch=-0.3, roll=0.7)
     lens = through(craft, (640, 360), 20_000.0)
     ahead, right, up = axes(craft)
-    for place, wanted in ((ahead, (0, 0)), (ahead + 0.1 * right, (1, 0)), (ahead + 0.1 * up, (0, 1))):
-        x, y, _, w = lens.clip_from_near @ np.array([*(place * 1000), 1.0])
-        found = np.array([x / w, y / w])
-        np.testing.assert_allclose(np.sign(np.where(abs(found) < 1e-5, 0, found)), wanted)
+    for position, expected in ((ahead, (0, 0)), (ahead + 0.1 * right, (1, 0)), (ahead + 0.1 * up, (0, 1))):
+        x, y, _, w = lens.clip_from_near @ np.array([*(position * 1000), 1.0])
+        elements = np.array([x / w, y / w])
+        np.testing.assert_allclose(np.sign(np.where(abs(elements) < 1e-5, 0, elements)), expected)
 
 
 def test_boxes_out_of_view_are_culled_and_no_others():

@@ -47,8 +47,8 @@ def test_a_part_is_cut_out_of_what_the_sketch_makes(parts):
     cut = slice(plot.apron, plot.apron + plot.intervals + 1)
     height = engine.read(sketch, "height")[cut, cut]
     lit = engine.read(sketch, "colour")[cut, cut, :3] * engine.read(sketch, "light")[cut, cut, :3]
-    found, ground = contents(slot)
-    np.testing.assert_array_equal(found, height)
+    result, ground = contents(slot)
+    np.testing.assert_array_equal(result, height)
     np.testing.assert_array_equal(slot.nodes, height)
     np.testing.assert_allclose(ground[..., :3], lit, rtol=2e-3, atol=1e-4)
     np.testing.assert_allclose(slot.mean[:3], lit.mean(axis=(0, 1)), rtol=0.15)
@@ -81,12 +81,12 @@ def test_neighbours_share_their_border_to_the_last_bit(parts):
 
 def test_the_nearest_are_made_first_and_those_in_view_before_those_behind(parts):
     parts.look(*middle(parts.plot, (0, 0)), 0.0)  # to the north
-    first = parts.wanted[0]
+    first = parts.visible[0]
     assert first == (0, 0)
-    assert parts.wanted.index((0, 2)) < parts.wanted.index((0, -2))
-    assert parts.tend(4) == 4 and set(parts.slots) == set(parts.wanted[:4])
-    far = [np.hypot(*p) for p in parts.wanted]
-    assert max(far) <= 3.0 and len(parts.wanted) == 29
+    assert parts.visible.index((0, 2)) < parts.visible.index((0, -2))
+    assert parts.tend(4) == 4 and set(parts.slots) == set(parts.visible[:4])
+    far = [np.hypot(*p) for p in parts.visible]
+    assert max(far) <= 3.0 and len(parts.visible) == 29
 
 
 @pytest.mark.slow
@@ -110,7 +110,7 @@ def test_memory_is_bounded_and_the_farthest_go_first(parts):
         parts.look(*middle(parts.plot, (step, 0)), 1.57)
         parts.tend(100)
         assert len(parts) <= parts.limit
-        assert set(parts.wanted) <= set(parts.slots)
+        assert set(parts.visible) <= set(parts.slots)
     slot = next(iter(parts.slots.values()))
     assert parts.bytes == parts.limit * slot.bytes
     assert min(p[0] for p in parts.slots) > 6
@@ -126,9 +126,9 @@ def test_work_for_some_time_ends_where_whole_parts_would(small_engine, terrain_o
     stages = 0
     while staged.missing:
         stages += staged.tend_for(0.0)
-    assert stages == 4 * len(staged.wanted) == 4 * staged.made
+    assert stages == 4 * len(staged.visible) == 4 * staged.made
     assert staged.tend_for(1.0) == 0, "nothing is left to do"
-    for part in whole.wanted:
+    for part in whole.visible:
         for a, b in zip(contents(whole.slots[part]), contents(staged.slots[part]), strict=True):
             np.testing.assert_array_equal(a, b)
     whole.release()
@@ -140,10 +140,10 @@ def test_at_another_hour_all_are_lit_anew_nearest_first_and_the_terrain_stays(sm
     parts = Parts(small_engine, plot, 1.0)
     parts.look(*middle(plot, (0, 0)), 0.0)
     parts.tend(100)
-    before = {p: contents(parts.slots[p]) for p in parts.wanted}
+    before = {p: contents(parts.slots[p]) for p in parts.visible}
     heights = small_engine.runs["height.shape"]
     parts.hour = 15.0
-    assert parts.missing == len(parts.wanted) == 5
+    assert parts.missing == len(parts.visible) == 5
     parts.tend(1)
     assert parts.slots[(0, 0)].hour == 15.0 and parts.missing == 4
     parts.tend(100)
@@ -163,8 +163,8 @@ def test_the_ground_at_a_place_is_the_highest_node_around_it(parts):
         nodes = parts.make(part).nodes if part not in parts.slots else parts.slots[part].nodes
         x = int((east - part[0] * plot.width) // plot.spacing)
         y = int((north - part[1] * plot.width) // plot.spacing)
-        wanted = nodes[y : y + 2, x : x + 2].max() * plot.relief
-        assert parts.ground_at(east, north) == pytest.approx(float(wanted))
+        expected = nodes[y : y + 2, x : x + 2].max() * plot.relief
+        assert parts.ground_at(east, north) == pytest.approx(float(expected))
 
 
 @pytest.mark.parametrize(

@@ -37,11 +37,11 @@ def test_the_tour_looks_as_it_should(ctx: moderngl.Context, request: pytest.Fixt
         for flight in fly_again(engine, sketch, record, every=EVERY):
             frame = flight.picture(record.header.size)
             path = folder / f"tour-{flight.craft.steps:03d}.png"
-            found = compare(frame.array, read_png(path)[0] if path.is_file() else None)
-            if found.verdict != "same" and updating:
+            result = compare(frame.array, read_png(path)[0] if path.is_file() else None)
+            if result.verdict != "same" and updating:
                 folder.mkdir(exist_ok=True)
                 frame.save(path)
-            elif found.verdict != "same":
-                pytest.fail(f"{path.name}: {found}")
+            elif result.verdict != "same":
+                pytest.fail(f"{path.name}: {result}")
             seen += 1
         assert seen == 4 and flight.hour == 17.5

@@ -71,9 +71,9 @@ def test_a_good_save_is_tried_and_handed_over_with_what_was_set(
     (tmp_path / "terrain.glsl").write_text(
         TERRAIN.replace("return level", "return 0.5 * level"), encoding="utf-8"
     )
-    found = until(saves, "")
-    assert found is not None and tried.requests == [found] and saves.error is None
-    assert values_of(found)["height.level"] == 1.0
+    result = until(saves, "")
+    assert result is not None and tried.requests == [result] and saves.error is None
+    assert values_of(result)["height.level"] == 1.0
     assert saves.update() is None, "once"
 
 

@@ -73,26 +73,26 @@ def test_trees_stand_by_the_world_s_cells_and_meet_at_the_borders_of_parts(plant
     cells, side = cells_of(plot)
     assert cells * side == pytest.approx(plot.width) and abs(side / CELL - 1) < 0.1
     for part in ((-1, 2), (0, 2)):
-        found = plant(part)
-        wanted = []
+        grove = plant(part)
+        expected = []
         for y in range(cells):
             for x in range(cells):
                 here = (part[0] * cells + x, part[1] * cells + y)
                 east, north, chance = random_of(here, 5 + 0xC07A7689)
                 if chance < 0.5:
-                    wanted.append((x + 0.5 + JITTER * (east - 0.5), y + 0.5 + JITTER * (north - 0.5)))
-        have = found[:, :2] / side
-        cell_of = {tuple(np.floor(place).astype(int)): place for place in have}
+                    expected.append((x + 0.5 + JITTER * (east - 0.5), y + 0.5 + JITTER * (north - 0.5)))
+        have = grove[:, :2] / side
+        cell_of = {tuple(np.floor(position).astype(int)): position for position in have}
         assert len(cell_of) == len(have), "no cell has two"
-        truth = {tuple(np.floor(place).astype(int)): place for place in wanted}
+        truth = {tuple(np.floor(position).astype(int)): position for position in expected}
         # Of the density of 0.6 a little is lost where it is uneven: what is below a half is there for sure.
-        for cell, place in truth.items():
+        for cell, position in truth.items():
             if cell in cell_of:
-                np.testing.assert_allclose(cell_of[cell], place, atol=2e-3)
-        high = found[:, 5].min()
+                np.testing.assert_allclose(cell_of[cell], position, atol=2e-3)
+        high = grove[:, 5].min()
         assert high > 0.5 and set(truth) <= set(cell_of)
         share, many = len(have) / cells**2, cells**2
-        assert abs(share - found[:, 5].mean()) < 4 * np.sqrt(0.24 / many)
+        assert abs(share - grove[:, 5].mean()) < 4 * np.sqrt(0.24 / many)
 
 
 @pytest.mark.slow
@@ -133,7 +133,7 @@ def pops(engine: Engine, frames: int) -> tuple[list[float], float, float]:
         start, ahead = np.array([-0.5, -3.5]) * flight.plot.width, np.array([np.sin(0.3), np.cos(0.3)])
         flight.parts.look(*start, 0.3)
         way = [start + ahead * STEP * frame for frame in range(frames + 1)]
-        up = max(flight.floor(*place) for place in way[::10]) + 60.0
+        up = max(flight.floor(*position) for position in way[::10]) + 60.0
         contrast, most = 0.0, []
         for frame in range(1, frames + 1):
             east, north = way[frame]

@@ -69,10 +69,10 @@ def on_gpu(ctx: moderngl.Context) -> Iterator[Callable[..., np.ndarray]]:
         target = ctx.buffer(reserve=count * width * 4)
         vao = ctx.vertex_array(program, content)
         vao.transform(target, moderngl.POINTS, vertices=count)
-        found = np.frombuffer(target.read(), LETTERS[base][2]).reshape(count, width)
+        actual = np.frombuffer(target.read(), LETTERS[base][2]).reshape(count, width)
         for item in (vao, target, *buffers):
             item.release()
-        return found[:, 0].copy() if width == 1 else found.copy()
+        return actual[:, 0].copy() if width == 1 else actual.copy()
 
     yield evaluate
     ctx.detect_framebuffer(0).use()  # what is read next binds again what was bound before, which goes here
@@ -97,11 +97,11 @@ def same_by_both_drivers(ctx: moderngl.Context) -> Callable[[Callable[[Engine], 
         pytest.skip("this context has no compute shaders")
 
     def see(read: Callable[[Engine], np.ndarray]) -> None:
-        found = []
+        result = []
         for driver in ("fragment", "compute"):
             with Engine(ctx, driver=driver) as engine:
-                found.append(read(engine))
-        np.testing.assert_array_equal(*found)
+                result.append(read(engine))
+        np.testing.assert_array_equal(*result)
 
     return see
 
@@ -167,11 +167,11 @@ def lit(make_sketch: Callable[..., Sketch]) -> Callable[..., Sketch]:
         extent: object = 1000.0,
         relief: float = 100.0,
         light_size: str = "",
-        given: dict[str, object] | None = None,
+        value: dict[str, object] | None = None,
         **values: object,
     ) -> Sketch:
         values = {"sun": list(sun), **{k: v for k, v in values.items() if v is not None}}
-        settings = ["".join(f"{k} = {toml_value(v)}\n" for k, v in s.items()) for s in (given or {}, values)]
+        settings = ["".join(f"{k} = {toml_value(v)}\n" for k, v in s.items()) for s in (value or {}, values)]
         at = f"size = {light_size}\n" if light_size else ""
         passes = (
             f'[[pass]]\nname = "height"\nuse = "./terrain"\n[pass.set]\n{settings[0]}'

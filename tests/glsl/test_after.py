@@ -22,11 +22,11 @@ SIZE = (97, 61)
 def picture(make_sketch):
     """Give a function that makes a sketch of a light, and a view that is made of it."""
 
-    def make(light, view, given="", more=""):
+    def make(light, view, value="", more=""):
         body = f'[[pass]]\nname = "light"\nuse = "./light"\nsize = [{SIZE[0]}, {SIZE[1]}]\n{more}'
         wired = "initial" if "antialias" in view else "picture"
         body += f'[view]\nuse = "{view}"\ninputs = {{ {wired} = "light" }}\n'
-        return make_sketch(f"{body}set = {{ {given} }}\n", light=LIGHT.format(light))
+        return make_sketch(f"{body}set = {{ {value} }}\n", light=LIGHT.format(light))
 
     return make
 
@@ -35,12 +35,12 @@ def picture(make_sketch):
     ("key", "least", "most"), [(0.18, -16, 16), (0.5, -1, 16), (0.05, -16, 0), (1, -2, 0.5)]
 )
 def test_the_mean_of_logarithms_becomes_the_key(any_engine, picture, key, least, most):
-    given = f"adapts = true, key = {key}, least = {least}, most = {most}"
-    sketch = picture(SCENE, "view/exposure", given)
+    text = f"adapts = true, key = {key}, least = {least}, most = {most}"
+    sketch = picture(SCENE, "view/exposure", text)
     light = any_engine.read(sketch, "light").astype(float)[..., :3]
     expected = np.clip(np.log2(key) - np.log2(light @ WEIGHTS).mean(), least, most)
-    found = any_engine.read(sketch, "view.adapted", size=SIZE)
-    np.testing.assert_allclose(found.ravel(), [expected, 1.0], atol=2e-4)
+    result = any_engine.read(sketch, "view.adapted", size=SIZE)
+    np.testing.assert_allclose(result.ravel(), [expected, 1.0], atol=2e-4)
     off = any_engine.read(sketch.with_values({"view.adapts": False}), "view.adapted", size=SIZE)
     np.testing.assert_array_equal(off.ravel(), 0.0)
 
@@ -50,8 +50,8 @@ def test_a_pixel_too_bright_for_half_floats_leaves_the_mean_a_number(any_engine,
     light = "vec4(vec3(texel == ivec2(20, 31) ? uintBitsToFloat(0x7f800000u) : 1.0), 1.0)"
     sketch = picture(light, "view/exposure", "adapts = true")
     assert np.isinf(any_engine.read(sketch, "light")[31, 20, 0])
-    found = any_engine.read(sketch, "view.adapted", size=SIZE).ravel()
-    np.testing.assert_allclose(found, [np.log2(0.18) - np.log2(65504) / (97 * 61), 1.0], atol=2e-4)
+    result = any_engine.read(sketch, "view.adapted", size=SIZE).ravel()
+    np.testing.assert_allclose(result, [np.log2(0.18) - np.log2(65504) / (97 * 61), 1.0], atol=2e-4)
 
 
 def test_glow_loses_no_light_and_stays_around_its_source(any_engine, picture):
@@ -109,7 +109,7 @@ def test_a_picture_is_shown_in_the_order_of_a_camera(any_engine, make_sketch):
     wired = 'inputs = { picture = "light", spread = "bloom", adapted = "exposure" }\n'
     body += f'[view]\nuse = "view/present"\n{wired}set = {{ bloom = 0.2, vignette = 0.5, exposure = -1 }}\n'
     sketch = make_sketch(body, light=LIGHT.format(SCENE))
-    found = any_engine.render(sketch, size=SIZE).array[::-1, :, :3].astype(float)
+    result = any_engine.render(sketch, size=SIZE).array[::-1, :, :3].astype(float)
     light = any_engine.read(sketch, "light").astype(float)[..., :3]
     spread = any_engine.read(sketch, "bloom").astype(float)[..., :3]
     stops = float(any_engine.read(sketch, "exposure").ravel()[0])
@@ -124,7 +124,7 @@ def test_a_picture_is_shown_in_the_order_of_a_camera(any_engine, make_sketch):
     off = ((2 * columns - SIZE[0]) ** 2 + (2 * rows - SIZE[1]) ** 2) / (SIZE[0] ** 2 + SIZE[1] ** 2)
     cosine = np.cos(np.arctan(np.sqrt(0.5 * off)))
     expected = shown((0.8 * light + 0.2 * glow) * cosine[..., None] ** 4 * 2.0 ** (stops - 1))
-    np.testing.assert_allclose(found, expected, atol=1.01)
+    np.testing.assert_allclose(result, expected, atol=1.01)
 
 
 def cover(angle, size=SIZE, inside=24):
@@ -146,18 +146,18 @@ EDGE = (
 def test_steps_of_an_edge_come_nearer_to_its_cover(any_engine, picture, degrees):
     """Of encoded numbers, as the eye sees them; its own pixels alone, far from the picture's ends."""
     sketch = picture(EDGE, "view/antialias").with_values({"light.angle": np.radians(degrees).item()})
-    found = any_engine.read(sketch, "view", size=SIZE)[..., 0].astype(float)
+    result = any_engine.read(sketch, "view", size=SIZE)[..., 0].astype(float)
     stepped = any_engine.read(sketch, "light")[..., 0].astype(float)
     expected = 0.2 + 0.6 * cover(np.radians(degrees))
     middle = (slice(14, -14), slice(14, -14))
-    before, after = (np.abs(one - expected)[middle] for one in (stepped, found))
+    before, after = (np.abs(item - expected)[middle] for item in (stepped, result))
     # An end of a step is found to half a pixel, so the edge that is drawn lies off by half the slope at
     # most, where a stepped one lies off by half a pixel: that ratio, also of the means. Two bytes a pixel
     # of the edge are rounded by 1 / 510 each at most, of a mean error of a quarter of 0.6.
     slope = np.tan(np.radians(min(abs(degrees), 90 - abs(degrees))))
     assert after.sum() < min(slope + 2 / 510 / 0.15, 1.0) * before.sum()
-    assert found.min() > 0.199 and found.max() < 0.801
-    changed = np.abs(found - stepped) > 0.01
+    assert result.min() > 0.199 and result.max() < 0.801
+    changed = np.abs(result - stepped) > 0.01
     near = (expected > 0.201) & (expected < 0.799)
     grown = near.copy()
     for axis in (0, 1):
@@ -171,5 +171,5 @@ def test_steps_of_an_edge_come_nearer_to_its_cover(any_engine, picture, degrees)
 )
 def test_what_has_no_steps_stays(any_engine, picture, light):
     sketch = picture(light, "view/antialias")
-    found, before = any_engine.read(sketch, "view", size=SIZE), any_engine.read(sketch, "light")
-    np.testing.assert_allclose(found, np.clip(before, 0, 1), atol=0.5 / 255 + 1e-3)
+    result, before = any_engine.read(sketch, "view", size=SIZE), any_engine.read(sketch, "light")
+    np.testing.assert_allclose(result, np.clip(before, 0, 1), atol=0.5 / 255 + 1e-3)

@@ -42,9 +42,9 @@ def column(height, rise):
     nearest = (RADIUS + height) * np.sqrt(1 - rise**2)
     lowest = np.maximum(nearest - RADIUS, 0)
     down = 2 * _upwards(lowest, np.zeros_like(lowest)) - up
-    found = np.where(rise < 0, down, up)
+    array = np.where(rise < 0, down, up)
     with np.errstate(invalid="ignore"):
-        return np.where((rise < 0) & (nearest < RADIUS), np.nan, found)
+        return np.where((rise < 0) & (nearest < RADIUS), np.nan, array)
 
 
 def _upwards(height, rise):
@@ -74,12 +74,12 @@ def test_heights_along_a_way_are_those_of_plane_geometry(on_gpu):
     height, rise = rng.uniform(0, 100, 2000), rng.uniform(-1, 1, 2000)
     height[:400] = 10 ** rng.uniform(-4, 0, 400)
     way = 10 ** rng.uniform(-3, 3, 2000)
-    found = on_gpu("sky/shell.glsl", "height_along(h, u, w)", h=height, u=rise, w=way).astype(np.float64)
-    given = [np.asarray(v, np.float32).astype(np.longdouble) for v in (height, rise, way)]
-    across = given[2] * np.sqrt(1 - given[1] ** 2)
-    truth = np.hypot(across, RADIUS + given[0] + given[2] * given[1]) - RADIUS
+    result = on_gpu("sky/shell.glsl", "height_along(h, u, w)", h=height, u=rise, w=way).astype(np.float64)
+    value = [np.asarray(v, np.float32).astype(np.longdouble) for v in (height, rise, way)]
+    across = value[2] * np.sqrt(1 - value[1] ** 2)
+    truth = np.hypot(across, RADIUS + value[0] + value[2] * value[1]) - RADIUS
     inside = truth > -100
-    np.testing.assert_allclose(found[inside], truth[inside].astype(float), rtol=2e-6, atol=2e-4)
+    np.testing.assert_allclose(result[inside], truth[inside].astype(float), rtol=2e-6, atol=2e-4)
 
 
 def test_ways_end_at_the_top_at_the_ground_and_at_the_horizon(on_gpu):
@@ -110,24 +110,24 @@ def test_ways_end_at_the_top_at_the_ground_and_at_the_horizon(on_gpu):
 def test_phases_send_light_once_round_the_sphere(on_gpu):
     together, weight = np.polynomial.legendre.leggauss(400)
     for name, forward in (("phase_molecules", 0.0), ("phase_aerosol", 0.8 * 3 * 4.64 / (5 * 2.64))):
-        found = on_gpu("sky/air.glsl", f"{name}(c)", c=together).astype(np.float64)
-        assert 2 * np.pi * found @ weight == pytest.approx(1, abs=1e-5)
+        result = on_gpu("sky/air.glsl", f"{name}(c)", c=together).astype(np.float64)
+        assert 2 * np.pi * result @ weight == pytest.approx(1, abs=1e-5)
         # Cornette and Shanks 1992, eq. 9: the mean cosine is g 3 (4 + g²) / (5 (2 + g²)).
-        assert 2 * np.pi * (found * together) @ weight == pytest.approx(forward, abs=1e-5)
+        assert 2 * np.pi * (result * together) @ weight == pytest.approx(forward, abs=1e-5)
 
 
 def test_the_air_is_as_deep_as_preetham_shirley_and_smits_say(on_gpu):
     """Straight up, the optical depths are the published ones, at the three wavelengths."""
     for turbidity in (2.0, 3.0, 6.0):
-        found = on_gpu("sky/air.glsl", f"extinction(air_of({turbidity}), vec3(8.0, 1.2, 15.0))").astype(
+        result = on_gpu("sky/air.glsl", f"extinction(air_of({turbidity}), vec3(8.0, 1.2, 15.0))").astype(
             np.float64
         )[0]
         molecules = 0.008735 * WAVES**-4.08
         aerosol = (0.04608 * turbidity - 0.04586) * WAVES**-1.3
-        np.testing.assert_allclose(found, molecules + aerosol + 0.35 * OZONE, rtol=1e-5)
+        np.testing.assert_allclose(result, molecules + aerosol + 0.35 * OZONE, rtol=1e-5)
     heights = np.concatenate([np.linspace(0, 100, 300), [10.0, 25.0, 40.0]])
-    found = on_gpu("sky/air.glsl", "densities(h)", h=heights)
-    np.testing.assert_allclose(found, profile(heights).T, rtol=2e-5, atol=1e-6)
+    result = on_gpu("sky/air.glsl", "densities(h)", h=heights)
+    np.testing.assert_allclose(result, profile(heights).T, rtol=2e-5, atol=1e-6)
 
 
 def test_three_wavelengths_stand_for_the_spectrum(on_gpu):
@@ -148,20 +148,20 @@ def test_three_wavelengths_stand_for_the_spectrum(on_gpu):
     rgb = [[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560]]
     rgb = np.array([*rgb, [0.0556434, -0.2040259, 1.0572252]]) @ np.stack([x, y, z])
     sun = wave**-5 / np.expm1(14387.77e3 / (wave * 5772))
-    known = [449, *range(450, 770, 10)]
+    existing = [449, *range(450, 770, 10)]
     absorbs = [0, 3, 6, 9, 14, 21, 30, 40, 48, 63, 75, 85, 103, 120, 120, 115, 125]
     absorbs += [120, 105, 90, 79, 67, 57, 48, 36, 28, 23, 18, 14, 11, 10, 9, 7]
-    ozone = 1e-3 * np.interp(wave, known, absorbs)
+    ozone = 1e-3 * np.interp(wave, existing, absorbs)
     white = rgb @ sun
     for turbidity in (2.0, 3.0, 6.0):
         for masses in (1.0, 2.0, 5.0, 10.0, 20.0):
             amounts = f"vec3(8.0, 1.2, {15 * min(masses, 12.0) / masses}) * {masses}"
-            found = on_gpu("sky/air.glsl", f"exp(-extinction(air_of({turbidity}), {amounts}))")[0]
+            result = on_gpu("sky/air.glsl", f"exp(-extinction(air_of({turbidity}), {amounts}))")[0]
             micro = wave / 1000
             depth = masses * (0.008735 * micro**-4.08 + (0.04608 * turbidity - 0.04586) * micro**-1.3)
             with np.errstate(under="ignore"):
                 truth = rgb @ (sun * np.exp(-depth - 0.35 * ozone * min(masses, 12.0))) / white
-            np.testing.assert_allclose(found, truth, atol=0.035 * truth.max())
+            np.testing.assert_allclose(result, truth, atol=0.035 * truth.max())
 
 
 # ── columns ──────────────────────────────────────────────────────────────────
@@ -177,8 +177,8 @@ def test_the_truth_s_own_columns():
 
 
 def test_the_table_holds_the_columns(engine, make_sketch):
-    found = engine.read(make_sketch(SKETCH), "daylight.columns").astype(np.float64)
-    ny, nx = found.shape[:2]
+    result = engine.read(make_sketch(SKETCH), "daylight.columns").astype(np.float64)
+    ny, nx = result.shape[:2]
     far = np.arange(ny) / (ny - 1) * np.sqrt(TOP * (2 * RADIUS + TOP))
     height = (np.hypot(far, RADIUS) - RADIUS)[:, None] * np.ones(nx)
     most = far[:, None] + far[-1]
@@ -189,7 +189,7 @@ def test_the_table_holds_the_columns(engine, make_sketch):
     horizon = -np.sqrt(1 - (RADIUS / (RADIUS + height)) ** 2)
     truth = np.moveaxis(column(height, np.maximum(rise, horizon + 1e-12)), 0, -1)
     inner = slice(None, -1)  # at the top there is no way left
-    np.testing.assert_allclose(found[inner, ..., :3], truth[inner], rtol=0.015, atol=0.02)
+    np.testing.assert_allclose(result[inner, ..., :3], truth[inner], rtol=0.015, atol=0.02)
 
 
 READ = """
@@ -212,10 +212,10 @@ def test_sunlight_through_the_air(engine, make_sketch):
         "size = [48, 64]\n",
         read=READ,
     )
-    found = engine.read(sketch, "left").astype(np.float64)[..., :3]
+    result = engine.read(sketch, "left").astype(np.float64)[..., :3]
     height = (0.31 + 0.4) * np.arange(48)[None, :] * np.ones((64, 1))
     rise = -0.1 + 1.1 * (np.arange(64)[:, None] / 63) ** 2 * np.ones((1, 48))
-    np.testing.assert_allclose(found, left(height, rise, 2.5), atol=0.006)
+    np.testing.assert_allclose(result, left(height, rise, 2.5), atol=0.006)
 
 
 def test_the_sun_sets_in_its_own_width(on_gpu):
@@ -223,8 +223,8 @@ def test_the_sun_sets_in_its_own_width(on_gpu):
         horizon = -np.degrees(np.arccos(RADIUS / (RADIUS + height)))
         over = np.linspace(-0.6, 0.6, 49)
         rise = np.sin(np.radians(horizon + over))
-        found = on_gpu("sky/columns.glsl", f"risen({height}, u)", u=rise)
-        np.testing.assert_allclose(found, np.clip(0.5 + over / 0.53, 0, 1), atol=0.012)
+        result = on_gpu("sky/columns.glsl", f"risen({height}, u)", u=rise)
+        np.testing.assert_allclose(result, np.clip(0.5 + over / 0.53, 0, 1), atol=0.012)
 
 
 # ── many bounces ─────────────────────────────────────────────────────────────
@@ -285,8 +285,8 @@ def _left_fast(height, rise, turbidity, cells=(60, 400)):
     horizon = -np.sqrt(1 - (RADIUS / (RADIUS + height)) ** 2)
     part = np.clip(0.5 + 0.5 * (rise - horizon) / np.radians(0.265), 0, 1)
     along = np.sqrt(np.clip((rise - horizon) / (1 - horizon), 0, 1))
-    place = np.stack([np.sqrt(np.clip(height / TOP, 0, 1)), along], axis=-1)
-    return part[..., None] * np.exp(-_TABLES[turbidity](place))
+    position = np.stack([np.sqrt(np.clip(height / TOP, 0, 1)), along], axis=-1)
+    return part[..., None] * np.exp(-_TABLES[turbidity](position))
 
 
 _TABLES: dict[float, object] = {}
@@ -296,20 +296,20 @@ _TABLES: dict[float, object] = {}
 def test_light_scattered_often_is_that_of_a_finer_sum(engine, make_sketch):
     turbidity, ground = 3.0, 0.3
     sketch = make_sketch(f"{SKETCH}set = {{ turbidity = {turbidity}, ground = {ground} }}\n")
-    found = np.exp(engine.read(sketch, "daylight.bounced").astype(np.float64)[..., :3])
-    ny, nx = found.shape[:2]
+    result = np.exp(engine.read(sketch, "daylight.bounced").astype(np.float64)[..., :3])
+    ny, nx = result.shape[:2]
     # Below 20 km, where all but a twentieth of the air is; above, the shader's few directions show.
     for column_, row in ((47, 0), (40, 3), (25, 0), (16, 2), (14, 5), (13, 1), (11, 6), (9, 4), (30, 6)):
         sun_rise = -0.36 + 1.36 * column_ / (nx - 1)
         height = TOP * (row / (ny - 1)) ** 2
         truth = bounced(height, sun_rise, turbidity, ground)
-        np.testing.assert_allclose(found[row, column_], truth, rtol=0.06, atol=2e-10)
+        np.testing.assert_allclose(result[row, column_], truth, rtol=0.06, atol=2e-10)
 
 
 def test_all_of_it_is_dark_long_after_sunset(engine, make_sketch):
-    found = np.exp(engine.read(make_sketch(SKETCH), "daylight.bounced").astype(np.float64)[..., :3])
-    assert found[:, 0].max() < 1e-6 * found[:, -1].max()
-    assert (np.diff(found[0, :, 1]) > -1e-3 * found[0, :-1, 1]).all()  # brighter as the sun rises
+    result = np.exp(engine.read(make_sketch(SKETCH), "daylight.bounced").astype(np.float64)[..., :3])
+    assert result[:, 0].max() < 1e-6 * result[:, -1].max()
+    assert (np.diff(result[0, :, 1]) > -1e-3 * result[0, :-1, 1]).all()  # brighter as the sun rises
 
 
 # ── the sky ──────────────────────────────────────────────────────────────────
@@ -355,16 +355,16 @@ def _often(table, height, sun_rise):
 
 @pytest.mark.parametrize("elevation", [70.0, 15.0, 1.0, -3.0, -8.0])
 def test_the_sky_is_what_its_air_scatters(engine, make_sketch, elevation):
-    given = f'position = "free", sun = [90.0, {elevation}], turbidity = 3.0'
-    sketch = make_sketch(f"{SKETCH}set = {{ {given} }}\n")
-    found = engine.read(sketch, "daylight.dome").astype(np.float64)[..., :3]
+    text = f'position = "free", sun = [90.0, {elevation}], turbidity = 3.0'
+    sketch = make_sketch(f"{SKETCH}set = {{ {text} }}\n")
+    result = engine.read(sketch, "daylight.dome").astype(np.float64)[..., :3]
     table = engine.read(sketch, "daylight.bounced").astype(np.float64)[..., :3]
-    ny, nx = found.shape[0] // 9, found.shape[1] // 2  # the eye by the sea
+    ny, nx = result.shape[0] // 9, result.shape[1] // 2  # the eye by the sea
     for x, y in ((0, 0), (0, 5), (31, 2), (12, 12), (20, 8), (5, 25), (16, 31)):
         rise, aside = (y / (ny - 1)) ** 2, 1 - 2 * (x / (nx - 1)) ** 2
         aerosol, rest, _ = sky(rise, aside, elevation, 3.0, table)
-        np.testing.assert_allclose(found[y, x], rest + 5.1e-9, rtol=0.04, atol=1e-8)
-        np.testing.assert_allclose(found[y, nx + x], aerosol, rtol=0.06, atol=1e-8 + 0.01 * aerosol.max())
+        np.testing.assert_allclose(result[y, x], rest + 5.1e-9, rtol=0.04, atol=1e-8)
+        np.testing.assert_allclose(result[y, nx + x], aerosol, rtol=0.06, atol=1e-8 + 0.01 * aerosol.max())
 
 
 LOOK = """
@@ -395,10 +395,10 @@ vec4 kernel(ivec2 texel) {
 
 @pytest.mark.parametrize("elevation", [40.0, 4.0, -2.0])
 def test_the_sky_may_be_read_in_any_direction(engine, make_sketch, elevation):
-    given = f'position = "free", sun = [150.0, {elevation}], turbidity = 3.0, adaptation = 0.0'
+    text = f'position = "free", sun = [150.0, {elevation}], turbidity = 3.0, adaptation = 0.0'
     seen = '[[pass]]\nname = "seen"\nuse = "./look"\nsize = [50, 9]\n'
-    sketch = make_sketch(f"{SKETCH}set = {{ {given} }}\n{seen}", look=LOOK)
-    found = engine.read(sketch, "seen").astype(np.float64)[..., :3]
+    sketch = make_sketch(f"{SKETCH}set = {{ {text} }}\n{seen}", look=LOOK)
+    result = engine.read(sketch, "seen").astype(np.float64)[..., :3]
     table = engine.read(sketch, "daylight.bounced").astype(np.float64)[..., :3]
     g = 0.8
     for x, y in ((3, 0), (20, 1), (21, 4), (44, 0), (33, 7), (0, 3)):
@@ -406,17 +406,17 @@ def test_the_sky_may_be_read_in_any_direction(engine, make_sketch, elevation):
         aerosol, rest, together = sky(rise, aside, elevation, 3.0, table)
         phase = 3 / (8 * np.pi) * (1 - g**2) * (1 + together**2)
         phase /= (2 + g**2) * (1 + g**2 - 2 * g * together) ** 1.5
-        np.testing.assert_allclose(found[y, x], rest + phase * aerosol, rtol=0.06)
+        np.testing.assert_allclose(result[y, x], rest + phase * aerosol, rtol=0.06)
 
 
 @pytest.mark.parametrize("elevation", [40.0, 4.0])
 @pytest.mark.parametrize("height", [0.1, 0.606, 1.5, 4.0, 9.0])
 def test_from_a_height_it_is_the_sky_of_that_height(engine, make_sketch, height, elevation):
     """From the eye's own horizon, below the level, to the zenith; between the tables as on them."""
-    given = f'position = "free", sun = [150.0, {elevation}], turbidity = 3.0, adaptation = 0.0'
+    text = f'position = "free", sun = [150.0, {elevation}], turbidity = 3.0, adaptation = 0.0'
     seen = f'[[pass]]\nname = "seen"\nuse = "./from_above"\nsize = [50, 9]\nset = {{ height = {height} }}\n'
-    sketch = make_sketch(f"{SKETCH}set = {{ {given} }}\n{seen}", from_above=FROM_ABOVE)
-    found = engine.read(sketch, "seen").astype(np.float64)[..., :3]
+    sketch = make_sketch(f"{SKETCH}set = {{ {text} }}\n{seen}", from_above=FROM_ABOVE)
+    result = engine.read(sketch, "seen").astype(np.float64)[..., :3]
     table = engine.read(sketch, "daylight.bounced").astype(np.float64)[..., :3]
     lowest = -np.sqrt(1 - (RADIUS / (RADIUS + height)) ** 2) + 2e-4
     for x, y in ((3, 0), (30, 0), (20, 1), (21, 2), (44, 1), (33, 7), (0, 3)):
@@ -424,14 +424,16 @@ def test_from_a_height_it_is_the_sky_of_that_height(engine, make_sketch, height,
         aerosol, rest, together = sky(rise, aside, elevation, 3.0, table, height)
         phase = 3 / (8 * np.pi) * 0.36 / 2.64 * (1 + together**2) / (1.64 - 1.6 * together) ** 1.5
         truth = rest + phase * aerosol
-        np.testing.assert_allclose(found[y, x], truth, rtol=0.05, atol=0.1 * truth.max(), err_msg=f"{x}, {y}")
+        np.testing.assert_allclose(
+            result[y, x], truth, rtol=0.05, atol=0.1 * truth.max(), err_msg=f"{x}, {y}"
+        )
 
 
 def test_from_606_metres_the_horizon_has_a_third_more_blue_than_from_the_sea(engine, make_sketch):
     """Half of the haze lies below; the level horizon of the sea's own sky lacks it."""
-    given = 'position = "free", sun = [150.0, 40.0], turbidity = 3.0, adaptation = 0.0'
+    value = 'position = "free", sun = [150.0, 40.0], turbidity = 3.0, adaptation = 0.0'
     seen = '[[pass]]\nname = "seen"\nuse = "./from_above"\nsize = [50, 9]\n'
-    sketch = make_sketch(f"{SKETCH}set = {{ {given} }}\n{seen}", from_above=FROM_ABOVE)
+    sketch = make_sketch(f"{SKETCH}set = {{ {value} }}\n{seen}", from_above=FROM_ABOVE)
     sea, above = (
         engine.read(sketch.with_values({"seen.height": height}), "seen")[0, 40, 2] for height in (0.0, 0.606)
     )

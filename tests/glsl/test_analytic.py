@@ -31,9 +31,9 @@ def read(kept, sketch):
 
     def make(terrain, use, *outputs, **values):
         made = sketch(terrain, use, **values)
-        found = [kept.read(made, f"light:{output}").astype(np.float64) for output in outputs]
-        assert all(np.isfinite(f).all() for f in found)
-        return found[0] if len(found) == 1 else found
+        result = [kept.read(made, f"light:{output}").astype(np.float64) for output in outputs]
+        assert all(np.isfinite(f).all() for f in result)
+        return result[0] if len(result) == 1 else result
 
     return make
 
@@ -62,28 +62,28 @@ def visible(elevation, horizon, diameter=0.53):
 
 def test_visibility_falls_evenly_over_the_disc(on_gpu):
     horizon = np.linspace(20, 26, 61).astype(np.float32)
-    found = on_gpu(ARC, "disc_seen(in_diameters(24.0, 2.0), in_diameters(horizon, 2.0))", horizon=horizon)
-    np.testing.assert_allclose(found, visible(23.0, horizon.astype(np.float64), 2.0), atol=1e-5)
-    assert found[0] == 1 and found[-1] == 0 and found[30] == pytest.approx(0.5)
+    result = on_gpu(ARC, "disc_seen(in_diameters(24.0, 2.0), in_diameters(horizon, 2.0))", horizon=horizon)
+    np.testing.assert_allclose(result, visible(23.0, horizon.astype(np.float64), 2.0), atol=1e-5)
+    assert result[0] == 1 and result[-1] == 0 and result[30] == pytest.approx(0.5)
 
 
 def test_it_differs_from_the_discs_area_by_0_058(on_gpu):
     """The area of a disc over a line at x radii over its middle, by sums over its rows."""
     x = np.linspace(-1, 1, 401)
-    found = on_gpu(
+    result = on_gpu(
         ARC, "disc_seen(in_diameters(1.0, 2.0), in_diameters(horizon, 2.0))", horizon=x.astype(np.float32)
     )
     rows = np.linspace(-1, 1, 200_001)
     width = np.sqrt(np.maximum(1 - rows**2, 0))
     area = 1 - np.interp(x, rows, np.cumsum(width) / width.sum())
-    difference = np.abs(found - area).max()
+    difference = np.abs(result - area).max()
     assert 0.056 < difference < 0.0585
 
 
 def test_a_sun_of_no_width_is_there_or_not(on_gpu):
     horizon = np.array([9.9, 10.1], np.float32)
-    found = on_gpu(ARC, "disc_seen(in_diameters(10.0, 0.0), in_diameters(horizon, 0.0))", horizon=horizon)
-    np.testing.assert_array_equal(found, [1, 0])
+    result = on_gpu(ARC, "disc_seen(in_diameters(10.0, 0.0), in_diameters(horizon, 0.0))", horizon=horizon)
+    np.testing.assert_array_equal(result, [1, 0])
 
 
 @pytest.mark.parametrize("arc", [90.0, 135.0, 10.0, -70.0])
@@ -136,9 +136,9 @@ def test_angles_are_shares_of_a_quarter_circle_over_the_slope(kept, sketch):
     made = sketch(terrain, "horizon_sun", arc=20.0)
     parts = [kept.read(made, f"light.angles:{which}") for which in ("upright", "slanting")]
     maps = [kept.read(made, f"light:{side}").astype(np.float64) for side in ("ahead", "behind")]
-    found = 90 * np.concatenate(parts, axis=-1)[..., [0, 4, 2, 6, 1, 5, 3, 7]].astype(np.float64)
-    np.testing.assert_allclose(found, horizons(*maps, terrain, 20.0), atol=SHARE + 2e-3)
-    assert found.min() == 0 and found.max() > 25
+    result = 90 * np.concatenate(parts, axis=-1)[..., [0, 4, 2, 6, 1, 5, 3, 7]].astype(np.float64)
+    np.testing.assert_allclose(result, horizons(*maps, terrain, 20.0), atol=SHARE + 2e-3)
+    assert result.min() == 0 and result.max() > 25
 
 
 def test_the_table_holds_every_normal(kept, sketch):
@@ -253,7 +253,7 @@ def test_a_sun_that_comes_between_two_other_horizons_has_those_taken(kept, sketc
         (359, True),
     ):
         moved = made.with_values({"light.sun": (azimuth, 15)})
-        found = kept.read(moved, "light:visibility")
+        result = kept.read(moved, "light:visibility")
         if kept.info.software:
             assert ("light.between" in kept.record.ran) == taken, azimuth
         angles = [kept.read(moved, f"light.angles:{name}") for name in ("upright", "slanting")]
@@ -261,11 +261,11 @@ def test_a_sun_that_comes_between_two_other_horizons_has_those_taken(kept, sketc
         sector = (-azimuth / 45) % 8
         first, beyond = int(sector), sector % 1
         horizon = (1 - beyond) * around[..., first] + beyond * around[..., (first + 1) % 8]
-        # An arc tangent's 1e-5, as a share of 45 degrees between two horizons, over the sun's width; and
+        # An arc tangent's 1e-5, as a fraction of 45 degrees between two horizons, over the sun's width; and
         # three roundings of floats near 60 diameters.
         steepest = np.abs(np.diff(around, axis=-1, append=around[..., :1])).max()
         bound = np.degrees(1e-5) / 45 * steepest / 0.53 + 4 * 2**-18
-        np.testing.assert_allclose(found, visible(15.0, horizon), atol=bound)
+        np.testing.assert_allclose(result, visible(15.0, horizon), atol=bound)
 
 
 @pytest.mark.parametrize("azimuth", [30.0, 225.0, 300.0])
@@ -398,7 +398,7 @@ def test_lifting_the_terrain_changes_nothing(read):
     low = terrain.heights.copy()
     low[0, 0] -= 500  # all else stands higher over height 0
     plain, lifted = (
-        read(one, "analytic", "light", sun=(250, 15)) for one in (terrain, Land(low, terrain.spacing))
+        read(terrain, "analytic", "light", sun=(250, 15)) for terrain in (terrain, Land(low, terrain.spacing))
     )
     assert (np.abs(plain - lifted)[8:, 8:] > 0.01).mean() < 0.01
 
@@ -432,6 +432,6 @@ def test_a_sky_factor_texel_for_texel_is_that_of_a_finer_one_at_the_same_places(
         text += f'[[pass]]\nname = "{name}_light"\nuse = "lighting/horizon_sun"\n'
         text += f'inputs = {{ sky_factor = "{name}:factor" }}\nset = {{ sun = [120, 20], ambient = 0.7 }}\n'
     sketch = make_sketch(text, size=33, factor=FACTOR)
-    found = any_engine.read(sketch, "same_light:light")
-    assert found.std() > 0.05
-    np.testing.assert_array_equal(found, any_engine.read(sketch, "finer_light:light"))
+    result = any_engine.read(sketch, "same_light:light")
+    assert result.std() > 0.05
+    np.testing.assert_array_equal(result, any_engine.read(sketch, "finer_light:light"))

@@ -65,10 +65,10 @@ def test_the_mean_is_the_colour_that_the_name_promises(any_engine, tile, name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_another_seed_is_another_tile_of_the_same_kind(any_engine, tile, name):
-    one, other = (any_engine.read(tile(name, seed=s), "colour").astype(float)[..., :3] for s in (1, 2))
-    spread = one.std(axis=(0, 1)).mean()
-    assert np.abs(one - other).mean() > 0.3 * spread
-    np.testing.assert_allclose(one.mean(axis=(0, 1)), other.mean(axis=(0, 1)), rtol=0.15)
+    first, other = (any_engine.read(tile(name, seed=s), "colour").astype(float)[..., :3] for s in (1, 2))
+    spread = first.std(axis=(0, 1)).mean()
+    assert np.abs(first - other).mean() > 0.3 * spread
+    np.testing.assert_allclose(first.mean(axis=(0, 1)), other.mean(axis=(0, 1)), rtol=0.15)
 
 
 @pytest.mark.parametrize("name", NAMES)

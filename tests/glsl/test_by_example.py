@@ -38,7 +38,7 @@ def blended(engine, make_sketch, tmp_path):
 def test_hexagons_are_blended_as_they_say(blended, python_random):
     """Each texel from the three nearest of all corners, by its place among them."""
     width, cells, sharpness, seed = 9000.0, 2.5, 2.0, 4
-    normal, ranks, found, _ = blended((40, 31), (12000.0, 8000.0), width=width, cells=cells,
+    normal, ranks, result, _ = blended((40, 31), (12000.0, 8000.0), width=width, cells=cells,
                                       sharpness=sharpness, seed=seed)  # fmt: skip
     y, x = np.mgrid[0:31, 0:40]
     x, y = x * (12000.0 / 39) / width, y * (8000.0 / 30) / width
@@ -55,23 +55,23 @@ def test_hexagons_are_blended_as_they_say(blended, python_random):
                 * max(1 - 2 / cells, 0)
                 for k in (0, 1)
             ]  # fmt: skip
-            place = [(shift[1] + y - my) * (SIDE - 1), (shift[0] + x - mx) * (SIDE - 1)]
-            value = map_coordinates(normal, place, order=1, mode="nearest")
+            position = [(shift[1] + y - my) * (SIDE - 1), (shift[0] + x - mx) * (SIDE - 1)]
+            value = map_coordinates(normal, position, order=1, mode="nearest")
             total, squares, weights = total + weight * value, squares + weight**2, weights + weight
     at = ndtr(total / np.sqrt(squares)) * ranks.size - 0.5
-    wanted = np.interp(at, np.arange(ranks.size), ranks.ravel())
+    expected = np.interp(at, np.arange(ranks.size), ranks.ravel())
     # The normal distribution is 2e-7 off, which is 2e-3 of a rank; places in the example 1e-5 of a texel.
-    np.testing.assert_allclose(found, wanted, atol=2e-4)
+    np.testing.assert_allclose(result, expected, atol=2e-4)
 
 
 def test_the_histogram_is_the_example_s(blended):
     """Over some fifty hexagons no share of heights is off by more than a tenth, and the mean by less."""
-    _, ranks, found, _ = blended((200, 200), (60000.0, 60000.0), width=10000.0, cells=2.0)
-    own, heights = ranks.ravel(), np.sort(found, axis=None)
+    _, ranks, result, _ = blended((200, 200), (60000.0, 60000.0), width=10000.0, cells=2.0)
+    own, heights = ranks.ravel(), np.sort(result, axis=None)
     assert own[0] <= heights[0] and heights[-1] <= own[-1]
     shares = np.searchsorted(own, heights) / own.size
     assert abs(shares - np.linspace(0, 1, heights.size)).max() < 0.1
-    assert np.std(found) == pytest.approx(np.std(own), rel=0.15)
+    assert np.std(result) == pytest.approx(np.std(own), rel=0.15)
 
 
 def test_it_is_added_to_a_base_of_any_size(blended):

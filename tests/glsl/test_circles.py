@@ -22,9 +22,9 @@ SHAPES = [
 @pytest.fixture
 def sketch_of(make_sketch):
     def make(size=(33, 33), extent=(1000.0, 1000.0), before="", inputs="", **values):
-        given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
+        value = "".join(f"{k} = {v!r}\n" for k, v in values.items())
         use = '[[pass]]\nname = "terrain"\nuse = "generation/circles"\n'
-        text = f"{before}{use}{inputs}[pass.set]\n{given}"
+        text = f"{before}{use}{inputs}[pass.set]\n{value}"
         return make_sketch(text, size=list(size), extent=list(extent))
 
     return make
@@ -76,33 +76,33 @@ def summed(size, extent, drawn, sphere=False):
     "values", [{}, {"iterations": 97, "rises": "alike"}, {"smallest": 0.4, "largest": 0.1}]
 )
 def test_it_is_the_sum_of_its_domes(engine, sketch_of, discs, size, extent, values):
-    found = engine.read(sketch_of(size, extent, **values), "terrain.raw")
+    result = engine.read(sketch_of(size, extent, **values), "terrain.raw")
     truth = summed(size, extent, discs(extent, **values))
     # Places are counted in the shorter side: on a long terrain they are large numbers, and rounded.
     long = max(extent) / min(extent)
-    np.testing.assert_allclose(found, truth, atol=2e-6 * long * max(1, truth.max()))
+    np.testing.assert_allclose(result, truth, atol=2e-6 * long * max(1, truth.max()))
 
 
 def test_half_spheres(engine, sketch_of, discs):
     size, extent = (130, 100), (1300.0, 1000.0)
-    found = engine.read(sketch_of(size, extent, dome="half a sphere"), "terrain.raw")
+    result = engine.read(sketch_of(size, extent, dome="half a sphere"), "terrain.raw")
     # At its rim a half sphere is upright: there a rounded place has a height of its own.
     truth = summed(size, extent, discs(extent), sphere=True)
     near = np.min([abs(far_from(d, size, extent) - 1) for d in zip(*discs(extent), strict=True)], axis=0)
-    np.testing.assert_allclose(found, truth, atol=2e-4)
+    np.testing.assert_allclose(result, truth, atol=2e-4)
     assert (near > 1e-2).any()
-    np.testing.assert_allclose(found[near > 1e-2], truth[near > 1e-2], atol=1e-5)
+    np.testing.assert_allclose(result[near > 1e-2], truth[near > 1e-2], atol=1e-5)
 
 
 def test_it_is_the_sum_of_its_domes_at_513(engine, sketch_of, discs):
     values = {"iterations": 1000, "smallest": 0.0, "largest": 0.05}
-    found = engine.read(sketch_of((513, 513), **values), "terrain.raw")
+    result = engine.read(sketch_of((513, 513), **values), "terrain.raw")
     rows = [0, 77, 256, 512]
     truth = np.zeros((4, 513))
     x, y = np.linspace(0, 1000, 513), np.linspace(0, 1000, 513)[rows]
     for cx, cy, radius, height in zip(*discs((1000, 1000), **values), strict=True):
         truth += height * dome(np.hypot(x[None] - cx, y[:, None] - cy) / max(radius, 1e-9))
-    np.testing.assert_allclose(found[rows], truth, atol=2e-6)
+    np.testing.assert_allclose(result[rows], truth, atol=2e-6)
 
 
 @pytest.mark.parametrize("dome", ["half a cosine", "half a sphere"])
@@ -143,9 +143,9 @@ def test_domes(on_gpu):
     share = on_gpu(DOME, "disc_share(offset, 0.3)", offset=offset)
     np.testing.assert_allclose(share, np.minimum(far**2, 1), atol=1e-6)
     for sphere in (False, True):
-        found = on_gpu(DOME, f"dome_of_share(share, {str(sphere).lower()})", share=share)
-        np.testing.assert_allclose(found, dome(np.sqrt(share.astype(np.float64)), sphere), atol=1e-6)
-        assert found[0] == pytest.approx(1, abs=1e-6) and abs(found[-1]) < 1e-6
+        result = on_gpu(DOME, f"dome_of_share(share, {str(sphere).lower()})", share=share)
+        np.testing.assert_allclose(result, dome(np.sqrt(share.astype(np.float64)), sphere), atol=1e-6)
+        assert result[0] == pytest.approx(1, abs=1e-6) and abs(result[-1]) < 1e-6
 
 
 def test_turns_are_discs(engine, sketch_of):
@@ -156,10 +156,10 @@ def test_turns_are_discs(engine, sketch_of):
     assert len(turns) == 121 and not turns[0].any()
     for turn in (1, 24, 50, 96, 97, 119, 120):
         with Engine(engine.ctx, driver=engine.driver) as fresh:
-            found = fresh.read(sketch, "terrain.raw", steps={"terrain.raw": turn})
-        np.testing.assert_array_equal(found, turns[turn])
+            result = fresh.read(sketch, "terrain.raw", steps={"terrain.raw": turn})
+        np.testing.assert_array_equal(result, turns[turn])
         fewer = engine.read(sketch_of((70, 50), iterations=turn, **values), "terrain.raw")
-        np.testing.assert_array_equal(found, fewer)
+        np.testing.assert_array_equal(result, fewer)
 
 
 def test_nothing_to_add_is_flat_terrain(engine, sketch_of):
@@ -180,12 +180,12 @@ def test_normalise_and_seeds(engine, sketch_of):
     np.testing.assert_array_equal(terrains["none"], raw)
     np.testing.assert_allclose(terrains["max"], raw / raw.max(), atol=1e-6)
     np.testing.assert_allclose(terrains["minmax"], (raw - raw.min()) / np.ptp(raw), atol=1e-6)
-    one, other, again = (engine.read(sketch_of(seed=s), "terrain") for s in (1, 2, 1))
-    np.testing.assert_array_equal(one, again)
-    assert np.abs(one - other).max() > 0.1
+    first, other, again = (engine.read(sketch_of(seed=s), "terrain") for s in (1, 2, 1))
+    np.testing.assert_array_equal(first, again)
+    assert np.abs(first - other).max() > 0.1
 
 
 def test_both_drivers_agree_to_the_last_bit(ctx, sketch_of):
     sketch = sketch_of((130, 70), (1300.0, 700.0), dome="half a sphere")
-    with Engine(ctx, driver="fragment") as one, Engine(ctx, driver="compute") as other:
-        np.testing.assert_array_equal(one.read(sketch, "terrain.raw"), other.read(sketch, "terrain.raw"))
+    with Engine(ctx, driver="fragment") as first, Engine(ctx, driver="compute") as other:
+        np.testing.assert_array_equal(first.read(sketch, "terrain.raw"), other.read(sketch, "terrain.raw"))

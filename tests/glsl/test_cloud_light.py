@@ -48,9 +48,9 @@ def cube_of(texture):
     return slices[:32, 1:33, 1:33]
 
 
-def between(grid, place):
+def between(grid, position):
     """Interpolate a periodic grid at places in grid cells, x first, to both sides of the nearest points."""
-    return map_coordinates(grid, place[:, ::-1].T - 0.5, order=1, mode="grid-wrap")
+    return map_coordinates(grid, position[:, ::-1].T - 0.5, order=1, mode="grid-wrap")
 
 
 class Heaps:
@@ -62,7 +62,7 @@ class Heaps:
     def density(self, at):
         """Return the share 0..1 of the most extinction at places [m]."""
         up = (at[:, 2] - BASE) / TALL
-        found = np.zeros(len(at))
+        result = np.zeros(len(at))
         inside = np.flatnonzero((up > 0) & (up < 1.3))
         thick = between(self.tile, at[inside, :2] / WIDE * len(self.tile))
         near = (thick > 0) & (np.abs(thick - up[inside]) < 0.5)
@@ -74,8 +74,8 @@ class Heaps:
         up = up[inside]
         thick = thick + heaps * (0.4 + 0.6 * up) * np.clip(np.where(heaps > 0, 0, 0.3) + 4 * thick, 0, 1)
         foot = np.clip(up / 0.035, 0, 1)
-        found[inside] = np.clip((thick - up) * 16, 0, 1) * foot**2 * (3 - 2 * foot)
-        return found
+        result[inside] = np.clip((thick - up) * 16, 0, 1) * foot**2 * (3 - 2 * foot)
+        return result
 
     def towards(self, at, sun, steps=14):
         """Return what is left of the sun's beam at places: steps that grow away from them."""
@@ -134,18 +134,18 @@ def test_heaps_send_as_much_light_as_photons_do(any_engine, make_sketch, cover, 
     The header of ``clouds/heap_light`` has the views that miss it.
     """
     sun = sun_vector(150.0, elevation)
-    told = TOLD.replace("vec4(0.0, 0.0, 1.0, 90.0)", f"vec4({sun[0]}, {sun[1]}, {sun[2]}, {elevation})")
-    sketch = make_sketch(TERRAIN + SKETCH, flat=FLAT, told=told, none=NONE)
+    message = TOLD.replace("vec4(0.0, 0.0, 1.0, 90.0)", f"vec4({sun[0]}, {sun[1]}, {sun[2]}, {elevation})")
+    sketch = make_sketch(TERRAIN + SKETCH, flat=FLAT, told=message, none=NONE)
     sketch = sketch.with_values({"cloud.clouds": cover})
     target = (4000.0, 3000.0, 900.0 if view[1] > 0 else 6000.0)
     sketch = looking(sketch, *view, target, field=30.0)
-    found = any_engine.read(sketch, "seen", size=SEEN).astype(np.float64)[..., 1].mean()
+    value = any_engine.read(sketch, "seen", size=SEEN).astype(np.float64)[..., 1].mean()
     tile = any_engine.read(sketch, "cloud", size=SEEN).astype(np.float64)[..., 0]
     cube = cube_of(any_engine.read(sketch, "billows", size=SEEN).astype(np.float64)[..., 0])
     eye = np.asarray(any_engine.record.plan.eye.position, np.float64)
     ahead = rays(any_engine.record.plan.eye, SEEN).reshape(-1, 3)
     truth = photons(Heaps(tile, cube), eye, ahead, sun, np.random.default_rng(5))
-    assert found == pytest.approx(truth, rel=0.2)
+    assert value == pytest.approx(truth, rel=0.2)
 
 
 def test_billows_come_again_and_have_the_mean_that_is_said(any_engine, make_sketch):

@@ -54,8 +54,8 @@ def rays(eye, size=SEEN):
 @pytest.fixture
 def outdoors(make_sketch):
     def make(rest="", files=None, **day):
-        given = {"position": "free", "sun": [150.0, 40.0], "adaptation": 0.0, **day}
-        sets = ", ".join(f"{k} = {toml_value(v)}" for k, v in given.items())
+        value = {"position": "free", "sun": [150.0, 40.0], "adaptation": 0.0, **day}
+        sets = ", ".join(f"{k} = {toml_value(v)}" for k, v in value.items())
         light = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ {sets} }}\n'
         return make_sketch(TERRAIN + light + CLOUDS + rest, flat=FLAT, **(files or {}))
 
@@ -66,9 +66,9 @@ def test_a_line_of_sight_is_in_the_layer_where_its_height_is(on_gpu):
     """From below, within and above; heights along the way are those of plane geometry."""
     rng = np.random.default_rng(4)
     height, rise = rng.uniform(0, 6, 3000), rng.uniform(-1, 1, 3000) ** 3
-    found = on_gpu("clouds/crossing.glsl", "layer_crossing(h, u, 2.2, 3.1)", h=height, u=rise)
+    result = on_gpu("clouds/crossing.glsl", "layer_crossing(h, u, 2.2, 3.1)", h=height, u=rise)
     h, u = (np.asarray(v, np.float32).astype(np.float64) for v in (height, rise))
-    first, last = found.T.astype(np.float64)
+    first, last = result.T.astype(np.float64)
 
     def reached(way):
         return np.hypot(way * np.sqrt(1 - u**2), RADIUS + h + way * u) - RADIUS
@@ -92,7 +92,7 @@ def test_clouds_hide_as_much_as_their_shadows_do(any_engine, outdoors, drawn, co
     """Straight up from far below, where no sides are seen, they leave what they leave of the sun."""
     use = BILLOWS + f'[[pass]]\nname = "seen"\nuse = "clouds/{drawn}"\nsize = [32, 32]\n'
     sketch = outdoors(use, clouds=cover).with_values({"drift.base": 11500.0, "drift.wide": 6000.0})
-    left, wanted = [], []
+    left, expected = [], []
     tile = any_engine.read(sketch, "cloud").astype(np.float64)[..., 3]
     for east in np.arange(0.0, 6000.0, 1000.0):
         for north in np.arange(0.0, 6000.0, 1000.0):
@@ -100,11 +100,11 @@ def test_clouds_hide_as_much_as_their_shadows_do(any_engine, outdoors, drawn, co
             left.append(any_engine.read(now, "seen", size=(32, 32)).astype(np.float64)[..., 3].mean())
             eye = any_engine.record.plan.eye
             towards = rays(eye, (32, 32))
-            place = np.asarray(eye.position)[:2] + towards[..., :2] / towards[..., 2:] * 11_700
-            x, y = ((place / 6000 % 1) * 256).astype(int).transpose(2, 0, 1)
-            wanted.append(tile[y, x].mean())
-    assert np.mean(left) == pytest.approx(np.mean(wanted), abs=0.04)
-    assert np.corrcoef(left, wanted)[0, 1] > 0.97
+            toward = np.asarray(eye.position)[:2] + towards[..., :2] / towards[..., 2:] * 11_700
+            x, y = ((toward / 6000 % 1) * 256).astype(int).transpose(2, 0, 1)
+            expected.append(tile[y, x].mean())
+    assert np.mean(left) == pytest.approx(np.mean(expected), abs=0.04)
+    assert np.corrcoef(left, expected)[0, 1] > 0.97
 
 
 @pytest.mark.parametrize("elevation", [55.0, 20.0])
@@ -114,12 +114,12 @@ def test_flat_clouds_are_as_many_and_as_bright_as_heaped_ones(any_engine, outdoo
     for name in ("seen", "layer"):
         rest += f'[[pass]]\nname = "by_{name}"\nuse = "clouds/{name}"\nsize = [96, 64]\n'
     sketch = outdoors(rest, clouds=0.45, sun=[150.0, elevation])
-    found = []
+    result = []
     for name in ("seen", "layer"):
         views = [looking(sketch, azimuth, 21.0, field=26.0) for azimuth in (60.0, 200.0, 330.0)]
         seen = [any_engine.read(view, f"by_{name}", size=SEEN).astype(np.float64) for view in views]
-        found.append([1 - np.mean(seen, axis=(0, 1, 2))[3], np.mean(seen, axis=(0, 1, 2))[1]])
-    (hidden, light), (flat_hidden, flat_light) = found
+        result.append([1 - np.mean(seen, axis=(0, 1, 2))[3], np.mean(seen, axis=(0, 1, 2))[1]])
+    (hidden, light), (flat_hidden, flat_light) = result
     assert flat_hidden == pytest.approx(hidden, rel=0.1)
     assert flat_light == pytest.approx(light, rel=0.2)
 
@@ -172,12 +172,12 @@ def test_an_even_layer_sends_back_and_on_what_photons_do(any_engine, make_sketch
     above, below = photons_out(0.067 * 900 * (1 - 0.0175 - 1 / 32), edges)
     for height, elevation, truth in ((12000.0, -89.9, above), (50.0, 89.9, below)):
         now = looking(sketch, 0.0, elevation, (500.0, 500.0, height), 88.0)
-        found = any_engine.read(now, "seen", size=(64, 64)).astype(np.float64)
+        result = any_engine.read(now, "seen", size=(64, 64)).astype(np.float64)
         cosine = np.abs(rays(any_engine.record.plan.eye, (64, 64))[..., 2])
-        for k, wanted in enumerate(truth):
+        for k, expected in enumerate(truth):
             ring = (cosine > edges[k]) & (cosine < edges[k + 1])
-            assert found[ring, 1].mean() == pytest.approx(wanted, rel=0.2), (height, edges[k])
-        assert found[..., 3].max() < 0.01
+            assert result[ring, 1].mean() == pytest.approx(expected, rel=0.2), (height, edges[k])
+        assert result[..., 3].max() < 0.01
 
 
 LOOK = """
@@ -195,15 +195,15 @@ vec4 kernel(ivec2 texel) {
 def test_without_clouds_it_is_the_sky_and_the_sun(any_engine, outdoors, drawn):
     rest = SKY + f'set = {{ clouds = "{drawn}" }}\n[[pass]]\nname = "look"\nuse = "./look"\nsize = [96, 64]\n'
     sketch = looking(outdoors(rest, {"look": LOOK}, sun=[95.0, 12.0], clouds=0.0), 90.0, 8.0)
-    found = any_engine.read(sketch, "sky", size=SEEN).astype(np.float64)[..., :3]
-    wanted = any_engine.read(sketch, "look", size=SEEN).astype(np.float64)[..., :3]
+    result = any_engine.read(sketch, "sky", size=SEEN).astype(np.float64)[..., :3]
+    expected = any_engine.read(sketch, "look", size=SEEN).astype(np.float64)[..., :3]
     towards = rays(any_engine.record.plan.eye)
     sun = np.arccos(np.clip(towards @ sun_vector(95.0, 12.0), -1, 1))
     above = (towards[..., 2] > 0.01) & (sun > np.radians(1.5))
-    np.testing.assert_allclose(found[above], wanted[above], rtol=0.03)
+    np.testing.assert_allclose(result[above], expected[above], rtol=0.03)
     disc = sun == sun.min()  # a pixel is as wide as the sun
-    assert (found[disc] > 3 * wanted[disc]).all()
-    assert (found[sun > np.radians(1.5)] < 2 * wanted[above].max()).all()
+    assert (result[disc] > 3 * expected[disc]).all()
+    assert (result[sun > np.radians(1.5)] < 2 * expected[above].max()).all()
 
 
 @pytest.mark.slow
@@ -213,15 +213,15 @@ def test_no_cloud_is_brighter_than_what_it_receives_and_none_lights_up_at_night(
     brightest = []
     for elevation in (60.0, 20.0, 3.0, -1.0, -4.0, -12.0, -40.0):
         sketch = outdoors(rest, clouds=0.6, sun=[270.0, elevation], turbidity=2.2)
-        found = any_engine.read(looking(sketch, 90.0, 20.0), "sky", size=SEEN).astype(np.float64)
-        assert np.isfinite(found).all() and (found >= 0).all()
+        result = any_engine.read(looking(sketch, 90.0, 20.0), "sky", size=SEEN).astype(np.float64)
+        assert np.isfinite(result).all() and (result >= 0).all()
         row = any_engine.read(sketch, "daylight")[0].astype(np.float64)
         clear = row[1, :3] / ((1 - 0.75 * 0.6**3.4) * (1 - 0.6**2))
         # The beam over the clouds has crossed less air than that on the ground.
         most = np.maximum(1.5 * clear, 0.4 if elevation > 2 else 0.0) + row[2, :3] + 0.2 * row[5, :3]
         if elevation > 2:
-            assert (found[..., :3].max(axis=(0, 1)) < most).all(), elevation
-        brightest.append(found[..., :3].max())
+            assert (result[..., :3].max(axis=(0, 1)) < most).all(), elevation
+        brightest.append(result[..., :3].max())
     assert (np.diff(brightest[1:]) <= 0).all() and brightest[-1] < 1e-6 * brightest[0]
 
 
@@ -234,17 +234,17 @@ def test_far_clouds_have_the_colour_of_the_air(any_engine, outdoors, drawn):
     rest = SKY + f'set = {{ clouds = "{drawn}" }}\n[[pass]]\nname = "look"\nuse = "./look"\nsize = [96, 64]\n'
     sketch = looking(outdoors(rest, {"look": LOOK}, clouds=0.7), 90.0, 0.0, field=4.0)
     clear = any_engine.read(sketch.with_values({"daylight.clouds": 0.0}), "look", size=SEEN)
-    found = any_engine.read(sketch, "sky", size=SEEN).astype(np.float64)[..., :3]
+    result = any_engine.read(sketch, "sky", size=SEEN).astype(np.float64)[..., :3]
     slices = [any_engine.read(sketch, f"air:{name}", size=SEEN) for name in ("scattered", "left")]
     # The farthest slice, 32 x 20 texels of three pixels and 3.2; the horizon is between two of its rows.
     far, left = (each.astype(np.float64)[69:71, 96:, :3].mean(axis=0) for each in slices)
     rises = rays(any_engine.record.plan.eye)[..., 2]
     assert (np.abs(rises[31:33]) < 1e-3).all()
     columns = slice(1, None, 3)  # in the middles of texels
-    found, clear = (each[31:33, columns, :3].mean(axis=0, dtype=np.float64) for each in (found, clear))
+    result, clear = (each[31:33, columns, :3].mean(axis=0, dtype=np.float64) for each in (result, clear))
     row = any_engine.read(sketch, "daylight")[0].astype(np.float64)
     beam = row[1, :3] / ((1 - 0.75 * 0.7**3.4) * (1 - 0.7**2))
     behind = left * (1.5 * beam + row[2, :3])  # as of the brightest cloud
     least, most = 0.98 * np.minimum(far, clear), 1.02 * np.maximum(far, clear) + behind
     assert (left < 2e-3).all()
-    assert (found > least).all() and (found < most).all()
+    assert (result > least).all() and (result < most).all()

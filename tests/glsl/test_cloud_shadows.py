@@ -50,11 +50,11 @@ def sketch_of(make_sketch, rest=""):
 @pytest.mark.parametrize(("height", "time"), [(0.0, 0.0), (0.8, 0.0), (0.3, 333.0)])
 def test_a_shadow_lies_where_the_sun_s_ray_meets_the_cloud(any_engine, make_sketch, sun, height, time):
     sketch = sketch_of(make_sketch).with_values({"overhead.sun": list(sun), "height.at": height})
-    found = any_engine.read(sketch, "overhead", time=time).astype(np.float64)[:-1, :-1]
-    ny, nx = found.shape
+    result = any_engine.read(sketch, "overhead", time=time).astype(np.float64)[:-1, :-1]
+    ny, nx = result.shape
     # The dot is what is left: bright, so that its middle can be found on the circle that the tile is.
     y, x = np.mgrid[0:ny, 0:nx] * 2j * np.pi / np.array([ny, nx])[:, None, None]
-    middle = np.angle([(found * np.exp(x)).sum(), (found * np.exp(y)).sum()]) / (2 * np.pi) * WIDE
+    middle = np.angle([(result * np.exp(x)).sum(), (result * np.exp(y)).sum()]) / (2 * np.pi) * WIDE
     towards = sun_vector(*sun)
     up = 2000.0 + 270.0 - 1000.0 * height
     truth = np.array([0.625, 0.375]) * WIDE + np.array([12.0, -7.0]) * time - towards[:2] / towards[2] * up
@@ -68,8 +68,8 @@ def test_the_mean_of_what_clouds_leave_does_not_change(any_engine, make_sketch):
     whole = any_engine.read(sketch, "cloud").astype(np.float64)[..., 3].mean()
     for time, sun in ((0.0, 60.0), (100.0, 60.0), (900.0, 30.0), (900.0, 8.0), (50.0, 1.0)):
         now = sketch.with_values({"overhead.sun": [130.0, sun]})
-        found = any_engine.read(now, "overhead", time=time).astype(np.float64)[:-1, :-1]
-        assert found.mean() == pytest.approx(whole, rel=0.02)
+        result = any_engine.read(now, "overhead", time=time).astype(np.float64)[:-1, :-1]
+        assert result.mean() == pytest.approx(whole, rel=0.02)
 
 
 def test_shadows_blur_as_the_sun_sets_and_end_in_the_clouds(any_engine, make_sketch):
@@ -90,19 +90,19 @@ def test_shadows_blur_as_the_sun_sets_and_end_in_the_clouds(any_engine, make_ske
 @pytest.mark.parametrize("clouds", [0.3, 0.7])
 def test_light_under_clouds_is_in_the_mean_that_of_the_cover(any_engine, make_sketch, clouds):
     """Between clouds the sun is whole, below them it is not, and flat ground receives what it did."""
-    given = f"set = {{ clouds = {clouds}, hour = 11.0 }}"
-    day = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\n{given}\n'
+    text = f"set = {{ clouds = {clouds}, hour = 11.0 }}"
+    day = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\n{text}\n'
     light = '[[pass]]\nname = "light"\nuse = "lighting/ray_cast"\nset = { gain = 1.0, ambient = 1.0 }\n'
     rest = SKETCH.replace('use = "./dot"', 'use = "clouds/field"')
     sketch = make_sketch(day + rest + light, size=161, extent=WIDE, relief=1000.0, dot=DOT, level=LEVEL)
     plain = make_sketch(
         day + '[[pass]]\nname = "height"\nuse = "./level"\n' + light, size=161, extent=WIDE, level=LEVEL
     )
-    found = any_engine.read(sketch, "light").astype(np.float64)[:-1, :-1, :3]
-    wanted = any_engine.read(plain, "light").astype(np.float64)[0, 0, :3]
-    np.testing.assert_allclose(found.mean(axis=(0, 1)), wanted, rtol=0.02)
+    result = any_engine.read(sketch, "light").astype(np.float64)[:-1, :-1, :3]
+    expected = any_engine.read(plain, "light").astype(np.float64)[0, 0, :3]
+    np.testing.assert_allclose(result.mean(axis=(0, 1)), expected, rtol=0.02)
     row = any_engine.read(sketch, "daylight")[0].astype(np.float64)
     beam = (1 - 0.75 * clouds**3.4) * (1 - clouds**2)
     whole = row[1, :3] / beam * row[0, 2] + row[2, :3]
-    np.testing.assert_allclose(found.max(axis=(0, 1)), whole, rtol=0.02)
-    np.testing.assert_allclose(found.min(axis=(0, 1)), row[2, :3], rtol=0.1)
+    np.testing.assert_allclose(result.max(axis=(0, 1)), whole, rtol=0.02)
+    np.testing.assert_allclose(result.min(axis=(0, 1)), row[2, :3], rtol=0.1)

@@ -6,8 +6,8 @@ import pytest
 DRIFT = '[[pass]]\nname = "drift"\nuse = "clouds/drift"\nsize = 1\n'
 
 
-def field(make_sketch, size="[200, 152]", day="", **given):
-    values = ", ".join(f"{k} = {v}" for k, v in given.items())
+def field(make_sketch, size="[200, 152]", day="", **value):
+    values = ", ".join(f"{k} = {v}" for k, v in value.items())
     use = f'[[pass]]\nname = "field"\nuse = "clouds/field"\nsize = {size}\nset = {{ {values} }}\n'
     return make_sketch(day + use)
 
@@ -38,14 +38,16 @@ def test_clouds_leave_of_the_beam_what_their_cover_leaves(any_engine, make_sketc
     """Kasten and Czeplak 1980, from clear to overcast, to a level of eight bits; more cover, more cloud."""
     before = None
     for cover in (0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0):
-        found = any_engine.read(field(make_sketch, size, clouds=cover, seed=seed), "field").astype(np.float64)
+        result = any_engine.read(field(make_sketch, size, clouds=cover, seed=seed), "field").astype(
+            np.float64
+        )
         beam = (1 - 0.75 * cover**3.4) * (1 - cover**2)
-        assert found[..., 3].mean() == pytest.approx(beam, abs=1 / 255), cover
-        assert before is None or (found[..., 0] >= before - 1e-3).all()
-        before = found[..., 0]
+        assert result[..., 3].mean() == pytest.approx(beam, abs=1 / 255), cover
+        assert before is None or (result[..., 0] >= before - 1e-3).all()
+        before = result[..., 0]
         # Beer and Lambert, through drops whose depth is what is not scattered nearly straight on.
-        depth = (1 - 0.85**2) * 0.067 * 900 * dense_part(found[..., 0])
-        np.testing.assert_allclose(found[..., 3], np.exp(-depth), rtol=0.01, atol=1e-4)
+        depth = (1 - 0.85**2) * 0.067 * 900 * dense_part(result[..., 0])
+        np.testing.assert_allclose(result[..., 3], np.exp(-depth), rtol=0.01, atol=1e-4)
 
 
 def test_their_cover_is_daylight_s(any_engine, make_sketch):
@@ -61,10 +63,10 @@ def test_their_cover_is_daylight_s(any_engine, make_sketch):
 
 
 def test_a_tile_fits_beside_its_copy(any_engine, make_sketch):
-    found = any_engine.read(field(make_sketch, seed=5, across=3), "field.shape").astype(np.float64)[..., :3]
+    result = any_engine.read(field(make_sketch, seed=5, across=3), "field.shape").astype(np.float64)[..., :3]
     for axis in (0, 1):
-        steps = np.abs(np.diff(found, axis=axis)).max(axis=(0, 1))
-        around = np.abs(np.take(found, 0, axis) - np.take(found, -1, axis)).max(axis=0)
+        steps = np.abs(np.diff(result, axis=axis)).max(axis=(0, 1))
+        around = np.abs(np.take(result, 0, axis) - np.take(result, -1, axis)).max(axis=0)
         assert (around <= 1.1 * steps).all()  # the most of 200 pairs of columns, and of one
 
 
@@ -73,12 +75,12 @@ def test_clouds_go_with_the_wind_and_come_again(any_engine, make_sketch, wind):
     sketch = make_sketch(DRIFT).with_values({"drift.wind": list(wind), "drift.wide": 9000.0})
     sketch = sketch.with_values({"drift.pace": 3.0, "drift.base": 1800.0})
     for time in (0.0, 1.0, 77.0, 4321.0):
-        found = any_engine.read(sketch, "drift", time=time)[0, 0].astype(np.float64)
+        result = any_engine.read(sketch, "drift", time=time)[0, 0].astype(np.float64)
         truth = np.array(wind) * 3 * time
-        off = (found[:2] - truth + 4500) % 9000 - 4500
+        off = (result[:2] - truth + 4500) % 9000 - 4500
         np.testing.assert_allclose(off, 0, atol=1e-6 * max(np.abs(truth).max(), 9000))
-        assert (found[:2] >= 0).all() and (found[:2] <= 9000).all()
-        np.testing.assert_array_equal(found[2:], [1800, 9000])
+        assert (result[:2] >= 0).all() and (result[:2] <= 9000).all()
+        np.testing.assert_array_equal(result[2:], [1800, 9000])
     period = 9000 / 3 / abs(wind[0])
-    one, other = (any_engine.read(sketch, "drift", time=t)[0, 0, 0] for t in (5.0, 5.0 + 4 * period))
-    assert (one - other + 4500) % 9000 - 4500 == pytest.approx(0, abs=0.05)
+    first, other = (any_engine.read(sketch, "drift", time=t)[0, 0, 0] for t in (5.0, 5.0 + 4 * period))
+    assert (first - other + 4500) % 9000 - 4500 == pytest.approx(0, abs=0.05)

@@ -21,13 +21,13 @@ def grey(values: np.ndarray) -> np.ndarray:
 
 def test_encoding_is_the_srgb_curve(on_gpu):
     linear = np.concatenate([np.linspace(0, 0.01, 101), np.linspace(0, 1, 501)])
-    found = on_gpu("colour/encode.glsl", "srgb_from_linear(c)", c=grey(linear))
-    np.testing.assert_allclose(found[:, 1], encoded(linear), atol=2e-6)
+    result = on_gpu("colour/encode.glsl", "srgb_from_linear(c)", c=grey(linear))
+    np.testing.assert_allclose(result[:, 1], encoded(linear), atol=2e-6)
 
 
 def test_encoding_keeps_within_the_screen_s_range(on_gpu):
-    found = on_gpu("colour/encode.glsl", "srgb_from_linear(c)", c=grey(np.array([-1.0, 0.0, 1.0, 9.0])))
-    np.testing.assert_allclose(found[:, 0], [0, 0, 1, 1], atol=1e-6)
+    result = on_gpu("colour/encode.glsl", "srgb_from_linear(c)", c=grey(np.array([-1.0, 0.0, 1.0, 9.0])))
+    np.testing.assert_allclose(result[:, 0], [0, 0, 1, 1], atol=1e-6)
 
 
 def test_the_ramp_grows_lighter_at_every_step_and_for_the_colour_blind(on_gpu):
@@ -62,8 +62,8 @@ PUBLISHED = {
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_the_published_ramps_have_their_colours(on_gpu, name):
     places = np.array(list(PUBLISHED[name])) / 255
-    found = on_gpu("colour/ramp.glsl", f"ramp_{name}(t)", t=places).astype(float) * 255
-    np.testing.assert_allclose(found, list(PUBLISHED[name].values()), atol=3.0)
+    result = on_gpu("colour/ramp.glsl", f"ramp_{name}(t)", t=places).astype(float) * 255
+    np.testing.assert_allclose(result, list(PUBLISHED[name].values()), atol=3.0)
 
 
 @pytest.mark.parametrize("name", ["viridis", "cividis"])
@@ -93,17 +93,17 @@ def test_a_ramp_by_its_number_is_the_one_of_its_name(on_gpu, number):
         "ramp_cool_warm(t)",
     ]
     places = np.linspace(-0.2, 1.2, 50)
-    found = on_gpu("colour/ramp.glsl", f"ramp_colour({number}, t)", t=places)
-    np.testing.assert_array_equal(found, on_gpu("colour/ramp.glsl", names[number], t=places))
+    result = on_gpu("colour/ramp.glsl", f"ramp_colour({number}, t)", t=places)
+    np.testing.assert_array_equal(result, on_gpu("colour/ramp.glsl", names[number], t=places))
 
 
 @pytest.mark.parametrize("white", [1.0, 3.0, 16.0])
 def test_reinhard_brings_white_to_one_and_keeps_hues(on_gpu, white):
     light = np.random.default_rng(4).uniform(0, 8, (300, 3))
-    found = on_gpu("colour/tone.glsl", "tone_reinhard(c, w)", c=light, w=white).astype(float)
+    result = on_gpu("colour/tone.glsl", "tone_reinhard(c, w)", c=light, w=white).astype(float)
     before = luminance(light)
-    np.testing.assert_allclose(luminance(found), before * (1 + before / white**2) / (1 + before), rtol=1e-5)
-    hue_found, hue = (c / c.sum(axis=1, keepdims=True) for c in (found, light))
+    np.testing.assert_allclose(luminance(result), before * (1 + before / white**2) / (1 + before), rtol=1e-5)
+    hue_found, hue = (c / c.sum(axis=1, keepdims=True) for c in (result, light))
     np.testing.assert_allclose(hue_found, hue, rtol=1e-5)
     brightest = on_gpu("colour/tone.glsl", "tone_reinhard(vec3(w), w)", w=np.array([white]))
     np.testing.assert_allclose(brightest, 1.0, rtol=1e-6)
@@ -111,17 +111,17 @@ def test_reinhard_brings_white_to_one_and_keeps_hues(on_gpu, white):
 
 def test_the_film_curve_rises_from_black_to_white_and_stays_there(on_gpu):
     light = np.concatenate([[-1.0, 0.0], np.geomspace(1e-4, 1e4, 400)])
-    found = on_gpu("colour/tone.glsl", "tone_film(c)", c=grey(light))[:, 0].astype(float)
-    assert found[0] == found[1] == 0
-    assert (np.diff(found) >= 0).all()
-    assert found[-1] == 1
+    result = on_gpu("colour/tone.glsl", "tone_film(c)", c=grey(light))[:, 0].astype(float)
+    assert result[0] == result[1] == 0
+    assert (np.diff(result) >= 0).all()
+    assert result[-1] == 1
     # Published with the curve: about 0.8 for light of 1.
-    assert found[np.searchsorted(light, 1.0)] == pytest.approx(0.80, abs=0.02)
+    assert result[np.searchsorted(light, 1.0)] == pytest.approx(0.80, abs=0.02)
 
 
 def test_luminance_is_that_of_the_screen_s_primaries(on_gpu):
     """ITU-R BT.709-6: of three primaries, by x and y, as much as makes white of D65."""
     places = np.array([[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]])
     stimuli = np.array([[x / y, 1.0, (1 - x - y) / y] for x, y in places])
-    found = on_gpu("colour/luminance.glsl", "luminance(c)", c=np.eye(3, dtype=np.float32))
-    np.testing.assert_allclose(found, np.linalg.solve(stimuli[:3].T, stimuli[3]), atol=1e-4)
+    result = on_gpu("colour/luminance.glsl", "luminance(c)", c=np.eye(3, dtype=np.float32))
+    np.testing.assert_allclose(result, np.linalg.solve(stimuli[:3].T, stimuli[3]), atol=1e-4)

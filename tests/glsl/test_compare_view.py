@@ -30,30 +30,30 @@ def pictures(make_sketch, any_engine: Engine):
 
 
 def test_each_side_is_the_picture_of_its_light(any_engine, pictures):
-    both, (one, two) = pictures
-    assert np.abs(one - two).max() > 50
+    both, (item, two) = pictures
+    assert np.abs(item - two).max() > 50
     for divider in (0.25, 0.5, 0.8):
-        found = any_engine.render(both.with_values({"view.divider": divider}), size=SIZE).array.astype(int)
+        result = any_engine.render(both.with_values({"view.divider": divider}), size=SIZE).array.astype(int)
         line = divider * SIZE[0]
         middles = np.arange(SIZE[0]) + 0.5
-        np.testing.assert_array_equal(found[:, middles < line - 2], one[:, middles < line - 2])
-        np.testing.assert_array_equal(found[:, middles > line + 2], two[:, middles > line + 2])
-        assert (found[:, np.abs(middles - line) < 1, :3] == 255).all()
+        np.testing.assert_array_equal(result[:, middles < line - 2], item[:, middles < line - 2])
+        np.testing.assert_array_equal(result[:, middles > line + 2], two[:, middles > line + 2])
+        assert (result[:, np.abs(middles - line) < 1, :3] == 255).all()
 
 
 def test_at_its_ends_the_line_is_gone(any_engine, pictures):
-    both, (one, two) = pictures
-    for divider, whole in ((1.0, one), (0.0, two)):
-        found = any_engine.render(both.with_values({"view.divider": divider}), size=SIZE).array
-        np.testing.assert_array_equal(found, whole)
+    both, (item, two) = pictures
+    for divider, whole in ((1.0, item), (0.0, two)):
+        array = any_engine.render(both.with_values({"view.divider": divider}), size=SIZE).array
+        np.testing.assert_array_equal(array, whole)
 
 
 def test_the_difference_is_grey_where_there_is_none_and_signed(any_engine, pictures):
-    both, (one, two) = pictures
+    both, (item, two) = pictures
     changed = both.with_values({"view.mode": "difference", "view.amplified": 1.0})
-    found = any_engine.render(changed, size=SIZE).array.astype(int)
-    expected = np.clip(127.5 + 0.5 * (two - one), 0, 255)[..., :3]
-    np.testing.assert_allclose(found[..., :3], expected, atol=1.01)
+    result = any_engine.render(changed, size=SIZE).array.astype(int)
+    expected = np.clip(127.5 + 0.5 * (two - item), 0, 255)[..., :3]
+    np.testing.assert_allclose(result[..., :3], expected, atol=1.01)
 
 
 def test_variants_have_all_of_their_own(make_sketch, any_engine):
@@ -95,5 +95,5 @@ set = { gain = 0.6 }
             f'inputs = {{ height = "{height}", colour = "{colour}", light = "{light}" }}\n',
             size=33,
         )
-        found = any_engine.render(both.with_values({"view.divider": divider}), size=SIZE).array
-        np.testing.assert_array_equal(found, any_engine.render(alone, size=SIZE).array)
+        array = any_engine.render(both.with_values({"view.divider": divider}), size=SIZE).array
+        np.testing.assert_array_equal(array, any_engine.render(alone, size=SIZE).array)

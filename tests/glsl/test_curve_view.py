@@ -78,8 +78,8 @@ def test_rows_have_panels_the_first_on_top(engine, picture):
 
 
 def test_overlaid_rows_share_a_panel_and_have_colours_of_their_own(engine, picture):
-    given = {"arranged": "overlaid", "line": "#ff0000", "line_last": "#0000ff", "width": 4.0}
-    shown = picture(engine, "0.25 + 0.25 * float(texel.y)", (4, 3), (40, 200), **given)
+    value = {"arranged": "overlaid", "line": "#ff0000", "line_last": "#0000ff", "width": 4.0}
+    shown = picture(engine, "0.25 + 0.25 * float(texel.y)", (4, 3), (40, 200), **value)
     for row, colour in ((50, (1, 0, 0)), (150, (0, 0, 1))):
         np.testing.assert_allclose(shown[200 - row, 20], colour, atol=0.01)
     mixture = shown[100, 20]
@@ -95,13 +95,13 @@ def test_more_texels_than_pixels_fill_what_they_pass(engine, picture):
 
 
 def test_the_axis_is_drawn_at_its_number_under_the_curve(engine, picture):
-    given = {"axis": True, "axis_colour": "#ff0000", "baseline": 0.25, "width": 4.0}
-    shown = picture(engine, "0.75", (3, 2), (40, 202), **given)
+    value = {"axis": True, "axis_colour": "#ff0000", "baseline": 0.25, "width": 4.0}
+    shown = picture(engine, "0.75", (3, 2), (40, 202), **value)
     for panel in (0, 101):
         axis = shown[panel + 101 - 26, 20]  # 25.25 up: in the 26th row of pixels from the panel's foot
         np.testing.assert_allclose(axis[0], 1.0, atol=0.01)
         assert axis[1] < 0.8
-    hidden = picture(engine, "0.25", (3, 2), (40, 202), **given)
+    hidden = picture(engine, "0.25", (3, 2), (40, 202), **value)
     assert hidden[..., 0].min() < 0.01 and not (hidden[..., 0] > hidden[..., 1] + 0.5).any()
 
 
@@ -144,8 +144,8 @@ def test_both_drivers_draw_the_same_picture(ctx, picture):
 
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
-    found = []
+    result = []
     for driver in ("fragment", "compute"):
         with Engine(ctx, driver=driver) as engine:
-            found.append(picture(engine, "0.5 + 0.4 * sin(float(texel.x))", (50, 3), (120, 90), axis=True))
-    np.testing.assert_array_equal(*found)
+            result.append(picture(engine, "0.5 + 0.4 * sin(float(texel.x))", (50, 3), (120, 90), axis=True))
+    np.testing.assert_array_equal(*result)

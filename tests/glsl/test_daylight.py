@@ -22,8 +22,8 @@ HEIGHTS += (-18.0, -30.0, -90.0)
 def day(make_sketch):
     """Give a sketch of daylight alone: the sun free and the eye not adapted, unless given."""
 
-    def make(passes="", files=None, **given):
-        values = {"position": "free", "adaptation": 0.0, **given}
+    def make(passes="", files=None, **value):
+        values = {"position": "free", "adaptation": 0.0, **value}
         text = ", ".join(f"{k} = {toml_value(v)}" for k, v in values.items())
         return make_sketch(
             f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ {text} }}\n{passes}',
@@ -69,9 +69,9 @@ def test_with_a_clock_the_sun_moves_and_without_one_nothing_runs(any_engine, mak
     clock = '[[pass]]\nname = "clock"\nuse = "lighting/daylight_clock"\nset = { pace = 0.5 }\nsize = 1\n'
     moving = make_sketch(clock + still.format(22.0, 100))
     for time, hour, date in ((0.0, 22.0, 100), (2.0, 23.0, 100), (12.0, 4.0, 101), (100.0, 0.0, 103)):
-        found = any_engine.read(moving, "daylight.place", time=time)
-        wanted = any_engine.read(make_sketch(still.format(hour, date)), "daylight.place")
-        np.testing.assert_allclose(found, wanted, atol=1e-3)
+        result = any_engine.read(moving, "daylight.place", time=time)
+        expected = any_engine.read(make_sketch(still.format(hour, date)), "daylight.place")
+        np.testing.assert_allclose(result, expected, atol=1e-3)
     sketch = make_sketch(still.format(9.0, 100))
     any_engine.read(sketch, "daylight", time=0.0)
     any_engine.read(sketch, "daylight", time=5.0)
@@ -95,8 +95,8 @@ def test_it_is_as_bright_as_the_almanac_says_from_noon_to_night(any_engine, day)
     """Over eight powers of ten, within the 1.6 that one clear day is from another."""
     sketch = day(turbidity=2.5)
     for elevation in (90, 75, 60, 45, 30, 20, 15, 10, 5, 2, 0, -1, -2, -4, -6, -8, -10, -12, -18):
-        found = 127_500 * (row_of(any_engine, under(sketch, elevation))[5, :3] @ LUMINANCE)
-        assert 0.85 < found / almanac(elevation) < 1.6, elevation
+        row = 127_500 * (row_of(any_engine, under(sketch, elevation))[5, :3] @ LUMINANCE)
+        assert 0.85 < row / almanac(elevation) < 1.6, elevation
 
 
 def test_the_row_adds_up(any_engine, day):
@@ -112,19 +112,19 @@ def seen_from(height, dome, rise, turned, together):
     """Read the dome as seen from a height [km], between two of nine tables, by what is over the horizon."""
     lowest = -np.sqrt(1 - (6360 / (6360 + height)) ** 2)
     over = np.clip((rise - lowest) / (1 - lowest), 0, 1)
-    place = 8 * np.sqrt(height / 16)
+    position = 8 * np.sqrt(height / 16)
     tables = dome.reshape(9, -1, *dome.shape[1:])
-    low, high = (looked_up(tables[int(place) + k], over, turned, together, 1) for k in (0, 1))
-    return low + (place - int(place)) * (high - low)
+    low, high = (looked_up(tables[int(position) + k], over, turned, together, 1) for k in (0, 1))
+    return low + (position - int(position)) * (high - low)
 
 
 def looked_up(dome, rise, turned, together, tables=9):
     """Read the dome's two tables in NumPy; directions by their sine, and azimuth from the sun's."""
     dome = dome[: dome.shape[0] // tables]  # as seen from the sea
     ny, nx = dome.shape[0], dome.shape[1] // 2
-    place = [np.sqrt(rise) * (ny - 1), np.sin(turned / 2) * (nx - 1)]
+    position = [np.sqrt(rise) * (ny - 1), np.sin(turned / 2) * (nx - 1)]
     halves = [
-        np.stack([map_coordinates(part[..., c], place, order=1) for c in range(3)], axis=-1)
+        np.stack([map_coordinates(part[..., c], position, order=1) for c in range(3)], axis=-1)
         for part in (dome[:, :nx], dome[:, nx:])
     ]
     phase = 3 / (8 * np.pi) * 0.36 / 2.64 * (1 + together**2) / (1.64 - 1.6 * together) ** 1.5
@@ -183,8 +183,8 @@ def test_east_is_bright_in_the_morning_and_west_in_the_evening(any_engine, day):
         for azimuth in (brighter, darker):
             towards = sun_vector(azimuth, 20.0)
             aside = towards[:2] @ sun[:2] / np.linalg.norm(towards[:2]) / np.linalg.norm(sun[:2])
-            place = np.arccos(np.clip(aside, -1, 1))
-            light[azimuth] = looked_up(dome, *(np.array([v]) for v in (towards[2], place, towards @ sun)))
+            position = np.arccos(np.clip(aside, -1, 1))
+            light[azimuth] = looked_up(dome, *(np.array([v]) for v in (towards[2], position, towards @ sun)))
         assert light[brighter][0] @ LUMINANCE > 1.4 * (light[darker][0] @ LUMINANCE)
 
 
@@ -277,12 +277,12 @@ def test_unwired_it_is_the_parameters_and_wired_it_is_daylight(engine, make_sket
     # A pass of that name, or an output of it, is taken without being wired.
     text = '[[pass]]\nname = "hours"\nuse = "lighting/daylight"\nset = { position = "free", sun = [70, 5] }\n'
     sketch = make_sketch(text + taken, take=TAKE)
-    found, row = engine.read(sketch, "taken")[0], engine.read(sketch, "hours")[0]
-    np.testing.assert_array_equal(found[0, :3], row[0, :3])
-    np.testing.assert_array_equal(found[4], row[0])
-    assert found[0, 3] == 1
-    np.testing.assert_array_equal(found[1, :2], [row[1, 3], row[0, 3]])
-    np.testing.assert_array_equal(found[2:4, :3], row[1:3, :3])
+    result, row = engine.read(sketch, "taken")[0], engine.read(sketch, "hours")[0]
+    np.testing.assert_array_equal(result[0, :3], row[0, :3])
+    np.testing.assert_array_equal(result[4], row[0])
+    assert result[0, 3] == 1
+    np.testing.assert_array_equal(result[1, :2], [row[1, 3], row[0, 3]])
+    np.testing.assert_array_equal(result[2:4, :3], row[1:3, :3])
 
 
 SAY = """
@@ -299,17 +299,17 @@ vec4 kernel(ivec2 texel) {
 
 def test_daylight_says_how_hazy_and_how_cloudy_it_is(engine, day):
     """Turbidity and cover, set once, are read by all that draws air or clouds, which get its tables too."""
-    told = '[[pass]]\nname = "told"\nuse = "./say"\nsize = [3, 1]\n'
-    sketch = day(told, {"say": SAY}, turbidity=3.5, clouds=0.25, adaptation=0.5, ground=0.4)
-    found, row = engine.read(sketch, "told")[0].astype(np.float64), row_of(engine, sketch)
-    np.testing.assert_allclose(found[0, :3], [3.5, 0.75, row[3, 3]], rtol=1e-6)
-    np.testing.assert_array_equal(found[2, :3], row[5, :3])
+    message = '[[pass]]\nname = "told"\nuse = "./say"\nsize = [3, 1]\n'
+    sketch = day(message, {"say": SAY}, turbidity=3.5, clouds=0.25, adaptation=0.5, ground=0.4)
+    result, row = engine.read(sketch, "told")[0].astype(np.float64), row_of(engine, sketch)
+    np.testing.assert_allclose(result[0, :3], [3.5, 0.75, row[3, 3]], rtol=1e-6)
+    np.testing.assert_array_equal(result[2, :3], row[5, :3])
     level = row[1, :3] * row[0, 2] + row[2, :3]
-    np.testing.assert_allclose(found[2, :3], level, rtol=1e-4)
+    np.testing.assert_allclose(result[2, :3], level, rtol=1e-4)
     clear = row_of(engine, day(turbidity=3.5, ground=0.4))
     held = 0.75 * clear[2, :3]  # of the open sky
     held += (1 - 0.75 * 0.25**3.4) * (1 - 0.25**2) * clear[1, :3] * clear[0, 2]  # and of the sun
-    np.testing.assert_allclose(found[1, :3], level - row[3, 3] * held, rtol=2e-3)
+    np.testing.assert_allclose(result[1, :3], level - row[3, 3] * held, rtol=2e-3)
     assert engine.read(sketch, "daylight:cover")[0, 0] == pytest.approx(0.25)
     assert engine.read(sketch, "daylight:bounced")[3, 3, 3] == pytest.approx(0.4)
     for name in ("columns", "bounced", "dome"):
@@ -324,8 +324,8 @@ def test_both_drivers_give_the_same_bits(ctx, day):
     sketch = day(position="date and hour", clouds=0.3, adaptation=0.75)
     with Engine(ctx, driver="fragment") as fragment, Engine(ctx, driver="compute") as compute:
         for ref in ("daylight", "daylight.columns", "daylight.bounced", "daylight.dome"):
-            one, other = fragment.read(sketch, ref), compute.read(sketch, ref)
-            np.testing.assert_array_equal(one.view(np.uint32), other.view(np.uint32))
+            first, other = fragment.read(sketch, ref), compute.read(sketch, ref)
+            np.testing.assert_array_equal(first.view(np.uint32), other.view(np.uint32))
 
 
 HILLS = """
@@ -354,18 +354,18 @@ def takers():
 def test_a_light_technique_takes_the_sun_and_the_sky_from_it(any_engine, make_sketch, name, elevation):
     light = f'[[pass]]\nname = "light"\nuse = "{name}"\nset = {{ ambient = 1.0 }}\n'
     terrain = '[[pass]]\nname = "height"\nuse = "./hills"\n'
-    given = f'set = {{ position = "free", sun = [250.0, {elevation}] }}\n'
-    day = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\n{given}'
+    text = f'set = {{ position = "free", sun = [250.0, {elevation}] }}\n'
+    day = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\n{text}'
     wired = make_sketch(terrain + day + light, relief=200.0, hills=HILLS)
     row = row_of(any_engine, wired)
-    found = any_engine.read(wired, "light")
+    result = any_engine.read(wired, "light")
     values = {"sun": [250.0, elevation], "sun_colour": list(row[1, :3]), "sky_colour": list(row[2, :3])}
     if name == "lighting/horizon_sun":  # no arc is under a daylight's sun: it takes eight directions
         values |= {"measured": "eight directions", "arc": 135.0}
     plain = make_sketch(terrain + light, relief=200.0, hills=HILLS)
-    wanted = any_engine.read(plain.with_values({f"light.{k}": v for k, v in values.items()}), "light")
-    assert np.ptp(found[..., 0]) > 0.05
-    same = np.abs(found - wanted) <= 2e-3 * np.abs(wanted) + 1e-4
+    expected = any_engine.read(plain.with_values({f"light.{k}": v for k, v in values.items()}), "light")
+    assert np.ptp(result[..., 0]) > 0.05
+    same = np.abs(result - expected) <= 2e-3 * np.abs(expected) + 1e-4
     assert same.mean() > 0.995  # a grazing ray may fall to either side
 
 
@@ -373,7 +373,7 @@ def test_turbidity_is_set_once():
     """One kernel has it and all others read that: nothing can be set to another air."""
     graph = library()["lighting/daylight"]
     having = [path for path, kernel in kernels_of(graph) if kernel.parameter("turbidity")]
-    views = {name: found for name, found in library().items() if name.startswith("view/")}
+    views = {name: result for name, result in library().items() if name.startswith("view/")}
     having += [n for n, view in views.items() for _, k in kernels_of(view) if k.parameter("turbidity")]
     assert having == ["air"]
 
@@ -388,8 +388,8 @@ SEEN = (160, 120)
 @pytest.fixture
 def outdoors(make_sketch):
     def make(sun=(180.0, 10.0), view='sky = "daylight"', daylight=True):
-        given = f'position = "free", sun = [{sun[0]}, {sun[1]}], turbidity = 2.0'
-        light = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ {given} }}\n'
+        text = f'position = "free", sun = [{sun[0]}, {sun[1]}], turbidity = 2.0'
+        light = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ {text} }}\n'
         shown = f'[view]\nuse = "view/terrain"\nsamples = 1\nset = {{ {view} }}\n' if view else ""
         shown = shown or '[view]\nuse = "view/terrain"\nsamples = 1\n'
         return make_sketch(TERRAIN + (light if daylight else "") + shown, flat=FLAT)
@@ -427,7 +427,7 @@ def test_the_colours_stay_what_they_were(any_engine, outdoors):
 def test_the_sun_s_disc_is_where_the_sun_is_and_half_a_degree_wide(any_engine, outdoors, sun):
     sketch = looking(outdoors(sun), sun[0] + 1.0, field=12.0)
     size = (320, 240)
-    found = any_engine.read(sketch, "view.sky", size=size)[..., 0].astype(np.float64)
+    result = any_engine.read(sketch, "view.sky", size=size)[..., 0].astype(np.float64)
     plan = any_engine.record.plan
     assert plan is not None
     far = np.asarray(plan.eye.position, np.float64) + 1e7 * sun_vector(*sun)
@@ -438,12 +438,12 @@ def test_the_sun_s_disc_is_where_the_sun_is_and_half_a_degree_wide(any_engine, o
     pixel = 12.0 / size[1]
     disc = near < 0.2 / pixel
     around = (near > 0.4 / pixel) & (near < 1.0 / pixel)
-    assert disc.sum() > 20 and found[disc].min() > 1.5 * found[around].max()
+    assert disc.sum() > 20 and result[disc].min() > 1.5 * result[around].max()
 
 
 def test_the_sky_behind_the_terrain_is_daylight_s(any_engine, outdoors):
     sketch = looking(outdoors((180.0, 8.0)), 90.0, field=40.0)
-    found = any_engine.read(sketch, "view.sky", size=SEEN).astype(np.float64)[..., :3]
+    result = any_engine.read(sketch, "view.sky", size=SEEN).astype(np.float64)[..., :3]
     dome = any_engine.read(sketch, "daylight", size=SEEN).astype(np.float64)[..., :3]
     row, dome = dome[0], dome[1:]
     any_engine.render(sketch, size=SEEN)
@@ -458,7 +458,7 @@ def test_the_sky_behind_the_terrain_is_daylight_s(any_engine, outdoors):
     aside = towards[..., :2] @ sun[:2] / np.linalg.norm(towards[..., :2], axis=-1) / np.linalg.norm(sun[:2])
     turned = np.arccos(np.clip(aside, -1, 1))
     seen = seen_from(eye.position[2] / 1000, dome, towards[..., 2], turned, towards @ sun)
-    np.testing.assert_allclose(found[above], seen[above], rtol=0.02)
+    np.testing.assert_allclose(result[above], seen[above], rtol=0.02)
     # Far underfoot it is the ground's colour in all the light there is.
     down = looking(outdoors((180.0, 40.0)), 90.0, 85.0)
     ground = any_engine.read(down, "view.sky", size=SEEN).astype(np.float64)[..., :3]
@@ -469,9 +469,9 @@ def test_the_sky_behind_the_terrain_is_daylight_s(any_engine, outdoors):
 
 def test_there_is_no_sun_at_night(any_engine, outdoors):
     sketch = looking(outdoors((180.0, -2.0)), 180.0)
-    found = any_engine.read(sketch, "view.sky", size=SEEN)
-    assert np.isfinite(found).all()
-    rows = found[SEEN[1] // 2 :, :, 0]
+    result = any_engine.read(sketch, "view.sky", size=SEEN)
+    assert np.isfinite(result).all()
+    rows = result[SEEN[1] // 2 :, :, 0]
     assert rows.max() < 8 * np.median(rows)
 
 
@@ -493,6 +493,6 @@ def test_a_dome_of_any_width_has_the_same_bits_by_its_halves(any_engine, make_sk
     text += 'inputs = { place = "daylight.place:place", columns = "daylight:columns", '
     text += 'bounced = "daylight:bounced", air = "daylight.air:air" }\n'
     sketch = make_sketch(text)
-    found = any_engine.read(sketch, "dome")
+    result = any_engine.read(sketch, "dome")
     assert "dome.fast.dome" in any_engine.record.ran
-    np.testing.assert_array_equal(found, any_engine.read(sketch.plainly(), "dome"))
+    np.testing.assert_array_equal(result, any_engine.read(sketch.plainly(), "dome"))

@@ -46,11 +46,11 @@ def rules_of(**values) -> Rules:
         "method": ("by_flips", "flips"),
         "heights": ("displaced", "displaced"),
     }
-    found = {}
+    result = {}
     for name, value in values.items():
         field, on = renamed.get(name, (name, None))
-        found[field] = value if on is None else value == on
-    return Rules(**found)
+        result[field] = value if on is None else value == on
+    return Rules(**result)
 
 
 def truth(made: Triangulation, size) -> np.ndarray:
@@ -68,9 +68,9 @@ def test_heights_are_scipy_s(any_engine, terrain, points):
     values = {"points": points, "weights": "random", "corners": (0.9, 0.7, 0.6, 0.8)}
     made = triangulate(rules_of(**values))
     for size in SIZES:
-        found = any_engine.read(terrain(size, **values), "terrain.tin")
-        np.testing.assert_allclose(found, truth(made, size), atol=5e-7, err_msg=str(size))
-        assert found[0, 0] == np.float32(0.9) and found[-1, -1] == np.float32(0.8)
+        result = any_engine.read(terrain(size, **values), "terrain.tin")
+        np.testing.assert_allclose(result, truth(made, size), atol=5e-7, err_msg=str(size))
+        assert result[0, 0] == np.float32(0.9) and result[-1, -1] == np.float32(0.8)
 
 
 @pytest.mark.parametrize(
@@ -83,9 +83,9 @@ def test_heights_are_scipy_s(any_engine, terrain, points):
 def test_slivers(any_engine, terrain, points, weights, proportion, size):
     """Along the border triangles are thousands of times longer than high."""
     values = {"points": points, "weights": weights, "proportion": proportion}
-    found = any_engine.read(terrain(size, **values), "terrain.tin")
+    result = any_engine.read(terrain(size, **values), "terrain.tin")
     whole = truth(triangulate(rules_of(**values)), size)
-    np.testing.assert_allclose(found, whole, atol=4e-7)
+    np.testing.assert_allclose(result, whole, atol=4e-7)
     assert whole.std() > 0.1
 
 
@@ -96,14 +96,14 @@ def test_two_triangles(engine, terrain):
         x, y = np.meshgrid(*(np.linspace(0, 1, n) for n in size))
         below = sw + (se - sw) * x + (nw - sw) * y
         above = ne + (nw - ne) * (1 - x) + (se - ne) * (1 - y)
-        found = engine.read(terrain(size, points=0, corners=(sw, se, nw, ne)), "terrain.tin")
-        np.testing.assert_allclose(found, np.where(x + y < 1, below, above), atol=2e-7, err_msg=str(size))
+        result = engine.read(terrain(size, points=0, corners=(sw, se, nw, ne)), "terrain.tin")
+        np.testing.assert_allclose(result, np.where(x + y < 1, below, above), atol=2e-7, err_msg=str(size))
 
 
 def test_each_step_is_scipy_s(any_engine, terrain):
     for points in range(1, 12):
-        found = any_engine.read(terrain((65, 65), points=points), "terrain.tin")
-        np.testing.assert_allclose(found, truth(triangulate(Rules(points=points)), (65, 65)), atol=5e-7)
+        result = any_engine.read(terrain((65, 65), points=points), "terrain.tin")
+        np.testing.assert_allclose(result, truth(triangulate(Rules(points=points)), (65, 65)), atol=5e-7)
 
 
 def test_no_texel_is_missed_at_any_size(any_engine, terrain):
@@ -113,26 +113,26 @@ def test_no_texel_is_missed_at_any_size(any_engine, terrain):
         least = triangulate(rules_of(points=points, **values)).heights.min()
         assert least > 0.5
         for size in [(1, 1), (1, 9), (9, 1), *SIZES]:
-            found = any_engine.read(terrain(size, points=points, **values), "terrain.tin")
-            assert found.shape == size[::-1] and np.isfinite(found).all()
-            assert found.min() >= least - 1e-6, size
+            result = any_engine.read(terrain(size, points=points, **values), "terrain.tin")
+            assert result.shape == size[::-1] and np.isfinite(result).all()
+            assert result.min() >= least - 1e-6, size
 
 
 def test_flat_terrain_is_exactly_flat(engine, terrain):
     for corners in ((0.3,) * 4, (1.0,) * 4):
-        found = engine.read(terrain((65, 33), points=0, corners=corners), "terrain.tin")
-        assert (found == np.float32(corners[0])).all()
+        result = engine.read(terrain((65, 33), points=0, corners=corners), "terrain.tin")
+        assert (result == np.float32(corners[0])).all()
 
 
 def test_both_drivers_and_both_methods_give_the_same_bits(ctx, terrain):
-    found = []
+    result = []
     for driver in ("fragment", "compute") if ctx.version_code >= 430 else ("fragment",):
         for method in ("destruction and construction", "flips"):
             with Engine(ctx, driver=driver) as engine:
                 sketch = terrain((65, 40), points=200, weights="random", method=method)
-                found.append([engine.read(sketch, ref) for ref in ("terrain", "terrain.tin")])
-    for one in found[1:]:
-        for mine, first in zip(one, found[0], strict=True):
+                result.append([engine.read(sketch, ref) for ref in ("terrain", "terrain.tin")])
+    for item in result[1:]:
+        for mine, first in zip(item, result[0], strict=True):
             np.testing.assert_array_equal(mine, first)
 
 
@@ -160,10 +160,10 @@ def test_every_parameter_reaches_the_triangulation(any_engine, terrain):
     first = any_engine.read(terrain(**usual), "terrain.tin")
     for name, value in changes.items():
         values = usual | {name: value}
-        found = any_engine.read(terrain(**values), "terrain.tin")
-        assert not np.array_equal(found, first), name
+        result = any_engine.read(terrain(**values), "terrain.tin")
+        assert not np.array_equal(result, first), name
         np.testing.assert_allclose(
-            found, truth(triangulate(rules_of(**values)), (33, 33)), atol=5e-7, err_msg=name
+            result, truth(triangulate(rules_of(**values)), (33, 33)), atol=5e-7, err_msg=name
         )
     displaced = {"points": 30, "heights": "displaced"}
     rough, smooth = (any_engine.read(terrain(**displaced, roughness=r), "terrain.tin") for r in (0.5, 1.5))
@@ -172,17 +172,17 @@ def test_every_parameter_reaches_the_triangulation(any_engine, terrain):
 
 def test_repeated_it_is_the_same(ctx, terrain):
     sketch = terrain((65, 65), points=300)
-    found = []
+    result = []
     for _ in range(2):
         SOURCES.drop_of(triangulate)
         with Engine(ctx) as engine:
-            found.append(engine.read(sketch, "terrain"))
-    np.testing.assert_array_equal(*found)
+            result.append(engine.read(sketch, "terrain"))
+    np.testing.assert_array_equal(*result)
 
 
 def test_it_is_normalised_unless_that_is_off(any_engine, terrain):
-    found = any_engine.read(terrain(points=60), "terrain")
-    assert (found.min(), found.max()) == (0.0, 1.0)
+    result = any_engine.read(terrain(points=60), "terrain")
+    assert (result.min(), result.max()) == (0.0, 1.0)
     sketch = terrain(points=60, normalise="none")
     np.testing.assert_array_equal(any_engine.read(sketch, "terrain"), any_engine.read(sketch, "terrain.tin"))
     np.testing.assert_array_equal(any_engine.read(terrain(points=0), "terrain"), 0.0)
@@ -217,9 +217,9 @@ def test_opengl_3_3_is_enough(any_engine, terrain, tmp_path):
     assert kinds == {"source", "draw", "kernel"}
     sketch = terrain((33, 33), points=40)
     out = tmp_path / "old.npy"
-    given = ["--texture", "terrain", "-o", str(out), "--set", "terrain.points=40"]
+    value = ["--texture", "terrain", "-o", str(out), "--set", "terrain.points=40"]
     done = subprocess.run(
-        [sys.executable, "-m", "playground", "render", sketch.file, *given],
+        [sys.executable, "-m", "playground", "render", sketch.file, *value],
         env={**os.environ, "MESA_GL_VERSION_OVERRIDE": "3.3", "PYTHONPATH": str(GLSL.parent)},
         capture_output=True,
         text=True,
@@ -240,11 +240,11 @@ def test_the_cross_product_is_rounded_once(on_gpu):
     b = np.clip(b, -(2**24), 2**24)
     a[:8] = b[:8] = [[2**24, 2**24], [-(2**24), 2**24], [2**24, -(2**24)], [-(2**24)] * 2] * 2
     b[4:8] = b[5:9][::-1]
-    found = on_gpu(TABLES, "exact_cross(a, b)", a=a.astype(np.int32), b=b.astype(np.int32))
+    result = on_gpu(TABLES, "exact_cross(a, b)", a=a.astype(np.int32), b=b.astype(np.int32))
     exact = a[:, 0].astype(object) * b[:, 1] - a[:, 1].astype(object) * b[:, 0]
-    off = np.array([float(abs(Fraction(float(f)) - int(e))) for f, e in zip(found, exact, strict=True)])
+    off = np.array([float(abs(Fraction(float(f)) - int(e))) for f, e in zip(result, exact, strict=True)])
     most = np.array([float(abs(e)) for e in exact])
-    assert (off <= most * 2.0**-23).all() and (found[exact == 0] == 0).all()
+    assert (off <= most * 2.0**-23).all() and (result[exact == 0] == 0).all()
     in_floats = a[:, 0].astype(np.float32) * b[:, 1].astype(np.float32) - a[:, 1].astype(np.float32) * b[
         :, 0
     ].astype(np.float32)
@@ -256,11 +256,11 @@ def test_places_are_exact_fractions(on_gpu, side):
     texels = np.array([2, 3, 5, 33, 257, 513, 1000, 4097, 16_384], np.int32)
     n = np.repeat(texels, 5)
     k = (np.linspace(0, 1, 5)[None] * (texels[:, None] - 1)).astype(np.int32).ravel()
-    found = on_gpu(TABLES, f"exact_place(k, n, {side})", k=k, n=n)
+    result = on_gpu(TABLES, f"exact_place(k, n, {side})", k=k, n=n)
     for i in range(len(k)):
-        wanted = Fraction(side * int(k[i]), int(n[i]) - 1)
-        assert found[i, 0] == wanted // 1
-        assert found[i, 1] == pytest.approx(float(wanted % 1), abs=1e-6)
+        expected = Fraction(side * int(k[i]), int(n[i]) - 1)
+        assert result[i, 0] == expected // 1
+        assert result[i, 1] == pytest.approx(float(expected % 1), abs=1e-6)
 
 
 def test_circles_hold_what_is_inside(on_gpu):
@@ -269,7 +269,7 @@ def test_circles_hold_what_is_inside(on_gpu):
     a, b, c, d = (p[:, i] for i in range(4))
     turn = np.cross(np.pad(b - a, ((0, 0), (0, 1))), np.pad(c - a, ((0, 0), (0, 1))))[:, 2] < 0
     b[turn], c[turn] = c[turn].copy(), b[turn].copy()
-    found = on_gpu(DRAWN, "int(is_inside_circle(a, b, c, d))", a=a, b=b, c=c, d=d)
+    result = on_gpu(DRAWN, "int(is_inside_circle(a, b, c, d))", a=a, b=b, c=c, d=d)
     middles = [
         np.linalg.solve(2 * np.array([q - o, r - o]), [q @ q - o @ o, r @ r - o @ o])
         for o, q, r in zip(a, b, c, strict=True)
@@ -277,8 +277,8 @@ def test_circles_hold_what_is_inside(on_gpu):
     radius = np.linalg.norm(a - middles, axis=1)
     off = (radius - np.linalg.norm(d - middles, axis=1)) / radius
     sure = np.abs(off) > 1e-3
-    np.testing.assert_array_equal(found[sure] == 1, off[sure] > 0)
-    assert 200 < found.sum() < 1800
+    np.testing.assert_array_equal(result[sure] == 1, off[sure] > 0)
+    assert 200 < result.sum() < 1800
 
 
 # ── the pictures ─────────────────────────────────────────────────────────────
@@ -296,9 +296,9 @@ def picture(any_engine, make_sketch):
             '[[pass]]\nname = "picture"\nuse = "generation/delaunay/picture"\n',
             size=[WIDTH, HEIGHT],
         )
-        given = {f"made.{k}": v for k, v in rules.items()}
-        given |= {f"picture.{k}": v for k, v in ({"circles": "none", "margin": MARGIN} | values).items()}
-        return any_engine.read(sketch.with_values(given), "picture")
+        value = {f"made.{k}": v for k, v in rules.items()}
+        value |= {f"picture.{k}": v for k, v in ({"circles": "none", "margin": MARGIN} | values).items()}
+        return any_engine.read(sketch.with_values(value), "picture")
 
     return draw
 
@@ -310,9 +310,9 @@ def pixels_of(made: Triangulation, places) -> np.ndarray:
     return np.array([WIDTH / 2, HEIGHT / 2]) + (np.asarray(places, float) - sides / 2) * scale
 
 
-def at(found, pixels) -> np.ndarray:
+def at(result, pixels) -> np.ndarray:
     x, y = np.floor(pixels).astype(int).T
-    return found[y, x, :3]
+    return result[y, x, :3]
 
 
 RULES = {"points": 9, "weights": "random", "seed": 3}
@@ -320,27 +320,29 @@ INK, PAPER = np.array([0.05, 0.05, 0.06]), np.array([0.93, 0.91, 0.87])
 
 
 def test_edges_and_points_are_ink_and_the_rest_is_paper(picture):
-    found, made = picture(RULES), triangulate(rules_of(**RULES))
+    result, made = picture(RULES), triangulate(rules_of(**RULES))
     pixels = pixels_of(made, made.places)
-    np.testing.assert_allclose(at(found, pixels), np.tile(INK, (13, 1)), atol=2e-3)
+    np.testing.assert_allclose(at(result, pixels), np.tile(INK, (13, 1)), atol=2e-3)
     lined = np.zeros((HEIGHT, WIDTH), bool)
     y, x = np.mgrid[0:HEIGHT, 0:WIDTH] + 0.5
     for triangle in made.triangles.tolist():
         for i in range(3):
             p, q = pixels[triangle[i]], pixels[triangle[i - 1]]
-            assert at(found, np.linspace(p, q, 9)).max() < 0.65, "along the edge it is dark"
+            assert at(result, np.linspace(p, q, 9)).max() < 0.65, "along the edge it is dark"
             far = np.linalg.norm(q - p)
-            place = np.clip(((x - p[0]) * (q - p)[0] + (y - p[1]) * (q - p)[1]) / far**2, 0, 1)
-            lined |= np.hypot(x - p[0] - place * (q - p)[0], y - p[1] - place * (q - p)[1]) < 1.3
+            position = np.clip(((x - p[0]) * (q - p)[0] + (y - p[1]) * (q - p)[1]) / far**2, 0, 1)
+            lined |= np.hypot(x - p[0] - position * (q - p)[0], y - p[1] - position * (q - p)[1]) < 1.3
     for p in pixels:
         lined |= np.hypot(x - p[0], y - p[1]) < 3.6
-    np.testing.assert_allclose(found[~lined][:, :3], np.tile(PAPER, (np.count_nonzero(~lined), 1)), atol=1e-3)
-    assert (found[..., 3] == 1).all()
+    np.testing.assert_allclose(
+        result[~lined][:, :3], np.tile(PAPER, (np.count_nonzero(~lined), 1)), atol=1e-3
+    )
+    assert (result[..., 3] == 1).all()
 
 
 def test_circles_go_through_the_corners_of_their_triangles(picture):
     only = {"circles": "all", "line": 2.0, "dot_radius": 0.0, "ink": (0.0, 0.0, 0.0, 0.0)}
-    found, made = picture(RULES, **only), triangulate(rules_of(**RULES))
+    result, made = picture(RULES, **only), triangulate(rules_of(**RULES))
     lined = np.zeros((HEIGHT, WIDTH), bool)
     y, x = np.mgrid[0:HEIGHT, 0:WIDTH] + 0.5
     for triangle in made.triangles.tolist():
@@ -350,9 +352,11 @@ def test_circles_go_through_the_corners_of_their_triangles(picture):
         angles = np.linspace(0, 2 * np.pi, 400)
         around = middle + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
         shown = ((around > 1) & (around < [WIDTH - 1, HEIGHT - 1])).all(axis=1)
-        assert at(found, around[shown])[:, 0].max() < 0.75, "around the circle it is drawn"
+        assert at(result, around[shown])[:, 0].max() < 0.75, "around the circle it is drawn"
         lined |= np.abs(np.hypot(x - middle[0], y - middle[1]) - radius) < 1.6
-    np.testing.assert_allclose(found[~lined][:, :3], np.tile(PAPER, (np.count_nonzero(~lined), 1)), atol=1e-3)
+    np.testing.assert_allclose(
+        result[~lined][:, :3], np.tile(PAPER, (np.count_nonzero(~lined), 1)), atol=1e-3
+    )
 
 
 def hue(pixel) -> str:
@@ -369,15 +373,15 @@ def test_an_illegal_edge_is_red_and_its_flip_green(picture):
     before, after = picture(rules | {"flips": 0}, **marks), picture(rules, **marks)
     old, new = (pixels_of(made, made.places[list(ends)]) for ends in ((u, v), (8, w)))
     for share in (0.2, 0.4, 0.6, 0.8):
-        place = old[0] + share * (old[1] - old[0])
-        assert hue(at(before, place[None])[0]) == "red"
-        assert hue(at(after, place[None])[0]) == "neither" or abs(share - 0.5) < 0.15
-        place = new[0] + share * (new[1] - new[0])
-        assert hue(at(after, place[None])[0]) == "green"
-    for one in (before, after):
-        tinted = at(one, pixels_of(made, made.places[[u, v, w, 8]].mean(axis=0)[None] + [[0.03 * 2**24, 0]]))[
-            0
-        ]
+        position = old[0] + share * (old[1] - old[0])
+        assert hue(at(before, position[None])[0]) == "red"
+        assert hue(at(after, position[None])[0]) == "neither" or abs(share - 0.5) < 0.15
+        position = new[0] + share * (new[1] - new[0])
+        assert hue(at(after, position[None])[0]) == "green"
+    for item in (before, after):
+        tinted = at(
+            item, pixels_of(made, made.places[[u, v, w, 8]].mean(axis=0)[None] + [[0.03 * 2**24, 0]])
+        )[0]
         assert tinted[2] < PAPER[2] - 0.1, "both triangles are filled"
 
 
@@ -386,17 +390,17 @@ def test_every_edge_of_a_finished_triangulation_is_legal(picture):
     made = triangulate(rules_of(**RULES))
     for number in range(0, 3 * len(made.triangles), 5):
         triangle = np.roll(made.triangles[number // 3], -(number % 3) - 1)
-        found = picture(RULES, marked="an edge", number=number, dot_radius=0.0)
+        result = picture(RULES, marked="an edge", number=number, dot_radius=0.0)
         p, q = pixels_of(made, made.places[triangle[:2]])
-        assert hue(at(found, (0.3 * p + 0.7 * q)[None])[0]) == "green"
+        assert hue(at(result, (0.3 * p + 0.7 * q)[None])[0]) == "green"
         middle = pixels_of(made, made.places[triangle].mean(axis=0)[None])
-        assert np.abs(at(found, middle)[0] - PAPER).max() > 0.1, "the triangle beside it is filled"
+        assert np.abs(at(result, middle)[0] - PAPER).max() > 0.1, "the triangle beside it is filled"
 
 
 def test_what_the_last_insertion_destroyed_is_filled_and_dashed(picture):
     rules = {"points": 13, "weights": "random", "seed": 104, "proportion": 0.5625}
     for method in ("flips", "destruction and construction"):
-        found = picture(rules | {"method": method}, marked="the last insertion", dot_radius=0.0)
+        result = picture(rules | {"method": method}, marked="the last insertion", dot_radius=0.0)
         made = triangulate(rules_of(**rules))
         assert made.replaced >= 4
         inside = np.zeros((HEIGHT, WIDTH), bool)
@@ -414,14 +418,14 @@ def test_what_the_last_insertion_destroyed_is_filled_and_dashed(picture):
                 core & np.roll(core, 1, 0) & np.roll(core, -1, 0) & np.roll(core, 1, 1) & np.roll(core, -1, 1)
             )
             rim = rim | np.roll(rim, 1, 0) | np.roll(rim, -1, 0) | np.roll(rim, 1, 1) | np.roll(rim, -1, 1)
-        assert np.abs(found[core][:, :3] - PAPER).max(axis=1).min() > 0.05
-        colourful = np.abs(found[..., 0] - found[..., 2]) > 0.15
+        assert np.abs(result[core][:, :3] - PAPER).max(axis=1).min() > 0.05
+        colourful = np.abs(result[..., 0] - result[..., 2]) > 0.15
         assert not colourful[~rim].any()
         for u, v, w in made.destroyed[1:].tolist():
             p, q, new, far = pixels_of(made, made.places[[u, v, 16, w]])
-            dashes = [hue(c) for c in at(found, np.linspace(p, q, 60)[5:-5])]
+            dashes = [hue(c) for c in at(result, np.linspace(p, q, 60)[5:-5])]
             assert dashes.count("red") > 10 and dashes.count("red") < 50, "red, with gaps"
-            assert hue(at(found, (0.35 * new + 0.65 * far)[None])[0]) == "green"
+            assert hue(at(result, (0.35 * new + 0.65 * far)[None])[0]) == "green"
 
 
 def test_a_picture_may_lie_on_another(any_engine, make_sketch):
@@ -438,8 +442,8 @@ def test_a_picture_may_lie_on_another(any_engine, make_sketch):
         size=65,
         back=back,
     )
-    found, under = any_engine.read(sketch, "picture"), any_engine.read(sketch, "back")
-    np.testing.assert_allclose(found, under, atol=1e-3)
+    result, under = any_engine.read(sketch, "picture"), any_engine.read(sketch, "back")
+    np.testing.assert_allclose(result, under, atol=1e-3)
     lined = any_engine.read(sketch.with_values({"picture.line": 2.0, "picture.circles": "none"}), "picture")
     assert lined.mean() < 0.8 * under.mean()
 

@@ -71,24 +71,24 @@ COPIES = {"Cantor set": (2, 3), "Koch curve": (4, 3), "Cantor dust": (4, 3), "Vi
 def pieces(name, depth):
     """Return the corners of every piece after so many turns: each map of the set, applied to all before."""
     maps, piece, origin = SETS[name]
-    found = [piece]
+    result = [piece]
     for _ in range(depth):
-        found = [np.array(m) + (corners - origin) @ a.T for m, a in maps for corners in found]
-    return np.array(found)
+        result = [np.array(m) + (corners - origin) @ a.T for m, a in maps for corners in result]
+    return np.array(result)
 
 
-def far_from_segment(place, a, b):
-    along = np.clip(((place - a) @ (b - a)) / ((b - a) @ (b - a)), 0, 1)
-    return np.hypot(*(place - a - along[:, None] * (b - a)).T)
+def far_from_segment(position, a, b):
+    along = np.clip(((position - a) @ (b - a)) / ((b - a) @ (b - a)), 0, 1)
+    return np.hypot(*(position - a - along[:, None] * (b - a)).T)
 
 
-def far_from(place, corners):
+def far_from(position, corners):
     """Return how far places are from a convex piece, 0 inside."""
     ends = list(zip(corners, np.roll(corners, -1, axis=0), strict=True))
-    nearest = np.min([far_from_segment(place, a, b) for a, b in ends], axis=0)
+    nearest = np.min([far_from_segment(position, a, b) for a, b in ends], axis=0)
     if len(corners) == 2:
         return nearest
-    turned = [(b - a)[0] * (place - a)[:, 1] - (b - a)[1] * (place - a)[:, 0] for a, b in ends]
+    turned = [(b - a)[0] * (position - a)[:, 1] - (b - a)[1] * (position - a)[:, 0] for a, b in ends]
     return np.where(np.min(turned, axis=0) >= 0, 0, nearest)
 
 
@@ -100,14 +100,14 @@ def places():
 @pytest.mark.parametrize("name", SETS)
 @pytest.mark.parametrize("depth", [0, 1, 2, 3])
 def test_distances_are_those_to_the_nearest_piece(on_gpu, places, name, depth):
-    found = on_gpu(FOLDS, f"distance_to_set({name.upper()}, place, {depth})", place=places)
+    result = on_gpu(FOLDS, f"distance_to_set({name.upper()}, place, {depth})", place=places)
     truth = np.min([far_from(places, corners) for corners in pieces(name, depth)], axis=0)
-    np.testing.assert_allclose(found, truth, atol=2e-6)
+    np.testing.assert_allclose(result, truth, atol=2e-6)
 
 
 @pytest.mark.parametrize("depth", [0, 1, 2, 4])
 def test_the_bars_of_cantor(on_gpu, places, depth):
-    found = on_gpu(FOLDS, f"cantor_bars(place, {depth})", place=places)
+    result = on_gpu(FOLDS, f"cantor_bars(place, {depth})", place=places)
     bars = [(0, 1)]
     truth = np.full(len(places), np.inf)
     row = 1 / (depth + 1)
@@ -117,16 +117,16 @@ def test_the_bars_of_cantor(on_gpu, places, depth):
             box = np.array([[a, -0.3 * row], [b, -0.3 * row], [b, 0.3 * row], [a, 0.3 * row]]) - (0.5, 0)
             truth = np.minimum(truth, far_from(places, box + np.array([0, middle])))
         bars = [bar for a, b in bars for bar in ((a, a + (b - a) / 3), (b - (b - a) / 3, b))]
-    np.testing.assert_allclose(found, truth, atol=2e-6)
+    np.testing.assert_allclose(result, truth, atol=2e-6)
 
 
 @pytest.fixture
 def sketch_of(make_sketch):
     def make(size, use="deterministic_fractal", **values):
-        given = "".join(
+        value = "".join(
             f"{k} = {str(v).lower() if isinstance(v, bool) else repr(v)}\n" for k, v in values.items()
         )
-        text = f'[[pass]]\nname = "fractal"\nuse = "generation/{use}"\n[pass.set]\n{given}'
+        text = f'[[pass]]\nname = "fractal"\nuse = "generation/{use}"\n[pass.set]\n{value}'
         return make_sketch(text, size=list(size), extent=[float(n) for n in size])
 
     return make
@@ -254,7 +254,7 @@ def divided(depth, roughness, number):
     ``number(i, j)`` gives the two random numbers of a point of the deepest lattice, 64 a side.
     """
     side = 2**depth
-    found = {
+    result = {
         (0, 0): np.array([-0.5, -ROOT_3 / 4]),
         (side, 0): np.array([0.5, -ROOT_3 / 4]),
         (0, side): np.array([0, ROOT_3 / 4]),
@@ -262,20 +262,20 @@ def divided(depth, roughness, number):
 
     def middle(a, b):
         key = ((a[0] + b[0]) // 2, (a[1] + b[1]) // 2)
-        if key not in found:
-            length = np.hypot(*(found[b] - found[a]))
+        if key not in result:
+            length = np.hypot(*(result[b] - result[a]))
             random = 2 * number(key[0] * 64 // side, key[1] * 64 // side) - 1
-            found[key] = (found[a] + found[b]) / 2 + random * roughness * length
+            result[key] = (result[a] + result[b]) / 2 + random * roughness * length
         return key
 
     def halve(a, b, c, turns):
         if turns:
             ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
-            for one in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (bc, ca, ab)):
-                halve(*one, turns - 1)
+            for item in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (bc, ca, ab)):
+                halve(*item, turns - 1)
 
-    halve(*list(found), depth)
-    return found
+    halve(*list(result), depth)
+    return result
 
 
 @pytest.fixture
@@ -291,12 +291,12 @@ def number(on_gpu):
 @pytest.mark.parametrize("roughness", [0.0, 0.15, 0.5])
 def test_the_triangle_is_divided(engine, sketch_of, number, depth, roughness):
     sketch = sketch_of((32, 32), "fractalised_triangle", depth=depth, roughness=roughness)
-    found = engine.read(sketch, "fractal.points")
+    result = engine.read(sketch, "fractal.points")
     truth = divided(depth, roughness, number)
-    assert found.shape == (2**depth + 1,) * 2 + (2,)
+    assert result.shape == (2**depth + 1,) * 2 + (2,)
     assert len(truth) == (2**depth + 1) * (2**depth + 2) // 2
-    for (i, j), place in truth.items():
-        np.testing.assert_allclose(found[j, i], place, atol=2e-6)
+    for (i, j), position in truth.items():
+        np.testing.assert_allclose(result[j, i], position, atol=2e-6)
 
 
 def test_deeper_division_keeps_the_points_it_had(engine, sketch_of):
@@ -309,23 +309,23 @@ def test_deeper_division_keeps_the_points_it_had(engine, sketch_of):
 
 
 def test_one_seed_is_not_another(engine, sketch_of):
-    one, other = (
+    first, other = (
         engine.read(sketch_of((32, 32), "fractalised_triangle", seed=s), "fractal.points").copy()
         for s in (1, 2)
     )
-    assert np.abs(one - other).max() > 0.05
+    assert np.abs(first - other).max() > 0.05
 
 
 @pytest.mark.parametrize("depth", [0, 1, 3])
 def test_facets_have_a_shade_each_and_edges_are_ink(engine, sketch_of, number, depth):
     values = {"depth": depth, "roughness": 0.1, "panels": False, "ink": "#000000", "paper": "#ffffff"}
     sketch = sketch_of((120, 120), "fractalised_triangle", **values)
-    found = engine.read(sketch, "fractal")[..., :3].reshape(-1, 3).astype(np.float64)
+    result = engine.read(sketch, "fractal")[..., :3].reshape(-1, 3).astype(np.float64)
     points = divided(depth, 0.1, number)
     y, x = np.mgrid[0:120, 0:120]
-    place = (np.stack([x, y], axis=-1).reshape(-1, 2) + 0.5 - 60) / 96
-    away = np.full(len(place), np.inf)
-    facet = np.zeros(len(place), int)
+    position = (np.stack([x, y], axis=-1).reshape(-1, 2) + 0.5 - 60) / 96
+    away = np.full(len(position), np.inf)
+    facet = np.zeros(len(position), int)
     count = 0
     for i, j in points:
         for three in (((0, 0), (1, 0), (0, 1)), ((1, 1), (0, 1), (1, 0))):
@@ -334,20 +334,20 @@ def test_facets_have_a_shade_each_and_edges_are_ink(engine, sketch_of, number, d
                 count += 1
                 corners = np.array([points[key] for key in keys])
                 ends = zip(corners, np.roll(corners, 1, axis=0), strict=True)
-                away = np.min([away, *(far_from_segment(place, a, b) for a, b in ends)], axis=0)
-                facet[far_from(place, corners) == 0] = count
+                away = np.min([away, *(far_from_segment(position, a, b) for a, b in ends)], axis=0)
+                facet[far_from(position, corners) == 0] = count
     assert count == 4**depth
     ink = np.clip(1.1 - 96 * away, 0, 1) * (1 - 0.1 * depth)
     outside = facet == 0
     np.testing.assert_allclose(
-        found[outside], np.broadcast_to(1 - ink[outside, None], found[outside].shape), atol=2e-3
+        result[outside], np.broadcast_to(1 - ink[outside, None], result[outside].shape), atol=2e-3
     )
     assert (ink[~outside] > 0.5).any()
     shades = []
-    for one in range(1, count + 1):
-        seen = (facet == one) & (ink < 0.5)
+    for index in range(1, count + 1):
+        seen = (facet == index) & (ink < 0.5)
         if seen.sum() > 3:
-            shade = found[seen] / (1 - ink[seen, None])
+            shade = result[seen] / (1 - ink[seen, None])
             assert np.ptp(shade, axis=0).max() < 4e-3
             shades.append(tuple(np.round(shade[0], 2)))
     assert len(shades) > 0.9 * count and len(set(shades)) > 0.4 * len(shades)
@@ -362,5 +362,5 @@ def test_panels_show_the_iterations_as_far_as_they_go(engine, sketch_of):
         alone.append(engine.read(sketch, "fractal")[..., :3].copy())
     for index in range(6):
         row, column = 100 * (1 - index // 3), 100 * (index % 3)
-        found = panels[row : row + 100, column : column + 100]
-        np.testing.assert_allclose(found, alone[min(index, 2)], atol=2e-3)
+        panel = panels[row : row + 100, column : column + 100]
+        np.testing.assert_allclose(panel, alone[min(index, 2)], atol=2e-3)

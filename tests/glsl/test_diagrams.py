@@ -72,9 +72,9 @@ def paper_of(heights, shown=(0, COLUMNS - 1), foot=0.25):
     )
 
 
-def colour_at(picture, place):
+def colour_at(picture, position):
     """Return the colour at a pixel, counted from the lower left corner; row 0 is the lowest."""
-    return picture[int(place[1]), int(place[0])]
+    return picture[int(position[1]), int(position[0])]
 
 
 def paint(name):
@@ -142,19 +142,19 @@ def test_pens_cover_what_shapes_cover(on_gpu):
         ),
     }
     for expression, inside in shapes.items():
-        found = on_gpu(INK, expression, place=places, m=tuple(middle), end=end).reshape(60, 80)
-        wanted = supersampled(inside, (60, 80))
-        off = np.abs(found - wanted)
+        result = on_gpu(INK, expression, place=places, m=tuple(middle), end=end).reshape(60, 80)
+        expected = supersampled(inside, (60, 80))
+        off = np.abs(result - expected)
         assert off.max() < 0.42 and off.mean() < 0.004, expression
-        assert found.sum() == pytest.approx(wanted.sum(), rel=0.03), expression
+        assert result.sum() == pytest.approx(expected.sum(), rel=0.03), expression
 
 
 def test_dashes_are_half_of_their_line(on_gpu):
     x = np.stack([np.arange(200) + 0.5, np.full(200, 10.5)], axis=1)
     args = {"place": x, "start": (0.0, 10.5), "end": (200.0, 10.5)}
-    found = on_gpu(INK, "dash_cover(place, start, end, 3.0, 5.0)", **args)
-    assert found[:5].min() > 0.4 and found[6:9].max() == 0
-    assert found.sum() == pytest.approx(100, abs=6)
+    result = on_gpu(INK, "dash_cover(place, start, end, 3.0, 5.0)", **args)
+    assert result[:5].min() > 0.4 and result[6:9].max() == 0
+    assert result.sum() == pytest.approx(100, abs=6)
 
 
 # Letters
@@ -167,13 +167,13 @@ def test_numbers_are_written_as_python_writes_them(on_gpu):
         exact = values.astype(np.float64) * 10**decimals
         sure = np.abs(exact % 1 - 0.5) > 1e-3 + 2e-7 * np.abs(exact)  # a tie may go either way
         shown = values[sure]
-        found = on_gpu(
+        result = on_gpu(
             LETTERS,
             f"number_character(value, {decimals}, place, 9)",
             value=np.repeat(shown, 9),
             place=np.tile(np.arange(9), len(shown)),
         )
-        for value, characters in zip(shown, found.reshape(-1, 9), strict=True):
+        for value, characters in zip(shown, result.reshape(-1, 9), strict=True):
             text = f"{float(value):.{decimals}f}".rjust(9)
             if float(text) == 0:
                 text = text.replace("-", " ")
@@ -213,9 +213,9 @@ def assert_written(on_gpu):
         x, y = corner
         shape = np.concatenate(glyphs(on_gpu, [ord(c) for c in text.replace("°", "`")]), axis=1)
         # The glyph's first row is one pixel below its line's corner.
-        found = picture[y - 1 : y + 14, x : x + shape.shape[1]].mean(axis=-1)
-        assert found[shape > 0.95].max() < 0.12, text
-        assert found[shape == 0].min() > 0.25, text
+        value = picture[y - 1 : y + 14, x : x + shape.shape[1]].mean(axis=-1)
+        assert value[shape > 0.95].max() < 0.12, text
+        assert value[shape == 0].min() > 0.25, text
 
     return check
 
@@ -239,14 +239,14 @@ def horizons(heights, column, side):
 def test_horizons_planes_and_the_sun_s_part(engine, diagram, column):
     sketch = diagram("horizon", row=4, viewpoint=column, elevation=24.0, diameter=9.0, first=5, last=50)
     heights = heights_of(engine, sketch)
-    found = engine.read(sketch, "diagram.angles")[0].astype(np.float64)
+    result = engine.read(sketch, "diagram.angles")[0].astype(np.float64)
     low, high = max(column - 1, 0), min(column + 1, COLUMNS - 1)
     slope = (heights[high] - heights[low]) / ((high - low) * SPACING)
     effective = []
     for texel, side in ((0, 1), (1, -1)):
         tangent, where = horizons(heights, column, side)
         effective.append(math.atan(max(tangent, side * slope)))
-        np.testing.assert_allclose(found[texel], [tangent, where, side * slope, effective[-1]], atol=2e-5)
+        np.testing.assert_allclose(result[texel], [tangent, where, side * slope, effective[-1]], atol=2e-5)
     up, down = math.radians(24 + 4.5), math.radians(24 - 4.5)
     seen = min(max((up - effective[0]) / (up - down), 0), 1)
     # The disc's area over the horizon, by counting places on it.
@@ -254,9 +254,9 @@ def test_horizons_planes_and_the_sun_s_part(engine, diagram, column):
     disc = x**2 + y**2 < 1
     area = (y[disc] > 1 - 2 * seen).mean()
     np.testing.assert_allclose(
-        found[2], [column * SPACING, heights[column], seen, area], atol=3e-3, rtol=1e-5
+        result[2], [column * SPACING, heights[column], seen, area], atol=3e-3, rtol=1e-5
     )
-    assert found[3, 0] == pytest.approx(heights[5:51].min(), rel=1e-6)
+    assert result[3, 0] == pytest.approx(heights[5:51].min(), rel=1e-6)
 
 
 @pytest.mark.parametrize("elevation", [1.0, 12.0, 30.0, 60.0])
@@ -275,10 +275,10 @@ def test_terrain_is_below_its_heights_and_sky_above(any_engine, diagram):
     level = on_paper(0, heights[32])[1]
     checked = 0
     for column in range(6, 20):
-        place = on_paper((column + 0.5) * SPACING, (heights[column] + heights[column + 1]) / 2)
+        position = on_paper((column + 0.5) * SPACING, (heights[column] + heights[column + 1]) / 2)
         steep = abs(heights[column + 1] - heights[column]) / SPACING
         away = np.array([0, 5 + 6 * steep])
-        below, above = place - away, place + away
+        below, above = position - away, position + away
         if min(abs(below[1] - level), abs(above[1] - level)) < 4:
             continue
         checked += 1
@@ -384,7 +384,7 @@ def test_the_sun_s_part_is_written_as_it_is(any_engine, diagram, assert_written)
 
 def walk(heights, column, beam, elevation, radius, delta_r, highest):
     """Return the tests of a beam: (its height, its radius, the free part) each, until it ends."""
-    found = []
+    result = []
     climb = math.tan(math.radians(elevation)) * SPACING
     path = SPACING / math.cos(math.radians(elevation))
     for k, other in enumerate(range(column, len(heights))):
@@ -397,10 +397,10 @@ def walk(heights, column, beam, elevation, radius, delta_r, highest):
             part = 0.0 if terrain > middle else 1.0
         else:
             part = min(max((middle + wide - terrain) / (2 * wide), 0), 1)
-        found.append((middle, wide, part))
+        result.append((middle, wide, part))
         if part == 0:
             break
-    return found
+    return result
 
 
 @pytest.mark.parametrize("beam", ["ray", "cylinder", "cone"])
@@ -412,19 +412,19 @@ def test_tests_are_those_of_a_slow_walk(engine, diagram, beam):
             radius=20.0, delta_r=0.07, first=3, last=60,
         )  # fmt: skip
         terrain = engine.read(sketch, "height").astype(np.float64) * RELIEF
-        found = engine.read(sketch, "diagram.tests").astype(np.float64)
+        result = engine.read(sketch, "diagram.tests").astype(np.float64)
         for row, viewpoint in ((0, column), (1, 10)):
-            wanted = walk(terrain[4], viewpoint, beam, elevation, 20.0, 0.07, terrain.max())
-            parts = [part for *_, part in wanted]
-            head = [min(parts), len(wanted), viewpoint * SPACING, terrain[4, viewpoint]]
-            np.testing.assert_allclose(found[row, 0], head, rtol=1e-5, atol=1e-3)
-            least = found[row, 1, 0]
+            expected = walk(terrain[4], viewpoint, beam, elevation, 20.0, 0.07, terrain.max())
+            parts = [part for *_, part in expected]
+            head = [min(parts), len(expected), viewpoint * SPACING, terrain[4, viewpoint]]
+            np.testing.assert_allclose(result[row, 0], head, rtol=1e-5, atol=1e-3)
+            least = result[row, 1, 0]
             assert (parts[int(least)] if least >= 0 else 1) == pytest.approx(min(parts), abs=1e-4)
-            given = found[row, 2:]
-            np.testing.assert_allclose(given[: len(wanted), :3], wanted, rtol=1e-4, atol=2e-3)
-            np.testing.assert_array_equal(given[:, 3], np.arange(COLUMNS) < len(wanted))
+            value = result[row, 2:]
+            np.testing.assert_allclose(value[: len(expected), :3], expected, rtol=1e-4, atol=2e-3)
+            np.testing.assert_array_equal(value[:, 3], np.arange(COLUMNS) < len(expected))
             seen |= {math.ceil(2 * part) for part in parts}
-        np.testing.assert_allclose(found[2, 0, :2], [terrain[4, 3:61].min(), terrain.max()], rtol=1e-6)
+        np.testing.assert_allclose(result[2, 0, :2], [terrain[4, 3:61].min(), terrain.max()], rtol=1e-6)
     assert seen == ({0, 2} if beam == "ray" else {0, 1, 2})
 
 
@@ -437,16 +437,16 @@ METHODS = {
 
 @pytest.mark.parametrize("beam", METHODS)
 def test_what_is_drawn_is_what_the_method_finds(any_engine, diagram, beam):
-    use, given = METHODS[beam]
-    extra = f'[[pass]]\nname = "light"\nuse = "{use}"\nset = {{ {given} sun = [90.0, 12.0] }}\n'
+    use, value = METHODS[beam]
+    extra = f'[[pass]]\nname = "light"\nuse = "{use}"\nset = {{ {value} sun = [90.0, 12.0] }}\n'
     sketch = diagram(
         "beam", beam=beam, extra=extra, row=4, elevation=12.0, radius=20.0, delta_r=0.07, paper=(64, 36)
     )
     visible = any_engine.read(sketch, "light.visibility")[4]
     drawn = []
     for column in range(COLUMNS):
-        found = any_engine.read(sketch.with_values({"diagram.viewpoint": column}), "diagram.tests")
-        drawn.append(found[0, 0, 0])
+        result = any_engine.read(sketch.with_values({"diagram.viewpoint": column}), "diagram.tests")
+        drawn.append(result[0, 0, 0])
     np.testing.assert_allclose(visible, drawn, atol=2e-5)
     assert visible.min() < 0.1 and visible.max() > 0.45
 
@@ -469,15 +469,15 @@ def test_tests_have_the_colours_of_what_they_find(any_engine, diagram):
         picture = any_engine.read(sketch, "diagram")[..., :3]
         facts = any_engine.read(sketch, "diagram.tests")[0].astype(np.float64)
         on_paper = paper_of(heights)
-        for k, wanted in ((8, "free"), (20, "free"), (24, last)):
+        for k, expected in ((8, "free"), (20, "free"), (24, last)):
             middle, wide = facts[2 + k, :2]
-            place = on_paper((16 + k) * SPACING, middle)
-            np.testing.assert_allclose(colour_at(picture, place), paint(wanted), atol=0.03)
-            if wanted == "partly":
+            position = on_paper((16 + k) * SPACING, middle)
+            np.testing.assert_allclose(colour_at(picture, position), paint(expected), atol=0.03)
+            if expected == "partly":
                 # The line is amber over the ground, and red in it.
                 for up, name in ((middle + 0.9 * wide, "partly"), (middle - 0.9 * wide, "hidden")):
-                    place = on_paper((16 + k) * SPACING, up)
-                    np.testing.assert_allclose(colour_at(picture, place), paint(name), atol=0.06)
+                    position = on_paper((16 + k) * SPACING, up)
+                    np.testing.assert_allclose(colour_at(picture, position), paint(name), atol=0.06)
         np.testing.assert_allclose(colour_at(picture, on_paper(16 * SPACING, 0)), paint(last), atol=0.03)
         if last == "hidden":
             # Behind the last test nothing is tested.
@@ -491,10 +491,10 @@ def test_two_rays_one_lit(any_engine, diagram, assert_written):
     assert [facts[0, 0, 0], facts[1, 0, 0]] == [1, 0]
     heights = np.where(np.arange(COLUMNS) >= 40, 0.3, 0.0) * RELIEF
     on_paper = paper_of(heights)
-    for column, wanted, text in ((40, "free", "V = 1.00"), (30, "hidden", "V = 0.00")):
-        place = on_paper(column * SPACING, heights[column])
-        np.testing.assert_allclose(colour_at(picture, place), paint(wanted), atol=0.03)
-        assert_written(picture, np.floor(place - (32, 27)).astype(int), text)
+    for column, expected, text in ((40, "free", "V = 1.00"), (30, "hidden", "V = 0.00")):
+        position = on_paper(column * SPACING, heights[column])
+        np.testing.assert_allclose(colour_at(picture, position), paint(expected), atol=0.03)
+        assert_written(picture, np.floor(position - (32, 27)).astype(int), text)
     assert_written(picture, (12, 329), "ray at 20.0°")
     assert_written(picture, (12, 312), f"tests:{int(facts[0, 0, 1]):3} and{int(facts[1, 0, 1]):3}")
 
@@ -503,18 +503,18 @@ def test_two_rays_one_lit(any_engine, diagram, assert_written):
 
 
 @pytest.mark.parametrize("azimuth", [62.0, 180.0, 301.0])
-@pytest.mark.parametrize("place", [(20, 4), (64, 4), (0, 0)], ids=str)
-def test_the_share_that_is_written_is_the_method_s(any_engine, diagram, assert_written, azimuth, place):
+@pytest.mark.parametrize("position", [(20, 4), (64, 4), (0, 0)], ids=str)
+def test_the_share_that_is_written_is_the_method_s(any_engine, diagram, assert_written, azimuth, position):
     setting = f"sun = [{azimuth}, 25.0], softness = 0.05, step_length = 2.0"
     extra = f'[[pass]]\nname = "light"\nuse = "lighting/height_difference"\nset = {{ {setting} }}\n'
     sketch = diagram(
-        "grid", extra=extra, column=place[0], row=place[1], sun=(azimuth, 25.0), softness=0.05,
+        "grid", extra=extra, column=position[0], row=position[1], sun=(azimuth, 25.0), softness=0.05,
         step_length=2.0, text=True, texels=11,
     )  # fmt: skip
-    share = any_engine.read(sketch, "light")[place[1], place[0], 3]
+    share = any_engine.read(sketch, "light")[position[1], position[0], 3]
     picture = any_engine.read(sketch, "diagram")[..., :3]
     assert_written(picture, (12, 360 - 31 - 51), f"share of light {share:.2f}")
-    height = any_engine.read(sketch, "height")[place[1], place[0]] * 255
+    height = any_engine.read(sketch, "height")[position[1], position[0]] * 255
     assert_written(picture, (12, 329), f"here {height:5.1f}")
 
 

@@ -45,9 +45,9 @@ def by_slices(size, smoothing, corners, numbers):
     while spacing > 1:
         h = spacing // 2
         share = spacing / (size - 1) * smoothing
-        known = terrain[::spacing, ::spacing]
+        existing = terrain[::spacing, ::spacing]
         terrain[h::spacing, h::spacing] = (
-            known[:-1, :-1] + known[:-1, 1:] + known[1:, :-1] + known[1:, 1:]
+            existing[:-1, :-1] + existing[:-1, 1:] + existing[1:, :-1] + existing[1:, 1:]
         ) / 4
         terrain[h::spacing, h::spacing] += numbers[h::spacing, h::spacing] * share
         rim = np.pad(terrain[::h, ::h], 1, constant_values=np.nan)
@@ -60,9 +60,9 @@ def by_slices(size, smoothing, corners, numbers):
 
 
 def sketch_of(make_sketch, size, **values):
-    given = "".join(f"{k} = {v!r}\n".replace("(", "[").replace(")", "]") for k, v in values.items())
+    text = "".join(f"{k} = {v!r}\n".replace("(", "[").replace(")", "]") for k, v in values.items())
     return make_sketch(
-        f'[[pass]]\nname = "terrain"\nuse = "generation/diamond_square"\n[pass.set]\n{given}', size=size
+        f'[[pass]]\nname = "terrain"\nuse = "generation/diamond_square"\n[pass.set]\n{text}', size=size
     )
 
 
@@ -116,10 +116,10 @@ def test_the_iterations_are_the_figures(engine, make_sketch, numbers):
     states = [values.copy() for _, values in engine.steps(sketch, "terrain.raw")]
     assert len(states) == 6 and not states[0].any()
     for turn, count in FIGURES.items():
-        known = states[turn] != 0
-        assert known.sum() == count
-        np.testing.assert_allclose(states[turn][known], truth[known], atol=1e-6)
-        places = {(int(x), int(y)) for y, x in np.argwhere(known & (states[turn - 1] == 0))}
+        existing = states[turn] != 0
+        assert existing.sum() == count
+        np.testing.assert_allclose(states[turn][existing], truth[existing], atol=1e-6)
+        places = {(int(x), int(y)) for y, x in np.argwhere(existing & (states[turn - 1] == 0))}
         assert places == PHASES[turn]
 
 

@@ -24,9 +24,9 @@ def slow(ctx):
 
 
 def sketch_of(make_sketch, size, **values):
-    given = "".join(f"{k} = {v!r}\n".replace("(", "[").replace(")", "]") for k, v in values.items())
+    text = "".join(f"{k} = {v!r}\n".replace("(", "[").replace(")", "]") for k, v in values.items())
     use = '[[pass]]\nname = "terrain"\nuse = "generation/diamond_square"\n'
-    return make_sketch(f"{use}[pass.set]\n{given}", size=size)
+    return make_sketch(f"{use}[pass.set]\n{text}", size=size)
 
 
 def test_it_runs_and_by_fragment_the_passes_do(fast, slow, make_sketch):
@@ -58,10 +58,10 @@ def test_no_height_is_missed_in_the_search_for_the_range(fast, make_sketch, size
         values = {"smoothing": smoothing, "corners": CORNERS, "seed": seed}
         raw = fast.read(sketch_of(make_sketch, size, **values), "terrain")
         share = (raw - raw.min()) / (raw.max() - raw.min())
-        found = fast.read(sketch_of(make_sketch, size, normalise="minmax", **values), "terrain")
-        np.testing.assert_array_equal(found, share)
-        found = fast.read(sketch_of(make_sketch, size, normalise="max", **values), "terrain")
-        np.testing.assert_array_equal(found, raw / raw.max())
+        result = fast.read(sketch_of(make_sketch, size, normalise="minmax", **values), "terrain")
+        np.testing.assert_array_equal(result, share)
+        result = fast.read(sketch_of(make_sketch, size, normalise="max", **values), "terrain")
+        np.testing.assert_array_equal(result, raw / raw.max())
 
 
 def test_terrain_below_0_is_not_turned_over(fast, slow, make_sketch):

@@ -53,8 +53,8 @@ def test_each_texel_drains_to_its_steepest_neighbour(engine, terrain):
     pit = steepest <= 0
     assert 0.02 < pit.mean() < 0.3
     np.testing.assert_array_equal(receiver[inner][pit], own[inner][pit], "pits drain to nowhere")
-    wanted = np.take_along_axis(numbers[:, inner], slopes[:, inner].argmax(0)[None], 0)[0]
-    np.testing.assert_array_equal(receiver[inner][~pit], wanted[~pit])
+    expected = np.take_along_axis(numbers[:, inner], slopes[:, inner].argmax(0)[None], 0)[0]
+    np.testing.assert_array_equal(receiver[inner][~pit], expected[~pit])
 
 
 def test_turned_or_mirrored_terrain_drains_turned_or_mirrored(engine, terrain):
@@ -62,8 +62,8 @@ def test_turned_or_mirrored_terrain_drains_turned_or_mirrored(engine, terrain):
     _rows, columns = receiver.shape
     way = np.stack([receiver // columns, receiver % columns]) - np.indices(receiver.shape)
     for key, flip, sign in (("turn", (1, 2), (-1, -1)), ("mirror", (2,), (1, -1))):
-        _, found = both(engine, terrain, **{f"height_{key}": 1})
-        other = np.stack([found // columns, found % columns]) - np.indices(found.shape)
+        _, result = both(engine, terrain, **{f"height_{key}": 1})
+        other = np.stack([result // columns, result % columns]) - np.indices(result.shape)
         np.testing.assert_array_equal(np.flip(other, flip), way * np.reshape(sign, (2, 1, 1)))
 
 

@@ -44,9 +44,9 @@ def sketch_of(folder, name):
         axes = accepted_sizes(sizes[0])
         size = tuple(min((s for s in axis if s >= 33), default=axis[-1]) for axis in axes)
     lines = [f"format = 1\nsize = {list(size)}\nextent = [700.0, 900.0]\nrelief = 150.0\n"]
-    for seed, given in enumerate(input_names(technique)):
-        lines.append(f'[[pass]]\nname = "in_{given}"\nuse = "./random"\nset = {{ seed = {seed} }}\n')
-    wires = ", ".join(f'{given} = "in_{given}"' for given in input_names(technique))
+    for seed, input_name in enumerate(input_names(technique)):
+        lines.append(f'[[pass]]\nname = "in_{input_name}"\nuse = "./random"\nset = {{ seed = {seed} }}\n')
+    wires = ", ".join(f'{input_name} = "in_{input_name}"' for input_name in input_names(technique))
     lines.append(f'[[pass]]\nname = "under_test"\nuse = "{name}"\ninputs = {{ {wires} }}\n')
     path = folder / "sketch.toml"
     path.write_text("".join(lines))
@@ -70,10 +70,10 @@ def variants(sketch, technique):
                 )
 
 
-def assert_same_bits(found, wanted, what):
-    assert found.shape == wanted.shape, what
-    nan = np.isnan(found) & np.isnan(wanted)
-    same = (found.view(np.uint32) == wanted.view(np.uint32)) | nan
+def assert_same_bits(result, expected, what):
+    assert result.shape == expected.shape, what
+    nan = np.isnan(result) & np.isnan(expected)
+    same = (result.view(np.uint32) == expected.view(np.uint32)) | nan
     assert same.all(), (
         f"{what}: {np.count_nonzero(~same)} of {same.size} numbers differ, first at {np.argwhere(~same)[0]}"
     )

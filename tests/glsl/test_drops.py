@@ -37,10 +37,10 @@ def photons(depth, rise, count=20_000):
 @pytest.mark.parametrize(("depth", "rise"), [(4.0, 0.5), (12.0, 1.0), (12.0, 0.3), (40.0, 0.7)])
 def test_a_layer_lets_through_what_photons_do(on_gpu, depth, rise):
     """Within 0.04 of all light, as the approximation's authors found; the rest it sends back."""
-    found = on_gpu(DROPS, f"crossing({depth * SCALE}, {rise}).through")[0]
+    result = on_gpu(DROPS, f"crossing({depth * SCALE}, {rise}).through")[0]
     back = on_gpu(DROPS, f"crossing({depth * SCALE}, {rise}).reflected")[0]
     below, middle = photons(depth, rise)
-    assert found == pytest.approx(below, abs=0.04) and found + back == pytest.approx(1, abs=1e-6)
+    assert result == pytest.approx(below, abs=0.04) and result + back == pytest.approx(1, abs=1e-6)
     call = f"diffuse_of_beam({0.5 * depth * SCALE}, {depth * SCALE}, {rise}).mean"
     # What was turned by next to nothing counts as beam there. The mean of all directions is the
     # weakest of what the approximation gives (a quarter off in thin layers).
@@ -67,10 +67,10 @@ def test_no_light_is_lost_on_the_way_down(on_gpu):
 def test_phases_send_light_once_round_the_sphere_and_forwards(on_gpu):
     x, weight = np.polynomial.legendre.leggauss(300)
     for name, forward in (("drops_phase_wide", G / (1 + G)), ("drops_peak", 0.92), ("drops_phase", None)):
-        found = on_gpu(DROPS, f"{name}(c)", c=x).astype(np.float64)
-        assert 2 * np.pi * found @ weight == pytest.approx(1, abs=1e-4)
+        result = on_gpu(DROPS, f"{name}(c)", c=x).astype(np.float64)
+        assert 2 * np.pi * result @ weight == pytest.approx(1, abs=1e-4)
         if forward:
-            assert 2 * np.pi * (found * x) @ weight == pytest.approx(forward, abs=1e-4)
+            assert 2 * np.pi * (result * x) @ weight == pytest.approx(forward, abs=1e-4)
 
 
 def test_among_drops_light_goes_from_that_above_to_that_below(on_gpu):

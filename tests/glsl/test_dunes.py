@@ -18,7 +18,7 @@ REPOSE = 0.65
 
 @pytest.fixture
 def dunes(engine, make_sketch):
-    """Give ``dunes(rise, **parameters)``: metres of sand, and the share of the ground where it lies."""
+    """Give ``dunes(rise, **parameters)``: metres of sand, and the fraction of the ground where it lies."""
 
     def read(rise=0.0, **values):
         text = ", ".join(f"{name} = {value}" for name, value in values.items())

@@ -33,10 +33,10 @@ def part_of(make_sketch):
     def make(part, intervals=32, apron=8, **values):
         size = intervals + 2 * apron + 1
         sketch = make_sketch(PASSES, size=size, extent=SPACING * (size - 1), relief=2400.0)
-        given = {}
+        value = {}
         for name in ("height", "colour"):
-            given |= {f"{name}.part": part, f"{name}.apron": apron}
-        return sketch.with_values(given | values)
+            value |= {f"{name}.part": part, f"{name}.apron": apron}
+        return sketch.with_values(value | values)
 
     return make
 
@@ -124,10 +124,10 @@ def height_twin(node, rough=0.45, valleys=0.15, peaks=0.7):
 
 @pytest.mark.parametrize("part", [(0, 0), (5, -3), (-120_000, 70_001)])
 def test_a_part_is_its_shape_and_the_detail_of_each_node(engine, part_of, part):
-    found = engine.read(part_of(part), "height")
-    for x, y in np.random.default_rng(5).integers(0, found.shape[0], (40, 2)):
+    result = engine.read(part_of(part), "height")
+    for x, y in np.random.default_rng(5).integers(0, result.shape[0], (40, 2)):
         node = (part[0] * 32 + int(x) - 8, part[1] * 32 + int(y) - 8)
-        assert found[y, x] == pytest.approx(height_twin(node), abs=2e-5)
+        assert result[y, x] == pytest.approx(height_twin(node), abs=2e-5)
 
 
 @pytest.mark.parametrize("wide", [1, 3, 64, 1000])
@@ -155,13 +155,13 @@ def test_neighbours_agree_to_the_last_bit_wherever_they_overlap(engine, part_of)
 
 
 def test_a_part_does_not_depend_on_the_way_there(ctx, part_of):
-    with Engine(ctx) as one, Engine(ctx) as other:
+    with Engine(ctx) as left, Engine(ctx) as other:
         for part in ((0, 0), (1, 0), (2, 0), (7, 7)):
-            one.read(part_of(part), "light")
-        first = {ref: one.read(part_of((7, 7)), ref) for ref in ("height", "colour", "light")}
-        one.cache.clear()
+            left.read(part_of(part), "light")
+        first = {ref: left.read(part_of((7, 7)), ref) for ref in ("height", "colour", "light")}
+        left.cache.clear()
         for ref, values in first.items():
-            np.testing.assert_array_equal(one.read(part_of((7, 7)), ref), values)
+            np.testing.assert_array_equal(left.read(part_of((7, 7)), ref), values)
             np.testing.assert_array_equal(other.read(part_of((7, 7)), ref), values)
 
 
@@ -203,12 +203,12 @@ def test_with_a_reach_of_the_apron_light_is_the_same_from_any_part_however_low_t
     any_engine, part_of, elevation
 ):
     """Every texel then sees as far, whichever part it is lit with: no border shows."""
-    given = {"light.sun": (120.0, elevation), "light.max_distance": 24}
-    small = inside(any_engine.read(part_of((2, 5), 64, 24, **given), "light"), 24)
-    large = inside(any_engine.read(part_of((2, 5), 64, 152, **given), "light"), 152)
+    value = {"light.sun": (120.0, elevation), "light.max_distance": 24}
+    small = inside(any_engine.read(part_of((2, 5), 64, 24, **value), "light"), 24)
+    large = inside(any_engine.read(part_of((2, 5), 64, 152, **value), "light"), 152)
     assert 0.02 < (large[..., 3] < 0.99).mean(), "there are shadows"
     np.testing.assert_allclose(small, large, atol=3e-3)
-    endless = any_engine.read(part_of((2, 5), 64, 152, **{**given, "light.max_distance": 0}), "light")
+    endless = any_engine.read(part_of((2, 5), 64, 152, **{**value, "light.max_distance": 0}), "light")
     assert (inside(endless, 152) <= large + 3e-3).all(), "a reach only takes shadows away"
 
 
@@ -222,8 +222,10 @@ def test_heights_stay_within_0_and_1_and_use_most_of_it(any_engine, part_of):
 
 @pytest.mark.parametrize("size", [2, 3, 9])
 def test_tiny_parts_are_numbers(any_engine, part_of, size):
-    found = any_engine.read(part_of((3, 3), size - 1, 0, **{"height.hills": 2, "colour.patches": 4}), "light")
-    assert np.isfinite(found).all()
+    result = any_engine.read(
+        part_of((3, 3), size - 1, 0, **{"height.hills": 2, "colour.patches": 4}), "light"
+    )
+    assert np.isfinite(result).all()
     wide = part_of((3, 3), 4, 0, **{"height.apron": 500})  # more apron than texture
     assert np.isfinite(any_engine.read(wide, "height")).all()
 
@@ -249,8 +251,8 @@ def test_weights_of_the_ground_sum_to_1(any_engine, part_of):
 
 
 def test_the_ground_follows_height_and_slope(any_engine, part_of):
-    given = {"colour.shown": "weights", "colour.ragged": 0.0}
-    sketch = part_of((4, 8), 256, 0, **given)
+    value = {"colour.shown": "weights", "colour.ragged": 0.0}
+    sketch = part_of((4, 8), 256, 0, **value)
     height = any_engine.read(sketch, "height") * 2400.0
     rock, wood, snow, _ = np.moveaxis(any_engine.read(sketch, "colour"), -1, 0)
     slope = np.degrees(np.arctan(np.hypot(*np.gradient(height, SPACING))))

@@ -28,9 +28,9 @@ def stamped(run: OnArrays, height: np.ndarray, weight: np.ndarray, stamps: int, 
     """Return the height and the water after some stamps, each given what the one before left."""
     water, flux = (np.zeros((*height.shape, 4), np.float32) for _ in range(2))
     for _ in range(stamps):
-        given = {"height": height, "brush": weight, "water": water, "flux": flux}
-        found = run.run(given, spacing=SPACING, relief=1.0, values=values)
-        height, water, flux = found["height"], found["water"], found["flux"]
+        value = {"height": height, "brush": weight, "water": water, "flux": flux}
+        result = run.run(value, spacing=SPACING, relief=1.0, values=values)
+        height, water, flux = result["height"], result["water"], result["flux"]
     return height, water
 
 
@@ -53,8 +53,8 @@ def test_a_step_of_the_brush_is_the_step_in_float64(engine: Engine):
     before, after = (rng.normal(0, 20, (NY, NX, 4)).astype(np.float32) for _ in range(2))
     weight = brush()
     options = {"spacing": SPACING, "relief": 1.0, "values": {"repose": 35.0, "creep": 0.03}}
-    given = {"before": before, "after": after, "brush": weight}
-    found = OnArrays(engine, "erosion/brush/hold").run(given, **options)["state"]
+    value = {"before": before, "after": after, "brush": weight}
+    result = OnArrays(engine, "erosion/brush/hold").run(value, **options)["state"]
     bed, w, slid = before[..., 0].astype(np.float64), weight.astype(np.float64), np.zeros((NY, NX))
     for y in range(NY):
         for x in range(NX):
@@ -63,19 +63,19 @@ def test_a_step_of_the_brush_is_the_step_in_float64(engine: Engine):
                     rise, most = bed[j, i] - bed[y, x], np.tan(np.radians(35.0)) * length
                     over = max(rise - most, 0.0) if rise > 0 else min(rise + most, 0.0)
                     slid[y, x] += min(w[y, x], w[j, i]) * (0.05 * over + 0.03 * rise)
-    wanted = bed + w * (after[..., 0] - bed) + slid
-    np.testing.assert_allclose(found[..., 0], np.where(w > 0, wanted, bed), atol=1e-4)
+    expected = bed + w * (after[..., 0] - bed) + slid
+    np.testing.assert_allclose(result[..., 0], np.where(w > 0, expected, bed), atol=1e-4)
     rock = after[..., 0].astype(np.float64) + after[..., 2]  # after the step
     under = w > 0
-    np.testing.assert_allclose((found[..., 0] + found[..., 2] - slid)[under], rock[under], atol=1e-4)
-    gone = found[..., 3].astype(np.float64) - before[..., 3]
-    np.testing.assert_allclose((found[..., 0] + gone)[~under], rock[~under], atol=1e-4)
+    np.testing.assert_allclose((result[..., 0] + result[..., 2] - slid)[under], rock[under], atol=1e-4)
+    gone = result[..., 3].astype(np.float64) - before[..., 3]
+    np.testing.assert_allclose((result[..., 0] + gone)[~under], rock[~under], atol=1e-4)
 
 
 def test_without_a_brush_it_erodes_everywhere(any_engine: Engine):
     run, before = OnArrays(any_engine, "erosion/brush"), hills()
-    found = run.run({"height": before}, spacing=SPACING, relief=1.0)
-    assert (found["height"] != before).mean() > 0.5
+    result = run.run({"height": before}, spacing=SPACING, relief=1.0)
+    assert (result["height"] != before).mean() > 0.5
 
 
 @pytest.mark.parametrize("axis", [0, 1])

@@ -14,8 +14,8 @@ PASSES = (
 
 @pytest.fixture
 def sketch_of(make_sketch):
-    def make(given=""):
-        sketch = make_sketch(PASSES + given + " }\n", size=5, extent=SIDE, relief=RELIEF)
+    def make(value=""):
+        sketch = make_sketch(PASSES + value + " }\n", size=5, extent=SIDE, relief=RELIEF)
         return sketch.with_camera(Camera(azimuth=160.0, elevation=75.0))
 
     return make
@@ -79,7 +79,7 @@ def test_facets_take_the_colour_and_leave_the_light_map(any_engine, make_sketch)
 
 def test_the_sun_on_facets_changes_nothing_where_there_are_none(any_engine, sketch_of):
     pictures = []
-    for given in ("", ", facet_sun = [20.0, 70.0]"):
-        sketch = sketch_of(given).with_values({"view.facets": False})
+    for name in ("", ", facet_sun = [20.0, 70.0]"):
+        sketch = sketch_of(name).with_values({"view.facets": False})
         pictures.append(any_engine.render(sketch, size=(120, 90)).array)
     np.testing.assert_array_equal(*pictures)

@@ -71,11 +71,11 @@ def test_it_agrees_within_its_bound(ctx, those_that_ship, name):
     """At every size, seed, choice of a menu and end of a slider: see ``engine.verify``."""
     subject = those_that_ship[name]
     with Engine(ctx) as engine:
-        found = verify(engine, subject.variant, subject.technique, subject.places)
-    if found.skipped:
-        pytest.skip(found.skipped)
-    assert found.ok, found.words
-    assert found.drawings >= 10
+        verdict = verify(engine, subject.variant, subject.technique, subject.places)
+    if verdict.skipped:
+        pytest.skip(verdict.skipped)
+    assert verdict.ok, verdict.words
+    assert verdict.drawings >= 10
 
 
 def with_edit(text):
@@ -129,18 +129,18 @@ def test_it_agrees_in_every_sketch_that_uses_it(ctx, name):
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     with Engine(ctx) as engine:
-        for place in places_in(load(name), GLSL):
-            found = compared(engine, place)
-            assert not found.wrong, f"{place.path}: {found.words}"
+        for use in places_in(load(name), GLSL):
+            verdict = compared(engine, use)
+            assert not verdict.wrong, f"{use.path}: {verdict.words}"
 
 
 def test_where_the_plain_form_runs_nothing_is_compared_and_nothing_drawn(ctx):
     """A pixel of several samples is drawn by no fast variant, though both forms of a view share files."""
     sketch = load("fbm")
     assert sketch.samples > 1
-    place = next(p for p in places_in(sketch, GLSL) if p.path == "view")
+    position = next(p for p in places_in(sketch, GLSL) if p.path == "view")
     with Engine(ctx) as engine:
-        assert compared(engine, place).drawings == 0
+        assert compared(engine, position).drawings == 0
         assert not engine.runs
 
 

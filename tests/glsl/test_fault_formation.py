@@ -16,9 +16,9 @@ SIZES = [(33, 33), (64, 65), (130, 100), (40, 23), (2, 2), (1, 9), (300, 2)]  # 
 @pytest.fixture
 def sketch_of(make_sketch):
     def make(size=(33, 33), before="", inputs="", **values):
-        given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
+        text = "".join(f"{k} = {v!r}\n" for k, v in values.items())
         use = '[[pass]]\nname = "terrain"\nuse = "generation/fault_formation"\n'
-        return make_sketch(f"{before}{use}{inputs}[pass.set]\n{given}", size=list(size))
+        return make_sketch(f"{before}{use}{inputs}[pass.set]\n{text}", size=list(size))
 
     return make
 
@@ -29,8 +29,8 @@ def drawn(on_gpu):
 
     def make(faults, seed):
         index, key = np.arange(faults, dtype=np.uint32), np.uint32(seed + salt("generation/fault_formation"))
-        one, two = (on_gpu("noise/hash.glsl", f"hash3(uvec3(i, {k}u, s))", i=index, s=key) for k in (0, 1))
-        return one[:, :2] >> 20, two[:, :2] >> 20, (one[:, 2] >> 8) / 2.0**24
+        item, two = (on_gpu("noise/hash.glsl", f"hash3(uvec3(i, {k}u, s))", i=index, s=key) for k in (0, 1))
+        return item[:, :2] >> 20, two[:, :2] >> 20, (item[:, 2] >> 8) / 2.0**24
 
     return make
 
@@ -94,13 +94,13 @@ def test_it_is_the_sum_of_its_faults(engine, sketch_of, drawn, heights_of, size,
 @pytest.mark.slow
 def test_it_is_the_sum_of_its_faults_at_513(engine, sketch_of, drawn, heights_of):
     sketch = sketch_of((513, 513), iterations=1000, seed=9)
-    found = engine.read(sketch, "terrain.sum")
+    result = engine.read(sketch, "terrain.sum")
     rows = np.array([0, 1, 100, 256, 511, 512])
     heights, points = heights_of(sketch, 1000), drawn(1000, 9)
     truth = np.zeros((len(rows), 513))
     for first, second, height in zip(*points[:2], heights, strict=True):
         truth += np.where(sides(first, second, (513, 513))[rows], height, -height)
-    np.testing.assert_array_equal(found[rows], truth)
+    np.testing.assert_array_equal(result[rows], truth)
 
 
 @pytest.mark.parametrize("size", [(2112, 2), (2113, 2), (5000, 3)], ids=str)
@@ -117,15 +117,15 @@ def test_rows_longer_than_the_shared_memory(ctx, sketch_of, size):
 def test_heights_fall(any_engine, sketch_of, drawn, fall, last, variation):
     faults, amount = 60, 0.3
     sketch = sketch_of(iterations=faults, seed=5, fall=fall, last=last, variation=variation, amount=amount)
-    found = any_engine.read(sketch, "terrain.lines")[0, :, 3] * unit_of(faults, amount)
+    unit = any_engine.read(sketch, "terrain.lines")[0, :, 3] * unit_of(faults, amount)
     points = [0, faults]
     falling = np.interp(np.arange(faults), points, [1, last])
     if fall == "ratio":
         falling = np.exp(np.interp(np.arange(faults), points, [0, np.log(last)]))
     truth = amount * falling * (1 - variation * drawn(faults, 5)[2])
-    np.testing.assert_allclose(found, truth, atol=2 * unit_of(faults, amount))
+    np.testing.assert_allclose(unit, truth, atol=2 * unit_of(faults, amount))
     if variation == 0.0:
-        assert found[0] == pytest.approx(amount, rel=1e-5) and (np.diff(found) <= 0).all()
+        assert unit[0] == pytest.approx(amount, rel=1e-5) and (np.diff(unit) <= 0).all()
 
 
 @pytest.mark.parametrize("size", [(2, 2), (3, 2), (33, 33), (17, 64)], ids=str)
@@ -156,13 +156,13 @@ def test_the_same_line_the_other_way_round_raises_the_other_side(on_gpu):
     """Everywhere, and on the line itself, where half of these places are put."""
     rng = np.random.default_rng(2)
     first, second = (rng.integers(0, 4096, (20000, 2)).astype(np.int32) for _ in range(2))
-    place = rng.integers(0, 32769, (20000, 2)).astype(np.int32)
-    place[::2] = (first * 8 + 4)[::2]
-    place[::4] = (second * 8 + 4)[::4]
-    names = {"p": first, "q": second, "place": place}
+    position = rng.integers(0, 32769, (20000, 2)).astype(np.int32)
+    position[::2] = (first * 8 + 4)[::2]
+    position[::4] = (second * 8 + 4)[::4]
+    names = {"p": first, "q": second, "place": position}
     ask = "int(is_raised(fault_line({}), place))"
-    one, other = on_gpu(LINE, ask.format("p, q"), **names), on_gpu(LINE, ask.format("q, p"), **names)
-    np.testing.assert_array_equal(one + other, 1)
+    left, other = on_gpu(LINE, ask.format("p, q"), **names), on_gpu(LINE, ask.format("q, p"), **names)
+    np.testing.assert_array_equal(left + other, 1)
     value = on_gpu(LINE, "fault_value(fault_line(p, q), place)", **names)
     assert (value[::2] == 0).all() and (value[1::2] != 0).mean() > 0.99
 
@@ -170,26 +170,26 @@ def test_the_same_line_the_other_way_round_raises_the_other_side(on_gpu):
 def test_values_are_cross_products(on_gpu):
     rng = np.random.default_rng(3)
     first, second = (rng.integers(0, 4096, (5000, 2)) for _ in range(2))
-    place = rng.integers(0, 32769, (5000, 2))
-    names = {"p": first, "q": second, "place": place}
+    position = rng.integers(0, 32769, (5000, 2))
+    names = {"p": first, "q": second, "place": position}
     whole = {name: values.astype(np.int32) for name, values in names.items()}
-    found = on_gpu(LINE, "fault_value(fault_line(p, q), place)", **whole)
-    (ax, ay), (bx, by) = (second - first).T, (place - first * 8 - 4).T
-    np.testing.assert_array_equal(found, ax * by - ay * bx)
+    result = on_gpu(LINE, "fault_value(fault_line(p, q), place)", **whole)
+    (ax, ay), (bx, by) = (second - first).T, (position - first * 8 - 4).T
+    np.testing.assert_array_equal(result, ax * by - ay * bx)
 
 
 @pytest.mark.parametrize("side", [2, 3, 33, 100, 1025, 4096, 4097, 16384])
 def test_texels_stand_where_they_stand(on_gpu, side):
     texel = np.unique(np.linspace(0, side - 1, 3000).astype(np.int32))
-    found = on_gpu(LINE, "place_of_texel(texel, side)", texel=texel, side=side)
-    np.testing.assert_allclose(found, texel * (32768 / (side - 1)), atol=0.5)
-    assert found[0] == 0 and found[-1] == 32768
+    result = on_gpu(LINE, "place_of_texel(texel, side)", texel=texel, side=side)
+    np.testing.assert_allclose(result, texel * (32768 / (side - 1)), atol=0.5)
+    assert result[0] == 0 and result[-1] == 32768
 
 
 def test_the_lowest_bit(on_gpu):
     bits = np.concatenate([np.arange(1, 5000), 2 ** np.arange(32), 3 << np.arange(31), [2**32 - 1]])
-    found = on_gpu("maths/bits.glsl", "lowest_bit(n)", n=bits.astype(np.uint32))
-    np.testing.assert_array_equal(found, [(int(n) & -int(n)).bit_length() - 1 for n in bits])
+    result = on_gpu("maths/bits.glsl", "lowest_bit(n)", n=bits.astype(np.uint32))
+    np.testing.assert_array_equal(result, [(int(n) & -int(n)).bit_length() - 1 for n in bits])
 
 
 def test_turns_are_faults(engine, sketch_of, drawn, heights_of):
@@ -197,17 +197,17 @@ def test_turns_are_faults(engine, sketch_of, drawn, heights_of):
     sketch = sketch_of((100, 70), iterations=120, seed=6)
     points, heights = drawn(120, 6), heights_of(sketch, 120)
     truth = np.zeros((70, 100))
-    for turn, found in engine.steps(sketch, "terrain"):
+    for turn, result in engine.steps(sketch, "terrain"):
         if turn > 0:
             up = sides(points[0][turn - 1], points[1][turn - 1], (100, 70))
             truth += np.where(up, heights[turn - 1], -heights[turn - 1])
-        np.testing.assert_array_equal(found, truth)
+        np.testing.assert_array_equal(result, truth)
     for turn in (1, 50, 96, 97, 119, 120):
         with Engine(engine.ctx, driver=engine.driver) as fresh:
-            found = fresh.read(sketch, "terrain.sum", steps={"terrain.sum": turn})
+            result = fresh.read(sketch, "terrain.sum", steps={"terrain.sum": turn})
         up = np.array([sides(points[0][i], points[1][i], (100, 70)) for i in range(turn)])
-        wanted = (np.where(up, 1, -1) * heights[:turn, None, None]).sum(axis=0)
-        np.testing.assert_array_equal(found, wanted)
+        expected = (np.where(up, 1, -1) * heights[:turn, None, None]).sum(axis=0)
+        np.testing.assert_array_equal(result, expected)
 
 
 def test_a_terrain_to_begin_with_stays_and_the_grouping_is_still_free(engine, sketch_of):
@@ -252,6 +252,6 @@ def test_normalise_and_seeds(engine, sketch_of):
     np.testing.assert_array_equal(terrains["none"], raw)
     np.testing.assert_allclose(terrains["max"], raw / raw.max(), atol=1e-6)
     np.testing.assert_allclose(terrains["minmax"], (raw - raw.min()) / np.ptp(raw), atol=1e-6)
-    one, other, again = (engine.read(sketch_of(seed=s), "terrain") for s in (1, 2, 1))
-    np.testing.assert_array_equal(one, again)
-    assert np.abs(one - other).max() > 0.1
+    first, other, again = (engine.read(sketch_of(seed=s), "terrain") for s in (1, 2, 1))
+    np.testing.assert_array_equal(first, again)
+    assert np.abs(first - other).max() > 0.1

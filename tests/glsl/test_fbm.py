@@ -14,9 +14,9 @@ WHOLE = 2**32
 @pytest.fixture
 def sketch_of(make_sketch):
     def make(size=(65, 65), use="generation/fbm", **values):
-        given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
+        text = "".join(f"{k} = {v!r}\n" for k, v in values.items())
         return make_sketch(
-            f'[[pass]]\nname = "terrain"\nuse = "{use}"\n[pass.set]\n{given}',
+            f'[[pass]]\nname = "terrain"\nuse = "{use}"\n[pass.set]\n{text}',
             size=list(size),
             extent=[1000.0, 1000.0 * max(size[1] - 1, 1) / max(size[0] - 1, 1)],
         )
@@ -42,16 +42,16 @@ def test_octaves_are_added(any_engine, sketch_of, hurst, frequency, lacunarity, 
     size, seed = (129, 65), 7 + salt("generation/fbm")
     values = {"hurst": hurst, "frequency": frequency, "lacunarity": lacunarity, "octaves": octaves}
     x, y, texels = places(size, (1000.0, 500.0), frequency)
-    wanted, bound = np.zeros(x.shape), 0.0
+    expected, bound = np.zeros(x.shape), 0.0
     for k in range(octaves):
         cells, gain = lacunarity**k, lacunarity ** (-hurst * k)
         weight = gain * np.clip(texels / cells - 1, 0, 1)
         if weight == 0:
             break
-        wanted += weight * perlin(x * cells + SHIFT, y * cells, seed * 0x2545F491 + k * 0xC2B2AE3D)
+        expected += weight * perlin(x * cells + SHIFT, y * cells, seed * 0x2545F491 + k * 0xC2B2AE3D)
         bound += gain * (4 * (k + 4) * frequency * cells + 16) * 2.0**-24
     sketch = sketch_of(size, use="generation/fbm/sum", **values)
-    assert np.abs(any_engine.read(sketch, "terrain") - wanted).max() <= bound
+    assert np.abs(any_engine.read(sketch, "terrain") - expected).max() <= bound
 
 
 @pytest.mark.parametrize("hurst", [0.2, 0.4, 0.6, 0.8])
@@ -63,8 +63,8 @@ def test_its_power_falls_as_fractional_brownian_motion_s(any_engine, sketch_of, 
     window = np.hanning(n)
     power = np.abs(np.fft.fft2((terrain - terrain.mean()) * np.outer(window, window))) ** 2
     along = np.fft.fftfreq(n, 1 / n)
-    found = slope_of_bins(np.hypot(along[None], along[:, None]), power, 8, 256)
-    assert abs(found + 2 * hurst + 2) < 0.2
+    slope = slope_of_bins(np.hypot(along[None], along[:, None]), power, 8, 256)
+    assert abs(slope + 2 * hurst + 2) < 0.2
 
 
 def test_each_octave_is_weaker_by_the_hurst_exponent(any_engine, sketch_of):
@@ -148,9 +148,9 @@ def curve(n, line, hurst, octaves, frequency, seed):
         which = ((seed + salt("generation/fbm/curve")) * 0x2545F491 + k * 0xC2B2AE3D) % WHOLE
         squares += weight**2
         for i in range(n):
-            place = i * cells / nodes + 0.618034
-            cell = int(np.floor(place))
-            t = place - cell
+            position = i * cells / nodes + 0.618034
+            cell = int(np.floor(position))
+            t = position - cell
             fade = t**3 * (10 - 15 * t + 6 * t * t)
             low, high = slope_at(cell, line, which) * t, slope_at(cell + 1, line, which) * (t - 1)
             row[i] += weight * (low * (1 - fade) + high * fade)
@@ -161,9 +161,9 @@ def curve(n, line, hurst, octaves, frequency, seed):
 def test_curves_are_octaves_of_noise_along_a_line(engine, sketch_of, size):
     exponents = (0.9, 0.5, 0.4, 0.1)
     values = {"hurst": list(exponents), "hurst_last": 0.7, "octaves": 5, "frequency": 3.0, "seed": 9}
-    found = engine.read(sketch_of(size, CURVES, **values), "terrain")
+    result = engine.read(sketch_of(size, CURVES, **values), "terrain")
     truth = [curve(size[0], r, (*exponents, 0.7, 0.7)[r], 5, 3.0, 9) for r in range(size[1])]
-    np.testing.assert_allclose(found, truth, atol=3e-5)
+    np.testing.assert_allclose(result, truth, atol=3e-5)
 
 
 def many_curves(any_engine, sketch_of, hurst):

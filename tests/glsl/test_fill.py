@@ -207,9 +207,9 @@ def test_every_texel_drains_after_any_number_of_steps(engine, make_sketch, steps
 def test_turned_or_mirrored_terrain_is_filled_turned_or_mirrored(engine, terrain):
     level = engine.read(terrain, "fill").copy()
     for key, axes in (("turn", (0, 1)), ("mirror", (1,))):
-        found = engine.read(terrain.with_values({f"height.{key}": 1}), "fill")
+        result = engine.read(terrain.with_values({f"height.{key}": 1}), "fill")
         # The way on which a flood begins is rounded once a doubling.
-        np.testing.assert_allclose(np.flip(found, axes), level, rtol=0, atol=2e-6)
+        np.testing.assert_allclose(np.flip(result, axes), level, rtol=0, atol=2e-6)
 
 
 def test_hostile_scales_keep_their_ways(engine, make_sketch):

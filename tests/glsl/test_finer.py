@@ -30,13 +30,13 @@ def finer(engine, make_sketch):
 
 def test_parabolas_are_kept_where_all_four_texels_are(finer):
     """41 x 38 texels: in one direction five times as fine, in the other no whole number of times."""
-    _, found = finer("./parabola", (41, 38))
+    _, result = finer("./parabola", (41, 38))
     y, x = np.meshgrid(np.linspace(0, 1, 38), np.linspace(0, 1, 41), indexing="ij")
     expected = 0.2 + 0.5 * x - 0.3 * y + 0.4 * x * x - 0.6 * y * y + 0.3 * x * y
     inner = (np.abs(x - 0.5) <= 0.5 - 1 / 8) & (np.abs(y - 0.5) <= 0.5 - 1 / 12)
-    np.testing.assert_allclose(found[inner], expected[inner], atol=1e-6)
+    np.testing.assert_allclose(result[inner], expected[inner], atol=1e-6)
 
 
 def test_it_goes_through_the_texels_given(finer):
-    coarse, found = finer("generation/white_noise", (41, 37))
-    np.testing.assert_allclose(found[::3, ::5], coarse, atol=1e-6)
+    coarse, result = finer("generation/white_noise", (41, 37))
+    np.testing.assert_allclose(result[::3, ::5], coarse, atol=1e-6)

@@ -16,15 +16,15 @@ def sketch_of(make_sketch):
 
 def passage(texels, cells):
     """Return the matrix that makes heights at texels of those at nodes, along one axis."""
-    place = cells * np.arange(texels) / (texels - 1)
-    node = np.floor(place).astype(int)
-    share = place - node
+    position = cells * np.arange(texels) / (texels - 1)
+    node = np.floor(position).astype(int)
+    share = position - node
     bent = 3 * share**2 - 2 * share**3
-    found = np.zeros((texels, cells + 2))
+    result = np.zeros((texels, cells + 2))
     rows = np.arange(texels)
-    found[rows, node] = 1 - bent
-    found[rows, node + 1] += bent
-    return found
+    result[rows, node] = 1 - bent
+    result[rows, node + 1] += bent
+    return result
 
 
 @pytest.mark.parametrize(
@@ -32,15 +32,15 @@ def passage(texels, cells):
 )
 def test_heights_are_interpolated_random_numbers(any_engine, sketch_of, python_random, size, roughness, seed):
     """A place of up to 64 cells is off by 64 * 2^-24, an octave by 3 times that, and by its weight less."""
-    wanted = np.zeros(size[::-1])
+    expected = np.zeros(size[::-1])
     bound = 0.0
     for k in range(5):
         cells, weight = 4 * 2**k, 0.5 * roughness**k
         nodes = python_random(*np.meshgrid(np.arange(cells + 2), np.arange(cells + 2)), seed)
-        wanted += weight * (passage(size[1], cells) @ nodes.astype(float) @ passage(size[0], cells).T)
+        expected += weight * (passage(size[1], cells) @ nodes.astype(float) @ passage(size[0], cells).T)
         bound += weight * (3 * cells + 4) * 2.0**-24
     heights = any_engine.read(sketch_of(size, roughness, seed), "terrain")
-    assert np.abs(heights - wanted).max() <= bound
+    assert np.abs(heights - expected).max() <= bound
     if roughness <= 0.5:
         assert heights.min() >= 0 and heights.max() <= 1
 

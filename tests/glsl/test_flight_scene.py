@@ -28,10 +28,10 @@ def test_under_water_the_ground_goes_and_at_a_flat_angle_the_air_is_mirrored(on_
 
 def test_the_brightest_sky_is_brought_down_and_keeps_its_order_and_its_hue(on_gpu):
     light = np.geomspace(1e-3, 1e3, 60)
-    found = on_gpu(FILE, "eased(vec3(l, 0.5 * l, 2.0 * l))", l=light)
-    assert (np.diff(found[:, 0]) > 0).all() and (found[light < 0.01, 0] > 0.99 * light[light < 0.01]).all()
-    np.testing.assert_allclose(found / found[:, :1], np.tile([1, 0.5, 2], (60, 1)), rtol=1e-5)
-    assert (found @ [0.2126, 0.7152, 0.0722]).max() < 4.0
+    result = on_gpu(FILE, "eased(vec3(l, 0.5 * l, 2.0 * l))", l=light)
+    assert (np.diff(result[:, 0]) > 0).all() and (result[light < 0.01, 0] > 0.99 * light[light < 0.01]).all()
+    np.testing.assert_allclose(result / result[:, :1], np.tile([1, 0.5, 2], (60, 1)), rtol=1e-5)
+    assert (result @ [0.2126, 0.7152, 0.0722]).max() < 4.0
 
 
 def test_grain_around_a_half_changes_nothing(on_gpu):
@@ -43,9 +43,9 @@ def test_grain_around_a_half_changes_nothing(on_gpu):
 
 def test_presenting_is_exposure_then_tone_then_encoding(on_gpu):
     light = np.array([0.0, 0.0031308, 0.18, 0.5, 1.0, 4.0])
-    found = on_gpu(FILE, "presented(vec3(l), 0.0, 0, 3.0).x", l=light)
+    result = on_gpu(FILE, "presented(vec3(l), 0.0, 0, 3.0).x", l=light)
     encoded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.minimum(light, 1.0) ** (1 / 2.4) - 0.055)
-    np.testing.assert_allclose(found, encoded, atol=2e-4)
+    np.testing.assert_allclose(result, encoded, atol=2e-4)
     np.testing.assert_allclose(
         on_gpu(FILE, "presented(vec3(0.25 * l), 2.0, 2, 3.0).x", l=light),
         on_gpu(FILE, "presented(vec3(l), 0.0, 2, 3.0).x", l=light),

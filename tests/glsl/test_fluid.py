@@ -25,26 +25,26 @@ def on_torus(field, x, y):
     """Return a field between its texels, bilinearly; whole numbers are texels."""
     west, south = np.floor(x).astype(int), np.floor(y).astype(int)
     rows, columns = field.shape
-    found = 0.0
+    result = 0.0
     for dy in (0, 1):
         for dx in (0, 1):
             weight = (dx * (x - west) + (1 - dx) * (1 - x + west)) * (
                 dy * (y - south) + (1 - dy) * (1 - y + south)
             )
-            found = found + weight * field[(south + dy) % rows, (west + dx) % columns]
-    return found
+            result = result + weight * field[(south + dy) % rows, (west + dx) % columns]
+    return result
 
 
 def stirrer(k, time):
     speed, out = (-1.1 if k == 1 else 0.7 + 0.35 * k), 0.16 + 0.07 * k
     turn = speed * time + 2 * np.pi / 3 * k
-    place = 0.5 + out * np.cos(turn), 0.5 + out * np.sin(turn)
-    return place, (-speed * out * np.sin(turn), speed * out * np.cos(turn))
+    position = 0.5 + out * np.cos(turn), 0.5 + out * np.sin(turn)
+    return position, (-speed * out * np.sin(turn), speed * out * np.cos(turn))
 
 
-def near(x, y, place, radius=0.1):
+def near(x, y, position, radius=0.1):
     """Return how near points are to a stirrer, the nearest of its copies around the torus."""
-    copies = [(x - place[0] + i) ** 2 + (y - place[1] + j) ** 2 for i in (-1, 0, 1) for j in (-1, 0, 1)]
+    copies = [(x - position[0] + i) ** 2 + (y - position[1] + j) ** 2 for i in (-1, 0, 1) for j in (-1, 0, 1)]
     return np.clip(1 - np.min(copies, 0) / radius**2, 0, 1) ** 2
 
 
@@ -66,17 +66,17 @@ def fine(*fields):
 def test_a_stirrers_motion_is_the_derivative_of_its_place(on_gpu):
     times, step = np.linspace(0, 20, 41), 1e-3
     for k in range(3):
-        found = on_gpu(STIRRERS, f"stirrer_motion({k}, t)", t=times.astype(np.float32))
+        result = on_gpu(STIRRERS, f"stirrer_motion({k}, t)", t=times.astype(np.float32))
         ahead, behind = stirrer(k, times + step)[0], stirrer(k, times - step)[0]
         slope = (np.stack(ahead, -1) - np.stack(behind, -1)) / (2 * step)
-        np.testing.assert_allclose(found, slope, atol=1e-5)
+        np.testing.assert_allclose(result, slope, atol=1e-5)
 
 
 @pytest.mark.parametrize("frame", FRAMES)
 def test_the_velocity_is_carried_by_itself_and_stirred(engine, sketch, frame):
     before = state(engine, sketch, "projected", frame - 1)
     u, v = before[..., 0], before[..., 1]
-    found = state(engine, sketch, "carried", frame)
+    result = state(engine, sketch, "carried", frame)
     rows, columns = np.mgrid[0 : SIZE[1], 0 : SIZE[0]].astype(float)
     for axis, (right, up) in enumerate(((0.0, 0.5), (0.5, 0.0))):
         x, y = columns + right, rows + up
@@ -87,18 +87,18 @@ def test_the_velocity_is_carried_by_itself_and_stirred(engine, sketch, frame):
         along, across = flow(x, y)
         expected = flow(x - along / 60, y - across / 60)[axis]
         for k in range(3):
-            place, motion = stirrer(k, frame / 60)
-            share = near(x / SIZE[0], y / SIZE[1], place)
+            position, motion = stirrer(k, frame / 60)
+            share = near(x / SIZE[0], y / SIZE[1], position)
             expected = (1 - share) * expected + share * motion[axis] * SIZE[axis]
-        np.testing.assert_allclose(found[..., axis], expected, atol=fine(before, found))
-    assert np.abs(found).max() > 5, "it moves"
+        np.testing.assert_allclose(result[..., axis], expected, atol=fine(before, result))
+    assert np.abs(result).max() > 5, "it moves"
 
 
 @pytest.mark.parametrize("frame", FRAMES)
 def test_the_divergence_is_what_flows_out_of_each_cell(engine, sketch, frame):
     carried = state(engine, sketch, "carried", frame)
-    found = state(engine, sketch, "divergence", frame)
-    np.testing.assert_allclose(found, divergence(carried), atol=4 * 2**-24 * 4 * np.abs(carried).max())
+    result = state(engine, sketch, "divergence", frame)
+    np.testing.assert_allclose(result, divergence(carried), atol=4 * 2**-24 * 4 * np.abs(carried).max())
 
 
 @pytest.mark.parametrize("frame", FRAMES)
@@ -109,17 +109,17 @@ def test_each_wave_of_the_divergence_falls_as_jacobis_iteration_says(engine, ske
     ky, kx = np.meshgrid(*(2 * np.pi * np.fft.fftfreq(n) for n in left.shape), indexing="ij")
     remains = (1 - 2 / 3 * (1 - (np.cos(kx) + np.cos(ky)) / 2)) ** ROUNDS
     expected = np.fft.ifft2(remains * np.fft.fft2(left)).real
-    found = divergence(state(engine, sketch, "projected", frame))
+    result = divergence(state(engine, sketch, "projected", frame))
     solved = state(engine, sketch, "solved", frame)
     # Each round rounds the pressure half a dozen times, which the five points make 8 of.
     rounding = 8 * ROUNDS * 6 * 2**-24 * np.abs(solved).max() + 16 * 2**-24 * np.abs(carried).max()
-    np.testing.assert_allclose(found, expected, atol=rounding)
-    assert np.linalg.norm(found) < 0.5 * np.linalg.norm(divergence(carried))
+    np.testing.assert_allclose(result, expected, atol=rounding)
+    assert np.linalg.norm(result) < 0.5 * np.linalg.norm(divergence(carried))
 
 
 @pytest.mark.parametrize("frame", FRAMES)
 def test_the_dye_is_carried_fades_and_is_added_at_the_stirrers(engine, sketch, frame):
-    before, found = (state(engine, sketch, "dyed", n)[..., :3] for n in (frame - 1, frame))
+    before, result = (state(engine, sketch, "dyed", n)[..., :3] for n in (frame - 1, frame))
     flow = state(engine, sketch, "projected", frame)
     middle = 0.5 * (flow + np.stack([np.roll(flow[..., 0], -1, 1), np.roll(flow[..., 1], -1, 0)], -1))
     rows, columns = np.mgrid[0 : SIZE[1], 0 : SIZE[0]].astype(float)
@@ -129,7 +129,7 @@ def test_the_dye_is_carried_fades_and_is_added_at_the_stirrers(engine, sketch, f
     for k, colour in enumerate(colours):
         share = 0.4 * near((columns + 0.5) / SIZE[0], (rows + 0.5) / SIZE[1], stirrer(k, frame / 60)[0])
         expected = expected + share[..., None] * (np.array(colour) - expected)
-    np.testing.assert_allclose(found, expected, atol=fine(before, found))
+    np.testing.assert_allclose(result, expected, atol=fine(before, result))
 
 
 @pytest.mark.slow
@@ -157,7 +157,7 @@ vec4 kernel(ivec2 texel) { return vec4(fract(vec3(texel.x * 7 + texel.y * 5) * v
     sketch = make_sketch(passes(flow="./flow", blob="./blob", made=made), size=[16, 16], flow=flow, blob=blob)
     first = engine.read(sketch, "blob")
     for frame in (0, 4, 15):
-        found = engine.read(sketch, "made", time=frame / 60)
+        result = engine.read(sketch, "made", time=frame / 60)
         moved = np.roll(first, (-(frame + 1), frame + 1), (0, 1))
         # 60 times float32's 1 / 60 is 1 to 2**-24, which a frame mixes in of the neighbour.
-        np.testing.assert_allclose(found, moved, atol=(frame + 1) * 2**-20)
+        np.testing.assert_allclose(result, moved, atol=(frame + 1) * 2**-20)

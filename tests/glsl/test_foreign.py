@@ -1,4 +1,4 @@
-"""What stands in for the channels of other tools' shaders, and an image encoded as its file."""
+"""What replaces the channels of other tools' shaders, and an image encoded as its file."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ def texels(any_engine, tmp_path):
 
 
 def test_noise_is_even_and_its_numbers_are_independent(texels):
-    zero, one = texels("noise"), texels("noise", setting="number = 1")
+    zero, item = texels("noise"), texels("noise", setting="number = 1")
     assert zero.shape == (64, 64, 4)
-    channels = np.concatenate([zero.reshape(-1, 4), one.reshape(-1, 4)], axis=1)
+    channels = np.concatenate([zero.reshape(-1, 4), item.reshape(-1, 4)], axis=1)
     np.testing.assert_allclose(channels.mean(0), 0.5, atol=4 / np.sqrt(12 * 4096))
     np.testing.assert_allclose(channels.var(0), 1 / 12, rtol=0.06)
     others = np.corrcoef(channels.T) - np.eye(8)
@@ -45,9 +45,9 @@ def test_noise_is_even_and_its_numbers_are_independent(texels):
 def test_pictures_differ_and_show_which_way_is_up(texels):
     made = [texels("picture", setting=f"number = {n}") for n in range(10)]
     assert all(np.abs(a - b).mean() > 0.02 for i, a in enumerate(made) for b in made[:i])
-    for one in made:
-        assert (one[:, -8:, 0].mean() - one[:, :8, 0].mean()) > 0.3  # red in the east
-        assert (one[-8:, :, 1].mean() - one[:8, :, 1].mean()) > 0.3  # green in the north
+    for item in made:
+        assert (item[:, -8:, 0].mean() - item[:, :8, 0].mean()) > 0.3  # red in the east
+        assert (item[-8:, :, 1].mean() - item[:8, :, 1].mean()) > 0.3  # green in the north
 
 
 def test_black_is_black_and_opaque(texels):
@@ -57,8 +57,8 @@ def test_black_is_black_and_opaque(texels):
 def test_an_image_has_the_bytes_of_its_file(texels, tmp_path):
     pixels = np.random.default_rng(3).integers(0, 256, (6, 8, 4), dtype=np.uint8)
     write_png(tmp_path / "x.png", pixels)
-    found = texels("image", (8, 6), 'image = "x.png"')
-    np.testing.assert_allclose(found[::-1] * 255, pixels, atol=1)
+    result = texels("image", (8, 6), 'image = "x.png"')
+    np.testing.assert_allclose(result[::-1] * 255, pixels, atol=1)
 
 
 def test_a_sky_has_its_horizon_its_sun_and_its_ground_where_the_cube_map_says(texels):
@@ -90,8 +90,8 @@ def music(
 @pytest.mark.slow
 def test_a_made_up_sound_has_tones_a_beat_and_a_wave(texels):
     times = np.arange(0.0, 6.0, 0.05)
-    found = np.stack([music(texels, time) for time in times])
-    spectra, waves = found[:, 0], found[:, 1]
+    result = np.stack([music(texels, time) for time in times])
+    spectra, waves = result[:, 0], result[:, 1]
     drum = spectra[:, :4].mean(1)  # up to 86 Hz
     struck = np.flatnonzero(np.diff(drum) > 0.25)
     assert 8 <= len(struck) <= 15, "1.6 to 2.4 beats a second for six seconds"

@@ -79,9 +79,9 @@ def test_the_texture_is_shadertoy_s(any_engine, sketch):
     assert (any_engine.read(sketch, "a") == 0).all(), "a shot has no keys"
     any_engine.runner.inputs.keyboard.hold([LEFT, A])
     any_engine.runner.inputs.keyboard.hold([A])
-    found = any_engine.read(sketch, "a")
-    assert [np.flatnonzero(row).tolist() for row in found] == [[A], [], [LEFT, A]]
-    assert found.max() == 1.0
+    result = any_engine.read(sketch, "a")
+    assert [np.flatnonzero(row).tolist() for row in result] == [[A], [], [LEFT, A]]
+    assert result.max() == 1.0
     np.testing.assert_array_equal(any_engine.render(sketch, size=(2, 2)).array[0, 0], [255, 0, 255, 255])
 
 
@@ -108,8 +108,8 @@ def test_a_loop_over_frames_goes_on_when_a_key_changes(any_engine, tmp_path):
     sketch, keyboard = load(tmp_path / "s.toml"), any_engine.runner.inputs.keyboard
     for frame in range(30):
         keyboard.hold([A] if frame in (5, 6, 20) else [])
-        found = any_engine.read(sketch, "sums", time=frame / 60)[0, 0]
-    assert found[:2].tolist() == [2.0, 30.0], "two presses in thirty frames"
+        result = any_engine.read(sketch, "sums", time=frame / 60)[0, 0]
+    assert result[:2].tolist() == [2.0, 30.0], "two presses in thirty frames"
     assert any_engine.runs["sums"] == 30, "each frame once"
 
 
@@ -160,10 +160,10 @@ def live_sketch(tmp_path, source: str, setting: str = ""):
 
 @pytest.fixture
 def inputs(any_engine):
-    found = any_engine.runner.inputs
-    found.is_live = True
-    yield found
-    found.close()
+    result = any_engine.runner.inputs
+    result.is_live = True
+    yield result
+    result.close()
 
 
 def test_a_microphone_s_tone_stands_in_its_texture(any_engine, inputs, tmp_path):
@@ -204,9 +204,9 @@ def test_a_camera_s_pictures_are_shown(any_engine, inputs, tmp_path):
     sketch = live_sketch(tmp_path, "camera")
     assert any_engine.read(sketch, "a").shape == (480, 640, 4)
     wait_for(lambda: any_engine.read(sketch, "a")[..., :3].max() > 0 or inputs.begin_frame() is None)
-    found = any_engine.read(sketch, "a")
-    np.testing.assert_allclose(found[400, 40, :3], 0.75, atol=0.05, err_msg="grey is first, from the west")
-    np.testing.assert_allclose(found[400, 600, :3], (0, 0, 0.75), atol=0.05, err_msg="blue is last")
+    result = any_engine.read(sketch, "a")
+    np.testing.assert_allclose(result[400, 40, :3], 0.75, atol=0.05, err_msg="grey is first, from the west")
+    np.testing.assert_allclose(result[400, 600, :3], (0, 0, 0.75), atol=0.05, err_msg="blue is last")
     mirrored = any_engine.read(live_sketch(tmp_path, "camera", "set = { mirror = true }"), "a")
     np.testing.assert_allclose(mirrored[400, 40, :3], (0, 0, 0.75), atol=0.05)
 

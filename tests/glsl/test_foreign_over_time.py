@@ -60,8 +60,8 @@ def test_a_film_shows_each_frame_at_its_time_whatever_came_before(any_engine, sk
     for milliseconds in (0, 45, 900, 505, 499, 41, 2000, 0, 119):
         values = any_engine.read(made, "a", time=milliseconds / 1000)
         assert values.shape == (48, 64, 4), "the film's own size"
-        wanted = max(i for i, stamp in enumerate(stamps) if stamp <= milliseconds)
-        np.testing.assert_allclose(shown(values), colour(wanted), atol=6)
+        expected = max(i for i, stamp in enumerate(stamps) if stamp <= milliseconds)
+        np.testing.assert_allclose(shown(values), colour(expected), atol=6)
         assert values[-4, 3, :3].max() < 0.05, "north is on top"
 
 
@@ -76,7 +76,7 @@ def test_a_film_s_pass_runs_only_when_its_frame_changes(any_engine, sketch, tmp_
 
 
 @pytest.mark.parametrize(
-    ("setting", "time", "wanted"),
+    ("setting", "time", "expected"),
     [
         ("start = 0.4", 0.1, 5),
         ("speed = 2.0", 0.2, 4),
@@ -87,10 +87,10 @@ def test_a_film_s_pass_runs_only_when_its_frame_changes(any_engine, sketch, tmp_
         ("loop = true", 1.3, 3),
     ],
 )
-def test_start_speed_and_loop(any_engine, sketch, tmp_path, setting, time, wanted):
+def test_start_speed_and_loop(any_engine, sketch, tmp_path, setting, time, expected):
     own_film(tmp_path / "v.mp4", count=10, fps=10)
     values = any_engine.read(sketch("video", f'video = "v.mp4", {setting}'), "a", time=time)
-    np.testing.assert_allclose(shown(values), colour(wanted), atol=5)
+    np.testing.assert_allclose(shown(values), colour(expected), atol=5)
 
 
 def test_a_pass_may_say_its_size(any_engine, sketch, tmp_path):

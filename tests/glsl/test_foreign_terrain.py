@@ -61,18 +61,18 @@ def folder(tmp_path: Path) -> Path:
 def test_heights_keep_more_than_eight_bits_and_the_size_is_the_pass_s(
     folder: Path, any_engine: Engine
 ) -> None:
-    found = any_engine.read(load(folder / "placed.toml"), "height")
+    result = any_engine.read(load(folder / "placed.toml"), "height")
     x, y = np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1]))
-    np.testing.assert_allclose(found, 0.5 + (x + SIZE[0] * y) / 65536.0, rtol=0, atol=2**-23)
+    np.testing.assert_allclose(result, 0.5 + (x + SIZE[0] * y) / 65536.0, rtol=0, atol=2**-23)
 
 
 @pytest.mark.parametrize(
-    ("channel", "wanted"),
+    ("channel", "expected"),
     [("green", 2.0 * 5.5 / SIZE[0]), ("blue", SIZE[1] / 64.0), ("alpha", 1.0)],
 )
-def test_a_channel_may_be_chosen(folder: Path, any_engine: Engine, channel: str, wanted: float) -> None:
+def test_a_channel_may_be_chosen(folder: Path, any_engine: Engine, channel: str, expected: float) -> None:
     sketch = load(folder / "placed.toml").with_values({"height.channel": channel})
-    assert any_engine.read(sketch, "height")[3, 5] == pytest.approx(wanted, abs=1e-6)
+    assert any_engine.read(sketch, "height")[3, 5] == pytest.approx(expected, abs=1e-6)
 
 
 def test_the_text_s_own_uniform_is_a_parameter(folder: Path, any_engine: Engine) -> None:
@@ -85,22 +85,22 @@ def test_the_text_s_own_uniform_is_a_parameter(folder: Path, any_engine: Engine)
 def test_colours_become_linear_light(folder: Path, any_engine: Engine) -> None:
     text = HEAD + passes(picture="./plain", colour="foreign/colour") + map_of("colour")
     (folder / "c.toml").write_text(text)
-    found = any_engine.read(load(folder / "c.toml"), "colour")
+    result = any_engine.read(load(folder / "c.toml"), "colour")
     x, y = np.meshgrid((np.arange(SIZE[0]) + 0.5) / SIZE[0], (np.arange(SIZE[1]) + 0.5) / SIZE[1])
-    wanted = srgb_to_linear(np.stack([x, y, np.full_like(x, 0.25)], axis=-1))
-    np.testing.assert_allclose(found[..., :3], wanted, rtol=2**-10, atol=1e-6)  # half floats
+    expected = srgb_to_linear(np.stack([x, y, np.full_like(x, 0.25)], axis=-1))
+    np.testing.assert_allclose(result[..., :3], expected, rtol=2**-10, atol=1e-6)  # half floats
 
 
 def test_a_filter_is_laid_over_the_frame(folder: Path, any_engine: Engine) -> None:
     plain = HEAD + passes(height="./own") + map_of("height", "red")
     (folder / "plain.toml").write_text(plain)
     (folder / "filtered.toml").write_text(FILTERED)
-    plain, found = (
+    plain, result = (
         any_engine.render(load(folder / name), size=(64, 40)).array[..., :3]
         for name in ("plain.toml", "filtered.toml")
     )
     assert len(np.unique(plain)) > 9
-    np.testing.assert_array_equal(found, 255 - plain)
+    np.testing.assert_array_equal(result, 255 - plain)
 
 
 ISF = """/*{"ISFVSN": "2", "INPUTS": [{"NAME": "inputImage", "TYPE": "image"},
@@ -129,9 +129,9 @@ def test_an_isf_generator_is_a_terrain(folder: Path, any_engine: Engine) -> None
     text = '/*{"ISFVSN": "2", "INPUTS": []}*/\n' + text
     (folder / "slope.fs").write_text(text)
     (folder / "placed.toml").write_text(PLACED.replace("./fine", "./slope"))
-    found = any_engine.read(load(folder / "placed.toml"), "height")
-    wanted = np.broadcast_to((np.arange(SIZE[0]) + 0.5) / SIZE[0] / 300.0, SIZE[::-1])
-    np.testing.assert_allclose(found, wanted, rtol=1e-5)
+    result = any_engine.read(load(folder / "placed.toml"), "height")
+    expected = np.broadcast_to((np.arange(SIZE[0]) + 0.5) / SIZE[0] / 300.0, SIZE[::-1])
+    np.testing.assert_allclose(result, expected, rtol=1e-5)
 
 
 BUFFERED = """/*{"ISFVSN": "2", "INPUTS": [],
@@ -146,25 +146,25 @@ void main() {
 def test_several_passes_of_one_file_keep_their_numbers(folder: Path, any_engine: Engine) -> None:
     (folder / "buffered.fs").write_text(BUFFERED)
     (folder / "placed.toml").write_text(PLACED.replace("./fine", "./buffered"))
-    found = any_engine.read(load(folder / "placed.toml"), "height")
-    wanted = np.broadcast_to((np.arange(SIZE[0]) + 0.5) / 70000.0, SIZE[::-1])
-    np.testing.assert_allclose(found, wanted, rtol=1e-5)
+    result = any_engine.read(load(folder / "placed.toml"), "height")
+    expected = np.broadcast_to((np.arange(SIZE[0]) + 0.5) / 70000.0, SIZE[::-1])
+    np.testing.assert_allclose(result, expected, rtol=1e-5)
 
 
 def test_a_text_that_is_typed_takes_the_file_s_place(folder: Path, any_engine: Engine) -> None:
     texts = {str(folder / "fine.frag"): FINE.replace("0.5 + x", "0.25 + x")}
     sketch = with_texts(load(folder / "placed.toml"), texts)
-    found = any_engine.read(sketch, "height")
+    result = any_engine.read(sketch, "height")
     x, y = np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1]))
-    np.testing.assert_allclose(found, 0.25 + (x + SIZE[0] * y) / 65536.0, rtol=0, atol=2**-23)
+    np.testing.assert_allclose(result, 0.25 + (x + SIZE[0] * y) / 65536.0, rtol=0, atol=2**-23)
 
 
 def test_the_chooser_keeps_what_is_wired(folder: Path, any_engine: Engine) -> None:
     sketch = load(folder / "placed.toml")
     assert {"./fine", "./plain", "./invert"} <= {*choices(sketch, "picture")}
     assert "foreign/height" in choices(sketch, "height")
-    found = any_engine.read(with_technique(sketch, "picture", "./plain"), "height")
-    np.testing.assert_allclose(found[0], (np.arange(SIZE[0]) + 0.5) / SIZE[0], rtol=1e-6)
+    result = any_engine.read(with_technique(sketch, "picture", "./plain"), "height")
+    np.testing.assert_allclose(result[0], (np.arange(SIZE[0]) + 0.5) / SIZE[0], rtol=1e-6)
 
 
 def test_a_picture_that_no_kernel_reads_stays_of_bytes(folder: Path) -> None:

@@ -72,9 +72,9 @@ def as_complex(array):
     return array[..., 0].astype(np.float64) + 1j * array[..., 1]
 
 
-def apart(found, wanted):
-    """Return the greatest difference, as a share of the greatest number there is."""
-    return np.abs(found - wanted).max() / np.abs(wanted).max()
+def apart(result, expected):
+    """Return the greatest difference, as a fraction of the greatest number there is."""
+    return np.abs(result - expected).max() / np.abs(expected).max()
 
 
 def even(size):
@@ -96,8 +96,8 @@ def transforms(make_sketch):
 @pytest.fixture
 def sketch_of(make_sketch):
     def make(size=(64, 64), **values):
-        given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
-        use = f'[[pass]]\nname = "terrain"\nuse = "generation/fourier"\n[pass.set]\n{given}'
+        text = "".join(f"{k} = {v!r}\n" for k, v in values.items())
+        use = f'[[pass]]\nname = "terrain"\nuse = "generation/fourier"\n[pass.set]\n{text}'
         return make_sketch(use, size=list(size))
 
     return make
@@ -145,10 +145,10 @@ def test_the_transform_is_the_sum_that_defines_it(engine, transforms):
     nx, ny = 8, 4
     sketch = transforms((nx, ny))
     numbers = as_complex(engine.read(sketch, "numbers"))
-    wanted = np.zeros((ny, nx), complex)
+    expected = np.zeros((ny, nx), complex)
     for ly, lx, y, x in product(range(ny), range(nx), range(ny), range(nx)):
-        wanted[ly, lx] += numbers[y, x] * np.exp(-2j * np.pi * (lx * x / nx + ly * y / ny))
-    assert apart(as_complex(engine.read(sketch, "there")), wanted) < 3e-7
+        expected[ly, lx] += numbers[y, x] * np.exp(-2j * np.pi * (lx * x / nx + ly * y / ny))
+    assert apart(as_complex(engine.read(sketch, "there")), expected) < 3e-7
 
 
 def test_energy_is_preserved(engine, transforms):
@@ -166,9 +166,9 @@ def test_one_wave_is_one_number(engine, make_sketch):
     )
     sketch = make_sketch(TRANSFORMS, size=[32, 16], numbers=waves)
     spectrum = as_complex(engine.read(sketch, "there"))
-    wanted = np.zeros((16, 32))
-    wanted[15, 3] = wanted[1, 29] = 32 * 16 / 2
-    np.testing.assert_allclose(spectrum, wanted, atol=1e-4)
+    expected = np.zeros((16, 32))
+    expected[15, 3] = expected[1, 29] = 32 * 16 / 2
+    np.testing.assert_allclose(spectrum, expected, atol=1e-4)
 
 
 def test_every_iteration_is_a_level(engine, transforms):
@@ -179,15 +179,15 @@ def test_every_iteration_is_a_level(engine, transforms):
     shown = [as_complex(values) for _, values in engine.steps(sketch, "there")]
     assert len(shown) == 4 + 3 + 1
     by_rows = np.fft.fft(numbers, axis=1)
-    for turn, found in enumerate(shown):
+    for turn, result in enumerate(shown):
         many = 2 ** min(turn, 4)
         parts = np.fft.fft(numbers.reshape(ny, many, nx // many), axis=1)
-        wanted = parts.transpose(0, 2, 1).reshape(ny, nx)
+        expected = parts.transpose(0, 2, 1).reshape(ny, nx)
         if turn > 4:
             many = 2 ** (turn - 4)
             parts = np.fft.fft(by_rows.reshape(many, ny // many, nx), axis=0)
-            wanted = parts.transpose(1, 0, 2).reshape(ny, nx)
-        assert apart(found, wanted) < 5e-7, turn
+            expected = parts.transpose(1, 0, 2).reshape(ny, nx)
+        assert apart(result, expected) < 5e-7, turn
 
 
 def test_a_transform_of_nothing_is_nothing(engine, make_sketch):
@@ -198,23 +198,23 @@ def test_a_transform_of_nothing_is_nothing(engine, make_sketch):
 @pytest.mark.parametrize("count", [1, 2, 8, 64, 4096, 16384])
 def test_roots_of_one_are_good_to_float(on_gpu, count):
     k = np.arange(count + 1)
-    found = as_complex(on_gpu("maths/complex.glsl", f"root_of_one(k, {count})", k=k))
-    errors = found - np.exp(2j * np.pi * k / count)
+    result = as_complex(on_gpu("maths/complex.glsl", f"root_of_one(k, {count})", k=k))
+    errors = result - np.exp(2j * np.pi * k / count)
     assert max(np.abs(errors.real).max(), np.abs(errors.imag).max()) < 1e-7
     if count >= 8:
         quarter = count // 4
-        np.testing.assert_array_equal(found[::quarter], [1, 1j, -1, -1j, 1])
-        np.testing.assert_array_equal(found[quarter : 2 * quarter], 1j * found[:quarter])
-        np.testing.assert_array_equal(found[::-1], found.conj())
+        np.testing.assert_array_equal(result[::quarter], [1, 1j, -1, -1j, 1])
+        np.testing.assert_array_equal(result[quarter : 2 * quarter], 1j * result[:quarter])
+        np.testing.assert_array_equal(result[::-1], result.conj())
 
 
 def test_complex_numbers(on_gpu):
     a, b = np.random.default_rng(0).uniform(-2, 2, (2, 50, 2)).astype(np.float32)
-    wanted = as_complex(a) * as_complex(b)
-    found = as_complex(on_gpu("maths/complex.glsl", "complex_product(a, b)", a=a, b=b))
-    np.testing.assert_allclose(found, wanted, atol=1e-6)
-    found = as_complex(on_gpu("maths/complex.glsl", "conjugate(a)", a=a))
-    np.testing.assert_array_equal(found, as_complex(a).conj())
+    expected = as_complex(a) * as_complex(b)
+    result = as_complex(on_gpu("maths/complex.glsl", "complex_product(a, b)", a=a, b=b))
+    np.testing.assert_allclose(result, expected, atol=1e-6)
+    result = as_complex(on_gpu("maths/complex.glsl", "conjugate(a)", a=a))
+    np.testing.assert_array_equal(result, as_complex(a).conj())
 
 
 @pytest.mark.parametrize("y", [0.0, -0.005, -0.5, -0.85, -1.0, -1.25, -2.0, 0.5, 1.7])
@@ -222,9 +222,9 @@ def test_powers(on_gpu, y):
     draws = np.random.default_rng(1)
     x = np.concatenate([np.arange(1, 2000), draws.uniform(1e-3, 2**24, 5000), 2.0 ** np.arange(-20, 24)])
     x = x.astype(np.float32)
-    found = on_gpu("maths/power.glsl", "power(x, y)", x=x, y=np.float32(y))
-    np.testing.assert_allclose(found, x.astype(np.float64) ** np.float64(np.float32(y)), rtol=2e-6)
-    assert found[0] == 1.0
+    result = on_gpu("maths/power.glsl", "power(x, y)", x=x, y=np.float32(y))
+    np.testing.assert_allclose(result, x.astype(np.float64) ** np.float64(np.float32(y)), rtol=2e-6)
+    assert result[0] == 1.0
 
 
 # ── the terrain ─────────────────────────────────────────────────────────────────
@@ -233,11 +233,11 @@ def test_powers(on_gpu, y):
 @pytest.mark.parametrize("size", [(2, 2), (65, 33), (4, 32), (33, 33)], ids=str)
 def test_waves_are_drawn_by_their_frequency(engine, sketch_of, python_random, size):
     sketch = sketch_of(size, seed=11)
-    wanted = waves_by_hash(*even(size), 11, python_random)
-    assert apart(as_complex(engine.read(sketch, "terrain.waves")), wanted) < 1e-6
-    assert apart(engine.read(sketch, "terrain.grid"), scipy.fft.ifft2(wanted).real) < 2e-6
-    assert np.abs(scipy.fft.ifft2(wanted).imag).max() < 1e-12, "opposite waves are conjugates"
-    assert apart(as_complex(engine.read(sketch, "terrain.spectrum")), wanted) < 2e-6
+    expected = waves_by_hash(*even(size), 11, python_random)
+    assert apart(as_complex(engine.read(sketch, "terrain.waves")), expected) < 1e-6
+    assert apart(engine.read(sketch, "terrain.grid"), scipy.fft.ifft2(expected).real) < 2e-6
+    assert np.abs(scipy.fft.ifft2(expected).imag).max() < 1e-12, "opposite waves are conjugates"
+    assert apart(as_complex(engine.read(sketch, "terrain.spectrum")), expected) < 2e-6
 
 
 @pytest.mark.parametrize("seed", [0, 7, 9999])
@@ -300,13 +300,13 @@ def test_both_drivers_give_the_same_bits(ctx, sketch_of):
 def test_normalise(engine, sketch_of, mode):
     sketch = sketch_of((64, 32), seed=9, normalise=mode)
     terrain = truth_of(engine, sketch, (64, 32), 2.0)
-    wanted = {"none": terrain, "max": terrain / terrain.max(), "minmax": minmax(terrain)}[mode]
-    found = engine.read(sketch, "terrain")
-    assert apart(found, wanted) < 4e-6
+    expected = {"none": terrain, "max": terrain / terrain.max(), "minmax": minmax(terrain)}[mode]
+    result = engine.read(sketch, "terrain")
+    assert apart(result, expected) < 4e-6
     if mode != "none":
-        assert found.max() == 1.0
+        assert result.max() == 1.0
     if mode == "minmax":
-        assert found.min() == 0.0
+        assert result.min() == 0.0
 
 
 def test_a_terrain_all_below_0_stays_by_max(engine, sketch_of):
@@ -431,10 +431,12 @@ def test_the_magnitude_of_a_spectrum(engine, make_sketch):
     )
     sketch = make_sketch(passes, size=[64, 32], numbers=NUMBERS)
     spectrum = np.fft.fftshift(as_complex(engine.read(sketch, "there")))
-    wanted = 1 + np.log10(np.abs(spectrum) / np.sqrt(spectrum.size / 3)) / 4
-    found = engine.read(sketch, "magnitude")
-    np.testing.assert_allclose(found, wanted, atol=1e-5)
-    assert np.median(found) == pytest.approx(1 + np.log10(np.sqrt(2)) / 4, abs=0.05)  # of two numbers a texel
+    expected = 1 + np.log10(np.abs(spectrum) / np.sqrt(spectrum.size / 3)) / 4
+    result = engine.read(sketch, "magnitude")
+    np.testing.assert_allclose(result, expected, atol=1e-5)
+    assert np.median(result) == pytest.approx(
+        1 + np.log10(np.sqrt(2)) / 4, abs=0.05
+    )  # of two numbers a texel
 
 
 # ── the fast variant ────────────────────────────────────────────────────────────
@@ -469,8 +471,8 @@ def test_sides_too_long_for_the_fast_variant_have_the_plain_form_run(ctx, sketch
     notices = []
     with Engine(ctx, notice=notices.append) as engine:
         wide = sketch_of((16384, 2))
-        found = engine.read(wide, "terrain")
-        np.testing.assert_array_equal(found, engine.read(wide.plainly(), "terrain"))
+        result = engine.read(wide, "terrain")
+        np.testing.assert_array_equal(result, engine.read(wide.plainly(), "terrain"))
         engine.read(wide.with_values({"terrain.seed": 8}), "terrain")
         assert notices == [
             "terrain: fourier.comp takes n up to 8193, m up to 8193 texels a side, not 16384 x 2; "
@@ -490,14 +492,14 @@ def test_long_sides_of_the_fast_variant_are_scipys(ctx, sketch_of, size, seed):
         pytest.skip("this context has no compute shaders")
     nx, ny = even(size)
     with Engine(ctx) as engine:
-        found = engine.read(sketch_of(size, seed=seed), "terrain")
+        result = engine.read(sketch_of(size, seed=seed), "terrain")
         assert engine.record.ran == ["terrain"], "by the fast variant"
         waves = as_complex(engine.read(sketch_of(size, seed=seed), "terrain.waves"))
     f = frequencies(nx, ny)
     f[0, 0] = 1.0
     terrain = minmax(scipy.fft.ifft2(waves / f**2).real)
     terrain = np.pad(terrain, [(0, side % 2) for side in size[::-1]], mode="wrap")
-    np.testing.assert_allclose(found, terrain, atol=2e-6)
+    np.testing.assert_allclose(result, terrain, atol=2e-6)
 
 
 @pytest.fixture
@@ -520,11 +522,11 @@ def of_32(ctx):
         shader: moderngl.ComputeShader = ctx.compute_shader(text)
         buffer.bind_to_storage_buffer(0)
         shader.run(len(numbers))
-        found = np.frombuffer(buffer.read(), np.float32).reshape(*numbers.shape, 4)
+        result = np.frombuffer(buffer.read(), np.float32).reshape(*numbers.shape, 4)
         buffer.release()
         shader.release()
-        np.testing.assert_allclose(as_complex(found[..., 2:]), 1j * as_complex(found), atol=1e-5)
-        return as_complex(found)
+        np.testing.assert_allclose(as_complex(result[..., 2:]), 1j * as_complex(result), atol=1e-5)
+        return as_complex(result)
 
     return run
 
@@ -535,8 +537,8 @@ def reversed_bits(number, bits):
 
 def test_32_numbers(of_32):
     numbers = np.random.default_rng(2).standard_normal((9, 32, 2)) @ [1, 1j]
-    told = of_32("for (int i = 0; i < 32; i++) v[i] = vec4(place32(i)) * vec4(1, 0, 0, 1)", numbers)
-    places = told[0].real.astype(int)
+    message = of_32("for (int i = 0; i < 32; i++) v[i] = vec4(place32(i)) * vec4(1, 0, 0, 1)", numbers)
+    places = message[0].real.astype(int)
     assert sorted(places) == list(range(32))
     np.testing.assert_allclose(of_32("transform32(v)", numbers)[:, places], np.fft.fft(numbers), atol=3e-6)
 
@@ -545,14 +547,14 @@ def test_32_numbers(of_32):
 def test_blocks_of_numbers(of_32, levels):
     count = 2**levels
     numbers = np.random.default_rng(3).standard_normal((9, 32, 2)) @ [1, 1j]
-    wanted = np.fft.fft(numbers.reshape(9, -1, count)).reshape(9, 32)
-    places = [place - place % count + reversed_bits(place % count, levels) for place in range(32)]
-    found = of_32(f"transform_blocks(v, {levels})", numbers)
-    np.testing.assert_allclose(found[:, places], wanted, atol=3e-6)
-    found = of_32(f"transform_blocks_back(v, {levels})", numbers[:, places])
-    np.testing.assert_allclose(found, wanted, atol=3e-6)
-    told = of_32(
+    expected = np.fft.fft(numbers.reshape(9, -1, count)).reshape(9, 32)
+    places = [index - index % count + reversed_bits(index % count, levels) for index in range(32)]
+    result = of_32(f"transform_blocks(v, {levels})", numbers)
+    np.testing.assert_allclose(result[:, places], expected, atol=3e-6)
+    result = of_32(f"transform_blocks_back(v, {levels})", numbers[:, places])
+    np.testing.assert_allclose(result, expected, atol=3e-6)
+    message = of_32(
         f"for (int i = 0; i < 32; i++) v[i] = vec4(block_number(i, {levels})) * vec4(1, 0, 0, 1)",
         numbers,
     )
-    np.testing.assert_array_equal(told[0].real, [reversed_bits(p % count, levels) for p in range(32)])
+    np.testing.assert_array_equal(message[0].real, [reversed_bits(p % count, levels) for p in range(32)])

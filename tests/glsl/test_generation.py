@@ -35,13 +35,13 @@ def sketch_of(tmp_path) -> Callable[..., Sketch]:
     numbers = iter(range(1_000_000))
 
     def make(name: str, size: tuple[int, int] = (33, 33)) -> Sketch:
-        found = library()[name]
-        wanted = [one for one in input_names(found) if not is_optional(found, one)]
+        result = library()[name]
+        expected = [input_name for input_name in input_names(result) if not is_optional(result, input_name)]
         feeds = "".join(
             f'[[pass]]\nname = "feed_{i}"\nuse = "generation/white_noise"\nset = {{ seed = {i} }}\n'
-            for i in range(len(wanted))
+            for i in range(len(expected))
         )
-        wires = ", ".join(f'{one} = "feed_{i}"' for i, one in enumerate(wanted))
+        wires = ", ".join(f'{item} = "feed_{i}"' for i, item in enumerate(expected))
         path = tmp_path / f"sketch_{next(numbers)}.toml"
         path.write_text(
             f"format = 1\nsize = {list(size)}\nextent = 1000.0\n{feeds}"

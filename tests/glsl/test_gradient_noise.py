@@ -80,10 +80,10 @@ def terrain(
     x, y, *, basis="Perlin", shape="plain", octaves=6, lacunarity=2.0, gain=0.5, seed=7, warp=0.4, texels
 ):
     """Return the sum of octaves at places in cells of the first octave."""
-    given = {"basis": basis, "lacunarity": lacunarity, "gain": gain, "octaves": octaves, "texels": texels}
+    value = {"basis": basis, "lacunarity": lacunarity, "gain": gain, "octaves": octaves, "texels": texels}
     if shape == "warped":
-        east, north = (terrain(x, y, seed=seed + more, **given) for more in (0x51ED270B, 0xA3DA4E16))
-        return terrain(x + warp * east, y + warp * north, seed=seed, **given)
+        east, north = (terrain(x, y, seed=seed + more, **value) for more in (0x51ED270B, 0xA3DA4E16))
+        return terrain(x + warp * east, y + warp * north, seed=seed, **value)
     total, before = np.zeros(np.broadcast(x, y).shape), None
     for k in range(octaves):
         frequency = lacunarity**k
@@ -111,9 +111,9 @@ def places(size, extent, frequency):
 @pytest.fixture
 def sketch_of(make_sketch):
     def make(size=(33, 33), extent=1000.0, use="generation/gradient_noise/sum", **values):
-        given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
+        text = "".join(f"{k} = {v!r}\n" for k, v in values.items())
         return make_sketch(
-            f'[[pass]]\nname = "terrain"\nuse = "{use}"\n[pass.set]\n{given}', size=list(size), extent=extent
+            f'[[pass]]\nname = "terrain"\nuse = "{use}"\n[pass.set]\n{text}', size=list(size), extent=extent
         )
 
     return make
@@ -128,16 +128,16 @@ def test_the_lattice_s_bits_are_python_s(on_gpu):
     corner = "lattice_columns(p.x, s).{} * lattice_rows(p.y, s).{}"
     for seed in (0, 7, 2**32 - 1):
         for (i, x), (j, y) in product(enumerate("xy"), repeat=2):
-            found = on_gpu("noise/lattice.glsl", corner.format(x, y), p=points, s=np.uint32(seed))
+            result = on_gpu("noise/lattice.glsl", corner.format(x, y), p=points, s=np.uint32(seed))
             wide = points.astype(np.int64)
-            np.testing.assert_array_equal(found, bits(wide[:, 0] + i, wide[:, 1] + j, seed))
+            np.testing.assert_array_equal(result, bits(wide[:, 0] + i, wide[:, 1] + j, seed))
 
 
 def test_seeds_of_octaves_are_python_s_and_differ(on_gpu):
     seeds, octaves = (a.ravel() for a in np.mgrid[0:2000, 0:17])
-    found = on_gpu("noise/lattice.glsl", "lattice_seed(s, k)", s=seeds.astype(np.uint32), k=octaves)
-    np.testing.assert_array_equal(found, (seeds * 0x2545F491 + octaves * 0xC2B2AE3D) % WHOLE)
-    assert len(np.unique(found)) == found.size
+    result = on_gpu("noise/lattice.glsl", "lattice_seed(s, k)", s=seeds.astype(np.uint32), k=octaves)
+    np.testing.assert_array_equal(result, (seeds * 0x2545F491 + octaves * 0xC2B2AE3D) % WHOLE)
+    assert len(np.unique(result)) == result.size
 
 
 def test_no_two_seeds_share_a_part_of_the_lattice():
@@ -181,13 +181,13 @@ def test_seeds_and_octaves_know_nothing_of_each_other():
 
 def test_gradients_are_unit_vectors_in_eight_even_directions(on_gpu):
     numbers = RNG.integers(0, WHOLE, 4000, np.uint64).astype(np.uint32)
-    found = on_gpu("noise/gradient.glsl", "gradient_of(b)", b=numbers).astype(float)
-    np.testing.assert_allclose(found, np.transpose(gradient(numbers.astype(np.uint64))), atol=1e-7)
-    degrees = np.degrees(np.arctan2(found[:, 1], found[:, 0])) % 360
+    result = on_gpu("noise/gradient.glsl", "gradient_of(b)", b=numbers).astype(float)
+    np.testing.assert_allclose(result, np.transpose(gradient(numbers.astype(np.uint64))), atol=1e-7)
+    degrees = np.degrees(np.arctan2(result[:, 1], result[:, 0])) % 360
     eighths, counts = np.unique(np.round((degrees - 22.5) / 45, 4), return_counts=True)
     np.testing.assert_array_equal(eighths, np.arange(8))
     assert np.abs(counts - 500).max() < 4 * np.sqrt(500)
-    np.testing.assert_allclose(np.hypot(*found.T), 1, atol=1e-7)
+    np.testing.assert_allclose(np.hypot(*result.T), 1, atol=1e-7)
 
 
 # ── the noise ────────────────────────────────────────────────────────────────
@@ -204,24 +204,24 @@ def some_places():
 
 @pytest.mark.parametrize("basis", BASES)
 def test_noise_is_the_sum_over_the_corners(on_gpu, some_places, basis):
-    found = on_gpu(FILES[basis], CALL[basis], p=some_places, s=np.uint32(5))
+    result = on_gpu(FILES[basis], CALL[basis], p=some_places, s=np.uint32(5))
     x, y = some_places.astype(float).T
     truth = NOISE[basis](x, y, 5)
     # Sixty cells from the origin, a skewed place is known to 2e-6 of a cell.
-    np.testing.assert_allclose(found[:, 0], truth, atol=3e-5 if basis == "simplex" else 2e-6)
+    np.testing.assert_allclose(result[:, 0], truth, atol=3e-5 if basis == "simplex" else 2e-6)
     assert truth.std() > 0.2 and abs(truth.mean()) < 0.03
 
 
 @pytest.mark.parametrize("basis", BASES)
 def test_slopes_are_finite_differences(on_gpu, some_places, basis):
-    found = on_gpu(FILES[basis], CALL[basis], p=some_places, s=np.uint32(5))
+    result = on_gpu(FILES[basis], CALL[basis], p=some_places, s=np.uint32(5))
     x, y = some_places.astype(float).T
     step = 1e-5
     of = NOISE[basis]
     east = (of(x + step, y, 5) - of(x - step, y, 5)) / (2 * step)
     north = (of(x, y + step, 5) - of(x, y - step, 5)) / (2 * step)
-    np.testing.assert_allclose(found[:, 1], east, atol=3e-4)
-    np.testing.assert_allclose(found[:, 2], north, atol=3e-4)
+    np.testing.assert_allclose(result[:, 1], east, atol=3e-4)
+    np.testing.assert_allclose(result[:, 2], north, atol=3e-4)
     assert min(east.std(), north.std()) > 0.8
 
 
@@ -247,17 +247,17 @@ def test_simplex_noise_is_on_triangles_of_side_1(on_gpu):
     """At a lattice point only its own plane is there: noise 0, and the slope of one gradient."""
     side = np.array([np.cos(np.radians(15)), -np.sin(np.radians(15))])  # 60 degrees from the diagonal
     points = [i * side + j * side[::-1] for i, j in RNG.integers(-30, 30, (200, 2))]
-    found = on_gpu("noise/simplex.glsl", "simplex(p, 3u)", p=np.array(points, np.float32))
-    np.testing.assert_allclose(found[:, 0], 0, atol=3e-5)
-    np.testing.assert_allclose(np.hypot(found[:, 1], found[:, 2]), 100 * 0.5**4 * np.sqrt(2 / 3), rtol=1e-4)
+    result = on_gpu("noise/simplex.glsl", "simplex(p, 3u)", p=np.array(points, np.float32))
+    np.testing.assert_allclose(result[:, 0], 0, atol=3e-5)
+    np.testing.assert_allclose(np.hypot(result[:, 1], result[:, 2]), 100 * 0.5**4 * np.sqrt(2 / 3), rtol=1e-4)
 
 
 def test_the_fade_and_its_slope(on_gpu):
     """Level at both ends, symmetric about the middle; the slope is that of differences."""
     t = np.linspace(0, 1, 513, dtype=np.float32)
     for vector in (False, True):
-        place = np.stack([t, t[::-1]], axis=1) if vector else t
-        fade, slope = (on_gpu("noise/fade.glsl", f"{name}(t)", t=place) for name in FADES)
+        position = np.stack([t, t[::-1]], axis=1) if vector else t
+        fade, slope = (on_gpu("noise/fade.glsl", f"{name}(t)", t=position) for name in FADES)
         np.testing.assert_allclose(fade + fade[::-1], 1, atol=1e-6)
         assert np.abs(slope[[0, -1]]).max() == 0 and np.abs(fade[[0, -1]]).max() == 1
         middle = (slope[1:] + slope[:-1]) / 2
@@ -266,9 +266,9 @@ def test_the_fade_and_its_slope(on_gpu):
 
 def test_perlin_noise_is_zero_where_the_lattice_is(on_gpu):
     points = RNG.integers(-100, 100, (200, 2)).astype(np.float32)
-    found = on_gpu("noise/gradient.glsl", "perlin(p, 3u)", p=points)
-    np.testing.assert_array_equal(found[:, 0], 0)
-    np.testing.assert_allclose(np.hypot(found[:, 1], found[:, 2]), 1.513, rtol=1e-6)
+    result = on_gpu("noise/gradient.glsl", "perlin(p, 3u)", p=points)
+    np.testing.assert_array_equal(result[:, 0], 0)
+    np.testing.assert_allclose(np.hypot(result[:, 1], result[:, 2]), 1.513, rtol=1e-6)
 
 
 def test_no_direction_is_drawn(any_engine, sketch_of):
@@ -277,8 +277,8 @@ def test_no_direction_is_drawn(any_engine, sketch_of):
     for seed in range(12):
         sketch = sketch_of((129, 129), use="generation/gradient_noise/derivatives", seed=seed, octaves=3)
         east, north = np.moveaxis(any_engine.read(sketch, "terrain").astype(float), -1, 0)
-        for degrees, found in along.items():
-            found.append(east * np.cos(np.radians(degrees)) + north * np.sin(np.radians(degrees)))
+        for degrees, result in along.items():
+            result.append(east * np.cos(np.radians(degrees)) + north * np.sin(np.radians(degrees)))
     for power, bound in ((2, 0.04), (4, 0.12)):
         moments = np.array([(np.array(v) ** power).mean() for v in along.values()])
         assert np.abs(moments / moments.mean() - 1).max() < bound
@@ -291,19 +291,19 @@ def test_no_direction_is_drawn(any_engine, sketch_of):
 @pytest.mark.parametrize("basis", BASES)
 def test_it_is_the_sum_of_its_octaves(engine, sketch_of, basis, shape):
     values = {"basis": basis, "shape": shape, "octaves": 4, "lacunarity": 1.9, "gain": 0.6, "seed": 11}
-    found = engine.read(sketch_of((65, 40), [900.0, 500.0], frequency=3.0, **values), "terrain")
+    result = engine.read(sketch_of((65, 40), [900.0, 500.0], frequency=3.0, **values), "terrain")
     x, y, texels = places((65, 40), (900.0, 500.0), 3.0)
-    np.testing.assert_allclose(found, terrain(x, y, texels=texels, **values), atol=1e-4)
-    assert found.std() > 0.1
+    np.testing.assert_allclose(result, terrain(x, y, texels=texels, **values), atol=1e-4)
+    assert result.std() > 0.1
 
 
 @pytest.mark.parametrize("frequency", [0.25, 1.0, 7.3, 32.0, 1024.0])
 @pytest.mark.parametrize("octaves", [1, 2, 3, 16])
 def test_every_frequency_even_above_the_size(engine, sketch_of, frequency, octaves):
-    found = engine.read(sketch_of(frequency=frequency, octaves=octaves, gain=0.9), "terrain")
+    result = engine.read(sketch_of(frequency=frequency, octaves=octaves, gain=0.9), "terrain")
     x, y, texels = places((33, 33), (1000.0, 1000.0), frequency)
-    np.testing.assert_allclose(found, terrain(x, y, texels=texels, octaves=octaves, gain=0.9), atol=3e-5)
-    assert found.std() > 0.02
+    np.testing.assert_allclose(result, terrain(x, y, texels=texels, octaves=octaves, gain=0.9), atol=3e-5)
+    assert result.std() > 0.02
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -311,14 +311,14 @@ def test_every_frequency_even_above_the_size(engine, sketch_of, frequency, octav
 def test_derivatives_are_finite_differences(engine, sketch_of, basis, shape):
     values = {"basis": basis, "shape": shape, "octaves": 4, "gain": 0.5, "seed": 4}
     sketch = sketch_of((65, 40), [900.0, 500.0], use="generation/gradient_noise/derivatives", **values)
-    found = engine.read(sketch, "terrain")
+    result = engine.read(sketch, "terrain")
     x, y, texels = places((65, 40), (900.0, 500.0), 4.0)
     step, scale = 1e-6, 4.0 / 900.0
     for axis, (ex, ey) in enumerate(((step, 0.0), (0.0, step))):
         high, low = (terrain(x + way * ex, y + way * ey, texels=texels, **values) for way in (1, -1))
         slope = (high - low) / (2 * step) * scale
         # A difference across a crease is not the slope on either side of it.
-        assert (np.abs(found[..., axis] - slope) < 2e-3 * np.abs(slope).max()).mean() > 0.995
+        assert (np.abs(result[..., axis] - slope) < 2e-3 * np.abs(slope).max()).mean() > 0.995
         assert slope.std() > 1e-3
 
 
@@ -329,8 +329,8 @@ def test_derivatives_are_what_texels_of_the_sum_differ_by(any_engine, sketch_of)
     slopes = any_engine.read(sketch, "terrain").astype(float)
     north, east = np.gradient(heights, metres)
     inner = np.s_[1:-1, 1:-1]
-    for found, truth in ((slopes[..., 0], east), (slopes[..., 1], north)):
-        assert np.abs(found - truth)[inner].max() < 0.01 * np.abs(truth).max()
+    for result, truth in ((slopes[..., 0], east), (slopes[..., 1], north)):
+        assert np.abs(result - truth)[inner].max() < 0.01 * np.abs(truth).max()
 
 
 @pytest.mark.parametrize(
@@ -344,9 +344,9 @@ def test_walking_the_columns_gives_the_kernel_s_terrain(ctx, sketch_of, size, ex
         for octaves, lacunarity, gain in product((0, 1, 2, 3, 16), (1.1, 2.0, 2.7), (0.5, 1.0)):
             values = {"octaves": octaves, "lacunarity": lacunarity, "gain": gain}
             sketch = sketch_of(size, extent, **values)
-            one, other = (e.read(sketch, "terrain") for e in (by_texels, by_columns))
-            assert octaves == 0 or (one != other).any(), "the same way was gone twice"
-            np.testing.assert_allclose(other, one, atol=1e-4 if gain == 1.0 else 1e-5, err_msg=str(values))
+            first, other = (e.read(sketch, "terrain") for e in (by_texels, by_columns))
+            assert octaves == 0 or (first != other).any(), "the same way was gone twice"
+            np.testing.assert_allclose(other, first, atol=1e-4 if gain == 1.0 else 1e-5, err_msg=str(values))
 
 
 def test_the_same_terrain_at_another_size_looks_the_same(engine, sketch_of):
@@ -396,9 +396,9 @@ def test_no_octaves_are_flat_terrain(engine, sketch_of):
 @pytest.mark.parametrize("size", [(1, 1), (2, 2), (1, 9), (9, 1), (2, 300)], ids=str)
 def test_tiny_terrains_are_numbers(engine, sketch_of, size):
     extent = (1000.0, 1000.0 * max(size[1] - 1, 1) / max(size[0] - 1, 1))
-    found = engine.read(sketch_of(size, list(extent)), "terrain")
+    result = engine.read(sketch_of(size, list(extent)), "terrain")
     x, y, texels = places(size, extent, 4.0)
-    np.testing.assert_allclose(found, terrain(x, y, texels=texels), atol=2e-4)
+    np.testing.assert_allclose(result, terrain(x, y, texels=texels), atol=2e-4)
 
 
 def test_it_is_normalised_by_default_and_not_where_that_is_off(engine, sketch_of):

@@ -27,9 +27,9 @@ def amounts(engine, sketch, frame):
     return engine.read(sketch, "made:amounts", time=frame / 60).astype(np.float64)
 
 
-def stepped(found, feed=FED, kill=KILLED, spread=SPREAD):
+def stepped(result, feed=FED, kill=KILLED, spread=SPREAD):
     """Return U and V one step later, in float64, on a torus."""
-    u, v = found[..., 0], found[..., 1]
+    u, v = result[..., 0], result[..., 1]
 
     def bend(a):
         return sum(np.roll(a, shift, axis) for shift in (-1, 1) for axis in (0, 1)) - 4 * a
@@ -56,9 +56,9 @@ def test_a_frame_is_a_step_of_the_equations(engine, sketch_of, size):
 
 
 def test_steps_in_a_frame_are_steps(engine, sketch_of):
-    one, four = sketch_of(steps=1), sketch_of(steps=4)
+    sketch, four = sketch_of(steps=1), sketch_of(steps=4)
     for frame in (0, 2, 9):
-        np.testing.assert_array_equal(amounts(engine, four, frame), amounts(engine, one, 4 * frame + 3))
+        np.testing.assert_array_equal(amounts(engine, four, frame), amounts(engine, sketch, 4 * frame + 3))
 
 
 def test_the_first_frame_is_a_step_from_squares_of_the_other_substance(engine, sketch_of):
@@ -102,6 +102,6 @@ vec2 kernel(ivec2 texel) {
 
 def test_the_height_is_the_second_substance(engine, sketch_of):
     sketch = sketch_of(full=0.2)
-    found = engine.read(sketch, "made:height", time=1.0)
-    np.testing.assert_allclose(found, np.clip(amounts(engine, sketch, 60)[..., 1] / 0.2, 0, 1), rtol=1e-6)
-    assert 0 < found.max() <= 1
+    result = engine.read(sketch, "made:height", time=1.0)
+    np.testing.assert_allclose(result, np.clip(amounts(engine, sketch, 60)[..., 1] / 0.2, 0, 1), rtol=1e-6)
+    assert 0 < result.max() <= 1

@@ -56,7 +56,7 @@ def read(z, row, column, tiles):
 def rises(z, spacing, far, tiles):
     """Return the rises to the west and east, south and north, of a distance in metres, over that distance."""
     rows, columns = np.mgrid[: z.shape[0], : z.shape[1]].astype(float)
-    found = []
+    result = []
     for axis, (nodes, last) in enumerate(((columns, z.shape[1] - 1), (rows, z.shape[0] - 1))):
         step = max(far / spacing[axis], 1.0)
         back, on = nodes - step, nodes + step
@@ -67,8 +67,8 @@ def rises(z, spacing, far, tiles):
             before = (z - ends[0]) / ((nodes - back) * spacing[axis])
             after = (ends[1] - z) / ((on - nodes) * spacing[axis])
         before, after = np.where(nodes > back, before, after), np.where(on > nodes, after, before)
-        found.append((before, after))
-    return found
+        result.append((before, after))
+    return result
 
 
 def smoothstep(low, high, x):
@@ -136,11 +136,11 @@ float kernel(ivec2 texel) { return (texel.x ^ texel.y) % 3 == 0 ? 1e4 * float(te
 def gullied(engine, make_sketch):
     """Give what draws gullies on a terrain: (heights before [m], after [m], the mask)."""
 
-    def draw(base=HILLS, size=(65, 65), spacing=(METRES, METRES), given="", **values):
+    def draw(base=HILLS, size=(65, 65), spacing=(METRES, METRES), value="", **values):
         text = ", ".join(f"{k} = {str(v).lower()}" for k, v in values.items())
         extent = [max(n - 1, 1) * metres for n, metres in zip(size, spacing, strict=True)]
         sketch = make_sketch(
-            f'[[pass]]\nname = "raw"\nuse = "./base"\nset = {{ {given} }}\n'
+            f'[[pass]]\nname = "raw"\nuse = "./base"\nset = {{ {value} }}\n'
             f'[[pass]]\nname = "made"\nuse = "erosion/gullies"\ninputs = {{ height = "raw" }}\n'
             f"set = {{ {text} }}\n",
             size=list(size), extent=extent, relief=RELIEF, base=base,
@@ -157,15 +157,15 @@ def test_stripes_are_the_sum_over_the_lattice(on_gpu, tile):
     places, angles, width = rng.uniform(-1500, 3000, (4000, 2)), rng.uniform(0, 2 * np.pi, 4000), 150.0
     turns = np.stack([np.cos(angles), np.sin(angles)], 1) / width
     places, turns = places.astype(np.float32), turns.astype(np.float32)
-    found = on_gpu(
+    result = on_gpu(
         "noise/stripes.glsl", "stripes(place, turns, cells_of_width(150.0, tile), 77u)",
         place=places, turns=turns, tile=np.float32([tile] * 4000),
     )  # fmt: skip
     lattice = lattice_of(width, tile if tile[0] else None)
-    wanted = wave(*places.astype(np.float64).T, *turns.astype(np.float64).T, lattice, 77)
+    expected = wave(*places.astype(np.float64).T, *turns.astype(np.float64).T, lattice, 77)
     # A place is some 20 cells from the origin: 2**-24 of that, times a cell's turns, 2 pi 1.5, and the
     # polynomials' 1e-5; where waves all but cancel it is divided by 0.35.
-    np.testing.assert_allclose(found, np.stack(wanted, 1), atol=(20 * 2**-23 * 9.5 + 1e-5) / 0.35)
+    np.testing.assert_allclose(result, np.stack(expected, 1), atol=(20 * 2**-23 * 9.5 + 1e-5) / 0.35)
 
 
 @pytest.mark.parametrize(
@@ -180,12 +180,12 @@ def test_stripes_are_the_sum_over_the_lattice(on_gpu, tile):
 )
 def test_gullies_are_their_definition(gullied, size, spacing, values):
     before, after, mask = gullied(size=size, spacing=spacing, **values)
-    wanted, wanted_mask = gullies(before, spacing, **values)
+    expected, wanted_mask = gullies(before, spacing, **values)
     depth = 0.16 * values.get("width", 1200.0)
     assert np.std(after - before) > 0.05 * depth, "and there are gullies"
     # The wave is off by 1e-4 at the most (above), and each next octave, whose waves turn with it, by
     # 2 pi strength 2 pi 1.3 = 8 times as much, of a depth half as large or less.
-    error = abs(after - wanted) / depth
+    error = abs(after - expected) / depth
     assert error.max() < 1e-4 * 8 ** (values["octaves"] - 1) and np.median(error) < 1e-4
     np.testing.assert_allclose(mask, wanted_mask, atol=3e-4 * 8 ** (values["octaves"] - 1))
     assert 0 <= mask.min() and 0.5 < mask.max() <= 1

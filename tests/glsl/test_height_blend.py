@@ -52,24 +52,24 @@ THRESHOLDS = "vec4(60.0, 130.0, 180.0, 220.0)"
 
 def test_weights_are_the_thesis_s_for_every_byte_and_between(on_gpu):
     height = np.concatenate([np.arange(256.0), np.random.default_rng(5).uniform(0, 255, 2000)])
-    found = on_gpu("texturing/height_weights.glsl", f"height_weights(h, {THRESHOLDS})", h=height)
-    np.testing.assert_allclose(found, thesis(height), atol=1e-6)
+    result = on_gpu("texturing/height_weights.glsl", f"height_weights(h, {THRESHOLDS})", h=height)
+    np.testing.assert_allclose(result, thesis(height), atol=1e-6)
 
 
 def test_weights_sum_to_one_wherever_the_thresholds_are(on_gpu):
     random = np.random.default_rng(6)
     height, thresholds = random.uniform(0, 255, 5000), random.uniform(0, 255, (5000, 4))
-    found = on_gpu("texturing/height_weights.glsl", "height_weights(h, t)", h=height, t=thresholds)
-    assert found.min() >= 0
-    np.testing.assert_allclose(found.sum(axis=1), 1.0, atol=1.2e-7)
+    result = on_gpu("texturing/height_weights.glsl", "height_weights(h, t)", h=height, t=thresholds)
+    assert result.min() >= 0
+    np.testing.assert_allclose(result.sum(axis=1), 1.0, atol=1.2e-7)
 
 
 def test_thresholds_that_meet_make_a_step(on_gpu):
-    found = on_gpu(
+    result = on_gpu(
         "texturing/height_weights.glsl", "height_weights(h, vec4(100.0, 100.0, 200.0, 200.0))",
         h=np.array([99.9, 100.0, 199.9, 200.0]),
     )  # fmt: skip
-    np.testing.assert_array_equal(found, [[1, 0, 0], [0, 1, 0], [0, 1, 0], [0, 0, 1]])
+    np.testing.assert_array_equal(result, [[1, 0, 0], [0, 1, 0], [0, 1, 0], [0, 0, 1]])
 
 
 def test_the_mixture_has_each_image_by_its_weight(engine, make_sketch):
@@ -89,8 +89,8 @@ def test_its_texture_may_be_finer_or_coarser_than_the_heights(engine, make_sketc
 
 
 def test_thresholds_are_parameters(any_engine, make_sketch):
-    given = "set = { grass_below = 10, rock_from = 20, rock_below = 30, snow_from = 40 }"
-    sketch = make_sketch(PASSES.format(given), size=[256, 4], ramp=EASTWARD, **IMAGES)
+    value = "set = { grass_below = 10, rock_from = 20, rock_below = 30, snow_from = 40 }"
+    sketch = make_sketch(PASSES.format(value), size=[256, 4], ramp=EASTWARD, **IMAGES)
     colour = any_engine.read(sketch, "colour").astype(float)[0, :, :3]
     assert colour[:11, 0].min() == 1
     assert colour[20:31, 1].min() == 1
@@ -138,11 +138,11 @@ def test_texels_of_the_image_are_taken_modulo_its_size(any_engine, make_sketch):
     sketch = make_sketch(text, size=[65, 65], ramp=RAMP.format("0.0"), **{**IMAGES, "meadow": noise})
     colour = any_engine.read(sketch, "colour").astype(float)[..., :3]
     image = any_engine.read(sketch, "meadow").astype(float)[..., :3]
-    wanted = np.empty_like(colour)
+    expected = np.empty_like(colour)
     for i in range(65):
         for j in range(65):
-            wanted[i, j] = sum(image[(i - a) % 8, (j - b) % 8] for a in (0, 1) for b in (0, 1)) / 4
-    np.testing.assert_allclose(colour, wanted, atol=5e-3)
+            expected[i, j] = sum(image[(i - a) % 8, (j - b) % 8] for a in (0, 1) for b in (0, 1)) / 4
+    np.testing.assert_allclose(colour, expected, atol=5e-3)
 
 
 def test_a_user_s_image_replaces_each_material(any_engine, make_sketch, tmp_path):
@@ -174,12 +174,12 @@ def test_less_detail_is_less_contrast_about_the_same_mean(engine, make_sketch):
         "meadow": IMAGE.format("0.1 + 0.8 * float(texel.x < 3), 0.3, 0.02 * float(texel.y), 1.0"),
     }
     text = PASSES.replace("size = 4", "size = [8, 4]")
-    found = {}
+    result = {}
     for detail in (1.0, 0.4, 0.0):
-        given = text.format(f"set = {{ repeats = 4, detail = {detail} }}")
-        sketch = make_sketch(given, size=[97, 97], ramp=RAMP.format("0.0"), **files)
-        found[detail] = engine.read(sketch, "colour").astype(float)[..., :3]
+        value = text.format(f"set = {{ repeats = 4, detail = {detail} }}")
+        sketch = make_sketch(value, size=[97, 97], ramp=RAMP.format("0.0"), **files)
+        result[detail] = engine.read(sketch, "colour").astype(float)[..., :3]
     mean = np.array([0.1 + 0.8 * 3 / 8, 0.3, 0.02 * 1.5])
-    np.testing.assert_allclose(found[0.0], np.broadcast_to(mean, (97, 97, 3)), atol=5e-4)
-    np.testing.assert_allclose(found[0.4] - mean, 0.4 * (found[1.0] - mean), atol=1e-3)
-    assert found[1.0].std(axis=(0, 1)).max() > 0.2
+    np.testing.assert_allclose(result[0.0], np.broadcast_to(mean, (97, 97, 3)), atol=5e-4)
+    np.testing.assert_allclose(result[0.4] - mean, 0.4 * (result[1.0] - mean), atol=1e-3)
+    assert result[1.0].std(axis=(0, 1)).max() > 0.2

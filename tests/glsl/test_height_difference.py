@@ -59,11 +59,11 @@ def slow(
 def test_it_is_the_difference_of_two_heights_over_the_softness(engine, lit, azimuth, step_length):
     sketch = lit(rough=0.1, sun=(azimuth, 30.0), softness=0.08, step_length=step_length)
     heights = engine.read(sketch, "height").astype(np.float64)
-    wanted = slow(heights, azimuth, (1000.0 / 20, 800.0 / 16), 0.08, step_length)
-    assert 0.05 < (wanted < 1).mean() < 0.95
-    found = engine.read(sketch, "light")
-    np.testing.assert_allclose(found[..., 3], wanted, atol=HALF)
-    np.testing.assert_allclose(found[..., 0], wanted, atol=HALF)
+    expected = slow(heights, azimuth, (1000.0 / 20, 800.0 / 16), 0.08, step_length)
+    assert 0.05 < (expected < 1).mean() < 0.95
+    result = engine.read(sketch, "light")
+    np.testing.assert_allclose(result[..., 3], expected, atol=HALF)
+    np.testing.assert_allclose(result[..., 0], expected, atol=HALF)
 
 
 def test_a_plane_that_rises_to_the_sun_loses_light_in_step_with_its_slope(engine, lit):

@@ -34,12 +34,12 @@ def metres():
 def test_a_real_terrain_comes_back_in_metres(engine, sketch_of, metres):
     sketch = sketch_of()
     terrain = engine.plan(sketch, (64, 64)).terrain
-    found = engine.read(sketch, "terrain").astype(np.float64)
-    assert terrain.size == metres.shape[::-1] and found.shape == metres.shape
-    assert (found.min(), found.max()) == (0.0, 1.0)
+    result = engine.read(sketch, "terrain").astype(np.float64)
+    assert terrain.size == metres.shape[::-1] and result.shape == metres.shape
+    assert (result.min(), result.max()) == (0.0, 1.0)
     assert (terrain.base_elevation, terrain.relief) == (metres.min(), metres.max() - metres.min())
-    np.testing.assert_allclose(found * terrain.relief + terrain.base_elevation, metres, atol=1e-4)
-    np.testing.assert_array_equal(np.round(found * terrain.relief + terrain.base_elevation), metres)
+    np.testing.assert_allclose(result * terrain.relief + terrain.base_elevation, metres, atol=1e-4)
+    np.testing.assert_array_equal(np.round(result * terrain.relief + terrain.base_elevation), metres)
 
 
 def test_a_real_terrain_is_as_long_as_its_degrees(engine, sketch_of):
@@ -51,15 +51,15 @@ def test_a_real_terrain_is_as_long_as_its_degrees(engine, sketch_of):
 
 @pytest.mark.parametrize("size", [(403, 344), (128, 128), (805, 687), (33, 65)], ids=str)
 def test_another_size_is_the_same_terrain(engine, sketch_of, metres, size):
-    found = engine.read(sketch_of(f"size = {list(size)}"), "terrain")
+    result = engine.read(sketch_of(f"size = {list(size)}"), "terrain")
     heights = (metres - metres.min()) / (metres.max() - metres.min())
-    assert found.shape == size[::-1]
+    assert result.shape == size[::-1]
     corners = np.ix_([0, -1], [0, -1])
-    np.testing.assert_allclose(found[corners], heights[corners], atol=1e-6)
+    np.testing.assert_allclose(result[corners], heights[corners], atol=1e-6)
     y, x = (np.linspace(0, n - 1, m) for n, m in zip(heights.shape, size[::-1], strict=True))
     spline = RectBivariateSpline(range(heights.shape[0]), range(heights.shape[1]), heights, kx=1, ky=1)(y, x)
-    assert np.abs(found - spline).mean() < (0.003 if size[0] >= 403 else 0.03)
-    assert abs(found.mean() - heights.mean()) < 0.01
+    assert np.abs(result - spline).mean() < (0.003 if size[0] >= 403 else 0.03)
+    assert abs(result.mean() - heights.mean()) < 0.01
 
 
 def test_twice_as_fine_a_grid_keeps_the_texels_of_the_file(engine, sketch_of, metres):
@@ -81,16 +81,16 @@ def test_greys_stand_between_two_heights(engine, sketch_of, tmp_path):
     PillowImage.fromarray(greys).save(tmp_path / "grey.png")
     sketch = sketch_of(values='elevation = "grey.png"\nmetres = [100.0, 1120.0]')
     terrain = engine.plan(sketch, (64, 64)).terrain
-    found = engine.read(sketch, "terrain") * terrain.relief + terrain.base_elevation
-    np.testing.assert_allclose(found, 100 + greys[::-1] / 255 * 1020, atol=1e-3)
+    relief = engine.read(sketch, "terrain") * terrain.relief + terrain.base_elevation
+    np.testing.assert_allclose(relief, 100 + greys[::-1] / 255 * 1020, atol=1e-3)
 
 
 def test_heights_packed_in_three_channels(engine, sketch_of, tmp_path):
     codes = np.array([[0, 300], [70000, 2**24 - 1]])
     colour = np.stack([codes >> 16, codes >> 8 & 255, codes & 255], axis=-1).astype(np.uint8)
     PillowImage.fromarray(colour).save(tmp_path / "packed.png")
-    found = engine.read(sketch_of(values='elevation = "packed.png"\npacking = "rgb"'), "terrain")
-    np.testing.assert_allclose(found, codes[::-1] / (2**24 - 1), atol=1e-7)
+    result = engine.read(sketch_of(values='elevation = "packed.png"\npacking = "rgb"'), "terrain")
+    np.testing.assert_allclose(result, codes[::-1] / (2**24 - 1), atol=1e-7)
 
 
 def test_gaps_are_refused_or_filled(engine, sketch_of, tmp_path):
@@ -99,21 +99,21 @@ def test_gaps_are_refused_or_filled(engine, sketch_of, tmp_path):
     np.save(tmp_path / "holed.npy", terrain)
     with pytest.raises(DataError, match="no data"):
         engine.read(sketch_of(values='elevation = "holed.npy"'), "terrain")
-    found = engine.read(sketch_of(values='elevation = "holed.npy"\nno_data = "fill"'), "terrain")
-    assert found[4, 4] == pytest.approx(0.5, abs=1e-3)
+    result = engine.read(sketch_of(values='elevation = "holed.npy"\nno_data = "fill"'), "terrain")
+    assert result[4, 4] == pytest.approx(0.5, abs=1e-3)
 
 
 def test_raw_numbers_with_their_size(engine, sketch_of, tmp_path):
     codes = np.arange(6, dtype="<u2").reshape(2, 3)
     codes.tofile(tmp_path / "land.r16")
-    found = engine.read(sketch_of(values='elevation = "land.r16"\nraw_size = [3, 2]'), "terrain")
-    np.testing.assert_allclose(found, codes[::-1] / 5, atol=1e-7)
+    result = engine.read(sketch_of(values='elevation = "land.r16"\nraw_size = [3, 2]'), "terrain")
+    np.testing.assert_allclose(result, codes[::-1] / 5, atol=1e-7)
 
 
 def test_a_flat_file_is_flat_terrain(engine, sketch_of, tmp_path):
     np.save(tmp_path / "flat.npy", np.full((5, 5), 7.0))
-    found = engine.read(sketch_of(values='elevation = "flat.npy"'), "terrain")
-    np.testing.assert_array_equal(found, 0)
+    result = engine.read(sketch_of(values='elevation = "flat.npy"'), "terrain")
+    np.testing.assert_array_equal(result, 0)
 
 
 def test_a_missing_file_names_the_nearest(engine, sketch_of):

@@ -130,8 +130,8 @@ def ragged(nx=61, ny=45, seed=3):
     return Land(terrain + rng.random((ny, nx)), (40.0, 75.0), "ragged")
 
 
-def off(found, wanted):
-    return np.abs(found - wanted)
+def off(result, expected):
+    return np.abs(result - expected)
 
 
 def rough(exponent, spacing, shape=(97, 97), seed=1):
@@ -210,21 +210,21 @@ def test_pairs_are_all_directions_once(on_gpu, asked):
 
 @pytest.mark.parametrize("terrain", [ragged(), cone(49), valley(49)], ids=lambda terrain: terrain.name)
 def test_the_march_is_brute_force(marcher, measured, terrain):
-    found, _, heights = measured(marcher, terrain)
+    result, _, heights = measured(marcher, terrain)
     low, relief = terrain.heights.min(), np.ptp(terrain.heights)
     seen = Land(heights.astype(np.float64) * relief, terrain.spacing)
     np.testing.assert_allclose(seen.heights, terrain.heights - low, atol=1e-6 * relief)
     for channel, azimuth in enumerate(CHIEF):
-        assert off(found[..., channel], brute(seen, azimuth)).max() < ROUNDING
+        assert off(result[..., channel], brute(seen, azimuth)).max() < ROUNDING
 
 
 def test_the_march_is_never_over_the_exact_horizon(marcher, measured):
     """It looks at whole rows: what stands higher between them, or within the first, it misses."""
     terrain = cone(65)
-    found, _, _ = measured(marcher, terrain)
+    result, _, _ = measured(marcher, terrain)
     for channel, azimuth in enumerate(CHIEF):
         exact = np.degrees(np.arctan(np.maximum(horizon(terrain, float(azimuth)), 0)))
-        over = (found[..., channel] - exact)[2:-2, 2:-2]
+        over = (result[..., channel] - exact)[2:-2, 2:-2]
         assert over.max() < ROUNDING and rms(over) < 0.8
 
 
@@ -323,14 +323,14 @@ def test_no_terrain_breaks_the_bound_of_the_sweep(engines, measured, kind, spaci
     """Needles, cliffs and walls, which lines between texels miss, against brute force in float64."""
     for seed, first in ((0, 0.0), (1, 17.0)):
         terrain = Land(ROUGH[kind](seed), spacing)
-        found, k, heights = measured(engines[1], terrain, first=first)
+        result, k, heights = measured(engines[1], terrain, first=first)
         seen = Land(heights.astype(np.float64) * np.ptp(terrain.heights), spacing)
         # A ray that meets the border within rounding is on the terrain or not.
         least, most = (
             np.stack([brute(seen, first + azimuth, beyond=beyond) for azimuth in CHIEF], axis=-1)
             for beyond in (0.499, 0.501)
         )
-        assert (found - most).max() < ROUNDING and (found - least).min() > -BOUND - ROUNDING
+        assert (result - most).max() < ROUNDING and (result - least).min() > -BOUND - ROUNDING
         assert off(k, measured(engines[0], terrain, first=first)[1]).max() < 0.65 * 0.05
 
 
@@ -338,22 +338,22 @@ def test_no_terrain_breaks_the_bound_of_the_sweep(engines, measured, kind, spaci
     "terrain", [real_times(3), rough(1.5, (20.0, 50.0))], ids=lambda terrain: terrain.name
 )
 def test_the_sweep_is_brute_force_as_nearly(engines, measured, terrain):
-    found, _, heights = measured(engines[1], terrain, first=17.0)
+    result, _, heights = measured(engines[1], terrain, first=17.0)
     seen = Land(heights.astype(np.float64) * np.ptp(terrain.heights), terrain.spacing)
     exact = np.stack([brute(seen, 17.0 + azimuth) for azimuth in CHIEF], axis=-1)
-    assert rms(found - exact) < SUN / 10 and off(found, exact).max() < BOUND + ROUNDING
+    assert rms(result - exact) < SUN / 10 and off(result, exact).max() < BOUND + ROUNDING
 
 
 def test_wide_terrain_has_the_horizons_of_brute_force(engines, measured):
     """A thousand rows, seen from texels here and there: most horizons are hundreds of rows away."""
     terrain = rough(1.8, (30.0, 30.0), (640, 1025))
-    found, _, heights = measured(engines[1], terrain, first=7.0)
+    result, _, heights = measured(engines[1], terrain, first=7.0)
     seen = Land(heights.astype(np.float64) * np.ptp(terrain.heights), terrain.spacing)
     rng = np.random.default_rng(0)
     wrong = []
     for y, x in zip(rng.integers(0, 640, 60), rng.integers(0, 1025, 60), strict=True):
         exact = [brute_from(seen, int(y), int(x), 7.0 + azimuth) for azimuth in CHIEF]
-        wrong.append(found[y, x] - exact)
+        wrong.append(result[y, x] - exact)
     assert np.max(wrong) < ROUNDING
     assert rms(np.array(wrong)) < SUN / 10 and np.abs(wrong).max() < BOUND + ROUNDING
 
@@ -361,13 +361,13 @@ def test_wide_terrain_has_the_horizons_of_brute_force(engines, measured):
 def test_a_horizon_near_by_is_exact(engines, measured):
     """The sixteen rows next to a texel are looked at from the texel itself."""
     terrain = ragged(97, 80)
-    found, _, heights = measured(engines[1], terrain, first=20.0)
+    result, _, heights = measured(engines[1], terrain, first=20.0)
     seen = Land(heights.astype(np.float64) * np.ptp(terrain.heights), terrain.spacing)
     for channel, azimuth in enumerate(CHIEF):
         whole, near = brute(seen, 20.0 + azimuth), brute(seen, 20.0 + azimuth, rows=16)
         close = whole == near
         assert close.mean() > 0.3
-        assert off(found[..., channel], whole)[close].max() < ROUNDING
+        assert off(result[..., channel], whole)[close].max() < ROUNDING
 
 
 def test_a_needle_between_two_lines_is_seen_by_nearly_all(engines, measured):
@@ -391,9 +391,9 @@ def test_numbers_between_count_as_the_next_multiple_of_eight_below(engines, meas
     terrain = real(33)
     for engine in engines:
         for asked, taken in ((6, 2), (12, 8), (30, 24)):
-            one, other = (measured(engine, terrain, directions=n) for n in (asked, taken))
-            for found, wanted in zip(one, other, strict=True):
-                np.testing.assert_array_equal(found, wanted)
+            first, other = (measured(engine, terrain, directions=n) for n in (asked, taken))
+            for result, expected in zip(first, other, strict=True):
+                np.testing.assert_array_equal(result, expected)
 
 
 @pytest.mark.parametrize("directions", [2, 16])
@@ -432,15 +432,15 @@ def test_a_wall_without_end_and_a_needle(engines, measured):
     heights[:, 16] = 1e6
     heights[5, 5] = 1e7
     for engine in engines:
-        found, k, _ = measured(engine, Land(heights, (1.0, 1.0)))
-        assert found[20, 15, 6] > 89.99 and found[20, 17, 2] > 89.99
+        result, k, _ = measured(engine, Land(heights, (1.0, 1.0)))
+        assert result[20, 15, 6] > 89.99 and result[20, 17, 2] > 89.99
         assert k[20, 15] < 0.6 and k[5, 5] > 0
 
 
 def test_flat_terrain_has_no_horizon(engines, measured):
     for engine in engines:
-        found, k, _ = measured(engine, Land(np.zeros((21, 34)), (5.0, 9.0)), directions=16)
-        assert (found == 0).all() and (k == 1).all()
+        result, k, _ = measured(engine, Land(np.zeros((21, 34)), (5.0, 9.0)), directions=16)
+        assert (result == 0).all() and (k == 1).all()
 
 
 def test_a_dome_is_all_hull(engines, measured):

@@ -65,11 +65,11 @@ def written(value):
 
 def state(engine, sketch, steps):
     """Return bed, water, load, mean flow and the flux after so many steps, in float64."""
-    found = [
+    result = [
         engine.read(sketch, f"worn.water:{name}", steps={"worn.water": steps}).astype(np.float64)
         for name in ("state", "flux")
     ]
-    return (*np.moveaxis(found[0], -1, 0), np.moveaxis(found[1], -1, 0))
+    return (*np.moveaxis(result[0], -1, 0), np.moveaxis(result[1], -1, 0))
 
 
 def test_a_step_is_that_of_the_equations(engine, eroded):
@@ -151,8 +151,8 @@ def test_a_terrain_that_is_turned_or_mirrored_is_worn_alike(engine, eroded, way)
     values = {"hours": 800, "capacity": 8.0}
     for output, scale in (("height", 1), ("water", RELIEF), ("wetness", 50)):
         plain = engine.read(eroded(heights, **values), f"worn:{output}")
-        found = engine.read(eroded(np.ascontiguousarray(turned(heights)), **values), f"worn:{output}")
-        np.testing.assert_allclose(found, turned(plain), rtol=0, atol=scale * 2**-17)
+        result = engine.read(eroded(np.ascontiguousarray(turned(heights)), **values), f"worn:{output}")
+        np.testing.assert_allclose(result, turned(plain), rtol=0, atol=scale * 2**-17)
 
 
 def test_flat_ground_stays_flat_under_rain(engine, eroded):
@@ -344,7 +344,7 @@ def test_ten_thousand_steps_with_hostile_parameters_stay_finite(engine, make_ske
     heights = hills((33, 33), 7)
     heights[12, 12], heights[3, 3] = 1, 0
     np.save(tmp_path / "land.npy", heights)
-    start, step = (", ".join(f"{k} = {written(v)}" for k, v in given.items()) for given in values)
+    start, step = (", ".join(f"{k} = {written(v)}" for k, v in value.items()) for value in values)
     sketch = make_sketch(
         passes(
             height=("generation/heightmap", 'set = { elevation = "land.npy", first_row = "south" }'),
@@ -360,9 +360,9 @@ def test_ten_thousand_steps_with_hostile_parameters_stay_finite(engine, make_ske
         extent=30.0,
         relief=20_000.0,
     )
-    found, flux = (engine.read(sketch, f"water:{name}") for name in ("state", "flux"))
-    assert np.isfinite(found).all() and np.isfinite(flux).all()
-    assert (found[..., 1] >= 0).all() and (flux >= 0).all()
+    result, flux = (engine.read(sketch, f"water:{name}") for name in ("state", "flux"))
+    assert np.isfinite(result).all() and np.isfinite(flux).all()
+    assert (result[..., 1] >= 0).all() and (flux >= 0).all()
 
 
 @pytest.mark.slow

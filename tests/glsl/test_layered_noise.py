@@ -27,16 +27,16 @@ def curve(y1, y2, n, delta, smooth):
     return y1 * (3 * (1 - a) ** 2 - 2 * (1 - a) ** 3) + y2 * (3 * a**2 - 2 * a**3)
 
 
-def bounds(place, size, frequency):
+def bounds(position, size, frequency):
     """Return the nodes before and after a place: exact where the thesis rounds."""
     step = Fraction(size, frequency)
-    q = floor(place / step)
+    q = floor(position / step)
     return floor(q * step), min(floor((q + 1) * step), size - 1)
 
 
-def read_at(place, size, frequency):
+def read_at(position, size, frequency):
     """Return which numbers of the random layer those nodes read: those at their shares of the side."""
-    q = floor(Fraction(place * frequency, size))
+    q = floor(Fraction(position * frequency, size))
     return tuple(floor(Fraction(k * RANDOM_SIDE, frequency)) for k in (q, q + 1))
 
 
@@ -103,9 +103,9 @@ def twin(python_random):
 @pytest.fixture
 def sketch_of(make_sketch):
     def make(size=(33, 33), **values):
-        given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
+        text = "".join(f"{k} = {v!r}\n" for k, v in values.items())
         use = '[[pass]]\nname = "terrain"\nuse = "generation/layered_noise"\n'
-        use += f"[pass.set]\nseed = {SEED}\n{given}"
+        use += f"[pass.set]\nseed = {SEED}\n{text}"
         return make_sketch(use, size=list(size))
 
     return make
@@ -113,24 +113,24 @@ def sketch_of(make_sketch):
 
 def raw(engine, sketch, apart=1e-6):
     """Return the sum by the plain kernel, which the fast variant must be within ``apart`` of."""
-    found = engine.read(sketch.plainly(), "terrain.sum")
-    np.testing.assert_allclose(engine.read(sketch, "terrain.sum"), found, atol=apart)
-    return found
+    result = engine.read(sketch.plainly(), "terrain.sum")
+    np.testing.assert_allclose(engine.read(sketch, "terrain.sum"), result, atol=apart)
+    return result
 
 
 @pytest.mark.parametrize("size", [(33, 33), (32, 32), (65, 65), (7, 7), (40, 23), (23, 40)], ids=str)
 @pytest.mark.parametrize("interpolation", ["linear", "smooth"])
 def test_it_is_the_thesis_terrain(engine, sketch_of, twin, size, interpolation):
-    found = raw(engine, sketch_of(size, interpolation=interpolation))
-    np.testing.assert_allclose(found, twin(size, smooth=interpolation == "smooth"), atol=1e-6)
+    result = raw(engine, sketch_of(size, interpolation=interpolation))
+    np.testing.assert_allclose(result, twin(size, smooth=interpolation == "smooth"), atol=1e-6)
 
 
 @pytest.mark.parametrize("frequency", [1, 2, 3, 5, 31, 32, 33, 1000])
 @pytest.mark.parametrize("octaves", [1, 3])
 def test_every_frequency_even_above_the_size(engine, sketch_of, twin, frequency, octaves):
-    found = raw(engine, sketch_of(frequency=frequency, octaves=octaves, persistence=0.5))
-    np.testing.assert_allclose(found, twin(frequency=frequency, octaves=octaves, persistence=0.5), atol=1e-6)
-    assert found.min() >= 0 and found.max() <= 1 and found.std() > 0.01
+    result = raw(engine, sketch_of(frequency=frequency, octaves=octaves, persistence=0.5))
+    np.testing.assert_allclose(result, twin(frequency=frequency, octaves=octaves, persistence=0.5), atol=1e-6)
+    assert result.min() >= 0 and result.max() <= 1 and result.std() > 0.01
 
 
 @pytest.mark.parametrize("size", [(9, 120), (120, 9), (3, 70), (40, 83)], ids=str)
@@ -143,7 +143,7 @@ def test_terrains_that_are_not_square(engine, sketch_of, twin, size, frequency):
 def test_a_large_terrain_at_places_of_its_own(any_engine, sketch_of, python_random):
     """All layers at 1025², each place by itself: bands are worked out, and laid, for the whole."""
     values = {"frequency": 4, "octaves": 5, "persistence": 0.6}
-    found = raw(any_engine, sketch_of((1025, 1025), **values))
+    result = raw(any_engine, sketch_of((1025, 1025), **values))
     drawn = np.random.default_rng(0)
     for x, y in drawn.integers(0, 1025, (200, 2)).tolist():
         total, weights = 0.0, 0.0
@@ -156,7 +156,7 @@ def test_a_large_terrain_at_places_of_its_own(any_engine, sketch_of, python_rand
             north = curve(corners[2], corners[3], x2 - x1, x - x1, True)
             total += 0.6 ** (k + 1) * curve(south, north, y2 - y1, y - y1, True)
             weights += 0.6 ** (k + 1)
-        assert abs(found[y, x] - total / weights) < 1e-6, (x, y)
+        assert abs(result[y, x] - total / weights) < 1e-6, (x, y)
 
 
 def test_there_is_room_for_every_band():
@@ -197,9 +197,9 @@ def test_coarse_layers_left_out(engine, sketch_of):
 
 
 def test_as_many_intervals_as_gaps_give_each_texel_its_own_number(engine, sketch_of, python_random):
-    found = raw(engine, sketch_of(frequency=32, octaves=1))
+    result = raw(engine, sketch_of(frequency=32, octaves=1))
     y, x = np.mgrid[0:33, 0:33] * (RANDOM_SIDE // 32)
-    np.testing.assert_allclose(found, python_random(x, y, DRAWN), atol=4e-7)
+    np.testing.assert_allclose(result, python_random(x, y, DRAWN), atol=4e-7)
 
 
 @pytest.mark.parametrize("random_layers", ["one", "independent"])
@@ -212,8 +212,8 @@ def test_single_layers(engine, sketch_of, twin, random_layers, layer):
 
 def test_independent_layers_add_up(engine, sketch_of, twin):
     values = {"octaves": 3, "persistence": 0.6, "frequency": 3}
-    found = raw(engine, sketch_of(random_layers="independent", **values))
-    np.testing.assert_allclose(found, twin(independent=True, **values), atol=1e-6)
+    result = raw(engine, sketch_of(random_layers="independent", **values))
+    np.testing.assert_allclose(result, twin(independent=True, **values), atol=1e-6)
 
 
 @pytest.mark.parametrize("overflow", ["divide", "clamp", "wrap"])
@@ -221,11 +221,11 @@ def test_what_exceeds_1(engine, sketch_of, twin, overflow):
     """Figure 1.34's weights, 0.9 and 0.81."""
     values = {"persistence": 0.9, "overflow": overflow}
     truth = twin(**values)
-    found = raw(engine, sketch_of(**values), apart=2e-6)
-    apart = np.abs(found - truth)
+    result = raw(engine, sketch_of(**values), apart=2e-6)
+    apart = np.abs(result - truth)
     # A sum within rounding of 1 may fall on either side of the wrap.
     np.testing.assert_array_less(np.minimum(apart, 1 - apart) if overflow == "wrap" else apart, 2e-6)
-    assert 0 <= found.min() and found.max() <= 1
+    assert 0 <= result.min() and result.max() <= 1
     assert (twin(**values | {"overflow": "divide"}) * (0.9 + 0.81)).max() > 1, "nothing here exceeds 1"
 
 

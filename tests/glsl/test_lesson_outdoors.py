@@ -50,7 +50,7 @@ SHARES = SHARES + 0.5
 
 
 def depth_of(air, height, rise, far):
-    """Return the optical depth; by the square of a share, since the air is dense at the start."""
+    """Return the optical depth; by the square of a fraction, since the air is dense at the start."""
     parts = taken(air, height_at(height, rise, far * SHARES**2))
     return (parts * (WEIGHTS * 2 * SHARES * far)[:, None]).sum(axis=0)
 
@@ -88,9 +88,9 @@ def test_the_sky_is_the_integral_of_light_scattered_once(engine, shown):
     ny, nx = sky.shape[:2]
     for row, column in ((5, 30), (60, 200), (235, 400)):
         up, aside = 0.5 * np.pi * (row + 0.5) / ny, np.pi * ((column + 0.5) / nx - 0.5)
-        wanted = sky_towards(up, aside, np.radians(elevation), turbidity)
-        found = -np.log(1 - sky[row, column, :3]) / exposure
-        np.testing.assert_allclose(found, wanted, rtol=0.04)
+        expected = sky_towards(up, aside, np.radians(elevation), turbidity)
+        result = -np.log(1 - sky[row, column, :3]) / exposure
+        np.testing.assert_allclose(result, expected, rtol=0.04)
 
 
 def test_ridges_follow_koschmieder(engine, shown):
@@ -99,11 +99,11 @@ def test_ridges_follow_koschmieder(engine, shown):
     picture = engine.read(sketch, "ridges:picture").astype(float)[..., :3]
     molecules, aerosol, _ = air_of(2.0)
     left = np.exp(-(molecules + aerosol) * far[..., None])
-    wanted = np.array([0.045, 0.055, 0.03]) * left + np.array([0.62, 0.70, 0.80]) * (1 - left)
+    expected = np.array([0.045, 0.055, 0.03]) * left + np.array([0.62, 0.70, 0.80]) * (1 - left)
     terrain = far > 0
     assert len(np.unique(far)) == 9 and 0.3 < terrain.mean() < 0.9
     # Half floats hold eleven bits.
-    np.testing.assert_allclose(picture[terrain], wanted[terrain], rtol=2.0**-10)
+    np.testing.assert_allclose(picture[terrain], expected[terrain], rtol=2.0**-10)
 
 
 def test_clouds_keep_to_their_layer(engine, shown):
@@ -123,10 +123,10 @@ def test_the_beam_is_that_of_beer_and_lambert(engine, shown):
     # Each end of a cloud may be off by a step of either sum; a column of 5 clouds has 10 ends.
     bound = 0.004 * (step + 0.7 * 3600 / 96)
     here = -np.log(np.maximum(beam[:60], 1e-30))
-    wanted = 0.004 * step * above[:60]
-    sure = wanted < 20
-    assert (wanted > 1).any()
-    np.testing.assert_allclose(here[sure], wanted[sure], atol=2 * bound)
+    expected = 0.004 * step * above[:60]
+    sure = expected < 20
+    assert (expected > 1).any()
+    np.testing.assert_allclose(here[sure], expected[sure], atol=2 * bound)
 
 
 def fresnel(cosine):
@@ -156,10 +156,10 @@ def test_slopes_of_waves_vary_as_cox_and_munk_found(engine, shown, wind):
 
 def test_trees_are_as_many_as_cells_and_cover_as_much_when_fewer(engine, shown):
     """Crowns of 3 m, one in each cell of 20 m, hardly overlap: they cover pi 9 / 400 of the ground."""
-    given = {"trees__cell": 20.0, "density__clearings": 0.0, "density__steep": (4.0, 5.0)}
-    whole = engine.read(shown("trees_from_above", **given), "trees:crown").mean()
+    value = {"trees__cell": 20.0, "density__clearings": 0.0, "density__steep": (4.0, 5.0)}
+    whole = engine.read(shown("trees_from_above", **value), "trees:crown").mean()
     assert whole == pytest.approx(9 * np.pi / 400, rel=0.05)
-    fewer = engine.read(shown("trees_from_above", trees__kept=0.25, **given), "trees:crown").mean()
+    fewer = engine.read(shown("trees_from_above", trees__kept=0.25, **value), "trees:crown").mean()
     # 225 of 900 trees: chance leaves sqrt(225) of them and the overlap of Poisson's squares.
     assert fewer == pytest.approx(whole, rel=0.2)
 
@@ -167,8 +167,8 @@ def test_trees_are_as_many_as_cells_and_cover_as_much_when_fewer(engine, shown):
 def test_a_tree_that_is_drawn_stays_as_the_eye_comes_nearer(engine, shown):
     drawn = engine.read(shown("trees_in_time"), "drawn")[::-1]  # the first picture first
     assert (np.diff(drawn, axis=0) >= 0).all()
-    one = drawn[2::4, 2::4]
-    away = 4000 * (1 - np.arange(len(one)) / len(one))
-    wanted = np.minimum(1000 / away, 1) ** 2
+    item = drawn[2::4, 2::4]
+    away = 4000 * (1 - np.arange(len(item)) / len(item))
+    expected = np.minimum(1000 / away, 1) ** 2
     # 120 trees: the largest deviation of their count is below 0.15 but for one time in 100.
-    assert np.abs(one.mean(axis=1) - wanted).max() < 0.15
+    assert np.abs(item.mean(axis=1) - expected).max() < 0.15

@@ -13,10 +13,10 @@ PASSAGES = {
 
 
 def at_nodes(texels, cells):
-    """Return the node before each texel, and the share of the way to the next one."""
-    place = cells * np.arange(texels) / (texels - 1)
-    node = np.minimum(np.floor(place).astype(int), cells - 1)
-    return node, place - node
+    """Return the node before each texel, and the fraction of the way to the next one."""
+    position = cells * np.arange(texels) / (texels - 1)
+    node = np.minimum(np.floor(position).astype(int), cells - 1)
+    return node, position - node
 
 
 @pytest.fixture
@@ -44,9 +44,9 @@ def test_heights_are_random_numbers_interpolated(read, python_random, passage):
         matrix[np.arange(texels), node] = 1 - bent
         matrix[np.arange(texels), node + 1] += bent
         matrices.append(matrix)
-    wanted = matrices[1] @ numbers @ matrices[0].T
+    expected = matrices[1] @ numbers @ matrices[0].T
     bound = (2 * steepest * 2 * cells + 40) * 2.0**-24
-    assert np.abs(read("value_noise", size, passage, cells, seed) - wanted).max() <= bound
+    assert np.abs(read("value_noise", size, passage, cells, seed) - expected).max() <= bound
 
 
 @pytest.mark.parametrize("passage", PASSAGES)
@@ -54,15 +54,15 @@ def test_the_curve_and_its_derivative(read, python_random, passage):
     """The derivative is that of a polynomial by its factors, which share nothing with the kernel's text."""
     cells, seed, texels = 7, 3, 1281
     factors, steepest = PASSAGES[passage]
-    found = read("value_noise/curve", (texels, 2), passage, cells, seed)
+    result = read("value_noise/curve", (texels, 2), passage, cells, seed)
     key = seed + salt("lessons/value_noise_curve")
     numbers = 2 * python_random(np.arange(cells + 1), np.zeros(cells + 1, int), key).astype(float) - 1
     node, share = at_nodes(texels, cells)
     step = numbers[node + 1] - numbers[node]
     polynomial = np.polynomial.Polynomial(factors)
     bound = (4 * 6 * cells + 100) * 2.0**-24
-    assert np.abs(found[0] - (numbers[node] + step * polynomial(share))).max() <= 2 * steepest * bound
-    wanted = 0.5 * step * polynomial.deriv()(share)
+    assert np.abs(result[0] - (numbers[node] + step * polynomial(share))).max() <= 2 * steepest * bound
+    expected = 0.5 * step * polynomial.deriv()(share)
     inside = (share > 1e-4) & (share < 1 - 1e-4)  # which side of a node a texel on it takes is rounding
-    assert np.abs(found[1] - wanted)[inside].max() <= 6 * bound
+    assert np.abs(result[1] - expected)[inside].max() <= 6 * bound
     assert np.isclose(polynomial.deriv()(0.5), steepest)

@@ -136,9 +136,9 @@ def test_what_makes_and_lights_the_terrain_does_not_follow_the_camera():
     folders = ("generation/", "erosion/", "texturing/", "lighting/")
     follows = "texturing/alpha_map/distance.glsl"  # by its purpose
     maps = [n for n in NAMES if n.startswith(folders) and "/diagram/" not in n and n != follows]
-    found = []
+    result = []
     for name in (*maps, "trees/wood.glsl", "trees/density.glsl", "trees/canopy.glsl"):
         kernel = parse_kernel(name, read_source(GLSL / name, (GLSL,)))
         if kernel is not None and kernel.kind != "draw":
-            found += [(name, given) for given in ("eye", "clip_from_world") if kernel.reads(given)]
-    assert not found
+            result += [(name, value) for value in ("eye", "clip_from_world") if kernel.reads(value)]
+    assert not result

@@ -50,8 +50,8 @@ def test_the_trail_is_life_fading(engine, sketch_of):
     for frame in range(30):
         alive = cells_at(engine, sketch, frame) == 1
         trail = np.where(alive, 255, np.maximum(trail - 5, 0))
-        found = cells_at(engine, sketch, frame, "trail")
-        np.testing.assert_array_equal(np.round(255 * found).astype(int), trail)
+        cells = cells_at(engine, sketch, frame, "trail")
+        np.testing.assert_array_equal(np.round(255 * cells).astype(int), trail)
 
 
 @pytest.mark.parametrize("size", [(16, 16), (48, 32)], ids=str)

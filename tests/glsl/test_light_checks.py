@@ -30,10 +30,10 @@ def light(ctx, kept, tmp_path):
     """Give ``light(method, terrain, sun)``: (ny, nx, components), the visible part of the sun in alpha."""
 
     def make(method, terrain, sun, **more):
-        found = lit(kept, tmp_path, method, terrain, sun, **more)
-        assert found.shape[:2] == terrain.heights.shape and np.isfinite(found).all()
-        assert found.min() >= 0 and found[..., -1].max() <= 1
-        return found
+        result = lit(kept, tmp_path, method, terrain, sun, **more)
+        assert result.shape[:2] == terrain.heights.shape and np.isfinite(result).all()
+        assert result.min() >= 0 and result[..., -1].max() <= 1
+        return result
 
     return make
 
@@ -81,15 +81,15 @@ def exact_sky(make):
     return terrain, sky_visibility(terrain, count=32)
 
 
-def assert_alike(found, wanted):
+def assert_alike(result, expected):
     """Allow the rounding of halves, soft shadows 1e-3, and one grazing ray in five hundred."""
-    away = np.abs(found - wanted).max(axis=-1)
+    away = np.abs(result - expected).max(axis=-1)
     assert (away > 1e-3 + 2 * HALF).mean() <= 0.002, f"{(away > 1e-3 + 2 * HALF).sum()} of {away.size} differ"
 
 
-def inner(method, found):
+def inner(method, result):
     """Leave out texels whose first step leaves the terrain, where the cone is wider than the sun is high."""
-    return found[1:-1, 1:-1] if method.use == "night" else found
+    return result[1:-1, 1:-1] if method.use == "night" else result
 
 
 # Symmetry
@@ -98,8 +98,8 @@ def inner(method, found):
 @EACH
 def test_flat_terrain_is_lit_evenly(light, method):
     for sun in ((250, 5), (0, 25), (135, 60), (77, 90)):
-        found = inner(method, light(method, flat(), sun))
-        np.testing.assert_array_equal(found, np.broadcast_to(found[0, 0], found.shape))
+        result = inner(method, light(method, flat(), sun))
+        np.testing.assert_array_equal(result, np.broadcast_to(result[0, 0], result.shape))
 
 
 @EACH
@@ -132,9 +132,9 @@ def test_turned_and_mirrored_terrain_has_turned_and_mirrored_light(light, method
 def test_the_thesis_own_ways_are_exempt_because_they_lean_to_one_side(light, use, values):
     method = Method("the thesis's", use, {"gain": 1.0, **values})
     terrain = rough()
-    found = light(method, Land(terrain.heights[:, ::-1], terrain.spacing), (-20, 12))
+    result = light(method, Land(terrain.heights[:, ::-1], terrain.spacing), (-20, 12))
     with pytest.raises(AssertionError, match="differ"):
-        assert_alike(found, light(method, terrain, (20, 12))[:, ::-1])
+        assert_alike(result, light(method, terrain, (20, 12))[:, ::-1])
 
 
 # Shadows
@@ -153,8 +153,8 @@ def test_nothing_is_lit_that_the_exact_shadow_holds_dark(light, method, make):
 
 @SHADOWING
 def test_there_is_light_as_well_as_shadow(light, method):
-    found = light(method, rough(), (250, 12))[..., 3]
-    assert (found == 0).mean() > 0.05 and (found > 0.99).mean() > 0.3
+    result = light(method, rough(), (250, 12))[..., 3]
+    assert (result == 0).mean() > 0.05 and (result > 0.99).mean() > 0.3
 
 
 @EACH
@@ -167,13 +167,13 @@ def test_there_is_light_as_well_as_shadow(light, method):
 def test_sharp_terrain(light, method, make, sun):
     """The light is a number; where the exact shadow is whole, or none, for a texel around, so is this."""
     terrain, share = exact(make, sun, method.diameter)
-    found = light(method, terrain, sun)[..., 3]
+    result = light(method, terrain, sun)[..., 3]
     # Horizons worked out beforehand are those of lines that pass up to half a texel beside the texel.
     around = 5 if method.use == "horizon_sun" else 3
     sure = (maximum_filter(share, around) == minimum_filter(share, around)) & ((share == 0) | (share == 1))
     assert sure.mean() > 0.3
     if method.shadows:
-        np.testing.assert_allclose(found[sure], share[sure], atol=1e-3)
+        np.testing.assert_allclose(result[sure], share[sure], atol=1e-3)
 
 
 # The sun at its ends
@@ -191,38 +191,38 @@ def test_a_sun_below_the_horizon_gives_no_light(light, method, elevation):
 @pytest.mark.parametrize("make", [rough, spike, cliff])
 def test_under_the_zenith_nothing_is_hidden(light, method, make):
     terrain = make()
-    found = light(method, terrain, (77, 90))
-    np.testing.assert_allclose(found[..., 3], 1, atol=HALF)
+    result = light(method, terrain, (77, 90))
+    np.testing.assert_allclose(result[..., 3], 1, atol=HALF)
     # A table of 256 x 256 normals rounds them.
     rounded = 0.012 if method.use == "horizon_sun" else 1e-4
-    np.testing.assert_allclose(found[..., 0], terrain.normals()[..., 2], rtol=3 * HALF, atol=rounded)
+    np.testing.assert_allclose(result[..., 0], terrain.normals()[..., 2], rtol=3 * HALF, atol=rounded)
 
 
 @SHADOWING
 def test_flat_terrain_sees_the_whole_sun(light, method):
     for sun in ((250, 5), (0, 25), (135, 60)):
-        found = light(method, flat(), sun)
-        np.testing.assert_allclose(found[..., 3], 1, atol=1e-3)
-        np.testing.assert_allclose(found[..., 0], np.sin(np.radians(sun[1])), rtol=2e-3)
+        result = light(method, flat(), sun)
+        np.testing.assert_allclose(result[..., 3], 1, atol=1e-3)
+        np.testing.assert_allclose(result[..., 0], np.sin(np.radians(sun[1])), rtol=2e-3)
 
 
 @pytest.mark.parametrize("form", ["march", "sweep"])
 def test_a_disc_that_sets_is_half_seen(light, form):
     method = Method("disc", "sun_disc", {"gain": 1.0, "form": form})
     for elevation in (0.1, 0.0, -0.1):
-        found = light(method, flat(), (250, elevation))
+        result = light(method, flat(), (250, elevation))
         share = exact(flat, (250, elevation), 0.53)[1]
         facing = light(method, cliff(), (270, elevation))[:, 12]
         np.testing.assert_allclose(facing[..., 3], share[0, 0], atol=2e-3)
-        np.testing.assert_array_equal(found[..., 3], found[0, 0, 3])
+        np.testing.assert_array_equal(result[..., 3], result[0, 0, 3])
 
 
 @SHADOWING
 def test_a_sun_on_the_horizon_lights_what_faces_it(light, method):
-    found = light(method, rough(), (90, 0))
+    result = light(method, rough(), (90, 0))
     facing = (rough().normals() @ towards(90, 0)) > 0
-    assert found[facing, 0].max() > 0.1 or method.diameter  # half of a disc is below the level
-    np.testing.assert_array_equal(found[~maximum_filter(facing, 3), 0], 0)
+    assert result[facing, 0].max() > 0.1 or method.diameter  # half of a disc is below the level
+    np.testing.assert_array_equal(result[~maximum_filter(facing, 3), 0], 0)
 
 
 @EACH
@@ -245,9 +245,9 @@ def test_tiny_terrains_are_numbers(light, method, size):
 @pytest.mark.parametrize("elevation", [5.0, 40.0, 90.0])
 def test_on_flat_terrain_the_cylinder_is_half_of_the_light_everywhere(light, elevation):
     method = Method("cylinder", "soft_cylinder", {"gain": 1.0})
-    found = light(method, flat(), (250, elevation))
-    np.testing.assert_array_equal(found[..., 3], 0.5)
-    np.testing.assert_allclose(found[..., 0], np.sin(np.radians(elevation)) / 2, rtol=2 * HALF)
+    result = light(method, flat(), (250, elevation))
+    np.testing.assert_array_equal(result[..., 3], 0.5)
+    np.testing.assert_allclose(result[..., 0], np.sin(np.radians(elevation)) / 2, rtol=2 * HALF)
 
 
 @pytest.mark.parametrize("delta_r", [0.5, 1.5])
@@ -258,9 +258,9 @@ def test_on_flat_terrain_a_cone_wider_than_the_sun_is_high_is_cut_by_the_ground(
 ):
     """V = (1 + L_z / delta_r) / 2, but for texels whose first step leaves the terrain."""
     method = Method("cone", "soft_cone", {"gain": 1.0, "delta_r": delta_r, "form": form})
-    found = light(method, flat(), (250, elevation))[1:-1, 1:-1, 3]
+    result = light(method, flat(), (250, elevation))[1:-1, 1:-1, 3]
     truth = min((1 + np.sin(np.radians(elevation)) / delta_r) / 2, 1)
-    np.testing.assert_allclose(found, truth, rtol=2e-3)
+    np.testing.assert_allclose(result, truth, rtol=2e-3)
 
 
 @pytest.mark.parametrize("sun", [(250, 5), (20, 12), (90, 20)], ids=str)
@@ -284,8 +284,8 @@ def test_a_cone_tends_to_the_ray(light, sun):
 def test_flat_terrain_sees_the_whole_sky(light, method):
     """Exactly, but for what a half float makes of a number just below 1."""
     for terrain in (flat(), flat(1, 1), flat(2, 2), flat(1, 20), flat(20, 2)):
-        found = light(method, terrain, None)[..., 0]
-        np.testing.assert_allclose(found, 1, atol=1e-6 if method.output else HALF)
+        result = light(method, terrain, None)[..., 0]
+        np.testing.assert_allclose(result, 1, atol=1e-6 if method.output else HALF)
 
 
 @OF_THE_SKY
@@ -308,10 +308,10 @@ def test_a_valleys_walls_see_what_lies_between_the_rims(light, method, angle):
     a = np.radians(angle)
     across = np.abs(np.arange(-20, 21)) * 10.0
     terrain = Land(np.tile(across * np.tan(a), (9, 1)), (10.0, 5e4))
-    found = light(method, terrain, None)[4, 21:40, 0]
+    result = light(method, terrain, None)[4, 21:40, 0]
     x = np.arange(1, 20) * 10.0
     rim = np.arctan((200 - x) * np.tan(a) / (200 + x))
-    np.testing.assert_allclose(found, (1 + np.cos(a + rim)) / 2, atol=0.01)
+    np.testing.assert_allclose(result, (1 + np.cos(a + rim)) / 2, atol=0.01)
 
 
 @OF_THE_SKY

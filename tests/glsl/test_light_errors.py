@@ -108,7 +108,7 @@ def worst(errors):
 )
 @pytest.mark.parametrize("method", [m for m in METHODS if m.measured], ids=lambda m: m.name)
 def test_errors_stay_within_bounds(ctx, kept, truths, tmp_path, method, terrain):
-    found = worst(list(measure(kept, tmp_path, method, truths(terrain))))
+    result = worst(list(measure(kept, tmp_path, method, truths(terrain))))
     bounds = BOUNDS[method.name, terrain]
-    assert len(found) == len(bounds)
-    assert (np.array(found) <= bounds).all(), f"{[round(v, 4) for v in found]} against {bounds}"
+    assert len(result) == len(bounds)
+    assert (np.array(result) <= bounds).all(), f"{[round(v, 4) for v in result]} against {bounds}"

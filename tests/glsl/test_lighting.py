@@ -59,11 +59,11 @@ def clearance(heights, sun, spacing, step_length=1.0):
     return least
 
 
-def assert_same_light(found, wanted):
+def assert_same_light(result, expected):
     """Allow a half float's rounding, and one grazing ray in a thousand."""
-    same = found[..., 3] == wanted[..., 3]
+    same = result[..., 3] == expected[..., 3]
     assert same.mean() > 0.999
-    np.testing.assert_allclose(found[same], wanted[same], rtol=2 * HALF, atol=1e-5)
+    np.testing.assert_allclose(result[same], expected[same], rtol=2 * HALF, atol=1e-5)
 
 
 # The sun
@@ -77,26 +77,26 @@ def test_the_sun_is_where_the_compass_says(on_gpu):
         (270, 0): (-1, 0, 0),
         (45, 90): (0, 0, 1),
     }
-    found = on_gpu("lighting/sun.glsl", "to_sun(place)", place=np.array(list(places), np.float64))
-    np.testing.assert_array_equal(found, list(places.values()))
+    result = on_gpu("lighting/sun.glsl", "to_sun(place)", place=np.array(list(places), np.float64))
+    np.testing.assert_array_equal(result, list(places.values()))
 
 
 def test_the_sun_is_a_unit_vector_at_its_angles(on_gpu):
     places = np.random.default_rng(1).uniform((-720, -90), (720, 90), (500, 2)).astype(np.float32)
-    found = on_gpu("lighting/sun.glsl", "to_sun(place)", place=places).astype(np.float64)
-    np.testing.assert_allclose(np.linalg.norm(found, axis=1), 1, atol=1e-6)
-    np.testing.assert_allclose(np.degrees(np.arcsin(np.clip(found[:, 2], -1, 1))), places[:, 1], atol=0.03)
-    np.testing.assert_allclose(found, [sun_vector(*p) for p in places.astype(np.float64)], atol=2e-6)
+    result = on_gpu("lighting/sun.glsl", "to_sun(place)", place=places).astype(np.float64)
+    np.testing.assert_allclose(np.linalg.norm(result, axis=1), 1, atol=1e-6)
+    np.testing.assert_allclose(np.degrees(np.arcsin(np.clip(result[:, 2], -1, 1))), places[:, 1], atol=0.03)
+    np.testing.assert_allclose(result, [sun_vector(*p) for p in places.astype(np.float64)], atol=2e-6)
 
 
 def test_a_normal_is_perpendicular_to_its_slope(on_gpu):
     slopes = np.random.default_rng(2).normal(0, 2, (300, 2))
-    found = on_gpu("lighting/sun.glsl", "normal_of_slope(slope)", slope=slopes).astype(np.float64)
-    np.testing.assert_allclose(np.linalg.norm(found, axis=1), 1, atol=1e-6)
+    result = on_gpu("lighting/sun.glsl", "normal_of_slope(slope)", slope=slopes).astype(np.float64)
+    np.testing.assert_allclose(np.linalg.norm(result, axis=1), 1, atol=1e-6)
     east = np.stack([np.ones(300), np.zeros(300), slopes[:, 0]], axis=1)
     north = np.stack([np.zeros(300), np.ones(300), slopes[:, 1]], axis=1)
     for tangent in (east, north):
-        np.testing.assert_allclose((found * tangent).sum(axis=1), 0, atol=2e-6)
+        np.testing.assert_allclose((result * tangent).sum(axis=1), 0, atol=2e-6)
 
 
 # Both methods
@@ -180,9 +180,9 @@ def test_mirrored_terrain_under_a_mirrored_sun_has_mirrored_light(engine, lit, m
 @pytest.mark.parametrize("sun", [(135, 25), (20, 12)], ids=str)
 def test_the_thesis_one_triangle_is_not_symmetric(any_engine, lit, sun):
     straight = any_engine.read(lit(HILLS, "l_dot_n", sun, relief=300.0, normal="one triangle"), "light")
-    given = {"turned": "mirrored"}
+    value = {"turned": "mirrored"}
     mirrored = any_engine.read(
-        lit(HILLS, "l_dot_n", (-sun[0], sun[1]), relief=300.0, normal="one triangle", given=given), "light"
+        lit(HILLS, "l_dot_n", (-sun[0], sun[1]), relief=300.0, normal="one triangle", given=value), "light"
     )
     assert np.abs(mirrored - straight[:, ::-1]).max() > 0.05
 
@@ -198,8 +198,8 @@ def test_the_one_triangle_is_the_thesis_triangle(engine, lit):
         np.stack([flat, flat + 20, north_east - south_east], axis=-1),
     )
     truth = np.maximum(normal @ sun_vector(*sun) / np.linalg.norm(normal, axis=-1), 0)
-    found = engine.read(sketch, "light")[1:-1, 1:-1, 0]
-    np.testing.assert_allclose(found, truth, rtol=2 * HALF, atol=1e-3)
+    result = engine.read(sketch, "light")[1:-1, 1:-1, 0]
+    np.testing.assert_allclose(result, truth, rtol=2 * HALF, atol=1e-3)
 
 
 @BOTH
@@ -372,8 +372,8 @@ def test_cutting_places_down_moves_shadows_and_is_the_thesis_way(any_engine, lit
 def test_moving_the_sun_leaves_the_terrain_and_what_is_known_of_it_alone(any_engine, lit, form):
     sketch = lit(HILLS, "ray_cast", (135, 25), form=form)
     any_engine.read(sketch, "light")
-    known = {"light.visibility.fast.block_maxima", "light.visibility.fast.range.whole"}
-    assert known | {"height"} < set(any_engine.record.ran)
+    existing = {"light.visibility.fast.block_maxima", "light.visibility.fast.range.whole"}
+    assert existing | {"height"} < set(any_engine.record.ran)
     any_engine.read(sketch.with_values({"light.sun": (140, 25)}), "light")
     assert any_engine.record.ran == ["light.horizon", "light.visibility.fast.visibility", "light.light"]
     shapes = {step.path: step.size for step in any_engine.record.plan.walk()}
@@ -385,7 +385,7 @@ def test_moving_the_sun_leaves_the_terrain_and_what_is_known_of_it_alone(any_eng
 
 def test_light_is_what_is_seen_of_the_sun_and_of_the_sky(engine, make_sketch):
     """V falls on the sun's light and F on the sky's, each channel for itself."""
-    given = """
+    value = """
 #pragma kernel(output = "v:rgba32f")
 uniform vec3 step_of = vec3(0.1, 0.0, 0.0);
 vec4 kernel(ivec2 texel) { return vec4(float(texel.x) * step_of, 1.0); }
@@ -412,12 +412,12 @@ sun_colour = [1.0, 0.8, 0.6]
 sky_colour = [0.5, 0.6, 0.7]
 ambient = 0.3
 """
-    sketch = make_sketch(passes, size=9, extent=80.0, relief=50.0, terrain=PLANE, given=given)
+    sketch = make_sketch(passes, size=9, extent=80.0, relief=50.0, terrain=PLANE, given=value)
     light = engine.read(sketch, "light")
     x = np.broadcast_to(np.arange(9), (9, 9))
     normal = np.array([-0.05 * 50 / 10, -0.02 * 50 / 10, 1.0])
     received = normal @ sun_vector(200, 40) / np.linalg.norm(normal)
-    wanted = np.stack(
+    expected = np.stack(
         [
             1.0 * 1.5 * received * 0.1 * x,
             0.8 * 1.5 * received * 0.1 * x + 0.6 * 0.3 * 0.05 * x,
@@ -426,11 +426,11 @@ ambient = 0.3
         ],
         axis=-1,
     )
-    np.testing.assert_allclose(light, wanted, rtol=2 * HALF, atol=1e-4)
+    np.testing.assert_allclose(light, expected, rtol=2 * HALF, atol=1e-4)
 
 
 def test_light_of_another_size_reads_what_it_is_given_between_texels(engine, make_sketch):
-    given = """
+    value = """
 #pragma kernel(output = "v:r32f")
 float kernel(ivec2 texel) { return float(texel.x + 2 * texel.y) / 64.0; }
 """
@@ -438,7 +438,7 @@ float kernel(ivec2 texel) { return float(texel.x + 2 * texel.y) / 64.0; }
         '[[pass]]\nname = "height"\nuse = "./terrain"\n[[pass]]\nname = "visibility"\nuse = "./given"\n'
         '[[pass]]\nname = "light"\nuse = "lighting/shade"\nsize = [25, 33]\nset = { sun = [0.0, 90.0] }\n'
     )
-    light = engine.read(make_sketch(passes, size=9, terrain=PLANE, given=given), "light")
+    light = engine.read(make_sketch(passes, size=9, terrain=PLANE, given=value), "light")
     y, x = np.mgrid[0:33, 0:25]
     np.testing.assert_allclose(light[..., 3], (x / 3 + 2 * (y / 4)) / 64, rtol=2 * HALF, atol=1e-4)
 
@@ -451,5 +451,5 @@ def test_slopes_between_texels_are_the_texels_slopes_interpolated(engine, lit):
     places = np.meshgrid(np.linspace(0, 64, 97), np.linspace(0, 64, 129), indexing="ij")
     slopes = [map_coordinates(s, places, order=1) for s in np.gradient(heights, 10.0)]
     normal = np.stack([-slopes[1], -slopes[0], np.ones_like(slopes[0])], axis=-1)
-    wanted = np.maximum(normal @ sun_vector(*sun) / np.linalg.norm(normal, axis=-1), 0)
-    np.testing.assert_allclose(engine.read(sketch, "light")[..., 0], wanted, rtol=2 * HALF, atol=1e-3)
+    expected = np.maximum(normal @ sun_vector(*sun) / np.linalg.norm(normal, axis=-1), 0)
+    np.testing.assert_allclose(engine.read(sketch, "light")[..., 0], expected, rtol=2 * HALF, atol=1e-3)

@@ -35,13 +35,13 @@ def cover(engine, make_sketch):
 def test_a_mask_goes_from_nothing_to_all(engine, make_sketch, by_factors):
     set_ = f"set = {{ from = 0.25, to = 64.0, by_factors = {str(by_factors).lower()}, strength = 0.8 }}"
     made = passes(amount="./ramp", cover=("texturing/mask", 'inputs = { amount = "amount" }', set_))
-    found = engine.read(make_sketch(made, size=17, ramp=RAMP), "cover")[0].astype(float)
+    result = engine.read(make_sketch(made, size=17, ramp=RAMP), "cover")[0].astype(float)
     amount = 2.0 ** (np.arange(17) - 8)
     if by_factors:
         expected = np.interp(np.log2(amount), (-2, 6), (0, 0.8))
     else:
         expected = np.interp(amount, (0.25, 64), (0, 0.8))
-    np.testing.assert_allclose(found, expected, atol=2**-11)  # half floats
+    np.testing.assert_allclose(result, expected, atol=2**-11)  # half floats
 
 
 def test_snow_lies_above_its_line_and_not_on_cliffs(cover):
@@ -50,16 +50,16 @@ def test_snow_lies_above_its_line_and_not_on_cliffs(cover):
         np.testing.assert_allclose(cover("snow_cover", f"{level}", **flat), expected, atol=1e-3)
     for degrees, expected in ((30.0, 1), (40.0, 0.5), (50.0, 0)):
         slope = f"200.0 + place.x * {np.tan(np.radians(degrees))}"
-        found = cover("snow_cover", slope, **flat)[:, 1:-1]
-        np.testing.assert_allclose(found, expected, atol=2e-3)
+        result = cover("snow_cover", slope, **flat)[:, 1:-1]
+        np.testing.assert_allclose(result, expected, atol=2e-3)
 
 
 def test_snow_collects_in_the_lee_of_the_wind(cover):
     ridge = "50.0 - 0.2 * abs(place.x - 500.0)"
-    given = {"drift": 0.3, "line": 0.4, "fade": 0.5}
-    east = cover("snow_cover", ridge, wind=270.0, **given)
-    west = cover("snow_cover", ridge, wind=90.0, **given)
-    south = cover("snow_cover", ridge, wind=180.0, **given)
+    value = {"drift": 0.3, "line": 0.4, "fade": 0.5}
+    east = cover("snow_cover", ridge, wind=270.0, **value)
+    west = cover("snow_cover", ridge, wind=90.0, **value)
+    south = cover("snow_cover", ridge, wind=180.0, **value)
     np.testing.assert_allclose(east, west[:, ::-1], atol=2**-9)
     np.testing.assert_allclose(south, south[:, ::-1], atol=2**-9)
     lee, windward = np.s_[:, 36:46], np.s_[:, 23:30]
@@ -69,10 +69,10 @@ def test_snow_collects_in_the_lee_of_the_wind(cover):
 def test_scree_lies_at_its_angle_below_a_face(cover):
     scree = np.tan(np.radians(33.0))
     below = f"place.x < 600.0 ? {scree} * place.x : {scree} * 600.0 + 3.0 * (place.x - 600.0)"
-    found = cover("scree_cover", below, rolls=300.0)
+    result = cover("scree_cover", below, rolls=300.0)
     x = np.linspace(0, 1000, 65)
-    assert (found[:, (x > 500) & (x < 570)] > 0.9).all(), "below the face"
-    assert (found[:, x > 650] == 0).all(), "not on the face"
-    assert (found[:, (x > 20) & (x < 280)] == 0).all(), "not so far away"
+    assert (result[:, (x > 500) & (x < 570)] > 0.9).all(), "below the face"
+    assert (result[:, x > 650] == 0).all(), "not on the face"
+    assert (result[:, (x > 20) & (x < 280)] == 0).all(), "not so far away"
     assert (cover("scree_cover", f"{scree} * place.x") == 0).all(), "nor where there is no face"
     assert (cover("scree_cover", "place.x < 600.0 ? 0.1 * place.x : 3.0 * place.x") == 0)[:, :30].all()

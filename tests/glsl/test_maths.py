@@ -10,16 +10,16 @@ RNG = np.random.default_rng(3)
 
 def test_cosine_and_sine_are_pythons(on_gpu):
     angles = RNG.uniform(-1000, 1000, 5000).astype(np.float32)
-    found = on_gpu("maths/angle.glsl", "cos_sin_degrees(angle)", angle=angles)
+    result = on_gpu("maths/angle.glsl", "cos_sin_degrees(angle)", angle=angles)
     truth = [(math.cos(a), math.sin(a)) for a in np.radians(angles.astype(np.float64))]
-    np.testing.assert_allclose(found, truth, atol=2e-6)
+    np.testing.assert_allclose(result, truth, atol=2e-6)
 
 
 def test_quarter_turns_are_exact(on_gpu):
     turns = np.arange(-8, 9)
-    found = on_gpu("maths/angle.glsl", "cos_sin_degrees(angle)", angle=turns * 90.0)
+    result = on_gpu("maths/angle.glsl", "cos_sin_degrees(angle)", angle=turns * 90.0)
     truth = [((1, 0), (0, 1), (-1, 0), (0, -1))[t % 4] for t in turns]
-    np.testing.assert_array_equal(found, truth)
+    np.testing.assert_array_equal(result, truth)
 
 
 def test_a_turned_angle_is_a_turned_vector_to_the_last_bit(on_gpu):
@@ -34,8 +34,8 @@ def test_quotient_is_pythons(on_gpu):
     quotients = np.minimum(RNG.integers(0, 2**21, 20000), (2**31 - 20000) // divisors - 1)
     for rest in (0, 1, -1):
         a = np.maximum(quotients * divisors + rest, 0)
-        found = on_gpu("maths/whole.glsl", "quotient(a, b)", a=a, b=divisors)
-        np.testing.assert_array_equal(found, [int(x) // int(y) for x, y in zip(a, divisors, strict=True)])
+        result = on_gpu("maths/whole.glsl", "quotient(a, b)", a=a, b=divisors)
+        np.testing.assert_array_equal(result, [int(x) // int(y) for x, y in zip(a, divisors, strict=True)])
 
 
 def test_small_quotients_are_pythons(on_gpu):
@@ -48,9 +48,9 @@ def test_small_quotients_are_pythons(on_gpu):
 )
 def test_corners_stand_on_corners(on_gpu, small, large):
     corners = np.array([[x, y] for x in (0, small[0] - 1) for y in (0, small[1] - 1)])
-    found = on_gpu("maths/land.glsl", "place_on(to, texel, grid)", to=large, texel=corners, grid=small)
+    result = on_gpu("maths/land.glsl", "place_on(to, texel, grid)", to=large, texel=corners, grid=small)
     truth = [[(large[i] - 1 if c[i] else 0) for i in (0, 1)] for c in corners]
-    np.testing.assert_array_equal(found, truth)
+    np.testing.assert_array_equal(result, truth)
 
 
 def test_a_place_on_another_grid_is_the_same_share_of_the_terrain(on_gpu):
@@ -71,21 +71,21 @@ def test_a_grid_on_itself_stays_where_it_is(on_gpu):
 
 
 def test_spacing_counts_the_gaps(on_gpu):
-    found = on_gpu("maths/land.glsl", "spacing_of(grid, metres)", grid=(11, 1), metres=(50.0, 7.0))
-    np.testing.assert_array_equal(found, [[5.0, 7.0]])
+    result = on_gpu("maths/land.glsl", "spacing_of(grid, metres)", grid=(11, 1), metres=(50.0, 7.0))
+    np.testing.assert_array_equal(result, [[5.0, 7.0]])
 
 
 def test_bilinear_is_two_interpolations_and_keeps_level_ground_level(on_gpu):
     corners, part = RNG.uniform(-5, 5, (500, 4)), RNG.random((500, 2))
-    found = on_gpu("maths/land.glsl", "bilinear(corner, part)", corner=corners, part=part)
+    result = on_gpu("maths/land.glsl", "bilinear(corner, part)", corner=corners, part=part)
     truth = [
         np.interp(v, [0, 1], [np.interp(u, [0, 1], c[:2]), np.interp(u, [0, 1], c[2:])])
         for c, (u, v) in zip(corners, part, strict=True)
     ]
-    np.testing.assert_allclose(found, truth, atol=2e-6)
+    np.testing.assert_allclose(result, truth, atol=2e-6)
     level = np.repeat(corners[:, :1], 4, axis=1)
-    found = on_gpu("maths/land.glsl", "bilinear(corner, part)", corner=level, part=part)
-    np.testing.assert_array_equal(found, level[:, 0].astype(np.float32))
+    result = on_gpu("maths/land.glsl", "bilinear(corner, part)", corner=level, part=part)
+    np.testing.assert_array_equal(result, level[:, 0].astype(np.float32))
 
 
 def test_the_nodes_around_a_place_weigh_as_in_bilinear_interpolation(on_gpu):
@@ -109,31 +109,31 @@ def test_the_nodes_around_a_place_weigh_as_in_bilinear_interpolation(on_gpu):
 
 
 def test_the_distance_to_a_segment_is_that_to_the_nearest_of_its_points(on_gpu):
-    place, start, end = (RNG.uniform(-5, 5, (200, 2)).astype(np.float32) for _ in range(3))
+    position, start, end = (RNG.uniform(-5, 5, (200, 2)).astype(np.float32) for _ in range(3))
     end[:20] = start[:20]  # pieces without length
-    found = on_gpu(
-        "maths/segment.glsl", "distance_to_segment(place, start, end)", place=place, start=start, end=end
+    result = on_gpu(
+        "maths/segment.glsl", "distance_to_segment(place, start, end)", place=position, start=start, end=end
     )
     share = np.linspace(0, 1, 2001)[:, None, None]
     points = start + share * (end.astype(np.float64) - start)
-    np.testing.assert_allclose(found, np.linalg.norm(points - place, axis=-1).min(axis=0), atol=3e-3)
+    np.testing.assert_allclose(result, np.linalg.norm(points - position, axis=-1).min(axis=0), atol=3e-3)
 
 
 @pytest.mark.slow
 def test_a_way_through_a_rectangle_is_where_its_places_are_inside(on_gpu):
-    place, ahead = RNG.uniform(-8, 8, (300, 2)), RNG.uniform(-1, 1, (300, 2))
+    position, ahead = RNG.uniform(-8, 8, (300, 2)), RNG.uniform(-1, 1, (300, 2))
     ahead[:20, 0] = 0.0
     sides = np.array([5.0, 3.0])
-    found = on_gpu(
+    result = on_gpu(
         "maths/square.glsl",
         "way_through(place, ahead, vec2(5.0, 3.0))",
-        place=place.astype(np.float32),
+        place=position.astype(np.float32),
         ahead=ahead.astype(np.float32),
     )
     way = np.linspace(-100, 100, 40_001)
-    points = place[:, None] + way[:, None] * ahead[:, None]
+    points = position[:, None] + way[:, None] * ahead[:, None]
     inside = np.all((points > 0) & (points < sides), axis=-1)
-    enters, leaves = found.T
+    enters, leaves = result.T
     clear = inside.sum(axis=1) > 10
     assert clear.sum() > 50 and not inside[enters >= leaves].any()
     np.testing.assert_allclose(enters[clear], way[inside.argmax(axis=1)][clear], atol=0.006)
@@ -143,5 +143,5 @@ def test_a_way_through_a_rectangle_is_where_its_places_are_inside(on_gpu):
 
 def test_what_is_not_a_number_is_recognised(on_gpu):
     value = np.array([0.0, -1e30, np.nan, np.inf, -np.inf], np.float32)
-    found = on_gpu("maths/number.glsl", "is_number(value) ? 1 : 0", value=value)
-    np.testing.assert_array_equal(found, [1, 1, 0, 0, 0])
+    result = on_gpu("maths/number.glsl", "is_number(value) ? 1 : 0", value=value)
+    np.testing.assert_array_equal(result, [1, 1, 0, 0, 0])

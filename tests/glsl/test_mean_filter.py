@@ -32,32 +32,32 @@ def filtered(make_sketch):
 def test_a_window_is_the_mean_of_what_lies_around(engine, filtered, n):
     sketch = filtered(n)
     before = engine.read(sketch, "bright").astype(np.float64)
-    found = engine.read(sketch, "light")
+    result = engine.read(sketch, "light")
     for y in range(before.shape[0]):
         for x in range(before.shape[1]):
             around = before[max(y - n, 0) : y + n + 1, max(x - n, 0) : x + n + 1]
-            np.testing.assert_allclose(found[y, x], around.mean(axis=(0, 1)), atol=2 * HALF)
+            np.testing.assert_allclose(result[y, x], around.mean(axis=(0, 1)), atol=2 * HALF)
 
 
 @pytest.mark.parametrize("n", [0, 1, 2, 5, 40])
 def test_a_patch_has_one_light_the_mean_of_its_own(engine, filtered, n):
     sketch = filtered(n, "patch")
     before = engine.read(sketch, "bright").astype(np.float64)
-    found = engine.read(sketch, "light")
+    result = engine.read(sketch, "light")
     side = max(n, 1)
     for y in range(0, before.shape[0], side):
         for x in range(0, before.shape[1], side):
             patch = (slice(y, y + side), slice(x, x + side))
-            wanted = np.broadcast_to(before[patch].mean(axis=(0, 1)), found[patch].shape)
-            np.testing.assert_allclose(found[patch], wanted, atol=2 * HALF)
+            expected = np.broadcast_to(before[patch].mean(axis=(0, 1)), result[patch].shape)
+            np.testing.assert_allclose(result[patch], expected, atol=2 * HALF)
 
 
 def test_the_thesis_s_four_is_a_window_of_nine(engine, filtered):
     """One bright texel spreads over 81, not 16."""
     sketch = filtered(4, size=(31, 31))
     before = engine.read(sketch, "bright")[..., 0].astype(np.float64)
-    found = engine.read(sketch, "light")[..., 0]
-    np.testing.assert_allclose(found[15, 15], before[11:20, 11:20].mean(), atol=2 * HALF)
+    result = engine.read(sketch, "light")[..., 0]
+    np.testing.assert_allclose(result[15, 15], before[11:20, 11:20].mean(), atol=2 * HALF)
 
 
 def test_even_light_stays(engine, filtered, make_sketch):

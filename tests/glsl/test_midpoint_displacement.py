@@ -20,14 +20,14 @@ def by_squares(size, roughness, number):
         h = side // 2
         corners = [(y, x), (y, x + side), (y + side, x), (y + side, x + side)]
         south_west, south_east, north_west, north_east = (terrain[c] for c in corners)
-        for place, mean in (
+        for position, mean in (
             ((y, x + h), (south_west + south_east) / 2),
             ((y + side, x + h), (north_west + north_east) / 2),
             ((y + h, x), (south_west + north_west) / 2),
             ((y + h, x + side), (south_east + north_east) / 2),
             ((y + h, x + h), (south_west + south_east + north_west + north_east) / 4),
         ):
-            terrain[place] = mean + number(place[1], place[0]) * most
+            terrain[position] = mean + number(position[1], position[0]) * most
         for dx in (0, h):
             for dy in (0, h):
                 divide(x + dx, y + dy, h, most * roughness)
@@ -53,8 +53,8 @@ def by_a_growing_list(length, steps, roughness, number):
 
 
 def sketch_of(make_sketch, size, use="generation/midpoint_displacement", **values):
-    given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
-    return make_sketch(f'[[pass]]\nname = "terrain"\nuse = "{use}"\n[pass.set]\n{given}', size=size)
+    text = "".join(f"{k} = {v!r}\n" for k, v in values.items())
+    return make_sketch(f'[[pass]]\nname = "terrain"\nuse = "{use}"\n[pass.set]\n{text}', size=size)
 
 
 def segment_of(make_sketch, length, rows, **values):
@@ -90,11 +90,11 @@ def test_each_iteration_divides_every_square(engine, make_sketch, number):
     truth = by_squares(17, 0.5, number(5, 17))
     for turn, values in engine.steps(sketch, "terrain.raw"):
         step = 16 >> turn
-        known = np.zeros((17, 17), bool)
-        known[::step, ::step] = True
-        assert not values[~known].any()
-        np.testing.assert_allclose(values[known], truth[known], atol=2e-6)
-        assert (values != 0).sum() == known.sum() - 4, "the terrain begins as 0, and its corners stay so"
+        existing = np.zeros((17, 17), bool)
+        existing[::step, ::step] = True
+        assert not values[~existing].any()
+        np.testing.assert_allclose(values[existing], truth[existing], atol=2e-6)
+        assert (values != 0).sum() == existing.sum() - 4, "the terrain begins as 0, and its corners stay so"
 
 
 def test_roughness_is_what_is_left_of_the_numbers_each_turn(engine, make_sketch):

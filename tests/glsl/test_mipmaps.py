@@ -19,11 +19,11 @@ vec4 kernel(ivec2 texel) { return vec4(random(texel, 3u), random(texel, 4u), 0.0
 @pytest.fixture
 def plain(make_sketch):
     def make(pattern="texturing/mipmaps/pattern", **values):
-        given = ", ".join(f"{key} = {value}" for key, value in values.items())
+        text = ", ".join(f"{key} = {value}" for key, value in values.items())
         passes = (
             f'[[pass]]\nname = "pattern"\nuse = "{pattern}"\nsize = {SIDE}\n'
             f'[[pass]]\nname = "plain"\nuse = "texturing/mipmaps"\nsize = [{WIDE}, {HIGH}]\n'
-            f'inputs = {{ image = "pattern" }}\nset = {{ {given} }}\n'
+            f'inputs = {{ image = "pattern" }}\nset = {{ {text} }}\n'
         )
         return make_sketch(passes, size=SIDE, noise=NOISE)
 
@@ -33,13 +33,13 @@ def plain(make_sketch):
 def levels(chain):
     """Cut a chain into its levels, the finest first."""
     side = chain.shape[0]
-    found = [chain[:, :side]]
+    result = [chain[:, :side]]
     low = 0
     while side > 1:
         side //= 2
-        found.append(chain[low : low + side, chain.shape[0] : chain.shape[0] + side])
+        result.append(chain[low : low + side, chain.shape[0] : chain.shape[0] + side])
         low += side
-    return found
+    return result
 
 
 def chessboard(x, y):
@@ -60,44 +60,44 @@ def test_each_level_is_the_mean_of_four_and_the_mean_of_all_is_kept(engine, plai
     image = engine.read(sketch, "pattern").astype(float)
     for k, level in enumerate(levels(engine.read(sketch, "plain:chain"))):
         block = 2**k
-        wanted = image.reshape(SIDE // block, block, SIDE // block, block, 4).mean(axis=(1, 3))
-        np.testing.assert_allclose(level, wanted, atol=2e-6)  # at most ten sums of numbers below 1
+        expected = image.reshape(SIDE // block, block, SIDE // block, block, 4).mean(axis=(1, 3))
+        np.testing.assert_allclose(level, expected, atol=2e-6)  # at most ten sums of numbers below 1
         np.testing.assert_allclose(level.mean(axis=(0, 1)), image.mean(axis=(0, 1)), atol=2e-6)
 
 
 def test_one_sample_is_the_colour_of_the_pixel_s_middle(engine, plain):
     sketch = plain(filtered='"one sample"')
-    found = engine.read(sketch, "plain:picture")[..., 0]
+    result = engine.read(sketch, "plain:picture")[..., 0]
     x, y = places(0.5, 0.5)
     width = TILE / SQUARES
     edge = np.minimum(np.abs(x / width - np.round(x / width)), np.abs(y / width - np.round(y / width)))
     inside = edge > 0.51 * SQUARES / SIDE + 1e-3  # bilinear reading mixes within half a texel of an edge
     assert inside.mean() > 0.5
-    np.testing.assert_allclose(found[inside], chessboard(x, y)[inside], atol=1e-3)
+    np.testing.assert_allclose(result[inside], chessboard(x, y)[inside], atol=1e-3)
 
 
 def test_many_samples_come_to_the_share_of_white_in_a_pixel(engine, plain):
     """Against 64 by 64 exact ones: a straight edge crosses at most 2 n cells of a lattice of n by n."""
-    found = engine.read(plain(filtered='"many samples"', samples=32), "plain:picture")[..., 0]
+    result = engine.read(plain(filtered='"many samples"', samples=32), "plain:picture")[..., 0]
     total = np.zeros((HIGH, WIDE))
     steps = (np.arange(64) + 0.5) / 64
     for dy in steps:
         for dx in steps:
             total += chessboard(*places(dx, dy))
     near = slice(0, 24)  # where a pixel is below two squares long
-    assert np.abs(found - total / 4096)[near].mean() < 2 / 32
-    assert np.abs(found - total / 4096).mean() < 0.05
+    assert np.abs(result - total / 4096)[near].mean() < 2 / 32
+    assert np.abs(result - total / 4096).mean() < 0.05
 
 
 def test_the_level_is_that_of_the_longer_side_of_what_a_pixel_sees(engine, plain):
     """At a distance d a pixel sees d² / (eye · f) of a plain's length, d / f of its width; f in pixels."""
-    found = engine.read(plain(), "plain:level")
+    result = engine.read(plain(), "plain:level")
     far = places(0.5, 0.5)[1]
     focal = WIDE / 2
     long = far * (places(0.5, -0.5)[1] / EYE) / focal  # from a pixel's middle to the one below it, exactly
     middle = [WIDE // 2 - 1, WIDE // 2]
-    wanted = np.log2(np.maximum(long, far / focal) * SIDE / TILE)
-    np.testing.assert_allclose(found[:, middle], wanted[:, middle], atol=0.02)
+    expected = np.log2(np.maximum(long, far / focal) * SIDE / TILE)
+    np.testing.assert_allclose(result[:, middle], expected[:, middle], atol=0.02)
 
 
 def test_the_ways_to_filter_come_nearer_and_nearer_to_the_truth(engine, plain):
@@ -110,8 +110,8 @@ def test_the_ways_to_filter_come_nearer_and_nearer_to_the_truth(engine, plain):
 
 def test_far_away_there_is_only_the_mean(engine, plain):
     for way in ("mip level", "trilinear", "anisotropic"):
-        found = engine.read(plain(filtered=f'"{way}"', most=4.0), "plain:picture")[-1, :, 0]
-        np.testing.assert_allclose(found, 0.5, atol=1e-5)
+        result = engine.read(plain(filtered=f'"{way}"', most=4.0), "plain:picture")[-1, :, 0]
+        np.testing.assert_allclose(result, 0.5, atol=1e-5)
 
 
 def test_a_tile_further_the_picture_is_the_same(engine, plain):

@@ -12,11 +12,11 @@ SEED = 3
 @pytest.fixture
 def sketch_of(make_sketch):
     def make(size=65, use="mixed", **values):
-        given = "".join(f"{k} = {v!r}\n" for k, v in ({"seed": SEED} | values).items())
+        text = "".join(f"{k} = {v!r}\n" for k, v in ({"seed": SEED} | values).items())
         head = f'[[pass]]\nname = "terrain"\nuse = "generation/{use}"\n[pass.set]\n'
         beside = f'[[pass]]\nname = "noise"\nuse = "generation/layered_noise"\nset = {{ seed = {SEED}, '
         beside += 'frequency = 32, octaves = 1, persistence = 0.04, normalise = "none" }\n'
-        return make_sketch(head + given + beside, size=size)
+        return make_sketch(head + text + beside, size=size)
 
     return make
 

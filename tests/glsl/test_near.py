@@ -27,9 +27,9 @@ def lattice_seed(seed, which):
 # ── noise in space ───────────────────────────────────────────────────────────
 
 
-def solid(place, seed):
+def solid(position, seed):
     """Return noise of space as a sum over eight corners of weight times plane."""
-    whole = np.floor(place)
+    whole = np.floor(position)
     total = 0.0
     for corner in product((0, 1), repeat=3):
         at = whole + corner
@@ -37,7 +37,7 @@ def solid(place, seed):
         layers = mixed(layers * np.uint64(0xC2B2AE3D) + np.uint64(seed % WHOLE))
         number = bits(at[..., 0], at[..., 1], seed) * layers % WHOLE
         signs = np.stack([1.0 - 2.0 * (number // 2 ** (31 - k) % 2) for k in range(3)], axis=-1)
-        way = place - at
+        way = position - at
         total = total + np.prod(fade(1 - abs(way)), axis=-1) * (signs * way).sum(axis=-1)
     return total * 2 / 3
 
@@ -45,14 +45,14 @@ def solid(place, seed):
 @pytest.mark.parametrize("seed", [0, 4711])
 def test_noise_in_space_is_a_sum_over_corners_and_its_slopes_are_its_derivatives(on_gpu, seed):
     places = RNG.uniform(-40, 40, (400, 3)).astype(np.float32)
-    found = on_gpu("noise/solid.glsl", "solid(p, s)", p=places, s=np.uint32(seed)).astype(float)
+    result = on_gpu("noise/solid.glsl", "solid(p, s)", p=places, s=np.uint32(seed)).astype(float)
     exact, step = places.astype(float), 1e-5
-    np.testing.assert_allclose(found[:, 0], solid(exact, seed), atol=3e-6)
+    np.testing.assert_allclose(result[:, 0], solid(exact, seed), atol=3e-6)
     for axis in range(3):
         away = step * np.eye(3)[axis]
         slope = (solid(exact + away, seed) - solid(exact - away, seed)) / (2 * step)
-        np.testing.assert_allclose(found[:, 1 + axis], slope, atol=5e-5)
-    assert abs(found[:, 0]).max() <= 1
+        np.testing.assert_allclose(result[:, 1 + axis], slope, atol=5e-5)
+    assert abs(result[:, 0]).max() <= 1
 
 
 # ── octaves ──────────────────────────────────────────────────────────────────
@@ -92,16 +92,16 @@ def octaves(on_gpu, places, kinds, spacing, grain):
 def test_slopes_of_the_bumps_are_their_heights_derivatives(on_gpu, kinds, grain):
     places = RNG.uniform(-20, 20, (300, 2)).astype(np.float32)
     call = f"bumps_at(p, mat2(1.0, 0.0, 0.0, {grain}), m, 1.0, {FINE}, 24.0, 0.0)"
-    found = on_gpu("scene/near/bumps.glsl", f"{call}.slope", p=places, m=kinds[None]).astype(float)
+    result = on_gpu("scene/near/bumps.glsl", f"{call}.slope", p=places, m=kinds[None]).astype(float)
     exact, step = places.astype(float), 1e-6
     for axis in range(2):
         away = step * np.eye(2)[axis]
         high, low = (octaves(on_gpu, exact + side * away, kinds, 24.0, grain) for side in (1, -1))
         rise = high - low
         # A place in the bottom of a furrow has two slopes.
-        wrong = abs(found[:, axis] - rise / (2 * step)) > 4e-3
+        wrong = abs(result[:, axis] - rise / (2 * step)) > 4e-3
         assert wrong.mean() < 0.02, wrong.mean()
-        assert abs(found[:, axis]).std() > 0.1 * grain
+        assert abs(result[:, axis]).std() > 0.1 * grain
 
 
 @pytest.mark.parametrize("pixel", [FINE, "PixelOnGround(vec2(0.3, 0.1), 0.316, 0.08)"])
@@ -115,8 +115,8 @@ def test_bumps_are_none_on_the_mean_and_as_rough_as_they_say(on_gpu, pixel, kind
         m=kinds[None],
     ).astype(float)
     for name in ("slope", "snowy", "tone", "dry", "height"):
-        found = read(name)
-        assert np.all(abs(found.mean(axis=0)) < 5 * found.std(axis=0) / np.sqrt(len(places))), name
+        result = read(name)
+        assert np.all(abs(result.mean(axis=0)) < 5 * result.std(axis=0) / np.sqrt(len(places))), name
     for slopes, variance in (("slope", "variance"), ("snowy", "snow_variance")):
         ratio = read(slopes).var(axis=0) / read(variance).mean()
         if pixel == FINE:
@@ -136,16 +136,16 @@ def test_nothing_pops_while_the_eye_comes_nearer(on_gpu):
     """
     distance = np.geomspace(300.0, 3.0, 600).astype(np.float32)
     wide = distance * 7e-4
-    place = RNG.uniform(0, 5000, (20, 2)).astype(np.float32)
+    position = RNG.uniform(0, 5000, (20, 2)).astype(np.float32)
     change = np.log(300 / 3) / 599
     contrast = 0.31 * 1.8
     bound = 3 * contrast * change * (2 * 0.74 + 0.375 * 3 * 0.5 * 4)
     pixel = "PixelOnGround(vec2(2.2 * w, w), 2.42 * w, w)"
-    for p in place:
+    for p in position:
         call = f"bumps_at(p, mat2(1.0), vec3(1.0, 0.0, 0.0), 1.0, {pixel}, 90.0, 0.0).tone"
-        found = on_gpu("scene/near/bumps.glsl", call, p=tuple(map(float, p)), w=wide)
-        assert abs(np.diff(found)).max() < bound
-        assert found.std() > 0.01
+        result = on_gpu("scene/near/bumps.glsl", call, p=tuple(map(float, p)), w=wide)
+        assert abs(np.diff(result)).max() < bound
+        assert result.std() > 0.01
     assert bound < 0.05
 
 
@@ -153,13 +153,13 @@ def test_rock_is_pushed_by_the_slopes_of_its_heights(on_gpu):
     turn = np.array([[0.36, -0.8, 0.48], [0.48, 0.6, 0.64], [-0.8, 0.0, 0.6]])
     places = RNG.uniform(-60, 60, (200, 3)).astype(np.float32)
     call = "cliff_at(p, 1.0, 1.0, 0.0, Layer(0.0, 0.0, 0.0), 1e-4, 10.0).push"
-    found = on_gpu("scene/near/cliff.glsl", call, p=places).astype(float)
+    result = on_gpu("scene/near/cliff.glsl", call, p=places).astype(float)
 
-    def height(place):
+    def height(position):
         total = 0.0
         for k in range(2, RUNGS):
             cell = COARSEST / 2.0**k
-            at = (place * [1, 1, 2.0 if cell < 4 else 0.45] / cell) @ turn.T + 0.618034 * k
+            at = (position * [1, 1, 2.0 if cell < 4 else 0.45] / cell) @ turn.T + 0.618034 * k
             noise = solid(at, lattice_seed(0x4F396EA5, k))
             rough = 0.24 + (0.12 - 0.24) * k / RUNGS
             part = np.clip(2 - cell / 10.0, 0, 1)
@@ -169,7 +169,7 @@ def test_rock_is_pushed_by_the_slopes_of_its_heights(on_gpu):
     for axis in range(3):
         away = 1e-6 * np.eye(3)[axis]
         slope = (height(places + away) - height(places - away)) / 2e-6
-        assert (abs(found[:, axis] - slope) > 6e-3).mean() < 0.02
+        assert (abs(result[:, axis] - slope) > 6e-3).mean() < 0.02
 
 
 # ── colour ───────────────────────────────────────────────────────────────────
@@ -178,25 +178,25 @@ def test_rock_is_pushed_by_the_slopes_of_its_heights(on_gpu):
 def test_patches_leave_the_mean_colour(on_gpu):
     places = RNG.uniform(0, 30000, (40000, 2)).astype(np.float32)
     call = "dried(vec3(0.2, 0.3, 0.1), variation_at(p, 0.1), 1.0)"
-    found = on_gpu("scene/near/variation.glsl", call, p=places).astype(float)
-    np.testing.assert_allclose(found.mean(axis=0), [0.2, 0.3, 0.1], rtol=0.01)
-    assert np.all(found.std(axis=0) / found.mean(axis=0) > 0.03)
+    result = on_gpu("scene/near/variation.glsl", call, p=places).astype(float)
+    np.testing.assert_allclose(result.mean(axis=0), [0.2, 0.3, 0.1], rtol=0.01)
+    assert np.all(result.std(axis=0) / result.mean(axis=0) > 0.03)
 
 
 def test_soil_has_the_brightness_of_what_it_replaces(on_gpu):
     colours = RNG.uniform(0.01, 0.9, (100, 3)).astype(np.float32)
     luma = np.array([0.2126, 0.7152, 0.0722])
-    found = on_gpu("scene/near/kinds.glsl", "soiled(c, 0.7)", c=colours).astype(float)
-    np.testing.assert_allclose(found @ luma, colours @ luma, rtol=1e-5)
+    result = on_gpu("scene/near/kinds.glsl", "soiled(c, 0.7)", c=colours).astype(float)
+    np.testing.assert_allclose(result @ luma, colours @ luma, rtol=1e-5)
 
 
 def test_rock_is_more_where_it_is_steeper_and_kinds_are_all_there_is(on_gpu):
     slope = np.tile(np.linspace(0, 2.5, 200), 5).astype(np.float32)
     patchy = np.repeat(np.linspace(-1, 1, 5), 200).astype(np.float32)
     call = "kinds_of_ground(s, vec2(0.6, 1.1), true, 0.0, 0.3, p, 0.2)"
-    found = on_gpu("scene/near/kinds.glsl", call, s=slope, p=patchy).astype(float)
-    np.testing.assert_allclose(found.sum(axis=1), 1.0, atol=1e-6)
-    rock = found[:, 2].reshape(5, 200)
+    result = on_gpu("scene/near/kinds.glsl", call, s=slope, p=patchy).astype(float)
+    np.testing.assert_allclose(result.sum(axis=1), 1.0, atol=1e-6)
+    rock = result[:, 2].reshape(5, 200)
     assert np.all(np.diff(rock, axis=1) >= 0) and np.all(rock[:, 0] == 0) and np.all(rock[:, -1] == 1)
 
 
@@ -206,8 +206,8 @@ def test_ripples_of_sand_are_long_across_the_wind(on_gpu):
         across = np.array([-towards[1], towards[0]])
         for way, share in ((towards, 1.0), (across, 0.2)):
             call = "grain_of_sand(1.0, w) * d"
-            found = on_gpu("scene/near/kinds.glsl", call, w=[wind], d=way[None].astype(np.float32))[0]
-            np.testing.assert_allclose(found, share * way, atol=1e-5)
+            result = on_gpu("scene/near/kinds.glsl", call, w=[wind], d=way[None].astype(np.float32))[0]
+            np.testing.assert_allclose(result, share * way, atol=1e-5)
 
 
 def test_layers_follow_the_height(on_gpu):
@@ -240,8 +240,8 @@ def test_on_a_plane_of_the_axes_rock_shows_that_plane_s_tile_alone(on_gpu):
     for angle, part in ((30, 0.0), (37.5, 0.5), (42, 0.8), (45, 1.0), (70, 1.0)):
         sine, cosine = np.sin(np.radians(angle)), np.cos(np.radians(angle))
         east = part / (1 + (cosine / sine) ** 4)
-        found = on_gpu(file, call, n=np.array([[sine, 0.0, cosine]], np.float32))[0]
-        np.testing.assert_allclose(found, [east, 0.0, 1 - east], atol=4e-4)
+        result = on_gpu(file, call, n=np.array([[sine, 0.0, cosine]], np.float32))[0]
+        np.testing.assert_allclose(result, [east, 0.0, 1 - east], atol=4e-4)
 
 
 # ── wet ground, snow ─────────────────────────────────────────────────────────
@@ -268,9 +268,9 @@ def test_wet_ground_gives_back_what_its_film_lets_out(on_gpu):
         left = left * dry
         out += left * (1 - inside)
         left = left * inside
-    found = on_gpu("scene/near/wet.glsl", "wet_albedo(vec3(c)).g", c=dry.astype(np.float32)).astype(float)
-    np.testing.assert_allclose(found, out, rtol=2e-3)
-    assert np.all(found < dry)
+    result = on_gpu("scene/near/wet.glsl", "wet_albedo(vec3(c)).g", c=dry.astype(np.float32)).astype(float)
+    np.testing.assert_allclose(result, out, rtol=2e-3)
+    assert np.all(result < dry)
 
 
 @pytest.mark.slow
@@ -279,15 +279,15 @@ def test_snow_covers_hollows_first_and_everything_at_last(on_gpu):
     over = np.linspace(-0.6, 0.4, 41).astype(np.float32)
     call = "snow_share(d, o, 0.1, h, p)"
     for hidden, patchy in product((0.0, 0.02, 0.1), (-0.9, 0.0, 0.9)):
-        given = {"o": over, "h": hidden, "p": patchy}
-        assert np.all(on_gpu(file, call, d=0.0, **given) == 0), "no snow, no white"
-        depths = [on_gpu(file, call, d=float(d), **given) for d in np.linspace(0, 3, 30)]
+        value = {"o": over, "h": hidden, "p": patchy}
+        assert np.all(on_gpu(file, call, d=0.0, **value) == 0), "no snow, no white"
+        depths = [on_gpu(file, call, d=float(d), **value) for d in np.linspace(0, 3, 30)]
         assert np.all(np.diff(depths, axis=0) >= 0) and np.all(depths[-1] == 1)
         assert np.all(np.diff(depths, axis=1) <= 0), "what stands higher is bare longer"
 
 
 def test_as_much_snow_lies_on_bumps_that_are_seen_as_on_those_that_are_not(on_gpu):
-    """Near by, the mean over places; far away, the share of a pixel that shows none of its bumps."""
+    """Near by, the mean over places; far away, the fraction of a pixel that shows none of its bumps."""
     places = RNG.uniform(0, 5000, (20000, 2)).astype(np.float32)
     files = {name: f"scene/near/{name}.glsl" for name in ("bumps", "snow")}
     call = f"bumps_at(p, mat2(1.0), vec3(1.0, 0.0, 0.0), 1.0, {FINE}, 24.0, 0.0)"
@@ -297,9 +297,9 @@ def test_as_much_snow_lies_on_bumps_that_are_seen_as_on_those_that_are_not(on_gp
     np.testing.assert_allclose(over.std(), whole[0], rtol=0.1)
     assert hidden.max() < 0.1 * whole[0]
     for depth in (0.06, 0.1, 0.14, 0.2):
-        given = {"d": depth, "w": float(whole[0])}
-        near = on_gpu(files["snow"], "snow_share(d, o, w, h, 0.0)", o=over, h=hidden, **given).mean()
-        far = on_gpu(files["snow"], "snow_share(d, 0.0, w, w, 0.0)", **given)[0]
+        value = {"d": depth, "w": float(whole[0])}
+        near = on_gpu(files["snow"], "snow_share(d, o, w, h, 0.0)", o=over, h=hidden, **value).mean()
+        far = on_gpu(files["snow"], "snow_share(d, 0.0, w, w, 0.0)", **value)[0]
         assert abs(near - far) < 0.1, depth
 
 
@@ -312,9 +312,9 @@ def of_land(any_engine, make_sketch):
     """Give a function that reads a pass's output on 2000 m by 1300 m of 57 by 41 texels, relief 1000 m."""
 
     def read(use, height, **values):
-        given = ", ".join(f"{name} = {value}" for name, value in values.items())
+        value = ", ".join(f"{name} = {value}" for name, value in values.items())
         text = '[[pass]]\nname = "height"\nuse = "./land"\n'
-        text += f'[[pass]]\nname = "found"\nuse = "{use}"\nset = {{ {given} }}\n'
+        text += f'[[pass]]\nname = "found"\nuse = "{use}"\nset = {{ {value} }}\n'
         land = LAND.format(height)
         sketch = make_sketch(text, size=[57, 41], extent=[2000.0, 1300.0], relief=1000.0, land=land)
         return any_engine.read(sketch, "found").astype(float)
@@ -365,12 +365,12 @@ def test_a_rough_ground_receives_what_a_smooth_one_does(on_gpu, rise, elevation)
     push = np.random.default_rng(3).normal(0.0, spread, (count, 2)) @ np.array([side, np.cross(ground, side)])
     bumps = ground - push
     bumps /= np.linalg.norm(bumps, axis=1, keepdims=True)
-    given = {"b": bumps.astype(np.float32), "g": tuple(map(float, ground)), "s": tuple(map(float, sun))}
-    faces = on_gpu(file, "max(facing_of_bumps(b, g, s), 0.0)", **given).astype(float).mean()
-    share = on_gpu(file, "sun_past_bumps(dot(g, s), v)", **given | {"v": spread**2})[0]
+    value = {"b": bumps.astype(np.float32), "g": tuple(map(float, ground)), "s": tuple(map(float, sun))}
+    faces = on_gpu(file, "max(facing_of_bumps(b, g, s), 0.0)", **value).astype(float).mean()
+    share = on_gpu(file, "sun_past_bumps(dot(g, s), v)", **value | {"v": spread**2})[0]
     smooth = max(ground @ sun, 0.0)
     np.testing.assert_allclose(faces * share, smooth, atol=0.005, rtol=0.01)
-    sky = on_gpu(file, "sky_on_bumps(b, g, s)", **given).astype(float).mean()
+    sky = on_gpu(file, "sky_on_bumps(b, g, s)", **value).astype(float).mean()
     np.testing.assert_allclose(sky, 1.0, atol=0.005)
 
 
@@ -389,8 +389,8 @@ PASSES = '[[pass]]\nname = "height"\nuse = "./land"\n[[pass]]\nname = "colour"\n
 def from_above(any_engine, make_sketch):
     """Give a function that shades a plane of 2 km seen from a height, and what is set."""
 
-    def read(given, distance=40.0, extra="", wide=2000.0, rise=1.0, **files):
-        view = f'[view]\nuse = "scene/terrain"\nset = {{ grid = 33, antialias = false, {given} }}\n'
+    def read(value, distance=40.0, extra="", wide=2000.0, rise=1.0, **files):
+        view = f'[view]\nuse = "scene/terrain"\nset = {{ grid = 33, antialias = false, {value} }}\n'
         sketch = make_sketch(
             PASSES + extra + view,
             size=[33, 21],
@@ -418,24 +418,26 @@ def test_detail_leaves_the_mean_light_and_colour(from_above, elevation, wide):
     distance = 0.4 * wide
     plain, none = from_above(sun, distance, wide=wide)
     assert np.all(none == 0), "switched off it gives no bumps"
-    found, bumps = from_above(f"{sun}, fine_ground = true, variation = 0.0, soils = 0.0", distance, wide=wide)
-    np.testing.assert_allclose(found.mean(axis=(0, 1)), plain.mean(axis=(0, 1)), rtol=0.06)
-    assert found[..., 1].std() > 3 * plain[..., 1].std() and bumps[..., 2].min() > 0
+    result, bumps = from_above(
+        f"{sun}, fine_ground = true, variation = 0.0, soils = 0.0", distance, wide=wide
+    )
+    np.testing.assert_allclose(result.mean(axis=(0, 1)), plain.mean(axis=(0, 1)), rtol=0.06)
+    assert result[..., 1].std() > 3 * plain[..., 1].std() and bumps[..., 2].min() > 0
 
 
 def test_wetness_darkens_and_shines_and_deep_snow_is_white_and_smooth(from_above):
     field = '#pragma kernel(output = "{0}:r32f")\nfloat kernel(ivec2 t) {{ return {1}; }}\n'
     extra = '[[pass]]\nname = "{0}"\nuse = "./{0}"\n'
-    given = "fine_ground = true, gain = 2.0, ambient = 0.4, sun = { azimuth = 250.0, elevation = 40.0 }"
-    dry, rough = from_above(given, 8.0)
-    damp, _ = from_above(given, 8.0, extra.format("wetness"), wetness=field.format("wetness", 0.5))
+    value = "fine_ground = true, gain = 2.0, ambient = 0.4, sun = { azimuth = 250.0, elevation = 40.0 }"
+    dry, rough = from_above(value, 8.0)
+    damp, _ = from_above(value, 8.0, extra.format("wetness"), wetness=field.format("wetness", 0.5))
     assert 0.35 < damp.mean() / dry.mean() < 0.75
     soaked = {"extra": extra.format("wetness"), "wetness": field.format("wetness", 1.0)}
-    assert from_above(given, 8.0, rise=5.0, **soaked)[1][..., 3].max() == 0, "water runs off a slope"
-    _, under = from_above(given, 8.0, rise=0.0, **soaked)
+    assert from_above(value, 8.0, rise=5.0, **soaked)[1][..., 3].max() == 0, "water runs off a slope"
+    _, under = from_above(value, 8.0, rise=0.0, **soaked)
     assert under[..., 3].mean() > 0.3
     assert abs(under[..., :2]).mean() < 0.8 * abs(rough[..., :2]).mean()
     snow = field.format("snow_depth", 3.0)
-    white, packed = from_above(given, 8.0, extra.format("snow_depth"), snow_depth=snow)
+    white, packed = from_above(value, 8.0, extra.format("snow_depth"), snow_depth=snow)
     steps = lambda bumps: np.diff(bumps[..., :2], axis=0).std()  # noqa: E731
     assert white.mean() > 1.6 * dry.mean() and steps(packed) < 0.5 * steps(rough)

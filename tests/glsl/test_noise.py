@@ -24,27 +24,27 @@ def pcg3d(key):
 def test_the_hash_is_pcg3d(on_gpu):
     keys = RNG.integers(0, 2**32, (400, 3), dtype=np.uint32)
     keys[:3] = [[0, 0, 0], [1, 0, 0], [2**32 - 1] * 3]
-    found = on_gpu("noise/hash.glsl", "hash3(key)", key=keys)
-    np.testing.assert_array_equal(found, [pcg3d(key) for key in keys])
+    result = on_gpu("noise/hash.glsl", "hash3(key)", key=keys)
+    np.testing.assert_array_equal(result, [pcg3d(key) for key in keys])
 
 
 def test_its_values_are_pinned(on_gpu):
-    found = on_gpu("noise/hash.glsl", "hash3(key)", key=np.array([[0, 0, 0], [1, 2, 3]], np.uint32))
-    np.testing.assert_array_equal(found, [pcg3d((0, 0, 0)), pcg3d((1, 2, 3))])
-    assert found[0].tolist() == [2611992518, 2833812075, 1058359340]
+    result = on_gpu("noise/hash.glsl", "hash3(key)", key=np.array([[0, 0, 0], [1, 2, 3]], np.uint32))
+    np.testing.assert_array_equal(result, [pcg3d((0, 0, 0)), pcg3d((1, 2, 3))])
+    assert result[0].tolist() == [2611992518, 2833812075, 1058359340]
 
 
 def test_a_number_is_the_upper_24_bits(on_gpu, python_random):
     points = RNG.integers(-(2**31), 2**31, (400, 2))
-    found = on_gpu("noise/hash.glsl", "random(point, seed)", point=points, seed=np.uint32(9))
-    np.testing.assert_array_equal(found, [python_random(x, y, 9) for x, y in points])
-    assert found.min() >= 0 and found.max() < 1
+    result = on_gpu("noise/hash.glsl", "random(point, seed)", point=points, seed=np.uint32(9))
+    np.testing.assert_array_equal(result, [python_random(x, y, 9) for x, y in points])
+    assert result.min() >= 0 and result.max() < 1
 
 
 def test_the_largest_and_smallest_numbers(on_gpu):
     bits = np.array([0, 255, 256, 2**32 - 1], np.uint32)
-    found = on_gpu("noise/hash.glsl", "unit_from_bits(bits)", bits=bits)
-    np.testing.assert_array_equal(found, [0, 0, 2.0**-24, 1 - 2.0**-24])
+    result = on_gpu("noise/hash.glsl", "unit_from_bits(bits)", bits=bits)
+    np.testing.assert_array_equal(result, [0, 0, 2.0**-24, 1 - 2.0**-24])
 
 
 def test_signed_and_paired_numbers(on_gpu):
@@ -63,8 +63,8 @@ def field(on_gpu):
 
     def make(seed):
         points = np.stack([X, Y], axis=1)
-        found = on_gpu("noise/hash.glsl", "random(point, seed)", point=points, seed=np.uint32(seed))
-        return found.astype(np.float64).reshape(SIDE, SIDE)
+        result = on_gpu("noise/hash.glsl", "random(point, seed)", point=points, seed=np.uint32(seed))
+        return result.astype(np.float64).reshape(SIDE, SIDE)
 
     return make
 
@@ -104,8 +104,8 @@ def test_seeds_know_nothing_of_each_other(field):
 @pytest.mark.parametrize("side", [1, 2, 64, 1024, 32768])
 def test_a_point_s_place_on_the_finest_lattice(on_gpu, side):
     points = RNG.integers(0, side + 1, (100, 2)).astype(np.int32)
-    found = on_gpu("noise/finest.glsl", "finest_point(p, side)", p=points, side=np.int32(side))
-    np.testing.assert_array_equal(found, points * (32768 // side))
+    result = on_gpu("noise/finest.glsl", "finest_point(p, side)", p=points, side=np.int32(side))
+    np.testing.assert_array_equal(result, points * (32768 // side))
 
 
 @pytest.mark.parametrize("shift", [0, 5, 10])

@@ -60,8 +60,8 @@ def test_one_extreme_texel_is_found_wherever_it_is(engine, make_sketch):
     sketch = make_sketch(passes, size=[545, 530], spike=spike)
     every_row_of_two_blocks = [(k, k + 3) for k in range(36)]
     for where in [(0, 0), (544, 0), (0, 529), (544, 529), *every_row_of_two_blocks]:
-        found = engine.read(sketch.with_values({"height.where": where}), "range")
-        np.testing.assert_array_equal(found, [[[-9.0, 9.0]]])
+        result = engine.read(sketch.with_values({"height.where": where}), "range")
+        np.testing.assert_array_equal(result, [[[-9.0, 9.0]]])
 
 
 @pytest.mark.parametrize("size", SIZES[2:], ids=str)
@@ -69,9 +69,9 @@ def test_one_extreme_texel_is_found_wherever_it_is(engine, make_sketch):
 def test_minmax_spans_0_to_1(engine, sketch_of, size, scale, base):
     sketch = sketch_of(size, scale, base)
     terrain = engine.read(sketch, "terrain").astype(np.float64)
-    found = engine.read(sketch, "normal")
-    assert found.min() == 0.0 and found.max() == 1.0
-    np.testing.assert_allclose(found, np.interp(terrain, [terrain.min(), terrain.max()], [0, 1]), atol=1e-6)
+    result = engine.read(sketch, "normal")
+    assert result.min() == 0.0 and result.max() == 1.0
+    np.testing.assert_allclose(result, np.interp(terrain, [terrain.min(), terrain.max()], [0, 1]), atol=1e-6)
 
 
 def test_max_puts_the_highest_at_1_and_leaves_0(engine, sketch_of):
@@ -98,8 +98,8 @@ def test_none_changes_no_bit_and_looks_at_nothing(engine, sketch_of):
     ],
 )
 def test_flat_terrain_is_a_number(engine, sketch_of, mode, base, expected):
-    found = engine.read(sketch_of(scale=0.0, base=float(base), mode=mode), "normal")
-    np.testing.assert_array_equal(found, np.float32(expected))
+    result = engine.read(sketch_of(scale=0.0, base=float(base), mode=mode), "normal")
+    np.testing.assert_array_equal(result, np.float32(expected))
 
 
 @pytest.mark.parametrize("base", [0.3, -700.0, 4e6])
@@ -107,14 +107,14 @@ def test_flat_terrain_with_roundings_is_flat(engine, sketch_of, base):
     """A step or two of a float is no terrain; 32 additions may leave sixteen."""
     terrain = engine.read(sketch_of(scale=abs(base) * 3e-7, base=base), "terrain")
     assert 0 < np.ptp(terrain) < 16 * np.finfo(np.float32).eps * abs(base)
-    found = engine.read(sketch_of(scale=abs(base) * 3e-7, base=base), "normal")
-    np.testing.assert_array_equal(found, 0)
+    result = engine.read(sketch_of(scale=abs(base) * 3e-7, base=base), "normal")
+    np.testing.assert_array_equal(result, 0)
 
 
 @pytest.mark.parametrize("base", [0.3, -700.0, 4e6])
 def test_terrain_over_its_roundings_is_stretched(engine, sketch_of, base):
-    found = engine.read(sketch_of(scale=abs(base) * 1e-5, base=base), "normal")
-    assert found.min() == 0.0 and found.max() == 1.0
+    result = engine.read(sketch_of(scale=abs(base) * 1e-5, base=base), "normal")
+    assert result.min() == 0.0 and result.max() == 1.0
 
 
 def test_terrain_below_0_is_not_turned_over_by_max(engine, sketch_of):

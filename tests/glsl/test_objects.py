@@ -131,25 +131,25 @@ def test_a_model_has_its_own_colour_whatever_the_ground_s_is(kept, ctx, make_ske
     red = '#pragma kernel(output = "red:rgba16f")\nvec4 kernel(ivec2 t) { return vec4(1, 0, 0, 1); }\n'
     sketch = make_sketch(text, size=33, extent=1000.0, relief=1.0, list=LIST, red=red)
     seen = kept.read(sketch, "seen", size=(256, 256)).copy()
-    found = kept.read(sketch, "covered", size=(256, 256))[seen[..., 3] >= 4, :3].astype(np.float64)
-    lit = found @ [0.2126, 0.7152, 0.0722]
-    assert len(found) > 1000 and (found[:, 1] > 0.5 * found[:, 0]).all(), "nothing of the red ground"
+    result = kept.read(sketch, "covered", size=(256, 256))[seen[..., 3] >= 4, :3].astype(np.float64)
+    lit = result @ [0.2126, 0.7152, 0.0722]
+    assert len(result) > 1000 and (result[:, 1] > 0.5 * result[:, 0]).all(), "nothing of the red ground"
     if name == "rock":
         model = read_model(GLSL / "sketches" / "data" / "rock.glb").colours.astype(np.float64)
         shades = model @ [0.2126, 0.7152, 0.0722]
         assert shades.min() - 1 / 32 <= lit.min() < lit.max() <= shades.max() + 1 / 32
     else:
-        assert (found[:, 1] > found[:, 0]).all() and 0.02 < lit.mean() < 0.06, "LOPEX93, needles"
+        assert (result[:, 1] > result[:, 0]).all() and 0.02 < lit.mean() < 0.06, "LOPEX93, needles"
 
 
 def test_all_triangles_of_a_model_are_drawn(kept, ctx, make_sketch, tmp_path):
     """Of a thousand only the last has an area."""
     indices = np.zeros(3000, "<u2")
     indices[-3:] = 0, 1, 2
-    found = with_blob(PLACES.tobytes() + indices.tobytes(), accessors__1__count=3000)
-    found["bufferViews"][1]["byteLength"] = indices.nbytes
+    result = with_blob(PLACES.tobytes() + indices.tobytes(), accessors__1__count=3000)
+    result["bufferViews"][1]["byteLength"] = indices.nbytes
     path = tmp_path / "many.gltf"
-    path.write_text(json.dumps(found))
+    path.write_text(json.dumps(result))
     text = PASSES.format(name="rock", values="").replace("sketches/data/rock.glb", "./many.gltf")
     sketch = make_sketch(text, size=33, extent=1000.0, relief=1.0, list=LIST)
     assert (kept.read(sketch, "seen", size=(256, 256))[..., 3] >= 4).sum() > 500

@@ -20,11 +20,11 @@ SUNS = [(270.0, 15.0), (37.0, 24.0), (130.0, 8.0)]
 @pytest.fixture
 def lit(make_sketch):
     def make(use, **values):
-        given = ", ".join(f"{key} = {value}" for key, value in values.items())
+        text = ", ".join(f"{key} = {value}" for key, value in values.items())
         passes = (
             '[[pass]]\nname = "height"\nuse = "generation/fbm"\n'
             "set = { hurst = 0.8, frequency = 3.0, seed = 5 }\n"
-            f'[[pass]]\nname = "light"\nuse = "{use}"\nset = {{ {given} }}\n'
+            f'[[pass]]\nname = "light"\nuse = "{use}"\nset = {{ {text} }}\n'
         )
         return make_sketch(passes, size=list(SIZE), extent=list(EXTENT), relief=RELIEF)
 
@@ -48,8 +48,8 @@ class Way:
         for k in range(1, max(nx, ny) + 1):
             x, y = east + k * self.run * ahead[0], north + k * self.run * ahead[1]
             inside = (x > -1e-3) & (y > -1e-3) & (x < nx - 1 + 1e-3) & (y < ny - 1 + 1e-3)
-            found = map_coordinates(heights, [np.clip(y, 0, ny - 1), np.clip(x, 0, nx - 1)], order=1)
-            self.steps.append((k * self.run, np.where(inside, (found - heights) * RELIEF, -np.inf)))
+            result = map_coordinates(heights, [np.clip(y, 0, ny - 1), np.clip(x, 0, nx - 1)], order=1)
+            self.steps.append((k * self.run, np.where(inside, (result - heights) * RELIEF, -np.inf)))
 
     def least_part(self, elevation, radius):
         """Return the least share of an upright stick around the ray that stands over the terrain."""
@@ -66,23 +66,23 @@ def test_a_cone_without_growth_is_the_cylinder(engine, lit, sun):
     """And as a slow march finds it: of the ground itself a half is free."""
     use = "lighting/soft_cone/visibility"
     sketch = lit(use, sun=sun_of(sun), at_ground=24.0, delta_r=0.0)
-    found = engine.read(sketch, "light").astype(float)
+    result = engine.read(sketch, "light").astype(float)
     cylinder = lit("lighting/soft_cylinder", sun=sun_of(sun), radius=24.0 / RELIEF * 255)
     way = Way(engine.read(sketch, "height").astype(float), sun[0])
     bound = OFF * RELIEF / (2 * 24.0)
-    np.testing.assert_allclose(found, way.least_part(sun[1], 24.0), atol=bound, rtol=0)
-    np.testing.assert_allclose(found, engine.read(cylinder, "light.visibility"), atol=bound, rtol=0)
-    assert found.max() == 0.5 and found.min() < 0.1
+    np.testing.assert_allclose(result, way.least_part(sun[1], 24.0), atol=bound, rtol=0)
+    np.testing.assert_allclose(result, engine.read(cylinder, "light.visibility"), atol=bound, rtol=0)
+    assert result.max() == 0.5 and result.min() < 0.1
 
 
 @pytest.mark.parametrize("azimuth", [270.0, 37.0, 130.0])
 def test_a_horizon_is_the_steepest_line_to_terrain(engine, lit, azimuth):
     sketch = lit("lighting/horizons/tangent", azimuth=azimuth)
     way = Way(engine.read(sketch, "height").astype(float), azimuth)
-    wanted = np.max([np.maximum(over, 0) / far for far, over in way.steps], axis=0)
-    found = engine.read(sketch, "light")
-    np.testing.assert_allclose(found, wanted, atol=OFF * RELIEF / way.run, rtol=0)
-    assert wanted.max() > 0.3
+    expected = np.max([np.maximum(over, 0) / far for far, over in way.steps], axis=0)
+    result = engine.read(sketch, "light")
+    np.testing.assert_allclose(result, expected, atol=OFF * RELIEF / way.run, rtol=0)
+    assert expected.max() > 0.3
 
 
 @pytest.mark.parametrize(
@@ -91,6 +91,6 @@ def test_a_horizon_is_the_steepest_line_to_terrain(engine, lit, azimuth):
 def test_a_horizon_is_one_of_all_horizons(engine, lit, azimuth, output, channel):
     """Along the texels, to the sun's diameter where the library sweeps: tests/glsl/test_horizons.py."""
     library = engine.read(lit("lighting/horizons", directions=8), f"light:{output}")[..., channel]
-    found = engine.read(lit("lighting/horizons/tangent", azimuth=azimuth), "light")
-    off = np.degrees(np.abs(np.arctan(found) - np.arctan(library.astype(float))))
-    assert off.max() < 0.53 + 0.03 and np.degrees(np.arctan(found.max())) > 15
+    result = engine.read(lit("lighting/horizons/tangent", azimuth=azimuth), "light")
+    off = np.degrees(np.abs(np.arctan(result) - np.arctan(library.astype(float))))
+    assert off.max() < 0.53 + 0.03 and np.degrees(np.arctan(result.max())) > 15

@@ -34,13 +34,13 @@ def test_the_chosen_light_is_given_as_it_is(engine, chosen, which):
 
 def test_a_larger_map_takes_the_nearest_texel(engine, chosen):
     sketch = chosen("third", size="size = [41, 25]\n")
-    found, light = engine.read(sketch, "light"), engine.read(sketch, "third")
-    np.testing.assert_array_equal(found[::2, ::2], light)
+    result, light = engine.read(sketch, "light"), engine.read(sketch, "third")
+    np.testing.assert_array_equal(result[::2, ::2], light)
     for axis in (0, 1):
-        assert (np.diff(np.take(found, range(0, 13), axis=axis), axis=axis) == 0).any()
+        assert (np.diff(np.take(result, range(0, 13), axis=axis), axis=axis) == 0).any()
 
 
 def test_what_is_not_wired_is_white(engine, chosen):
     sketch = chosen("fourth", wired=("first",))
-    found = engine.read(sketch.with_values({"light.chosen": "fourth"}), "light")
-    assert np.isfinite(found).all()
+    result = engine.read(sketch.with_values({"light.chosen": "fourth"}), "light")
+    assert np.isfinite(result).all()

@@ -47,13 +47,13 @@ def test_a_ramp_is_as_wide_as_its_slope_says(engine, ramp, pace):
     texels, metres = widths(engine, sketch)
     partly = (seen > 0) & (seen < 1)
     assert 50 < partly.sum() < seen.size
-    for found, step in ((texels, (1, 1)), (metres, (10, 30))):
-        np.testing.assert_array_equal(found[~partly], 0)
-        wanted = 1 / math.hypot(pace[0] / step[0], pace[1] / step[1])
+    for result, step in ((texels, (1, 1)), (metres, (10, 30))):
+        np.testing.assert_array_equal(result[~partly], 0)
+        expected = 1 / math.hypot(pace[0] / step[0], pace[1] / step[1])
         inner = partly & (np.abs(seen - 0.5) < 0.5 - np.abs(pace).max())
-        np.testing.assert_allclose(found[inner], wanted, rtol=1e-4)
+        np.testing.assert_allclose(result[inner], expected, rtol=1e-4)
         # Where one neighbour along an axis is beyond the rim, the other still tells the slope.
-        np.testing.assert_allclose(found[partly][seen[partly] > np.abs(pace).max()], wanted, rtol=0.35)
+        np.testing.assert_allclose(result[partly][seen[partly] > np.abs(pace).max()], expected, rtol=0.35)
 
 
 def test_a_border_within_a_texel_is_two_wide_at_most(engine, ramp):
@@ -80,9 +80,9 @@ def test_shares_are_of_the_widest(any_engine, ramp):
 @pytest.mark.parametrize("size", [(1, 1), (2, 2), (1, 7), (7, 1)], ids=str)
 def test_tiny_maps_have_finite_widths(engine, ramp, size):
     for start in (0.0, 0.4, 1.0):
-        for found in widths(engine, ramp(size=size, pace=(0.0, 0.0), start=start)):
-            assert np.isfinite(found).all() and (found >= 0).all()
-            assert (found > 0).all() == (start == 0.4)
+        for width in widths(engine, ramp(size=size, pace=(0.0, 0.0), start=start)):
+            assert np.isfinite(width).all() and (width >= 0).all()
+            assert (width > 0).all() == (start == 0.4)
 
 
 @pytest.fixture
@@ -111,14 +111,14 @@ def test_the_shadow_of_a_wall_is_as_wide_as_its_distance_says(any_engine, wall, 
     """
     sketch = wall("soft_cone", elevation, size=257, delta_r=delta_r)
     seen = any_engine.read(sketch, "light.visibility")[2].astype(np.float64)
-    texels, metres = (found[2] for found in widths(any_engine, sketch))
+    texels, metres = (width[2] for width in widths(any_engine, sketch))
     away = (247 - np.arange(257)) * 4.0
     tangent, cosine = math.tan(math.radians(elevation)), math.cos(math.radians(elevation))
     with np.errstate(divide="ignore"):
-        wanted = np.where(away > 0, 2 * delta_r * away**2 / (HIGH * cosine), 0)
+        expected = np.where(away > 0, 2 * delta_r * away**2 / (HIGH * cosine), 0)
     partly = (seen > 0.15) & (seen < 0.85) & (away > 0)
     assert partly.sum() >= 4
-    np.testing.assert_allclose(metres[partly], wanted[partly], rtol=0.13)
+    np.testing.assert_allclose(metres[partly], expected[partly], rtol=0.13)
     np.testing.assert_allclose(metres[partly], 4 * texels[partly], rtol=1e-5)
     # In the middle: the cone's diameter across the ray, seen at the slant at which it meets the ground.
     end = HIGH / tangent
@@ -137,5 +137,5 @@ def test_a_shadow_widens_with_its_distance_from_the_wall(any_engine, wall):
 
 
 def test_a_hard_shadow_has_no_penumbra(any_engine, wall):
-    for found in widths(any_engine, wall("ray_cast", 20.0)):
-        np.testing.assert_array_equal(found, 0)
+    for width in widths(any_engine, wall("ray_cast", 20.0)):
+        np.testing.assert_array_equal(width, 0)

@@ -32,9 +32,9 @@ def places() -> np.ndarray:
     return np.random.default_rng(3).integers(-1000, 1000, (400, 2)) / 64
 
 
-def blend(place: np.ndarray, corner: object) -> float:
-    low = np.floor(place).astype(int)
-    part = place - low
+def blend(array: np.ndarray, corner: object) -> float:
+    low = np.floor(array).astype(int)
+    part = array - low
     weight = 6 * part**5 - 15 * part**4 + 10 * part**3
     total = 0.0
     for i in (0, 1):
@@ -45,27 +45,27 @@ def blend(place: np.ndarray, corner: object) -> float:
 
 
 def test_value_noise_blends_the_numbers_of_the_four_lattice_points_around(on_gpu, places):
-    found = on_gpu(FILE, f"value_noise_periodic(p, ivec2{PERIOD}, {SEED}u)", p=places)
+    result = on_gpu(FILE, f"value_noise_periodic(p, ivec2{PERIOD}, {SEED}u)", p=places)
     expected = [blend(p, lambda x, y, _: number(x, y)[0]) for p in places]
-    np.testing.assert_allclose(found, expected, atol=2e-6)
+    np.testing.assert_allclose(result, expected, atol=2e-6)
 
 
 def test_gradient_noise_blends_the_planes_of_the_four_lattice_points_around(on_gpu, places):
-    found = on_gpu(FILE, f"gradient_noise_periodic(p, ivec2{PERIOD}, {SEED}u)", p=places)
+    result = on_gpu(FILE, f"gradient_noise_periodic(p, ivec2{PERIOD}, {SEED}u)", p=places)
     expected = [blend(p, lambda x, y, d: (number(x, y) * 2 - 1) @ d) for p in places]
-    np.testing.assert_allclose(found, expected, atol=3e-6)
+    np.testing.assert_allclose(result, expected, atol=3e-6)
 
 
 def test_cells_are_the_two_nearest_of_all_points_and_their_copies(on_gpu, places):
-    found = on_gpu(FILE, f"cells_periodic(p, ivec2{PERIOD}, {SEED}u)", p=places)
+    result = on_gpu(FILE, f"cells_periodic(p, ivec2{PERIOD}, {SEED}u)", p=places)
     x, y = np.meshgrid(np.arange(-20, 21), np.arange(-20, 21))
     cells = np.stack([x.ravel(), y.ravel()], axis=1)
     points = cells + np.array([number(*c) for c in cells])
     far = np.linalg.norm(places[:, None] - points[None], axis=2)
     order = np.argsort(far, axis=1)[:, :2]
-    np.testing.assert_allclose(found[:, :2], np.take_along_axis(far, order, axis=1), atol=1e-5)
+    np.testing.assert_allclose(result[:, :2], np.take_along_axis(far, order, axis=1), atol=1e-5)
     numbers = np.array([number(*cells[i], SEED + 1)[0] for i in order[:, 0]])
-    np.testing.assert_allclose(found[:, 2], numbers, atol=1e-6)
+    np.testing.assert_allclose(result[:, 2], numbers, atol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -99,5 +99,5 @@ def test_gradient_noise_is_nought_on_the_lattice_and_stays_within_one(on_gpu):
 
 def test_wrapping_agrees_with_the_remainder_of_mathematics(on_gpu):
     points = np.random.default_rng(2).integers(-50, 50, (200, 2)).astype(np.int32)
-    found = on_gpu(FILE, "lattice_wrapped(p, ivec2(7, 4))", p=points)
-    np.testing.assert_array_equal(found, np.mod(points, (7, 4)))
+    result = on_gpu(FILE, "lattice_wrapped(p, ivec2(7, 4))", p=points)
+    np.testing.assert_array_equal(result, np.mod(points, (7, 4)))

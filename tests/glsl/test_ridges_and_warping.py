@@ -19,8 +19,8 @@ def read(any_engine, make_sketch):
     """Give a texture of one pass, float64."""
 
     def of(use, output="", size=SIZE, extent=EXTENT, **values):
-        given = "".join(f"{k} = {toml_value(v)}\n" for k, v in values.items())
-        text = f'[[pass]]\nname = "a"\nuse = "{use}"\n[pass.set]\n{given}'
+        value = "".join(f"{k} = {toml_value(v)}\n" for k, v in values.items())
+        text = f'[[pass]]\nname = "a"\nuse = "{use}"\n[pass.set]\n{value}'
         sketch = make_sketch(text, size=list(size), extent=list(extent))
         return any_engine.read(sketch, f"a{output}").astype(np.float64)
 
@@ -51,32 +51,32 @@ def octaves(x, y, count, gain, more=0):
     ],
 )
 def test_each_octave_is_folded_and_added(read, fold, truth):
-    given = {"fold": fold, "weighed": False, "octaves": 3, "frequency": CELLS, "gain": 0.6}
+    value = {"fold": fold, "weighed": False, "octaves": 3, "frequency": CELLS, "gain": 0.6}
     x, y = places()
-    wanted = sum(0.6**k * truth(octave(x, y, k)) for k in range(3))
-    np.testing.assert_allclose(read(RIDGES, **given), wanted, atol=2e-5)
-    assert wanted.std() > 0.1
+    expected = sum(0.6**k * truth(octave(x, y, k)) for k in range(3))
+    np.testing.assert_allclose(read(RIDGES, **value), expected, atol=2e-5)
+    assert expected.std() > 0.1
 
 
 def test_weighed_sharp_ridges_are_the_technique_s(read):
     """Four octaves of 3 cells on 65 texels: the last one's cells are wider than two texels."""
-    given = {"octaves": 4, "frequency": CELLS, "gain": 0.45, "seed": 3}
-    technique = read("generation/gradient_noise/sum", shape="ridged", **given)
-    np.testing.assert_allclose(read(RIDGES, **given), technique, atol=1e-5)
-    assert abs(read(RIDGES, weighed=False, **given) - technique).max() > 0.05
+    value = {"octaves": 4, "frequency": CELLS, "gain": 0.45, "seed": 3}
+    technique = read("generation/gradient_noise/sum", shape="ridged", **value)
+    np.testing.assert_allclose(read(RIDGES, **value), technique, atol=1e-5)
+    assert abs(read(RIDGES, weighed=False, **value) - technique).max() > 0.05
 
 
 def test_with_as_many_bends_as_octaves_it_is_the_technique_s_warp(read):
-    given = {"octaves": 4, "frequency": CELLS, "gain": 0.45, "warp": 0.7, "seed": 3}
-    technique = read("generation/gradient_noise/sum", shape="warped", **given)
-    np.testing.assert_allclose(read(WARPING, ":height", bends=4, **given), technique, atol=3e-5)
-    assert abs(read(WARPING, ":height", bends=1, **given) - technique).max() > 0.05
+    value = {"octaves": 4, "frequency": CELLS, "gain": 0.45, "warp": 0.7, "seed": 3}
+    technique = read("generation/gradient_noise/sum", shape="warped", **value)
+    np.testing.assert_allclose(read(WARPING, ":height", bends=4, **value), technique, atol=3e-5)
+    assert abs(read(WARPING, ":height", bends=1, **value) - technique).max() > 0.05
 
 
 @pytest.mark.parametrize("warp", [0.0, 0.3, 1.5])
 def test_the_stretch_is_the_area_of_a_small_square_that_is_moved(read, warp):
     """By differences of the moved places, and its sign by the way that their corners run round."""
-    found = read(WARPING, ":stretch", warp=warp, bends=2, gain=0.5, frequency=CELLS)
+    result = read(WARPING, ":stretch", warp=warp, bends=2, gain=0.5, frequency=CELLS)
     x, y = places()
     step = 1e-5
 
@@ -88,15 +88,15 @@ def test_the_stretch_is_the_area_of_a_small_square_that_is_moved(read, warp):
     east = moved(x + step, y) - moved(x - step, y)
     north = moved(x, y + step) - moved(x, y - step)
     area = (east[0] * north[1] - east[1] * north[0]) / (2 * step) ** 2
-    np.testing.assert_allclose(found, area, atol=2e-4 * max(abs(area).max(), 1))
+    np.testing.assert_allclose(result, area, atol=2e-4 * max(abs(area).max(), 1))
     if warp == 1.5:
         assert (area < 0).any(), "a strong warp folds the map"
 
 
 def test_the_board_shows_where_places_go(read):
-    given = {"squares": True, "frequency": 4.0, "size": (65, 65), "extent": (1000.0, 1000.0)}
-    board = read(WARPING, ":height", warp=0.0, **given)
+    value = {"squares": True, "frequency": 4.0, "size": (65, 65), "extent": (1000.0, 1000.0)}
+    board = read(WARPING, ":height", warp=0.0, **value)
     np.testing.assert_array_equal(np.unique(board), [0, 1])
     y, x = np.mgrid[0:65, 0:65] // 4  # sixteen squares a side
     np.testing.assert_array_equal(board[:-1, :-1], ((x + y) % 2)[:-1, :-1])
-    assert (read(WARPING, ":height", warp=0.5, **given) != board).mean() > 0.2
+    assert (read(WARPING, ":height", warp=0.5, **value) != board).mean() > 0.2

@@ -92,8 +92,8 @@ set = { shallowest = 15 }
 inputs = { height = "ground:height", level = "ground:level" }
 """
     sketch = make_sketch(passes, size=[9, 3], relief=100.0, ground=GROUND)
-    wanted = [50, 40, 30, 20, 0, 0, 0, 0, 0]
-    np.testing.assert_allclose(engine.read(sketch, "lake"), np.tile(wanted, (3, 1)), atol=1e-4)
+    expected = [50, 40, 30, 20, 0, 0, 0, 0, 0]
+    np.testing.assert_allclose(engine.read(sketch, "lake"), np.tile(expected, (3, 1)), atol=1e-4)
 
 
 @pytest.mark.parametrize("slope", [0.02, 0.5])
@@ -116,8 +116,8 @@ void kernel(ivec2 texel, out float height, out float area) {{
 """
     sketch = make_sketch(passes, size=[9, 7], extent=[400.0, 300.0], plane=plane)
     index = np.log(1e4 * np.arange(1, 8) / 50.0 / slope)
-    wanted = np.clip((index - 5) / 9, 0, 1)
-    np.testing.assert_allclose(engine.read(sketch, "wetness")[:, 4], wanted, atol=2e-5)
+    expected = np.clip((index - 5) / 9, 0, 1)
+    np.testing.assert_allclose(engine.read(sketch, "wetness")[:, 4], expected, atol=2e-5)
 
 
 def test_water_lies_over_the_colour(engine, make_sketch):
@@ -131,7 +131,7 @@ use = "texturing/waters"
 set = { shallow = [0.0, 1.0, 0.0], deep = [0.0, 0.0, 1.0], clarity = 5, shore = 2, darkening = 0.5 }
 inputs = { colour = "given:colour", river = "given:river", lake = "given:lake", wetness = "given:wetness" }
 """
-    given = """
+    value = """
 #pragma kernel(output = "colour:rgba32f, river:r32f, lake:r32f, wetness:r32f")
 void kernel(ivec2 texel, out vec4 colour, out float river, out float lake, out float wetness) {
     colour = vec4(1.0, 1.0, 1.0, 1.0);
@@ -140,7 +140,13 @@ void kernel(ivec2 texel, out vec4 colour, out float river, out float lake, out f
     wetness = texel.x == 4 ? 1.0 : 0.0;
 }
 """
-    found = engine.read(make_sketch(passes, size=[5, 2], given=given), "colour")[0, :, :3]
+    result = engine.read(make_sketch(passes, size=[5, 2], given=value), "colour")[0, :, :3]
     shallow = np.exp(-0.2)
-    wanted = [[1, 1, 1], [0.75, 1, 0.75], [0.5, 0.5 + 0.5 * shallow, 1 - 0.5 * shallow], [0, 0, 1], [0.5] * 3]
-    np.testing.assert_allclose(found, wanted, atol=2e-3)
+    expected = [
+        [1, 1, 1],
+        [0.75, 1, 0.75],
+        [0.5, 0.5 + 0.5 * shallow, 1 - 0.5 * shallow],
+        [0, 0, 1],
+        [0.5] * 3,
+    ]
+    np.testing.assert_allclose(result, expected, atol=2e-3)

@@ -37,8 +37,8 @@ TERRAINS = [
 
 
 def salts():
-    found = [(m[2], int(m[1], 16)) for path in FILES for m in SALT.finditer(path.read_text(encoding="utf-8"))]
-    return [*found, ("delaunay", delaunay.SALT)]
+    files = [(m[2], int(m[1], 16)) for path in FILES for m in SALT.finditer(path.read_text(encoding="utf-8"))]
+    return [*files, ("delaunay", delaunay.SALT)]
 
 
 def test_a_salt_is_the_checksum_of_its_name():
@@ -50,9 +50,9 @@ def test_a_salt_is_the_checksum_of_its_name():
 def test_all_salts_differ_by_more_than_seeds_do():
     """A salted seed of one technique is never one of another's."""
     assert len({name for name, _ in salts()}) == len(salts())
-    for (one, a), (other, b) in combinations([*salts(), (UNSALTED, 0)], 2):
+    for (first, a), (other, b) in combinations([*salts(), (UNSALTED, 0)], 2):
         apart = (a - b) % 2**32
-        assert min(apart, 2**32 - apart) > WINDOW, (one, other)
+        assert min(apart, 2**32 - apart) > WINDOW, (first, other)
 
 
 @pytest.mark.slow
@@ -74,13 +74,13 @@ def test_whoever_draws_has_a_salt():
 @pytest.fixture
 def terrains(any_engine, make_sketch):
     def make(size, seed):
-        found = {}
+        result = {}
         for name in TERRAINS:
             sketch = make_sketch(
                 f'[[pass]]\nname = "a"\nuse = "generation/{name}"\nset = {{ seed = {seed} }}\n', size=size
             )
-            found[name] = any_engine.read(sketch, "a").astype(np.float64)
-        return found
+            result[name] = any_engine.read(sketch, "a").astype(np.float64)
+        return result
 
     return make
 
@@ -95,9 +95,9 @@ def test_techniques_of_one_seed_know_nothing_of_each_other(terrains):
     """White noise, the halved terrains and layers shared their numbers, texel by texel."""
     sums = {}
     for seed in (0, 7, 4242):
-        found = {name: bumps(terrain) for name, terrain in terrains(65, seed).items()}
-        for one, other in combinations(TERRAINS, 2):
-            r = np.corrcoef(found[one], found[other])[0, 1]
-            sums.setdefault((one, other), []).append(r)
+        result = {name: bumps(terrain) for name, terrain in terrains(65, seed).items()}
+        for first, other in combinations(TERRAINS, 2):
+            r = np.corrcoef(result[first], result[other])[0, 1]
+            sums.setdefault((first, other), []).append(r)
     for pair, each in sums.items():
         assert abs(np.mean(each)) < 0.1, (pair, each)

@@ -34,9 +34,9 @@ TINTED = (
 def scene(make_sketch):
     """Give a function that makes a sketch of a height and a colour, and what else its text has."""
 
-    def make(height=PLANE, colour=TINTED, view="scene/terrain", given="", passes="", wired="", **more):
-        given = ", ".join(filter(None, [given, "antialias = false" if view.startswith("scene") else ""]))
-        set_ = f"set = {{ grid = 65{', ' if given else ''}{given} }}"
+    def make(height=PLANE, colour=TINTED, view="scene/terrain", value="", passes="", wired="", **more):
+        value = ", ".join(filter(None, [value, "antialias = false" if view.startswith("scene") else ""]))
+        set_ = f"set = {{ grid = 65{', ' if value else ''}{value} }}"
         inputs = f"inputs = {{ {wired} }}\n" if wired else ""
         text = f'{PASSES}{passes}[view]\nuse = "{view}"\nsamples = 1\n{inputs}{set_}\n'
         size = {"size": [65, 41], "extent": list(EXTENT), "relief": RELIEF} | more
@@ -50,8 +50,8 @@ def rays(plan, pixels):
     """Return the eye and the directions of pixels' middles (column, row from the south) in float64."""
     eye = np.array(plan.eye.position, float)
     back = np.linalg.inv(plan.eye.clip_from_world.astype(float))
-    place = (np.asarray(pixels, float) + 0.5) / np.array(plan.frame_size) * 2 - 1
-    far = np.concatenate([place, np.ones((*place.shape[:-1], 2))], axis=-1) @ back.T
+    position = (np.asarray(pixels, float) + 0.5) / np.array(plan.frame_size) * 2 - 1
+    far = np.concatenate([position, np.ones((*position.shape[:-1], 2))], axis=-1) @ back.T
     return eye, far[..., :3] / far[..., 3:] - eye
 
 
@@ -83,8 +83,8 @@ def test_what_a_pixel_is_comes_back(on_gpu):
     kinds = np.array([-1.0, 0.0, 1.0, cut[0], cut[-1], 3.0, 4.0, 2.0**22], np.float32)
     names = ["is_broken", "is_sky", "is_top", "is_cut", "is_cut", "is_water", "is_object", "is_object"]
     for name in dict.fromkeys(names):
-        found = on_gpu(file, f"{name}(w) ? 1.0 : 0.0", w=kinds)
-        np.testing.assert_array_equal(found, [float(other == name) for other in names])
+        result = on_gpu(file, f"{name}(w) ? 1.0 : 0.0", w=kinds)
+        np.testing.assert_array_equal(result, [float(other == name) for other in names])
 
 
 # ── where ───────────────────────────────────────────────────────────────────────
@@ -93,18 +93,18 @@ def test_what_a_pixel_is_comes_back(on_gpu):
 @pytest.mark.parametrize("detail", ["full grid", "morph"])
 def test_each_pixel_has_the_point_of_a_plane_that_its_ray_meets(any_engine, scene, detail):
     sketch = scene(given=f'detail = "{detail}"').with_camera(replace(LOOK, distance=1500))
-    found = any_engine.read(sketch, "view.where", size=SIZE).astype(float)
+    result = any_engine.read(sketch, "view.where", size=SIZE).astype(float)
     eye, ahead = rays(any_engine.record.plan, all_pixels())
     points = on_plane(eye, ahead)
     land = inside(points)
     assert land.sum() > 4000
-    assert np.all(found[land][:, 3] == 1)
-    np.testing.assert_allclose(found[land][:, :3], points[land], atol=2e-3)
+    assert np.all(result[land][:, 3] == 1)
+    np.testing.assert_allclose(result[land][:, :3], points[land], atol=2e-3)
     missed = np.any((points[..., :2] < -500) | (points[..., :2] > 1500), axis=-1)
-    assert missed.sum() > 100 and np.all(found[missed][:, 3] == 0)
-    cut = (found[..., 3] >= 2) & (found[..., 3] < 3)
+    assert missed.sum() > 100 and np.all(result[missed][:, 3] == 0)
+    cut = (result[..., 3] >= 2) & (result[..., 3] < 3)
     assert cut.sum() > 100
-    rim = np.minimum(found[cut][:, :2], np.array(EXTENT) - found[cut][:, :2]).min(axis=1)
+    rim = np.minimum(result[cut][:, :2], np.array(EXTENT) - result[cut][:, :2]).min(axis=1)
     np.testing.assert_allclose(rim, 0.0, atol=1e-2)
 
 
@@ -152,10 +152,10 @@ def test_a_footprint_is_the_way_to_the_points_of_the_next_pixels(any_engine, on_
         "n": tuple(map(float, normal)),
     }
     for name, step in (("right", (1, 0)), ("up", (0, 1))):
-        found = on_gpu("scene/footprint.glsl", f"footprint_of({ray}, way, n).{name}", **values)
+        result = on_gpu("scene/footprint.glsl", f"footprint_of({ray}, way, n).{name}", **values)
         # The mean of both neighbours: what is left is of third order in a pixel.
         away = [on_plane(*rays(plan, pixels + sign * np.array(step)))[:, :2] for sign in (1, -1)]
-        np.testing.assert_allclose(found, 0.5 * (away[0] - away[1]), rtol=2e-3, atol=2e-4)
+        np.testing.assert_allclose(result, 0.5 * (away[0] - away[1]), rtol=2e-3, atol=2e-4)
 
 
 # ── the ground ──────────────────────────────────────────────────────────────────
@@ -166,17 +166,17 @@ def test_the_ground_has_slopes_in_metres_and_what_the_light_gives(any_engine, ma
     maps = '#pragma kernel(output = "{}:rgba16f")\nvec4 kernel(ivec2 t) {{ return vec4({}); }}\n'
     text = PASSES + '[[pass]]\nname = "sun"\nuse = "./sun"\n[[pass]]\nname = "sky"\nuse = "./sky"\n'
     text += f'[[pass]]\nname = "ground"\nuse = "scene/ground"\n{size}'
-    given = {"size": [65, 41], "extent": list(EXTENT), "relief": RELIEF, "terrain": HEIGHT.format(PLANE)}
-    given |= {"cover": COLOUR.format("vec4(1.0)"), "sun": maps.format("sun", "float(t.x) / 64.0")}
-    given |= {"sky": maps.format("sky", "0.25, 0.5, 0.75, 1.0")}
-    bare = any_engine.read(make_sketch(text, **given), "ground").astype(float)
+    value = {"size": [65, 41], "extent": list(EXTENT), "relief": RELIEF, "terrain": HEIGHT.format(PLANE)}
+    value |= {"cover": COLOUR.format("vec4(1.0)"), "sun": maps.format("sun", "float(t.x) / 64.0")}
+    value |= {"sky": maps.format("sky", "0.25, 0.5, 0.75, 1.0")}
+    bare = any_engine.read(make_sketch(text, **value), "ground").astype(float)
     np.testing.assert_allclose(bare[..., :2], np.broadcast_to(SLOPE, bare[..., :2].shape), rtol=1e-3)
     np.testing.assert_array_equal(bare[..., 2:], 1.0)
     wired = text + 'inputs = { visibility = "sun", sky_factor = "sky" }\n'
-    found = any_engine.read(make_sketch(wired, **given), "ground").astype(float)
-    np.testing.assert_array_equal(found[..., 2], 0.5)
-    along = np.linspace(0.0, 1.0, found.shape[1])
-    np.testing.assert_allclose(found[..., 3], np.broadcast_to(along, found.shape[:2]), atol=1e-3)
+    result = any_engine.read(make_sketch(wired, **value), "ground").astype(float)
+    np.testing.assert_array_equal(result[..., 2], 0.5)
+    along = np.linspace(0.0, 1.0, result.shape[1])
+    np.testing.assert_allclose(result[..., 3], np.broadcast_to(along, result.shape[:2]), atol=1e-3)
 
 
 # ── the picture ─────────────────────────────────────────────────────────────────
@@ -189,14 +189,14 @@ LIT += ', sun_colour = "#ffeedd", sky_colour = "#aaccff"'
 
 def pictures(engine, *sketches, size=SIZE):
     """Return the pictures of sketches, and which pixels show the terrain and no edge of it."""
-    found = [engine.render(sketch, size=size).array.astype(int) for sketch in sketches]
+    result = [engine.render(sketch, size=size).array.astype(int) for sketch in sketches]
     seen = engine.read(sketches[-1], "view.where", size=size)[::-1]
     top = (seen[..., 3] == 1) & inside(seen.astype(float))
     for axis in (0, 1):
         for step in (1, -1):
             beside = np.roll(seen, step, axis)
             top &= (beside[..., 3] == 1) & (np.linalg.norm((seen - beside)[..., :3], axis=-1) < RIDGE)
-    return [*found, top]
+    return [*result, top]
 
 
 @pytest.mark.parametrize("height", [PLANE, BUMPY])
@@ -206,21 +206,21 @@ def test_with_a_baked_light_it_is_view_terrain(any_engine, scene, height):
         scene(height, view=view, passes=SUN.format(LIT), given=HAZE)
         for view in ("view/terrain", "scene/terrain")
     ]
-    expected, found, top = pictures(any_engine, *both)
+    expected, result, top = pictures(any_engine, *both)
     assert top.sum() > 4000 and expected[top].std() > 10
-    assert np.abs(found - expected)[top].max() <= 1
+    assert np.abs(result - expected)[top].max() <= 1
     seen = any_engine.read(both[1], "view.where", size=SIZE)[::-1, :, 3]
     sky, cut = seen == 0, (seen >= 2) & (seen < 3)
     assert sky.sum() > 100 or cut.sum() > 100
-    np.testing.assert_array_equal(found[sky], expected[sky])
-    np.testing.assert_allclose(found[cut], expected[cut], atol=1)
+    np.testing.assert_array_equal(result[sky], expected[sky])
+    np.testing.assert_allclose(result[cut], expected[cut], atol=1)
 
 
 def test_each_pixel_is_lit_as_a_plane_is_by_a_map(any_engine, scene):
     """On a plane the slope under every pixel is that of every texel."""
     baked = scene(view="view/terrain", passes=SUN.format(LIT), given=HAZE)
-    expected, found, top = pictures(any_engine, baked, scene(given=f"{HAZE}, {LIT}"))
-    assert np.abs(found - expected)[top].max() <= 1
+    expected, result, top = pictures(any_engine, baked, scene(given=f"{HAZE}, {LIT}"))
+    assert np.abs(result - expected)[top].max() <= 1
 
 
 @pytest.mark.parametrize("blend", ["even", "by heights"])
@@ -230,14 +230,14 @@ def test_four_tiles_by_their_weights_are_view_splat(any_engine, scene, blend):
     tiles["weights"] = COLOUR.format(weights).replace("colour:rgba16f", "weights:rgba8")
     passes = '[[pass]]\nname = "weights"\nuse = "./weights"\n'
     passes += "".join(f'[[pass]]\nname = "{name}"\nuse = "./{name}"\nsize = 16\n' for name in LAYERS)
-    given = f'repeats = 3, blend = "{blend}", skirt = 0.03'
-    plain = scene(BUMPY, view="view/splat", passes=SUN.format(LIT) + passes, given=given, **tiles)
+    text = f'repeats = 3, blend = "{blend}", skirt = 0.03'
+    plain = scene(BUMPY, view="view/splat", passes=SUN.format(LIT) + passes, given=text, **tiles)
     own = ", ".join(f"{name}_repeats = 3" for name in LAYERS)
-    given = given.replace("repeats = 3", own)
-    mine = scene(BUMPY, passes=SUN.format(LIT) + passes, given=given, **tiles)
-    expected, found, top = pictures(any_engine, plain, mine)
+    text = text.replace("repeats = 3", own)
+    mine = scene(BUMPY, passes=SUN.format(LIT) + passes, given=text, **tiles)
+    expected, result, top = pictures(any_engine, plain, mine)
     assert expected[top].std() > 10
-    assert (np.abs(found - expected)[top].max(axis=-1) > 2).mean() < 0.01, "levels of detail round otherwise"
+    assert (np.abs(result - expected)[top].max(axis=-1) > 2).mean() < 0.01, "levels of detail round otherwise"
 
 
 LAYERS = ("grass", "rock", "snow", "path")
@@ -281,23 +281,23 @@ def test_the_air_lets_through_and_adds(any_engine, scene):
     clear = scene(BUMPY, given=LIT)
     aired = scene(BUMPY, given=f"{LIT}, haze = 0.7", passes=passes, air=maps)
     before = any_engine.read(clear, "view.shaded", size=SIZE)[..., :3].astype(float)
-    found = any_engine.read(aired, "view.shaded", size=SIZE)[..., :3].astype(float)
+    result = any_engine.read(aired, "view.shaded", size=SIZE)[..., :3].astype(float)
     seen = any_engine.read(aired, "view.where", size=SIZE)
     land = seen[..., 3] > 0
     expected = before[land] * [0.75, 0.5, 0.25] + [0.125, 0.25, 0.5]
-    np.testing.assert_allclose(found[land], expected, rtol=3e-3)
-    np.testing.assert_array_equal(found[~land], before[~land])
+    np.testing.assert_allclose(result[land], expected, rtol=3e-3)
+    np.testing.assert_array_equal(result[~land], before[~land])
 
 
 def test_another_picture_of_the_sky_takes_the_plain_one_s_place(any_engine, scene):
     picture = COLOUR.format("vec4(vec2(texel) / 256.0, 0.5, 1.0)").replace("colour:", "sky_picture:")
     passes = f'[[pass]]\nname = "sky_picture"\nuse = "./picture"\nsize = [{SIZE[0]}, {SIZE[1]}]\n'
     sketch = scene(passes=passes, picture=picture).with_camera(replace(LOOK, distance=1500))
-    found = any_engine.read(sketch, "view.shaded", size=SIZE)[..., :3].astype(float)
+    result = any_engine.read(sketch, "view.shaded", size=SIZE)[..., :3].astype(float)
     sky = any_engine.read(sketch, "view.where", size=SIZE)[..., 3] == 0
     expected = np.concatenate([all_pixels() / 256, np.full((*SIZE[::-1], 1), 0.5)], axis=-1)
     assert sky.sum() > 500
-    np.testing.assert_allclose(found[sky], expected[sky], atol=1e-3)
+    np.testing.assert_allclose(result[sky], expected[sky], atol=1e-3)
     assert any_engine.record.plan.step("view.sky") is None, "which is not made in vain"
 
 
@@ -305,8 +305,8 @@ def test_nothing_lights_up_at_night(any_engine, scene):
     """An hour after midnight in winter, a white terrain, its cut and the sky are as good as black."""
     passes = '[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\n'
     passes += "set = { latitude = 50, day = 355, hour = 1.0, adaptation = 0 }\n"
-    given = 'sky = "daylight", gain = 1, ambient = 1, haze = 0.3'
-    sketch = scene(BUMPY, "vec4(1.0)", given=given, passes=passes).with_camera(replace(LOOK, distance=1500))
+    value = 'sky = "daylight", gain = 1, ambient = 1, haze = 0.3'
+    sketch = scene(BUMPY, "vec4(1.0)", given=value, passes=passes).with_camera(replace(LOOK, distance=1500))
     night = any_engine.read(sketch, "view.shaded", size=SIZE)[..., :3]
     noon = any_engine.read(sketch.with_values({"daylight.hour": 12.0}), "view.shaded", size=SIZE)[..., :3]
     assert night.max() < 1e-3 * noon.mean()
@@ -337,6 +337,6 @@ def test_a_picture_in_parts_is_the_whole_picture(any_engine, scene):
     whole = any_engine.render(sketch, size=SIZE).array
     for part in (window, Window((70, 50), (80, 47), SIZE)):
         (x, y), (width, height) = part.origin, part.size
-        found = read_picture(any_engine.draw_window(sketch, part))
+        picture = read_picture(any_engine.draw_window(sketch, part))
         rows = slice(SIZE[1] - y - height, SIZE[1] - y)
-        np.testing.assert_array_equal(found, whole[rows, x : x + width])
+        np.testing.assert_array_equal(picture, whole[rows, x : x + width])

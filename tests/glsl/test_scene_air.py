@@ -24,8 +24,8 @@ def outdoors(make_sketch):
     """
 
     def make(air=None, rest="", files=None, target=(500.0, 500.0, 300.0), look=(40.0, 3.0), first="", **day):
-        given = {"position": "free", "sun": [150.0, 40.0], "adaptation": 0.0, **day}
-        sets = [", ".join(f"{k} = {toml_value(v)}" for k, v in d.items()) for d in (given, air or {})]
+        value = {"position": "free", "sun": [150.0, 40.0], "adaptation": 0.0, **day}
+        sets = [", ".join(f"{k} = {toml_value(v)}" for k, v in d.items()) for d in (value, air or {})]
         sketch = make_sketch(
             '[[pass]]\nname = "height"\nuse = "./flat"\n'
             f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ {sets[0]} }}\n'
@@ -44,14 +44,14 @@ def outdoors(make_sketch):
 
 def slices(engine, sketch, output):
     """Read one output as (slice, row from the south, column, channel), and each column's and row's ray."""
-    found = engine.read(sketch, f"air:{output}", size=SEEN).astype(np.float64)[..., :3]
-    found = found.reshape(4, 20, 4, 32, 3).transpose(0, 2, 1, 3, 4).reshape(SLICES, 20, 32, 3)
+    result = engine.read(sketch, f"air:{output}", size=SEEN).astype(np.float64)[..., :3]
+    result = result.reshape(4, 20, 4, 32, 3).transpose(0, 2, 1, 3, 4).reshape(SLICES, 20, 32, 3)
     eye = engine.record.plan.eye
     y, x = (np.mgrid[0:20, 0:32] + 0.5) / np.array([20, 32])[:, None, None] * 2 - 1
     clip = np.stack([x, y, np.ones_like(x), np.ones_like(x)], axis=-1)
     away = clip @ np.linalg.inv(eye.clip_from_world.astype(np.float64)).T
     towards = away[..., :3] / away[..., 3:] - np.asarray(eye.position, np.float64)
-    return found, towards / np.linalg.norm(towards, axis=-1, keepdims=True), eye.position[2] / 1000
+    return result, towards / np.linalg.norm(towards, axis=-1, keepdims=True), eye.position[2] / 1000
 
 
 def heights(start, rise, way):
@@ -78,14 +78,14 @@ RAYS = [(0, 0), (3, 31), (8, 15), (10, 2), (11, 28), (13, 16), (19, 5)]
 def test_what_is_left_is_beer_and_lambert_s_integral(any_engine, outdoors, mist):
     """Within one level of eight bits: in clear air and in mist, up, level and down to the sea."""
     sketch = outdoors(air=mist, turbidity=3.0)
-    found, towards, start = slices(any_engine, sketch, "left")
+    result, towards, start = slices(any_engine, sketch, "left")
     own = (mist.get("mist", 0.0), mist.get("mist_top", 60) / 1e3, mist.get("mist_level", 0) / 1e3)
     worst = 0.0
     for k in (2, 4, 6, 8, 11, 15):
         far = REACH * ((k + 1) / SLICES) ** 4
         for y, x in RAYS:
             truth = np.exp(-depth(start, towards[y, x, 2], far, 3.0, *own))
-            worst = max(worst, np.abs(found[k, y, x] - truth).max())
+            worst = max(worst, np.abs(result[k, y, x] - truth).max())
     assert worst < 1 / 255
 
 
@@ -109,13 +109,13 @@ def test_between_slices_it_is_read_as_even_air(any_engine, outdoors):
     _, towards, start = slices(any_engine, sketch, "left")
     added = []
     for far in (0.0, 30.0, 120.0, 700.0, 2500.0, 9000.0, 61000.0):
-        found = any_engine.read(sketch.with_values({"read.far": far}), "read", size=SEEN).astype(np.float64)
+        result = any_engine.read(sketch.with_values({"read.far": far}), "read", size=SEEN).astype(np.float64)
         for y, x in RAYS:
             if RADIUS + start + far / 1000 * towards[y, x, 2] < RADIUS:
                 continue  # under the sea
             truth = np.exp(-depth(start, towards[y, x, 2], far / 1000, 3.0, 2.0, 0.1))
-            np.testing.assert_allclose(found[y, x, :2], truth[1:], atol=4 / 255, err_msg=f"{far} {y} {x}")
-        added.append(found[10, 16, 3])
+            np.testing.assert_allclose(result[y, x, :2], truth[1:], atol=4 / 255, err_msg=f"{far} {y} {x}")
+        added.append(result[10, 16, 3])
     assert added[0] == 0 and (np.diff(added) > 0).all()
     assert added[1] / added[2] == pytest.approx(0.25, rel=0.1)  # near the eye in proportion to the distance
 
@@ -126,7 +126,7 @@ def test_between_slices_it_is_read_as_even_air(any_engine, outdoors):
 def scattered(start, ray, far, sun, turbidity, table, sunny=None):
     """Return the light that clear air adds over a ray, times pi; ``table`` as in test_air.
 
-    ``sunny`` gives the share of the sun that clouds leave after each distance [km], by default all.
+    ``sunny`` gives the fraction of the sun that clouds leave after each distance [km], by default all.
     """
     share = (np.arange(1500) + 0.5) / 1500
     way, long = far * share**2, 2 * far * share / 1500
@@ -152,13 +152,13 @@ def scattered(start, ray, far, sun, turbidity, table, sunny=None):
 @pytest.mark.parametrize("elevation", [40.0, 4.0, -3.0])
 def test_what_is_added_is_what_the_air_on_the_way_scatters(any_engine, outdoors, elevation):
     sketch = outdoors(turbidity=3.0, sun=[70.0, elevation])
-    found, towards, start = slices(any_engine, sketch, "scattered")
+    result, towards, start = slices(any_engine, sketch, "scattered")
     table = any_engine.read(sketch, "daylight.bounced").astype(np.float64)[..., :3]
     sun = any_engine.read(sketch, "daylight")[0, 0, :3].astype(np.float64)
     for k in (6, 10, 13):
         for y, x in ((10, 2), (11, 28), (13, 16), (19, 5)):
             truth = scattered(start, towards[y, x], REACH * ((k + 1) / SLICES) ** 4, sun, 3.0, table)
-            np.testing.assert_allclose(found[k, y, x], truth, rtol=0.06, atol=1e-7)
+            np.testing.assert_allclose(result[k, y, x], truth, rtol=0.06, atol=1e-7)
 
 
 HALF = """
@@ -181,7 +181,7 @@ def test_air_in_the_shadow_of_clouds_scatters_no_beam(any_engine, outdoors, opaq
     edge = REACH * (8 / SLICES) ** 4  # km from the eye
     eye = (25000.0 - 1000 * edge, 500.0, 300.0)
     sketch = outdoors(files={"half": HALF}, target=eye, look=(90.0, 0.0), first=first, sun=[0.0, elevation])
-    found, towards, start = slices(any_engine, sketch, "scattered")
+    result, towards, start = slices(any_engine, sketch, "scattered")
     table = any_engine.read(sketch, "daylight.bounced").astype(np.float64)[..., :3]
     sun = any_engine.read(sketch, "daylight")[0, 0, :3].astype(np.float64)
     for k in (5, 7, 8, 9, 10):
@@ -189,7 +189,7 @@ def test_air_in_the_shadow_of_clouds_scatters_no_beam(any_engine, outdoors, opaq
         for y, x in ((10, 15), (12, 16)):
             ray = towards[y, x]
             truth = scattered(start, ray, far, sun, 2.5, table, lambda way: (way > edge) == (opaque < 0.5))
-            np.testing.assert_allclose(found[k, y, x], truth, rtol=0.06, err_msg=f"{k} {y} {x}")
+            np.testing.assert_allclose(result[k, y, x], truth, rtol=0.06, err_msg=f"{k} {y} {x}")
 
 
 LOOK = """
@@ -212,7 +212,7 @@ def test_the_farthest_slice_and_the_sky_behind_it_are_the_sky(any_engine, outdoo
         sketch = outdoors(
             None, rest, {"look": LOOK}, (500.0, 500.0, height), (40.0, -12.0), sun=[100.0, elevation]
         )
-        found, towards, start = slices(any_engine, sketch, "scattered")
+        result, towards, start = slices(any_engine, sketch, "scattered")
         through, _, _ = slices(any_engine, sketch, "left")
         whole = any_engine.read(sketch, "seen", size=SEEN).astype(np.float64)[..., :3]
         table = any_engine.read(sketch, "daylight.bounced").astype(np.float64)[..., :3]
@@ -226,7 +226,7 @@ def test_the_farthest_slice_and_the_sky_behind_it_are_the_sky(any_engine, outdoo
             turned = np.degrees(np.arcsin(sun_there))
             aerosol, others, together = sky(rise, np.clip(aside, -1, 1), turned, 2.5, table, there)
             phase = 3 / (8 * np.pi) * 0.36 / 2.64 * (1 + together**2) / (1.64 - 1.6 * together) ** 1.5
-            sum_of = found[15, y, x] + through[15, y, x] * (others + phase * aerosol)
+            sum_of = result[15, y, x] + through[15, y, x] * (others + phase * aerosol)
             np.testing.assert_allclose(sum_of, whole[y, x], rtol=0.06, err_msg=f"{elevation} {y} {x}")
 
 
@@ -235,9 +235,9 @@ def test_nothing_lights_up_at_night_and_all_are_numbers(any_engine, outdoors):
     bright = []
     for elevation in (30.0, 5.0, 0.5, -0.5, -3.0, -9.0, -20.0, -60.0):
         sketch = outdoors({"mist": 2.0}, sun=[220.0, elevation], turbidity=6.0, clouds=0.5)
-        found, _, _ = slices(any_engine, sketch, "scattered")
-        assert np.isfinite(found).all() and (found >= 0).all()
-        bright.append(found.max())
+        result, _, _ = slices(any_engine, sketch, "scattered")
+        assert np.isfinite(result).all() and (result >= 0).all()
+        bright.append(result.max())
     assert (np.diff(bright) <= 0).all() and bright[-2] < 1e-6 * bright[0]
 
 
@@ -245,7 +245,7 @@ def test_mist_is_as_bright_as_a_white_thing_in_the_same_light_at_most(any_engine
     """It scatters what comes to it and adds none: away from the sun no mist outshines paper that faces it."""
     for elevation in (60.0, 20.0, 3.0):
         sketch = outdoors({"mist": 8.0, "mist_top": 800.0}, look=(150.0, 3.0), sun=[330.0, elevation])
-        found, _, _ = slices(any_engine, sketch, "scattered")
+        result, _, _ = slices(any_engine, sketch, "scattered")
         row = any_engine.read(sketch, "daylight", size=SEEN)[0].astype(np.float64)
         most = row[1, :3] + row[2, :3] + 0.2 * row[5, :3]
-        assert (found.max(axis=(0, 1, 2)) < most).all() and found[12:, :, :, 1].min() > 0.15 * most[1]
+        assert (result.max(axis=(0, 1, 2)) < most).all() and result[12:, :, :, 1].min() > 0.15 * most[1]

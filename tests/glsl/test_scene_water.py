@@ -37,7 +37,7 @@ def scene(make_sketch):
     def make(
         height=PLANE,
         colour="vec4(0.5)",
-        given=CALM,
+        value=CALM,
         level=LEVEL,
         water="water/sea",
         size=(65, 41),
@@ -45,7 +45,7 @@ def scene(make_sketch):
         wired="",
     ):
         sea = f'[[pass]]\nname = "water"\nuse = "{water}"\nsize = 1\nset = {{ sea_level = {level} }}\n'
-        set_ = f"set = {{ antialias = false, grid = 65, {given} }}"
+        set_ = f"set = {{ antialias = false, grid = 65, {value} }}"
         inputs = f"inputs = {{ {wired} }}\n" if wired else ""
         text = f'{PASSES}{sea}{passes}[view]\nuse = "scene/terrain"\nsamples = 1\n{inputs}{set_}\n'
         files = {"terrain": HEIGHT.format(height), "cover": COLOUR.format(colour), "grey": GREY}
@@ -63,19 +63,19 @@ def read(engine, sketch, name, size=SIZE):
 
 
 def test_water_is_where_the_rays_meet_its_level_before_the_ground(any_engine, scene):
-    found = read(any_engine, scene(), "watered.where:seen_water")
+    result = read(any_engine, scene(), "watered.where:seen_water")
     eye, ahead = rays(any_engine.record.plan, all_pixels())
     ground = on_plane(eye, ahead)
     surface = eye + ahead * ((LEVEL - eye[2]) / ahead[..., 2:])
     below = ground[..., 2] < LEVEL
     on = np.all((ground[..., :2] > 2) & (ground[..., :2] < np.array(EXTENT) - 2), axis=-1)
-    water = found[..., 3] == 3
+    water = result[..., 3] == 3
     assert (on & below).sum() > 500 and (on & ~below).sum() > 500
     # Within a pixel of the shore either is right.
     shore = np.abs(ground[..., 2] - LEVEL) < 0.6 * np.abs(np.gradient(ground[..., 2], axis=0)) + 0.1
     np.testing.assert_array_equal(water[on & ~shore], below[on & ~shore])
     wet = water & on & ~shore
-    np.testing.assert_allclose(found[wet][:, :3], surface[wet], atol=0.05)
+    np.testing.assert_allclose(result[wet][:, :3], surface[wet], atol=0.05)
     depth = read(any_engine, scene(), "watered.where:state")[..., 0]
     np.testing.assert_allclose(depth[on & ~shore], LEVEL - ground[on & ~shore][:, 2], atol=0.05)
 
@@ -84,10 +84,10 @@ def test_the_sea_goes_on_to_the_horizon_and_ends_there(any_engine, scene):
     """From 60 m over it the horizon is 0.25 degrees below level, 27.7 km away."""
     low = Camera(azimuth=180, elevation=0.0, distance=300, target=(450, 350, LEVEL + 60.0), field_of_view=20)
     sketch = scene(height="0.05 + 0.0 * float(texel.x)").with_camera(low)
-    found = read(any_engine, sketch, "watered.where:seen_water", (60, 800))
+    result = read(any_engine, sketch, "watered.where:seen_water", (60, 800))
     eye, ahead = rays(any_engine.record.plan, np.stack(np.indices((60, 800)), axis=-1)[30][:, ::1])
     rise = ahead[:, 2] / np.linalg.norm(ahead[:, :2], axis=1)
-    column = found[:, 30]
+    column = result[:, 30]
     water = column[:, 3] == 3
     sea = eye[2] - LEVEL
     edge = np.sqrt(2 * sea / 6360e3)
@@ -108,11 +108,11 @@ def test_pictures_without_water_in_sight_stay_as_they_are(any_engine, scene, lev
 
 @pytest.mark.slow
 def test_clouds_that_no_drift_places_are_none(any_engine, scene):
-    given = "wind = 2.0, gain = 1.0, ambient = 0.5, clouds = 1"
+    value = "wind = 2.0, gain = 1.0, ambient = 0.5, clouds = 1"
     grey = '[[pass]]\nname = "grey"\nuse = "./grey"\n'
-    sketch, clear = scene(given=given, passes=grey, wired='cloud = "grey"'), scene(given=given)
-    found, expected = (read(any_engine, one, "watered.surface") for one in (sketch, clear))
-    np.testing.assert_array_equal(found, expected)
+    sketch, clear = scene(given=value, passes=grey, wired='cloud = "grey"'), scene(given=value)
+    result, expected = (read(any_engine, sketch, "watered.surface") for sketch in (sketch, clear))
+    np.testing.assert_array_equal(result, expected)
 
 
 # ── what is mirrored ────────────────────────────────────────────────────────────
@@ -124,13 +124,13 @@ def test_calm_water_mirrors_a_peak_within_a_pixel(any_engine, scene, peak, away,
 
     From at sea all of the image is on water beyond the terrain's edge.
     """
-    given = (
+    text = (
         f"{CALM}, zenith = [1.0, 1.0, 1.0], horizon = [1.0, 1.0, 1.0], deep = [0.0, 0.0, 0.0], clarity = 0.05"
     )
     look = Camera(azimuth=180, elevation=9, distance=away, target=(450, 330, 10), field_of_view=62)
     size = (241, 240)
-    dark = scene(peak, "vec4(0.0, 0.0, 0.0, 1.0)", given, level=15.0, size=(181, 141)).with_camera(look)
-    found = read(any_engine, dark, "watered.surface", size)[..., 0]
+    dark = scene(peak, "vec4(0.0, 0.0, 0.0, 1.0)", text, level=15.0, size=(181, 141)).with_camera(look)
+    result = read(any_engine, dark, "watered.surface", size)[..., 0]
     places = read(any_engine, dark, "watered.where:seen_water", size)
     water = places[..., 3] == 3
     plan = any_engine.record.plan
@@ -139,24 +139,24 @@ def test_calm_water_mirrors_a_peak_within_a_pixel(any_engine, scene, peak, away,
     top = np.array([column / 180 * EXTENT[0], row / 140 * EXTENT[1], 2 * 15.0 - heights.max() * RELIEF, 1.0])
     clip = plan.eye.clip_from_world.astype(float) @ top
     x, y = (clip[:2] / clip[3] * 0.5 + 0.5) * np.array(size) - 0.5
-    line = found[:, round(x)]
+    line = result[:, round(x)]
     lit = water[:, round(x)] & (line > 1e-3)
     first_dark = np.flatnonzero(lit)[-1] + 0.5  # the sky is mirrored below, the peak above
     assert first_dark == pytest.approx(y, abs=1.0)
     assert (places[round(y) + 1, round(x), 1] < 0) == at_sea
     # And to the sides: the image ends where the mirrored slopes do, as wide as the peak itself.
-    across = water[round(y) + 6] & (found[round(y) + 6] < 1e-3)
+    across = water[round(y) + 6] & (result[round(y) + 6] < 1e-3)
     middle = np.flatnonzero(across).mean()
     assert middle == pytest.approx(x, abs=1.0)
 
 
 def test_what_is_mirrored_is_lit_as_it_is_seen(any_engine, scene):
     """The image of each point that the eye sees is Fresnel's share of its light, where still water has it."""
-    given = "wind = 0.0, foam = 0.0, gain = 0.7, ambient = 0.4, haze = 0.0, sun = [200.0, 35.0]"
-    given += ", deep = [0.0, 0.0, 0.0], clarity = 0.05"
+    value = "wind = 0.0, foam = 0.0, gain = 0.7, ambient = 0.4, haze = 0.0, sun = [200.0, 35.0]"
+    value += ", deep = [0.0, 0.0, 0.0], clarity = 0.05"
     look = Camera(azimuth=180, elevation=9, distance=330, target=(450, 330, 10), field_of_view=62)
     size = (241, 240)
-    lit = scene(PEAK, "vec4(0.8, 0.5, 0.2, 1.0)", given, level=15.0, size=(181, 141)).with_camera(look)
+    lit = scene(PEAK, "vec4(0.8, 0.5, 0.2, 1.0)", value, level=15.0, size=(181, 141)).with_camera(look)
     shown, mirrored, seen, water = (
         read(any_engine, lit, name, size)
         for name in ("shaded", "watered.surface", "where", "watered.where:seen_water")
@@ -192,11 +192,11 @@ def test_a_picture_in_parts_is_the_whole_picture(any_engine, scene):
     sketch = scene(given="wind = 5.0, foam = 1.0")
     whole = any_engine.render(sketch, size=SIZE).array
     part = Window((40, 20), (80, 47), SIZE)
-    found = read_picture(any_engine.draw_window(sketch, part))
+    picture = read_picture(any_engine.draw_window(sketch, part))
     (x, y), (width, height) = part.origin, part.size
     there = whole[SIZE[1] - y - height : SIZE[1] - y, x : x + width]
     # A corner of the mesh is rounded otherwise from another corner of the picture.
-    off = np.abs(found.astype(int) - there)
+    off = np.abs(picture.astype(int) - there)
     assert off.max() <= 2 and (off > 0).mean() < 0.001
 
 
@@ -269,42 +269,42 @@ def test_mirrored_clouds_have_the_light_and_colour_of_those_above(any_engine, ma
 @pytest.mark.parametrize("wind", [0.0, 6.0, 20.0])
 def test_water_in_an_even_light_adds_none(any_engine, scene, wind):
     """White ground, white sky, white foam and clear water: no pixel is brighter than white."""
-    given = f"{WHITE}, wind = {wind}, foam = 1.0, gain = 0.0, ambient = 1.0, deep = [1.0, 1.0, 1.0]"
-    sketch = scene(colour="vec4(1.0)", given=given)
+    text = f"{WHITE}, wind = {wind}, foam = 1.0, gain = 0.0, ambient = 1.0, deep = [1.0, 1.0, 1.0]"
+    sketch = scene(colour="vec4(1.0)", given=text)
     water = read(any_engine, sketch, "watered.where:seen_water")[..., 3] == 3
-    found = read(any_engine, sketch, "watered.surface")[..., :3]
+    result = read(any_engine, sketch, "watered.surface")[..., :3]
     assert water.sum() > 1000
-    assert found[water].max() <= 1.002
-    assert found[water].min() > 0.4  # and little is lost: what foam and what goes in and does not return
+    assert result[water].max() <= 1.002
+    assert result[water].min() > 0.4  # and little is lost: what foam and what goes in and does not return
 
 
 def test_nothing_lights_up_at_night(any_engine, scene):
-    given = f"{BLACK}, wind = 8.0, gain = 2.0, ambient = 0.0, sun = [200.0, -12.0]"
-    sketch = scene(given=given)
-    found = read(any_engine, sketch, "watered.surface")[..., :3]
+    text = f"{BLACK}, wind = 8.0, gain = 2.0, ambient = 0.0, sun = [200.0, -12.0]"
+    sketch = scene(given=text)
+    result = read(any_engine, sketch, "watered.surface")[..., :3]
     shown = read(any_engine, sketch, "where")[..., 3]
-    np.testing.assert_array_equal(found[shown < 2], 0.0)  # the cut is in a light of its own
+    np.testing.assert_array_equal(result[shown < 2], 0.0)  # the cut is in a light of its own
 
 
 def test_deep_water_is_darker_and_less_red(any_engine, scene):
-    given = (
+    text = (
         f"{CALM}, clarity = 2.0, zenith = [0.0, 0.0, 0.0], horizon = [0.0, 0.0, 0.0], deep = [0.0, 0.0, 0.0]"
     )
-    sketch = scene(given=given)
+    sketch = scene(given=text)
     depth = read(any_engine, sketch, "watered.where:state")[..., 0]
-    place = read(any_engine, sketch, "watered.where:seen_water")
-    water = place[..., 3] == 3
-    found = read(any_engine, sketch, "watered.surface")[..., :3]
+    position = read(any_engine, sketch, "watered.where:seen_water")
+    water = position[..., 3] == 3
+    result = read(any_engine, sketch, "watered.surface")[..., :3]
     land = read(any_engine, sketch, "where")[..., 3] == 1
     mask = water & land & (depth > 0.3) & (depth < 3.0)
     assert mask.sum() > 20
-    to_eye = np.array(any_engine.record.plan.eye.position) - place[mask][:, :3]
+    to_eye = np.array(any_engine.record.plan.eye.position) - position[mask][:, :3]
     up = to_eye[:, 2] / np.linalg.norm(to_eye, axis=1)
     # Snell: a path of a metre's depth, from the sun, of which CALM has the place only, and to the eye.
     path = sum(1 / np.sqrt(1 - (1 - c**2) / INDEX**2) for c in (np.sin(np.radians(25.0)), up))
     pure = np.array([0.2755, 0.0565, 0.00922])  # Pope and Fry, at 620, 550 and 450 nm
     lost = pure + np.array([0.95, 1.0, 1.35]) * (1 / 2.0 - pure[1])
-    log = np.log(found[mask])
-    for one, other in [(0, 1), (2, 1)]:
-        each_metre = (log[:, one] - log[:, other]) / (depth[mask] * path)
-        np.testing.assert_allclose(each_metre, lost[other] - lost[one], rtol=0.05)
+    log = np.log(result[mask])
+    for first, other in [(0, 1), (2, 1)]:
+        each_metre = (log[:, first] - log[:, other]) / (depth[mask] * path)
+        np.testing.assert_allclose(each_metre, lost[other] - lost[first], rtol=0.05)

@@ -13,7 +13,7 @@ import pytest
 from scipy.ndimage import binary_dilation, map_coordinates, maximum_filter
 
 from playground.engine.engine import Engine
-from playground.shader.parameter import LARGEST_SIDE
+from playground.shader.parameter import MAX_SIDE
 
 from .terrains import HILLS, toml_value
 
@@ -98,23 +98,23 @@ class Views:
 
     def horizon(self):
         """Return the angle of the highest terrain on the way, in degrees; -90 where there is none."""
-        found = np.full(self.foot.shape, -90.0)
+        result = np.full(self.foot.shape, -90.0)
         for far, over in self.steps:
-            found = np.maximum(found, np.degrees(np.arctan2(np.where(np.isinf(over), -1e12, over), far)))
-        return found
+            result = np.maximum(result, np.degrees(np.arctan2(np.where(np.isinf(over), -1e12, over), far)))
+        return result
 
     def free_of_beam(self, elevation, radius_at, first=1.0):
         """Return the least share of an upright stick, around the ray, that stands over the terrain."""
-        found = np.full(self.foot.shape, first)
+        result = np.full(self.foot.shape, first)
         for far, over in self.steps:
             radius, middle = radius_at(far), far * np.tan(np.radians(elevation))
             free = np.clip(middle + radius - np.maximum(over, middle - radius), 0, 2 * radius)
-            found = np.minimum(found, free / (2 * radius))
-        return found
+            result = np.minimum(result, free / (2 * radius))
+        return result
 
 
 def part_of_disc(line):
-    """Return the share of a disc of radius 1 over a line, by counting points of a fine lattice."""
+    """Return the fraction of a disc of radius 1 over a line, by counting points of a fine lattice."""
     axis = (np.arange(1200) + 0.5) / 600 - 1
     x, y = np.meshgrid(axis, axis)
     heights = np.sort(y[x * x + y * y <= 1])
@@ -134,8 +134,8 @@ def test_block_maxima_are_the_highest_of_blocks_and_of_their_borders(any_engine,
     heights = any_engine.read(sketch, "height")
     maxima = any_engine.read(sketch, "maxima")
     # The filter's window begins at its own texel, and what lies beside the terrain is as low as can be.
-    wanted = maximum_filter(heights, size=17, origin=-8, mode="constant", cval=-1.0)[::16, ::16]
-    np.testing.assert_array_equal(maxima, wanted)
+    expected = maximum_filter(heights, size=17, origin=-8, mode="constant", cval=-1.0)[::16, ::16]
+    np.testing.assert_array_equal(maxima, expected)
 
 
 @pytest.mark.parametrize("method", ["ray_cast", *SOFT])
@@ -148,16 +148,16 @@ def test_leaps_pass_over_nothing(any_engine, make_sketch, method, sun):
         '[[pass]]\nname = "range"\nuse = "terrain/range"\n'
         '[[pass]]\nname = "horizon"\nuse = "./sky"\nsize = 1\n'
     )
-    found = []
+    result = []
     for use in ("lighting/block_maxima", "./sky"):
         passes = (
             f'{head}[[pass]]\nname = "block_maxima"\nuse = "{use}"\nsize = "(height.size + 15) // 16"\n'
             f'[[pass]]\nname = "seen"\nuse = "lighting/{method}/leaping"\nset = {{ sun = {list(sun)} }}\n'
         )
         sketch = make_sketch(passes, size=[200, 150], extent=[3000.0, 2000.0], relief=700.0, sky=sky)
-        found.append(any_engine.read(sketch, "seen"))
-    assert 0.05 < (found[0] < 1).mean() and (found[0] > 0).mean() > 0.05
-    np.testing.assert_array_equal(found[0], found[1])
+        result.append(any_engine.read(sketch, "seen"))
+    assert 0.05 < (result[0] < 1).mean() and (result[0] > 0).mean() > 0.05
+    np.testing.assert_array_equal(result[0], result[1])
 
 
 FAR_WALL = """
@@ -170,14 +170,14 @@ float kernel(ivec2 texel) { return texel.x == size.x - 1 ? 1.0 : 0.0; }
 def test_a_shadow_crosses_the_widest_terrain_in_the_shortest_steps(any_engine, lit, method):
     """A wall of 300 m hides all of a disc at 0.7 degrees as far as 17.8 km away: on 16384 texels of 1 m."""
     values = {
-        "size": [LARGEST_SIDE, 2],
-        "extent": [LARGEST_SIDE - 1.0, 1.0],
+        "size": [MAX_SIDE, 2],
+        "extent": [MAX_SIDE - 1.0, 1.0],
         "relief": 300.0,
         "step_length": 0.25,
     }
-    found = visible(any_engine, lit(FAR_WALL, method, (90, 0.7), **values))
-    assert found[:, :-1].max() < 1e-6
-    assert found[:, -1].min() == 1
+    result = visible(any_engine, lit(FAR_WALL, method, (90, 0.7), **values))
+    assert result[:, :-1].max() < 1e-6
+    assert result[:, -1].min() == 1
 
 
 # Against the slow marches
@@ -198,19 +198,19 @@ def test_the_cone_is_that_of_a_slow_march(any_engine, lit, sun, delta_r, step_le
     sketch = lit(HILLS, "soft_cone", sun, delta_r=delta_r, step_length=step_length, **GRID)
     views = Views(heights_of(any_engine, sketch), sun, SPACING, step_length)
     grows = delta_r / np.cos(np.radians(sun[1]))
-    wanted = views.free_of_beam(sun[1], lambda far: far * grows)
-    found = visible(any_engine, sketch)
-    assert wanted.min() < 0.5 or sun[1] > 30
+    expected = views.free_of_beam(sun[1], lambda far: far * grows)
+    result = visible(any_engine, sketch)
+    assert expected.min() < 0.5 or sun[1] > 30
     # Close to the texel a cone of 0.01 is centimetres wide: a float's rounding is some of that.
-    np.testing.assert_allclose(found, wanted, atol=2e-3 if delta_r < 0.05 else 2e-4)
+    np.testing.assert_allclose(result, expected, atol=2e-3 if delta_r < 0.05 else 2e-4)
 
 
 @pytest.mark.parametrize("sun", SUNS[:3], ids=str)
 def test_the_thesis_counts_steps_so_that_half_the_step_doubles_its_cone(any_engine, lit, sun):
     sketch = lit(HILLS, "soft_cone", sun, delta_r=0.05, step_length=0.5, growth="per step", **GRID)
     views = Views(heights_of(any_engine, sketch), sun, SPACING, 0.5)
-    wanted = views.free_of_beam(sun[1], lambda far: far * 0.1 / np.cos(np.radians(sun[1])))
-    np.testing.assert_allclose(visible(any_engine, sketch), wanted, atol=5e-4)
+    expected = views.free_of_beam(sun[1], lambda far: far * 0.1 / np.cos(np.radians(sun[1])))
+    np.testing.assert_allclose(visible(any_engine, sketch), expected, atol=5e-4)
     same = [lit(HILLS, "soft_cone", sun, growth=g, **GRID) for g in ("per unit of path", "per step")]
     np.testing.assert_array_equal(visible(any_engine, same[0]), visible(any_engine, same[1]))
 
@@ -220,8 +220,8 @@ def test_the_thesis_counts_steps_so_that_half_the_step_doubles_its_cone(any_engi
 def test_the_cylinder_is_that_of_a_slow_march(any_engine, lit, sun, radius):
     sketch = lit(HILLS, "soft_cylinder", sun, radius=radius, **GRID)
     views = Views(heights_of(any_engine, sketch), sun, SPACING)
-    wanted = views.free_of_beam(sun[1], lambda _: radius / 255 * 300, first=0.5)
-    np.testing.assert_allclose(visible(any_engine, sketch), wanted, atol=3e-4)
+    expected = views.free_of_beam(sun[1], lambda _: radius / 255 * 300, first=0.5)
+    np.testing.assert_allclose(visible(any_engine, sketch), expected, atol=3e-4)
 
 
 @pytest.mark.parametrize("sun", [*SUNS[:4], (200, 0.1), (200, -0.2)], ids=str)
@@ -229,32 +229,32 @@ def test_the_cylinder_is_that_of_a_slow_march(any_engine, lit, sun, radius):
 def test_the_disc_is_that_of_a_slow_march_and_quadrature(any_engine, lit, sun, diameter):
     sketch = lit(HILLS, "sun_disc", sun, diameter=diameter, **GRID)
     horizon = np.maximum(Views(heights_of(any_engine, sketch), sun, SPACING).horizon(), 0)
-    wanted = part_of_disc((horizon - sun[1]) / (diameter / 2))
-    np.testing.assert_allclose(visible(any_engine, sketch), wanted, atol=3e-3)
+    expected = part_of_disc((horizon - sun[1]) / (diameter / 2))
+    np.testing.assert_allclose(visible(any_engine, sketch), expected, atol=3e-3)
 
 
 @pytest.mark.parametrize("sun", [(135, 25), (262, 7)], ids=str)
 def test_light_of_another_size_marches_from_its_own_places(any_engine, lit, sun):
     sketch = lit(HILLS, "soft_cone", sun, delta_r=0.1, light_size='["3*size.x-2", "3*size.y-2"]', **GRID)
     views = Views(heights_of(any_engine, sketch), sun, SPACING, finer=3)
-    wanted = views.free_of_beam(sun[1], lambda far: far * 0.1 / np.cos(np.radians(sun[1])))
-    found = visible(any_engine, sketch)
-    assert found.shape == (145, 193)
-    np.testing.assert_allclose(found, wanted, atol=5e-4)
+    expected = views.free_of_beam(sun[1], lambda far: far * 0.1 / np.cos(np.radians(sun[1])))
+    result = visible(any_engine, sketch)
+    assert result.shape == (145, 193)
+    np.testing.assert_allclose(result, expected, atol=5e-4)
 
 
 def test_the_disc_is_cut_as_quadrature_cuts_it(on_gpu):
     lines = np.linspace(-1.2, 1.2, 500)
-    found = on_gpu("lighting/sun_disc/area.glsl", "disc_above(line)", line=lines)
-    np.testing.assert_allclose(found, part_of_disc(lines), atol=1e-3)
-    assert found[0] == 1 and found[-1] == 0
+    result = on_gpu("lighting/sun_disc/area.glsl", "disc_above(line)", line=lines)
+    np.testing.assert_allclose(result, part_of_disc(lines), atol=1e-3)
+    assert result[0] == 1 and result[-1] == 0
 
 
 def test_a_line_is_off_by_less_than_the_thesis_ramp_is(on_gpu):
     """Eqs 3.8 and 4.3 fall evenly across the sun; the disc's area does not, by up to 0.058."""
     lines = np.linspace(-1, 1, 2001)
-    found = on_gpu("lighting/sun_disc/area.glsl", "disc_above(line)", line=lines)
-    assert np.abs(found - (0.5 - lines / 2)).max() == pytest.approx(0.058, abs=1e-3)
+    result = on_gpu("lighting/sun_disc/area.glsl", "disc_above(line)", line=lines)
+    assert np.abs(result - (0.5 - lines / 2)).max() == pytest.approx(0.058, abs=1e-3)
 
 
 # Flat terrain
@@ -264,32 +264,32 @@ def test_a_line_is_off_by_less_than_the_thesis_ramp_is(on_gpu):
 @pytest.mark.parametrize("azimuth", [0.0, 90.0, 137.0])
 def test_on_flat_terrain_the_cylinder_is_half_of_l_dot_n(any_engine, lit, azimuth, elevation):
     plain = any_engine.read(lit(FLAT, "l_dot_n", (azimuth, elevation)), "light")
-    found = any_engine.read(lit(FLAT, "soft_cylinder", (azimuth, elevation)), "light")
-    np.testing.assert_array_equal(found[..., :3], plain[..., :3] / 2)
+    result = any_engine.read(lit(FLAT, "soft_cylinder", (azimuth, elevation)), "light")
+    np.testing.assert_array_equal(result[..., :3], plain[..., :3] / 2)
 
 
 @BOTH_FORMS
 @pytest.mark.parametrize("elevation", [0.0, 5.0, 30.0, 70.0, 89.9, 90.0])
 @pytest.mark.parametrize("azimuth", [270.0, 137.0])
 def test_on_flat_terrain_a_wide_cone_sees_the_known_part(any_engine, lit, form, azimuth, elevation):
-    found = visible(any_engine, lit(FLAT, "soft_cone", (azimuth, elevation), delta_r=1.5, form=form))
+    result = visible(any_engine, lit(FLAT, "soft_cone", (azimuth, elevation), delta_r=1.5, form=form))
     # Texels whose first step leaves the terrain see all of the sun.
-    inner = found[1:-1, 1:-1]
+    inner = result[1:-1, 1:-1]
     np.testing.assert_allclose(inner, (1 + np.sin(np.radians(elevation)) / 1.5) / 2, atol=1e-5)
 
 
 @BOTH_FORMS
 def test_on_flat_terrain_a_narrow_cone_and_the_disc_see_all(any_engine, lit, form):
     for method in ("ray_cast", "soft_cone", "sun_disc"):
-        found = visible(any_engine, lit(FLAT, method, (77, 3), form=form))
-        np.testing.assert_array_equal(found, 1)
+        result = visible(any_engine, lit(FLAT, method, (77, 3), form=form))
+        np.testing.assert_array_equal(result, 1)
 
 
 @BOTH_FORMS
 @pytest.mark.parametrize("elevation", [0.2, 0.0, -0.1, -0.3])
 def test_on_flat_terrain_the_disc_sets(any_engine, lit, form, elevation):
-    found = visible(any_engine, lit(FLAT, "sun_disc", (200, elevation), form=form))
-    np.testing.assert_allclose(found, part_of_disc(-elevation / 0.265), atol=2e-3)
+    result = visible(any_engine, lit(FLAT, "sun_disc", (200, elevation), form=form))
+    np.testing.assert_allclose(result, part_of_disc(-elevation / 0.265), atol=2e-3)
 
 
 # What holds for all
@@ -324,12 +324,12 @@ def test_turned_and_mirrored_terrain_has_turned_and_mirrored_light(any_engine, l
     values = {"form": form, "relief": 300.0, "extent": 640.0}
     straight = any_engine.read(lit(HILLS, method, sun, **values), "light")
     y, x = np.mgrid[0:65, 0:65]
-    for given, moved, wanted in (
+    for value, moved, expected in (
         ("quarter", (sun[0] - 90, sun[1]), straight[64 - x, y]),
         ("mirrored", (-sun[0], sun[1]), straight[:, ::-1]),
     ):
-        found = any_engine.read(lit(HILLS, method, moved, given={"turned": given}, **values), "light")
-        assert (np.abs(found - wanted).max(axis=-1) > 5e-3).mean() < 2e-3
+        result = any_engine.read(lit(HILLS, method, moved, given={"turned": value}, **values), "light")
+        assert (np.abs(result - expected).max(axis=-1) > 5e-3).mean() < 2e-3
 
 
 DEGENERATE = [
@@ -377,15 +377,15 @@ def test_below_the_horizon_no_slope_sees_the_sun(any_engine, lit, method, form):
 
 
 def test_both_drivers_sweep_alike(ctx, lit):
-    """The plain form follows a texel's lines anew for each texel, the compute variant each line once."""
+    """The plain form follows a texel's lines again for each texel, the compute variant each line once."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     with Engine(ctx, driver="fragment") as plain, Engine(ctx) as swept:
         for azimuth in (0, 12.3, 45, 90, 100, 135, 161, 180, 225, 230, 270, 301, 315, 317, 359.99999):
             shape = {"shape": "disc", "spread": 0.53}
             sketch = lit(HILLS, "sun_sweep", (azimuth, 9.0), size=[49, 65], relief=300.0, **shape)
-            found = [engine.read(sketch, "light") for engine in (plain, swept)]
-            np.testing.assert_array_equal(found[0], found[1])
+            result = [engine.read(sketch, "light") for engine in (plain, swept)]
+            np.testing.assert_array_equal(result[0], result[1])
         assert swept.record.plan.step("light").kernel.kind == "compute"
 
 
@@ -473,13 +473,13 @@ def test_the_sweep_finds_the_other_rim_of_a_valley(any_engine, lit, azimuth):
     # Ways that leave the terrain by its side see no rim.
     seen = (y >= 8) & (y * np.abs(np.tan(np.radians(azimuth))) < 27)
     for elevation in (3.0, 6.0, 9.0, 12.0, 15.0):
-        found = any_engine.read(lit(SHAPES, "sun_disc", (azimuth, elevation), **values), "light.horizon")
+        result = any_engine.read(lit(SHAPES, "sun_disc", (azimuth, elevation), **values), "light.horizon")
         # What lies above or below the disc is not looked for.
         ends = np.tan(np.radians([elevation - 2, elevation + 2]))
-        wanted = np.clip(np.maximum(rim, slope), *ends)[seen]
-        middle = np.clip(found[:, 30:35], *ends)[seen]
-        assert len(set(wanted)) > 5 or elevation > 12 or azimuth == 140
-        np.testing.assert_allclose(middle, np.broadcast_to(wanted[:, None], middle.shape), atol=0.004)
+        expected = np.clip(np.maximum(rim, slope), *ends)[seen]
+        middle = np.clip(result[:, 30:35], *ends)[seen]
+        assert len(set(expected)) > 5 or elevation > 12 or azimuth == 140
+        np.testing.assert_allclose(middle, np.broadcast_to(expected[:, None], middle.shape), atol=0.004)
 
 
 # Night
@@ -560,9 +560,9 @@ def test_the_lamp_s_shadows_are_those_of_a_slow_march(any_engine, lit):
     way = np.stack([(stand[0] - x) * 10, (stand[1] - y) * 10, stand[2] - heights], axis=-1)
     facing = way[..., 2] - east * way[..., 0] - north * way[..., 1]
     sure = (np.abs(clear) > 0.01) & (np.abs(facing) > 0.1)
-    wanted = (clear > 0) & (facing > 0)
-    assert sure.mean() > 0.9 and 0.1 < wanted.mean() < 0.9
-    np.testing.assert_array_equal(light[sure] > 0, wanted[sure])
+    expected = (clear > 0) & (facing > 0)
+    assert sure.mean() > 0.9 and 0.1 < expected.mean() < 0.9
+    np.testing.assert_array_equal(light[sure] > 0, expected[sure])
 
 
 def test_a_lamp_on_the_ground_and_one_on_a_terrain_of_one_texel_are_numbers(any_engine, lit):

@@ -23,9 +23,9 @@ ALIKE = {
 @pytest.fixture
 def terrain_of(any_engine, make_sketch):
     def terrain(name, size, **values):
-        given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
+        text = "".join(f"{k} = {v!r}\n" for k, v in values.items())
         sketch = make_sketch(
-            f'[[pass]]\nname = "a"\nuse = "generation/{name}"\n[pass.set]\n{given}', size=size
+            f'[[pass]]\nname = "a"\nuse = "generation/{name}"\n[pass.set]\n{text}', size=size
         )
         return any_engine.read(sketch, "a").astype(np.float64)
 

@@ -22,9 +22,9 @@ def read(ctx, kept, tmp_path):
 
     def make(terrain, use, *outputs, passes="", size="", **values):
         sketch = lit_by(tmp_path, terrain, "under_test", use, passes=passes, size=size, **values)
-        found = [kept.read(sketch, f"under_test:{output}").astype(np.float64) for output in outputs]
-        assert all(np.isfinite(f).all() for f in found)
-        return found[0] if len(found) == 1 else found
+        result = [kept.read(sketch, f"under_test:{output}").astype(np.float64) for output in outputs]
+        assert all(np.isfinite(f).all() for f in result)
+        return result[0] if len(result) == 1 else result
 
     return make
 
@@ -60,9 +60,9 @@ def test_a_sector_is_the_integral_over_it(on_gpu, sectors, azimuth, slope):
     towards = (np.float32(np.sin(np.radians(azimuth))), np.float32(np.cos(np.radians(azimuth))))
     tangents = np.array([0.0, 0.3, 1.0, 4.0, 30.0], np.float32)
     call = f"sky_of_sector(tangent, slope, towards, sector_shape({sectors}))"
-    found = on_gpu(OPEN_SKY, call, tangent=tangents, slope=tuple(np.float32(slope)), towards=towards)
+    result = on_gpu(OPEN_SKY, call, tangent=tangents, slope=tuple(np.float32(slope)), towards=towards)
     half = np.pi / sectors
-    for tangent, value in zip(tangents, found, strict=True):
+    for tangent, value in zip(tangents, result, strict=True):
         own = slope[0] * towards[0] + slope[1] * towards[1]
         lowest = np.arctan(max(tangent, own, 0.0))
 
@@ -85,7 +85,7 @@ def test_two_opposite_sectors_are_the_sum_of_both(on_gpu, slope):
     heights = [0.0, 1e-4, 0.3, 1.0, 30.0, 6e4]
     tangents = np.array([(there, back) for there in heights for back in heights], np.float32)
     call = "sky_of_sectors(tangents, slope, towards, sector_shape(16))"
-    found = on_gpu(
+    result = on_gpu(
         OPEN_SKY, call, tangents=tangents, slope=tuple(np.float32(slope)), towards=tuple(np.float32(towards))
     )
     width = np.pi / 16
@@ -96,7 +96,7 @@ def test_two_opposite_sectors_are_the_sum_of_both(on_gpu, slope):
         within = open_sky - np.sin(2 * open_sky) / 2
         truth += np.sin(open_sky) ** 2 - rise * np.sin(width) / width * within
     steep = abs(np.array(slope) @ towards)
-    np.testing.assert_allclose(found, truth, rtol=4 * 2.0**-24, atol=2e-6 + 3.3e-6 * steep)
+    np.testing.assert_allclose(result, truth, rtol=4 * 2.0**-24, atol=2e-6 + 3.3e-6 * steep)
 
 
 def test_the_total_k_is_below_each_patch(on_gpu):
@@ -117,8 +117,8 @@ def test_the_table_is_the_sectors_integrals(ctx, kept, tmp_path, first):
     )
     table = kept.read(load(tmp_path / "s.toml"), "table").astype(np.float64)
     assert table.shape == (8, 256, 4)
-    for place in (0, 17, 128, 254, 255):
-        low = np.pi / 2 if place == 255 else np.arctan(place / 255 / (1 - place / 255))
+    for position in (0, 17, 128, 254, 255):
+        low = np.pi / 2 if position == 255 else np.arctan(position / 255 / (1 - position / 255))
         for row in range(8):
             a = np.radians(first - 45 * row)
             steps = np.radians(np.linspace(-22.5, 22.5, 4001)[:-1] + 22.5 / 4000) + a
@@ -128,7 +128,7 @@ def test_the_table_is_the_sectors_integrals(ctx, kept, tmp_path, first):
                 np.cos(steps).mean() * level / 4,
                 np.cos(low) ** 2 / 8,
             ]
-            np.testing.assert_allclose(table[row, place, :3], truth, atol=2e-6)
+            np.testing.assert_allclose(table[row, position, :3], truth, atol=2e-6)
 
 
 # Closed forms
@@ -167,8 +167,8 @@ def test_a_valley_without_end(read, angle, bound, spacing):
     terrain = Land(np.tile(x * np.tan(np.radians(angle)), (ny, 1)), spacing)
     k = read(terrain, "horizon_sky", "k", summed="over all directions", directions=64)[ny // 2]
     rim = 20 * spacing[0]
-    place = np.arange(nx)[3:17]  # on the western wall
-    here = (20 - place) * spacing[0]
+    position = np.arange(nx)[3:17]  # on the western wall
+    here = (20 - position) * spacing[0]
     elevation = np.arctan2((rim - here) * np.tan(np.radians(angle)), here + rim)
     truth = (1 + np.cos(np.radians(angle) + elevation)) / 2
     np.testing.assert_allclose(k[3:17], truth, atol=bound)
@@ -239,7 +239,7 @@ def test_mirrored_terrain_has_a_mirrored_sky(read):
     terrain = Land(real(49).heights[:41] * 3, (74.0, 93.0))
     mirrored = Land(terrain.heights[:, ::-1].copy(), terrain.spacing)
     for way in ("by the table", "by the formula"):
-        straight, across = (read(one, "horizon_sky", "k", summed=way) for one in (terrain, mirrored))
+        straight, across = (read(terrain, "horizon_sky", "k", summed=way) for terrain in (terrain, mirrored))
         np.testing.assert_allclose(across[:, ::-1], straight, atol=1e-3)
 
 

@@ -17,19 +17,19 @@ def read(any_engine, make_sketch):
 
     def of(*passes, name="out", **sketch):
         files = {key: sketch.pop(key) for key in ("ground", "bank", "level") if key in sketch}
-        text = "".join(f"[[pass]]\n{one}\n" for one in passes)
+        text = "".join(f"[[pass]]\n{pass_}\n" for pass_ in passes)
         return any_engine.read(make_sketch(text, **files, **sketch), name).astype(np.float64)
 
     return of
 
 
 def by_differences(read, height, more="", **sketch):
-    given = {"size": [31, 13], "extent": EXTENT} | sketch
+    value = {"size": [31, 13], "extent": EXTENT} | sketch
     return read(
         'name = "height"\nuse = "./ground"',
         f'name = "out"\nuse = "terrain/slope"\n{more}',
         ground=HEIGHT.format(height),
-        **given,
+        **value,
     )
 
 
@@ -37,11 +37,11 @@ def by_differences(read, height, more="", **sketch):
 @pytest.mark.parametrize("apart", [1, 3])
 def test_a_plane_has_its_slope_everywhere_whatever_the_spacing(read, way, apart):
     """Texels are 30 m apart to the east and 25 m to the north; borders included."""
-    found = by_differences(
+    result = by_differences(
         read, f"2.0 * {EAST} - 0.5 * {NORTH}", f'set = {{ way = "{way}", apart = {apart} }}'
     )
-    np.testing.assert_allclose(found[..., 0], 2.0 / 900, rtol=2e-5)
-    np.testing.assert_allclose(found[..., 1], -0.5 / 300, rtol=2e-5)
+    np.testing.assert_allclose(result[..., 0], 2.0 / 900, rtol=2e-5)
+    np.testing.assert_allclose(result[..., 1], -0.5 / 300, rtol=2e-5)
 
 
 @pytest.mark.parametrize("apart", [1, 4])
@@ -49,12 +49,12 @@ def test_of_a_parabola_both_sides_are_exact_inside_and_one_side_is_half_a_step_l
     x, inside = np.arange(31) * 30.0, np.s_[:, apart:-apart]
     slope = 2 * x / 900**2
     for way, late in (("both sides", 0.0), ("one side", apart * 30.0 / 2)):
-        given = f'set = {{ way = "{way}", apart = {apart} }}'
-        found = by_differences(read, f"{EAST} * {EAST}", given)[..., 0]
-        wanted = np.broadcast_to(slope + 2 * late / 900**2, found.shape)
-        np.testing.assert_allclose(found[inside], wanted[inside], atol=2e-8)
+        text = f'set = {{ way = "{way}", apart = {apart} }}'
+        result = by_differences(read, f"{EAST} * {EAST}", text)[..., 0]
+        expected = np.broadcast_to(slope + 2 * late / 900**2, result.shape)
+        np.testing.assert_allclose(result[inside], expected[inside], atol=2e-8)
         # At the border only one side is there: half of what is read is half a step off.
-        assert abs(found[:, 0] - slope[0]).min() > 0.9 * apart * 30.0 / 900**2
+        assert abs(result[:, 0] - slope[0]).min() > 0.9 * apart * 30.0 / 900**2
 
 
 def test_a_texture_of_another_size_takes_the_slopes_of_the_nearest_texels(read):
@@ -86,55 +86,55 @@ def test_errors_fall_with_the_square_of_the_spacing_on_both_sides_and_with_it_on
 SLOPES = [(0.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.3, 0.7)]
 
 
-def of_slopes(read, use, one, other=None, relief=1.0):
+def of_slopes(read, use, first, other=None, relief=1.0):
     passes = ['name = "slope"\nuse = "./bank"']
     passes += ['name = "flat"\nuse = "./level"'] if other else []
     wired = 'inputs = { slope = "slope", other = "flat" }' if other else ""
     passes.append(f'name = "out"\nuse = "{use}"\n{wired}')
-    files = {"bank": SLOPE.format(f"vec2({one[0]}, {one[1]})")}
+    files = {"bank": SLOPE.format(f"vec2({first[0]}, {first[1]})")}
     if other:
         files["level"] = SLOPE.format(f"vec2({other[0]}, {other[1]})")
     return read(*passes, size=3, extent=10.0, relief=relief, **files)
 
 
-@pytest.mark.parametrize("one", SLOPES)
+@pytest.mark.parametrize("first", SLOPES)
 @pytest.mark.parametrize("other", [(0.0, 0.0), (0.3, 0.7001)])
-def test_the_angle_between_normals(read, one, other):
-    normals = [np.array([-a, -b, 1]) / np.sqrt(a * a + b * b + 1) for a, b in (one, other)]
+def test_the_angle_between_normals(read, first, other):
+    normals = [np.array([-a, -b, 1]) / np.sqrt(a * a + b * b + 1) for a, b in (first, other)]
     half = np.linalg.norm(normals[0] - normals[1]) / 2  # exact for small angles too
-    wanted = 2 * np.degrees(np.arcsin(half))
-    np.testing.assert_allclose(of_slopes(read, "terrain/normal_angle", one, other), wanted, rtol=2e-3)
+    expected = 2 * np.degrees(np.arcsin(half))
+    np.testing.assert_allclose(of_slopes(read, "terrain/normal_angle", first, other), expected, rtol=2e-3)
 
 
 def test_slopes_are_multiplied_by_the_relief(read):
-    found = of_slopes(read, "terrain/normal_angle", (0.01, 0.0), (0.0, 0.0), relief=100.0)
-    np.testing.assert_allclose(found, 45.0, rtol=1e-5)
+    result = of_slopes(read, "terrain/normal_angle", (0.01, 0.0), (0.0, 0.0), relief=100.0)
+    np.testing.assert_allclose(result, 45.0, rtol=1e-5)
 
 
 @pytest.mark.parametrize("slope", SLOPES)
 def test_a_normal_map_is_a_unit_vector_as_it_is_shown(read, slope):
     colour = of_slopes(read, "terrain/normal_map", slope)[1, 1, :3]
     shown = np.where(colour <= 0.0031308, 12.92 * colour, 1.055 * colour ** (1 / 2.4) - 0.055)
-    wanted = np.array([-slope[0], -slope[1], 1]) / np.sqrt(slope[0] ** 2 + slope[1] ** 2 + 1)
-    np.testing.assert_allclose(2 * shown - 1, wanted, atol=4e-3)
+    expected = np.array([-slope[0], -slope[1], 1]) / np.sqrt(slope[0] ** 2 + slope[1] ** 2 + 1)
+    np.testing.assert_allclose(2 * shown - 1, expected, atol=4e-3)
 
 
 @pytest.mark.parametrize("slope", SLOPES)
 def test_light_by_slope_is_the_cosine_to_the_sun(read, slope):
     """The sun in the north-west at 40 degrees, as the parameter's default has it; gain 2."""
-    found = of_slopes(read, "lighting/by_slope", slope)[1, 1, 0]
+    of_slope = of_slopes(read, "lighting/by_slope", slope)[1, 1, 0]
     azimuth, height = np.radians([315.0, 40.0])
     sun = [np.sin(azimuth) * np.cos(height), np.cos(azimuth) * np.cos(height), np.sin(height)]
     normal = np.array([-slope[0], -slope[1], 1]) / np.sqrt(slope[0] ** 2 + slope[1] ** 2 + 1)
-    np.testing.assert_allclose(found, 2 * max(normal @ sun, 0), atol=2e-3)
+    np.testing.assert_allclose(of_slope, 2 * max(normal @ sun, 0), atol=2e-3)
 
 
 LINES = 'interval = 10, width = 2.0, line = "#000000"'
 
 
-def lines_of(read, use, given, height, relief=100.0):
+def lines_of(read, use, value, height, relief=100.0):
     passes = ['name = "height"\nuse = "./ground"', 'name = "slope"\nuse = "terrain/slope"']
-    passes.append(f'name = "out"\nuse = "{use}"\nset = {{ {given} }}')
+    passes.append(f'name = "out"\nuse = "{use}"\nset = {{ {value} }}')
     shape = {"size": [201, 9], "extent": [2000.0, 80.0], "relief": relief}
     return 1 - read(*passes, ground=HEIGHT.format(height), **shape)[..., 0]
 
@@ -151,8 +151,8 @@ def test_contour_lines_are_those_of_view_contours(read, height):
 def test_a_width_in_metres_of_height_is_wide_where_the_slope_is_gentle(read):
     """A line of 2 m is covered for 2 m of height: 40 m of way where it rises 1 m in 20."""
     for relief, texels in ((100.0, 4.0), (50.0, 8.0)):
-        given = f'{LINES}, ground = "#ffffff", measured = "metres of height"'
-        found = lines_of(read, "view/contours/simple", given, EAST, relief=relief)[4]
+        text = f'{LINES}, ground = "#ffffff", measured = "metres of height"'
+        line = lines_of(read, "view/contours/simple", text, EAST, relief=relief)[4]
         lines = relief / 10
-        inside = found[round(100 / lines) : -round(100 / lines)]
+        inside = line[round(100 / lines) : -round(100 / lines)]
         np.testing.assert_allclose(inside.sum() / (lines - 1), texels, rtol=0.05)

@@ -27,12 +27,12 @@ def truth(terrain, radius):
     """Return the mean of each square of texels, cut at the border, slice by slice."""
     terrain = terrain.astype(np.float64)
     rows, columns = terrain.shape
-    found = np.empty_like(terrain)
+    result = np.empty_like(terrain)
     for y in range(rows):
         strip = terrain[max(y - radius, 0) : y + radius + 1]
         for x in range(columns):
-            found[y, x] = strip[:, max(x - radius, 0) : x + radius + 1].mean()
-    return found
+            result[y, x] = strip[:, max(x - radius, 0) : x + radius + 1].mean()
+    return result
 
 
 @pytest.fixture
@@ -95,8 +95,8 @@ def test_roundings_do_not_gather_on_a_large_terrain(engine, sketch_of, radius):
 
     def along(values):
         sums = np.cumsum(np.pad(values, ((1, 0), (0, 0))), axis=0)
-        place = np.arange(len(values))
-        low, high = np.maximum(place - radius, 0), np.minimum(place + radius, len(values) - 1) + 1
+        position = np.arange(len(values))
+        low, high = np.maximum(position - radius, 0), np.minimum(position + radius, len(values) - 1) + 1
         return (sums[high] - sums[low]) / (high - low)[:, None]
 
     np.testing.assert_allclose(engine.read(sketch, "smooth"), along(along(terrain).T).T, atol=4e-6)
@@ -106,7 +106,7 @@ def test_flat_terrain_stays_and_a_slope_stays_inside(engine, make_sketch, sketch
     flat = engine.read(sketch_of((80, 80), 7, scale=0.0, base=0.7), "smooth")
     np.testing.assert_allclose(flat, np.float32(0.7), rtol=2e-7)
     slope = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 t) { return float(t.x + 2 * t.y); }\n'
-    found = engine.read(
+    result = engine.read(
         make_sketch(
             PASSES.format(radius=7, scale=0, base=0).replace("set = { scale = 0, base = 0 }", ""),
             size=80,
@@ -115,4 +115,4 @@ def test_flat_terrain_stays_and_a_slope_stays_inside(engine, make_sketch, sketch
         "smooth",
     )
     y, x = np.mgrid[7:73, 7:73]
-    np.testing.assert_allclose(found[7:-7, 7:-7], x + 2 * y, atol=2e-5)
+    np.testing.assert_allclose(result[7:-7, 7:-7], x + 2 * y, atol=2e-5)

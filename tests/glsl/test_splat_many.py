@@ -46,28 +46,28 @@ def bands(random, count=16):
     )
 
 
-def settings(found, **more):
-    given = [f"band_{k + 1} = {[float(x) for x in band]}" for k, band in enumerate(found)]
-    return "set = { " + ", ".join([*given, *(f"{name} = {value}" for name, value in more.items())]) + " }\n"
+def settings(result, **more):
+    value = [f"band_{k + 1} = {[float(x) for x in band]}" for k, band in enumerate(result)]
+    return "set = { " + ", ".join([*value, *(f"{name} = {value}" for name, value in more.items())]) + " }\n"
 
 
-def claims(found, heights, fade):
-    rising = np.clip((heights - found[:, 0]) / fade + 0.5, 0, 1)
-    falling = np.clip((found[:, 1] - heights) / fade + 0.5, 0, 1)
+def claims(result, heights, fade):
+    rising = np.clip((heights - result[:, 0]) / fade + 0.5, 0, 1)
+    falling = np.clip((result[:, 1] - heights) / fade + 0.5, 0, 1)
     return rising * falling
 
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_the_four_largest_claims_count_less_the_fifth(engine, make_sketch, seed):
-    found = bands(np.random.default_rng(seed))
-    text = MANY.format(settings(found, chance=0, height_fade=0.3))
+    result = bands(np.random.default_rng(seed))
+    text = MANY.format(settings(result, chance=0, height_fade=0.3))
     sketch = make_sketch(text, size=[129, 3], terrain=EASTWARD, **FLAT)
     chosen = np.round(engine.read(sketch, "colour.choose:chosen")[1] * 255).astype(int)
     weights = engine.read(sketch, "colour.choose:weights")[1].astype(float)
     assert (np.round(weights * 255).sum(axis=-1) == 255).all()
     crowded = 0
     for x, level in enumerate(np.linspace(0, 1, 129)):
-        all_ = claims(found, level, 0.3)
+        all_ = claims(result, level, 0.3)
         order = np.argsort(-all_, kind="stable")
         left = np.maximum(all_ - all_[order[4]], 0)
         crowded += all_[order[4]] > 0
@@ -82,8 +82,8 @@ def test_the_four_largest_claims_count_less_the_fifth(engine, make_sketch, seed)
 
 def test_no_material_appears_or_goes_with_a_jump(any_engine, make_sketch):
     """Every step along 1000 m changes every share by little, though the lists change often."""
-    found = bands(np.random.default_rng(3))
-    text = MANY.format(settings(found, chance=0.9, grain=400, height_fade=0.3))
+    result = bands(np.random.default_rng(3))
+    text = MANY.format(settings(result, chance=0.9, grain=400, height_fade=0.3))
     sketch = make_sketch(text, size=[2049, 2], terrain=EASTWARD, **FLAT)
     chosen = np.round(any_engine.read(sketch, "colour.choose:chosen")[0] * 255).astype(int)
     weights = any_engine.read(sketch, "colour.choose:weights")[0].astype(float)
@@ -100,8 +100,8 @@ def test_where_nothing_claims_the_first_lies_and_nan_harms_nothing(any_engine, m
     none = np.tile([2.0, 3.0, 0.0, 90.0], (16, 1))
     terrain = HEIGHT.format("texel.x > 8 ? uintBitsToFloat(0x7fc00000u) : 0.5")
     sketch = make_sketch(MANY.format(settings(none, chance=0)), size=17, terrain=terrain, **FLAT)
-    found = any_engine.read(sketch, "colour")
-    np.testing.assert_allclose(found[..., :3], np.broadcast_to(SHADES[0], (17, 17, 3)), atol=1e-3)
+    result = any_engine.read(sketch, "colour")
+    np.testing.assert_allclose(result[..., :3], np.broadcast_to(SHADES[0], (17, 17, 3)), atol=1e-3)
 
 
 def test_fewer_materials_leave_the_others_out(any_engine, make_sketch):
@@ -180,16 +180,16 @@ def test_far_more_repeats_than_texels_give_the_mean_of_that_tile_alone(any_engin
     text = MANY.format(settings(alone, chance=0, repeats=512) + "size = 65\n")
     sketch = make_sketch(text, size=33, terrain=HEIGHT.format("0.5"), **NOISE)
     tile = any_engine.read(sketch, NAMES[6])[..., :3].mean(axis=(0, 1))
-    found = any_engine.read(sketch, "colour")[..., :3]
-    np.testing.assert_allclose(found, np.broadcast_to(tile, found.shape), atol=0.01)
+    result = any_engine.read(sketch, "colour")[..., :3]
+    np.testing.assert_allclose(result, np.broadcast_to(tile, result.shape), atol=0.01)
 
 
 def test_a_finer_colour_lies_between_the_lists(any_engine, make_sketch):
     """On the nodes of the lists it is their mixture, halfway between them the mean of both."""
-    found = bands(np.random.default_rng(7))
-    given = settings(found, chance=0, height_fade=0.3)
+    result = bands(np.random.default_rng(7))
+    value = settings(result, chance=0, height_fade=0.3)
     coarse, fine = (
-        make_sketch(MANY.format(given + f"size = {size}\n"), size=[33, 33], terrain=EASTWARD, **FLAT)
+        make_sketch(MANY.format(value + f"size = {size}\n"), size=[33, 33], terrain=EASTWARD, **FLAT)
         for size in ("[33, 33]", "[65, 65]")
     )
     nodes = any_engine.read(coarse, "colour").astype(float)

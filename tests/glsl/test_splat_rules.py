@@ -18,9 +18,9 @@ PATH = '[[pass]]\nname = "cover"\nuse = "texturing/alpha_map/path"\nset = {{ {} 
 def cover(any_engine, make_sketch):
     """Give the covers of a rule on terrain of a formula, row 0 south."""
 
-    def read(given, terrain="0.0", **more):
+    def read(value, terrain="0.0", **more):
         return any_engine.read(
-            make_sketch(RULE.format(given), terrain=HEIGHT.format(terrain), **more), "cover"
+            make_sketch(RULE.format(value), terrain=HEIGHT.format(terrain), **more), "cover"
         ).astype(float)
 
     return read
@@ -32,15 +32,15 @@ EASTWARD = "float(texel.x) / float(size.x - 1)"
 
 
 def test_height_begins_and_ends_about_its_thresholds(cover):
-    found = cover("height_from = 0.3, height_to = 0.7, height_fade = 0.2", EASTWARD, size=[201, 3])[1]
+    result = cover("height_from = 0.3, height_to = 0.7, height_fade = 0.2", EASTWARD, size=[201, 3])[1]
     levels = np.linspace(0, 1, 201)
     expected = np.interp(levels, [0.2, 0.4, 0.6, 0.8], [0, 1, 1, 0])
-    np.testing.assert_allclose(found, expected, atol=1e-3)
+    np.testing.assert_allclose(result, expected, atol=1e-3)
 
 
 def test_an_edge_that_does_not_fade_is_a_step(cover):
-    found = cover("height_from = 0.5, height_fade = 0", EASTWARD, size=[200, 3])[1]
-    np.testing.assert_array_equal(found, np.arange(200) / 199 >= 0.5)
+    result = cover("height_from = 0.5, height_fade = 0", EASTWARD, size=[200, 3])[1]
+    np.testing.assert_array_equal(result, np.arange(200) / 199 >= 0.5)
 
 
 def test_by_default_a_rule_covers_everything(cover):
@@ -56,9 +56,9 @@ def test_slope_is_an_angle_in_metres_on_any_grid(cover, size):
     rise = np.tan(np.radians(30)) / np.sqrt(2)
     plane = f"dot(vec2(texel) / vec2(size - 1), vec2(1000.0, 400.0)) * {rise / 1000}"
     for edge, expected in ((30.0, 0.5), (27.0, 0.8), (33.0, 0.2), (36.0, 0.0)):
-        given = f"slope_from = {edge}, slope_fade = 10"
-        found = cover(given, plane, size=size, extent=[1000.0, 400.0], relief=1000.0)
-        np.testing.assert_allclose(found, expected, atol=2e-3)
+        text = f"slope_from = {edge}, slope_fade = 10"
+        result = cover(text, plane, size=size, extent=[1000.0, 400.0], relief=1000.0)
+        np.testing.assert_allclose(result, expected, atol=2e-3)
 
 
 def test_steep_terrain_can_be_left_out(cover):
@@ -76,30 +76,30 @@ def test_a_paraboloid_has_its_curvature_everywhere(cover, bend, expected):
     bowl = (
         f"dot(vec2(texel) - vec2(40.0, 52.0), vec2(texel) - vec2(40.0, 52.0)) * 25.0 * {bend / 1000 / 2 / 10}"
     )
-    given = "by_curvature = true, curvature_from = 2, curvature_fade = 2, curvature_distance = 40"
-    found = cover(given, bowl, size=81, extent=400.0, relief=10.0)
+    value = "by_curvature = true, curvature_from = 2, curvature_fade = 2, curvature_distance = 40"
+    result = cover(value, bowl, size=81, extent=400.0, relief=10.0)
     # Where any of the four lines fits; in the corners, within the reach of two edges, none does.
     inside = np.ones((81, 81), bool)
     for rows in (slice(None, 8), slice(73, None)):
         for columns in (slice(None, 8), slice(73, None)):
             inside[rows, columns] = False
-    np.testing.assert_allclose(found[inside], expected, atol=0.01)
+    np.testing.assert_allclose(result[inside], expected, atol=0.01)
 
 
 def test_a_saddle_and_a_plane_bend_neither_up_nor_down(cover):
-    given = "by_curvature = true, curvature_from = -0.5, curvature_to = 0.5"
-    given += ", curvature_fade = 0.2, curvature_distance = 20"
+    value = "by_curvature = true, curvature_from = -0.5, curvature_to = 0.5"
+    value += ", curvature_fade = 0.2, curvature_distance = 20"
     saddle = "(float(texel.x) - 40.0) * (float(texel.y) - 40.0) * 0.0004"
-    assert cover(given, saddle, size=81, extent=400.0)[6:-6, 6:-6].min() > 0.99
-    assert cover(given, "float(texel.x) * 0.03 + float(texel.y) * 0.02", size=81, extent=400.0).min() > 0.99
+    assert cover(value, saddle, size=81, extent=400.0)[6:-6, 6:-6].min() > 0.99
+    assert cover(value, "float(texel.x) * 0.03 + float(texel.y) * 0.02", size=81, extent=400.0).min() > 0.99
 
 
 def test_hollows_and_crests_part_a_wavy_terrain(cover):
     waves = "0.5 + 0.5 * sin(6.2831853 * float(texel.x) / 32.0)"
-    given = "by_curvature = true, curvature_fade = 0.5, curvature_distance = 20"
+    value = "by_curvature = true, curvature_fade = 0.5, curvature_distance = 20"
     more = {"size": [129, 9], "extent": [1280.0, 80.0], "relief": 50.0}
-    hollows = cover(f"{given}, curvature_from = 1", waves, **more)[4]
-    crests = cover(f"{given}, curvature_from = -20, curvature_to = -1", waves, **more)[4]
+    hollows = cover(f"{value}, curvature_from = 1", waves, **more)[4]
+    crests = cover(f"{value}, curvature_from = -20, curvature_to = -1", waves, **more)[4]
     at = np.arange(129)
     assert hollows[(at % 32 == 24) & (at > 4) & (at < 124)].min() == 1
     assert crests[(at % 32 == 8) & (at > 4) & (at < 124)].min() == 1
@@ -110,59 +110,59 @@ def test_hollows_and_crests_part_a_wavy_terrain(cover):
 
 
 def test_chance_moves_edges_and_nothing_far_from_them(cover):
-    given = "height_from = 0.5, height_fade = 0.1, ragged = 1, grain = 300"
-    found = cover(given, EASTWARD, size=[129, 65])
+    value = "height_from = 0.5, height_fade = 0.1, ragged = 1, grain = 300"
+    result = cover(value, EASTWARD, size=[129, 65])
     straight = cover("height_from = 0.5, height_fade = 0.1", EASTWARD, size=[129, 65])
-    assert np.abs(found - straight).max() > 0.1
-    assert (found[:, :44] == 0).all() and (found[:, 84:] == 1).all()
-    assert np.abs(found - cover(f"{given}, seed = 2", EASTWARD, size=[129, 65])).max() > 0.1
+    assert np.abs(result - straight).max() > 0.1
+    assert (result[:, :44] == 0).all() and (result[:, 84:] == 1).all()
+    assert np.abs(result - cover(f"{value}, seed = 2", EASTWARD, size=[129, 65])).max() > 0.1
 
 
 def test_terrain_that_is_no_number_has_no_cover(cover):
-    found = cover("height_from = 0.1", "texel.x > 3 ? uintBitsToFloat(0x7fc00000u) : 0.9", size=9)
-    assert np.isfinite(found).all()
-    assert (found[:, 5:] == 0).all()
+    result = cover("height_from = 0.1", "texel.x > 3 ? uintBitsToFloat(0x7fc00000u) : 0.9", size=9)
+    assert np.isfinite(result).all()
+    assert (result[:, 5:] == 0).all()
 
 
 # ── a path ───────────────────────────────────────────────────────────────────
 
 
-def path(any_engine, make_sketch, given, **more):
-    return any_engine.read(make_sketch(PATH.format(given), **more), "cover").astype(float)
+def path(any_engine, make_sketch, value, **more):
+    return any_engine.read(make_sketch(PATH.format(value), **more), "cover").astype(float)
 
 
 def test_a_path_goes_through_its_points(any_engine, make_sketch):
     points = {"first": (0.1, 0.2), "second": (0.4, 0.8), "third": (0.7, 0.3), "fourth": (0.9, 0.9)}
-    given = ", ".join(f"{name} = [{x}, {y}]" for name, (x, y) in points.items())
-    found = path(any_engine, make_sketch, f"{given}, width = 30, verge = 20", size=101)
+    text = ", ".join(f"{name} = [{x}, {y}]" for name, (x, y) in points.items())
+    result = path(any_engine, make_sketch, f"{text}, width = 30, verge = 20", size=101)
     for east, north in points.values():
-        assert found[round(north * 100), round(east * 100)] == 1
-    assert 0.05 < found.mean() < 0.2
-    assert found[95, 5] == 0
+        assert result[round(north * 100), round(east * 100)] == 1
+    assert 0.05 < result.mean() < 0.2
+    assert result[95, 5] == 0
 
 
 def test_a_straight_path_has_its_width_and_its_verges(any_engine, make_sketch):
     level = "first = [0, 0.5], second = [0.3, 0.5], third = [0.6, 0.5], fourth = [1, 0.5]"
-    found = path(any_engine, make_sketch, f"{level}, width = 100, verge = 50, strength = 0.5", size=101)
+    result = path(any_engine, make_sketch, f"{level}, width = 100, verge = 50, strength = 0.5", size=101)
     away = np.abs(np.arange(101) - 50) * 10.0
     expected = 0.5 * np.interp(away, [50, 100], [1, 0])
-    np.testing.assert_allclose(found, np.broadcast_to(expected[:, None], found.shape), atol=1e-3)
+    np.testing.assert_allclose(result, np.broadcast_to(expected[:, None], result.shape), atol=1e-3)
 
 
 def test_a_path_may_stand_still_and_have_no_verge(any_engine, make_sketch):
     spot = "first = [0.5, 0.5], second = [0.5, 0.5], third = [0.5, 0.5], fourth = [0.5, 0.5]"
-    found = path(any_engine, make_sketch, f"{spot}, width = 200, verge = 0", size=101)
-    y, x = np.indices(found.shape) - 50
+    result = path(any_engine, make_sketch, f"{spot}, width = 200, verge = 0", size=101)
+    y, x = np.indices(result.shape) - 50
     clear = np.abs(np.hypot(x, y) - 10) > 1e-3
-    np.testing.assert_array_equal(found[clear], (np.hypot(x, y) < 10)[clear])
+    np.testing.assert_array_equal(result[clear], (np.hypot(x, y) < 10)[clear])
 
 
 def test_a_path_may_wander_but_not_away(any_engine, make_sketch):
     straight = (
         "first = [0, 0.5], second = [0.3, 0.5], third = [0.6, 0.5], fourth = [1, 0.5], width = 40, verge = 10"
     )
-    found = path(any_engine, make_sketch, f"{straight}, wander = 100", size=101)
-    middles = np.array([np.flatnonzero(column > 0.5).mean() for column in found.T])
+    result = path(any_engine, make_sketch, f"{straight}, wander = 100", size=101)
+    middles = np.array([np.flatnonzero(column > 0.5).mean() for column in result.T])
     assert 1.0 < np.abs(middles - 50).max() < 10
 
 
@@ -190,41 +190,41 @@ COVERS = {
 
 
 def bytes_of(any_engine, sketch):
-    found = any_engine.read(sketch, "weights").astype(float) * 255
-    np.testing.assert_allclose(found, np.round(found), atol=1e-3)
-    return np.round(found).astype(int)
+    result = any_engine.read(sketch, "weights").astype(float) * 255
+    np.testing.assert_allclose(result, np.round(result), atol=1e-3)
+    return np.round(result).astype(int)
 
 
 def test_in_every_texel_the_weights_sum_to_one_exactly(engine, make_sketch):
     sketch = make_sketch(STACK.format("", ""), size=[97, 61], **COVERS)
-    found = bytes_of(engine, sketch)
-    assert (found.sum(axis=-1) == 255).all()
+    result = bytes_of(engine, sketch)
+    assert (result.sum(axis=-1) == 255).all()
     covers = np.stack([engine.read(sketch, name)[..., 0] for name in ("rock", "snow", "path")], -1).astype(
         float
     )
     left = np.ones(covers.shape[:2])
     for k in (2, 1, 0):
-        np.testing.assert_allclose(found[..., k + 1], 255 * left * covers[..., k], atol=2.0)
+        np.testing.assert_allclose(result[..., k + 1], 255 * left * covers[..., k], atol=2.0)
         left *= 1 - covers[..., k]
 
 
 def test_the_whole_map_sums_to_one_on_terrain(any_engine, make_sketch):
     text = '[[pass]]\nname = "height"\nuse = "generation/diamond_square"\n'
     text += '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map"\n'
-    found = bytes_of(any_engine, make_sketch(text, size=129, extent=2000.0, relief=900.0))
-    assert (found.sum(axis=-1) == 255).all()
-    assert (found.reshape(-1, 4).max(axis=0) > 100).all(), "each layer is somewhere"
+    result = bytes_of(any_engine, make_sketch(text, size=129, extent=2000.0, relief=900.0))
+    assert (result.sum(axis=-1) == 255).all()
+    assert (result.reshape(-1, 4).max(axis=0) > 100).all(), "each layer is somewhere"
 
 
 @pytest.mark.parametrize("layers", [1, 2, 3])
 def test_fewer_layers_leave_the_others_out(any_engine, make_sketch, layers):
-    given = f'set = {{ layers = {layers} }}\ninputs = {{ painted = "brush" }}'
+    text = f'set = {{ layers = {layers} }}\ninputs = {{ painted = "brush" }}'
     brush = '[[pass]]\nname = "brush"\nuse = "./brush"\n'
-    found = bytes_of(
-        any_engine, make_sketch(STACK.format(brush, given), size=17, brush=MASK.format("vec4(0.2)"), **COVERS)
+    result = bytes_of(
+        any_engine, make_sketch(STACK.format(brush, text), size=17, brush=MASK.format("vec4(0.2)"), **COVERS)
     )
-    assert (found[..., layers:] == 0).all()
-    assert (found.sum(axis=-1) == 255).all()
+    assert (result[..., layers:] == 0).all()
+    assert (result.sum(axis=-1) == 255).all()
 
 
 def test_paint_of_full_strength_alone_counts_and_none_changes_nothing(any_engine, make_sketch):
@@ -234,12 +234,12 @@ def test_paint_of_full_strength_alone_counts_and_none_changes_nothing(any_engine
     sketch = make_sketch(
         STACK.format(brush, 'inputs = { painted = "brush" }'), size=33, brush=MASK.format(half), **COVERS
     )
-    found = bytes_of(any_engine, sketch)
-    np.testing.assert_array_equal(found[:, :11], plain[:, :11])
+    result = bytes_of(any_engine, sketch)
+    np.testing.assert_array_equal(result[:, :11], plain[:, :11])
     np.testing.assert_allclose(
-        found[:, 11:22], 0.5 * plain[:, 11:22] + 0.5 * np.array([0, 0, 255, 0]), atol=1.51
+        result[:, 11:22], 0.5 * plain[:, 11:22] + 0.5 * np.array([0, 0, 255, 0]), atol=1.51
     )
-    np.testing.assert_allclose(found[:, 22:], np.broadcast_to([0, 0, 127.5, 127.5], (33, 11, 4)), atol=0.51)
+    np.testing.assert_allclose(result[:, 22:], np.broadcast_to([0, 0, 127.5, 127.5], (33, 11, 4)), atol=0.51)
 
 
 def test_a_mask_may_be_finer_or_coarser_than_the_map(any_engine, make_sketch):
@@ -249,8 +249,8 @@ def test_a_mask_may_be_finer_or_coarser_than_the_map(any_engine, make_sketch):
         sketch = make_sketch(
             STACK.format(brush, 'inputs = { painted = "brush" }'), size=33, brush=slope, **COVERS
         )
-        found = bytes_of(any_engine, sketch)
-        np.testing.assert_allclose(found[5, :, 1], np.linspace(0, 255, 33), atol=0.6)
+        result = bytes_of(any_engine, sketch)
+        np.testing.assert_allclose(result[5, :, 1], np.linspace(0, 255, 33), atol=0.6)
 
 
 def test_another_layer_can_stand_in_by_name(any_engine, make_sketch):
@@ -260,8 +260,8 @@ def test_another_layer_can_stand_in_by_name(any_engine, make_sketch):
     sketch = make_sketch(
         text, terrain=HEIGHT.format("0.2"), marsh=MASK.format("vec4(float(texel.y > 8))"), size=17
     )
-    found = bytes_of(any_engine, sketch)
-    assert (found[:9, :, 0] == 255).all() and (found[9:, :, 1] == 255).all()
+    result = bytes_of(any_engine, sketch)
+    assert (result[:9, :, 0] == 255).all() and (result[9:, :, 1] == 255).all()
 
 
 def test_more_than_four_layers_are_refused_in_one_sentence(make_sketch):
@@ -290,16 +290,16 @@ def test_far_away_one_layer_gives_way_to_another(any_engine, make_sketch):
         text, size=[41, 21], extent=[1000.0, 500.0], relief=300.0,
         terrain=HEIGHT.format(hill), plain=MASK.format("vec4(0.2, 0.6, 0.0, 0.2)"),
     ).with_camera(Camera(azimuth=230, elevation=20, distance=900, target=(500, 250, 90)))  # fmt: skip
-    found = bytes_of(any_engine, sketch)
-    assert (found.sum(axis=-1) == 255).all()
+    result = bytes_of(any_engine, sketch)
+    assert (result.sum(axis=-1) == 255).all()
     y, x = np.indices((21, 41))
     places = np.stack([x * 25.0, y * 25.0, 300 * (0.3 + 0.002 * x)], axis=-1)
     away = np.linalg.norm(places - np.array(any_engine.record.plan.eye.position), axis=-1)
     assert away.min() < 700 and away.max() > 1100
     gone = np.clip((away - 700) / 400, 0, 1)
-    np.testing.assert_allclose(found[..., 2], 153 * gone, atol=1.01)
-    np.testing.assert_allclose(found[..., 1], 153 * (1 - gone), atol=1.01)
-    assert (found[..., 0] == 51).all() and (found[..., 3] == 51).all()
+    np.testing.assert_allclose(result[..., 2], 153 * gone, atol=1.01)
+    np.testing.assert_allclose(result[..., 1], 153 * (1 - gone), atol=1.01)
+    assert (result[..., 0] == 51).all() and (result[..., 3] == 51).all()
 
 
 def test_a_moved_camera_runs_the_distance_and_not_the_rules(any_engine, make_sketch):

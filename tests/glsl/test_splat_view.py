@@ -48,18 +48,18 @@ def test_each_pixel_of_level_terrain_has_its_layers_by_their_weights(any_engine,
     sketch = make_sketch(
         TERRAIN + VIEW.format("view/splat", 1, ""), terrain=HEIGHT.format("0.0"), weights=SPREAD, **FLAT
     )
-    found = any_engine.read(above(sketch), "view.land", size=(128, 128))[..., :3].astype(float)
+    result = any_engine.read(above(sketch), "view.land", size=(128, 128))[..., :3].astype(float)
     rows, columns = np.indices((128, 128)) + 0.5
     clip = any_engine.record.plan.eye.clip_from_world.astype(float)
     # Pixels back to the level ground.
     inverse = np.linalg.inv(clip[np.ix_([0, 1, 3], [0, 1, 3])])
-    place = np.stack([columns / 64 - 1, rows / 64 - 1, np.ones_like(rows)], axis=-1) @ inverse.T
-    x, y = np.moveaxis(place[..., :2] / place[..., 2:] / 1000, -1, 0)
+    position = np.stack([columns / 64 - 1, rows / 64 - 1, np.ones_like(rows)], axis=-1) @ inverse.T
+    x, y = np.moveaxis(position[..., :2] / position[..., 2:] / 1000, -1, 0)
     inside = (np.abs(x - 0.5) < 0.49) & (np.abs(y - 0.5) < 0.49)
     assert inside.sum() > 2000
     shares = np.stack([x * y, (1 - x) * y, x * (1 - y), (1 - x) * (1 - y)], axis=-1)
     # A level of detail between two smooths the slopes of the weights a little at the terrain's corners.
-    np.testing.assert_allclose(found[inside], (shares @ LAYERS)[inside], atol=8e-3)
+    np.testing.assert_allclose(result[inside], (shares @ LAYERS)[inside], atol=8e-3)
 
 
 @pytest.mark.parametrize("samples", [1, 4])
@@ -69,29 +69,29 @@ def test_where_one_layer_lies_it_is_the_terrain_of_that_colour(any_engine, make_
     files = {"terrain": HILLS, "weights": WEIGHTS.format("", "vec4(0.0, 1.0, 0.0, 0.0)"), **FLAT}
     plain = f'[[pass]]\nname = "colour"\nuse = "./rock"\n{SUN}{VIEW.format("view/terrain", samples, haze)}'
     splat = SUN + VIEW.format("view/splat", samples, haze)
-    expected, found = (
+    expected, result = (
         any_engine.render(make_sketch(TERRAIN + text, **files).with_camera(LOOK), size=SIZE).array.astype(int)
         for text in (plain, splat)
     )
     assert expected[..., :3].std() > 20
-    np.testing.assert_allclose(found, expected, atol=1.01)
+    np.testing.assert_allclose(result, expected, atol=1.01)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("samples", [1, 4])
 def test_many_draws_blended_give_the_picture_of_one(any_engine, make_sketch, samples):
-    one, many = (
+    item, many = (
         make_sketch(real_terrain(view, samples, ", haze = 0.2, repeats = 9"), size=65, relief=400.0)
         for view in ("view/splat", "view/splat_multipass")
     )
     for azimuth, elevation in ((200, 35), (20, 60), (110, 12)):
         camera = Camera(azimuth=azimuth, elevation=elevation, distance=1500, target=(500, 500, 0))
-        expected, found = (
+        expected, result = (
             any_engine.render(sketch.with_camera(camera), size=(200, 120)).array.astype(int)
-            for sketch in (one, many)
+            for sketch in (item, many)
         )
         assert expected[..., :3].std() > 10
-        np.testing.assert_allclose(found, expected, atol=2.01)
+        np.testing.assert_allclose(result, expected, atol=2.01)
 
 
 COUNT = """
@@ -147,11 +147,11 @@ def test_only_where_two_parts_tie_in_depth_the_many_draws_differ(any_engine, mak
     )
     terrain = {"size": 257, "extent": 2560.0, "relief": 470.0, "count": COUNT}
     # In their plain forms: what the fast variant differs by is in tests/glsl/test_view_ground.py.
-    one, many, ties = (make_sketch(text, **terrain).plainly() for text in texts)
+    item, many, ties = (make_sketch(text, **terrain).plainly() for text in texts)
     for azimuth, elevation in ((70, 22), (200, 12)):
         camera = Camera(azimuth=azimuth, elevation=elevation, distance=1800, target=(1280, 1280, 100))
         mixed, blended = (
-            any_engine.render(s.with_camera(camera), size=(480, 270)).array.astype(int) for s in (one, many)
+            any_engine.render(s.with_camera(camera), size=(480, 270)).array.astype(int) for s in (item, many)
         )
         differs = np.abs(mixed - blended).max(axis=-1) > 2
         assert differs.mean() < 1e-4
@@ -174,8 +174,8 @@ def test_a_tie_moves_a_quarter_of_the_weights_at_most(any_engine, make_sketch):
         sketch = make_sketch(noise + VIEW.format(view, 1, "").replace("grid = 65", ""), **terrain)
         frame = any_engine.read(sketch.plainly().with_camera(camera), f"view.{last}", size=(480, 270))
         frames.append(frame[..., :3].astype(float))
-    one, many = frames
-    difference = np.abs(many - one)
+    item, many = frames
+    difference = np.abs(many - item)
     assert (difference > 0.02).any(axis=-1).sum() > 20 and difference.max() > 0.1
     assert (difference <= np.ptp(LAYERS, axis=0) / 4 + 2e-3).all()
 
@@ -191,12 +191,12 @@ def test_tiles_of_the_mesh_give_the_picture_of_the_full_grid(any_engine, make_sk
             ("view/splat_multipass", f', detail = "{detail}", tolerance = 0.1'),
         )
     )
-    expected, found, blended = (
+    expected, result, blended = (
         any_engine.render(sketch, size=(200, 120)).array.astype(int) for sketch in (full, tiled, many)
     )
-    difference = np.abs(found - expected).max(axis=-1)
+    difference = np.abs(result - expected).max(axis=-1)
     assert np.mean(difference > 8) < 0.005
-    np.testing.assert_allclose(blended, found, atol=2.01)
+    np.testing.assert_allclose(blended, result, atol=2.01)
 
 
 def test_no_layer_of_the_many_draws_is_idle(any_engine, make_sketch):
@@ -216,22 +216,22 @@ def test_hidden_hills_stay_hidden_in_every_draw(any_engine, make_sketch):
     text = TERRAIN + VIEW.format("view/splat_multipass", 1, "")
     sketch = make_sketch(text, relief=400.0, terrain=wall, weights=behind, **FLAT)
     low = Camera(azimuth=180, elevation=4, distance=900, target=(500, 500, 100))
-    found = any_engine.read(sketch.with_camera(low), "view.fourth", size=SIZE)[..., :3].astype(float)
-    grass = np.abs(found - LAYERS[0]).max(axis=-1) < 2e-3
+    result = any_engine.read(sketch.with_camera(low), "view.fourth", size=SIZE)[..., :3].astype(float)
+    grass = np.abs(result - LAYERS[0]).max(axis=-1) < 2e-3
     assert grass[45:60, 40:120].all()
 
 
 def test_weights_taken_for_alphas_favour_the_last_layers(any_engine, make_sketch):
     """The formula to the letter: the first of two halves keeps a half, of three thirds 4/9."""
     third = WEIGHTS.format("", "vec4(85.0, 85.0, 85.0, 0.0) / 255.0")
-    given = ', alphas = "as in the map"'
-    text = TERRAIN + VIEW.format("view/splat_multipass", 1, given)
+    value = ', alphas = "as in the map"'
+    text = TERRAIN + VIEW.format("view/splat_multipass", 1, value)
     sketch = above(make_sketch(text, terrain=HEIGHT.format("0.0"), weights=third, **FLAT))
-    found = any_engine.read(sketch, "view.fourth", size=(64, 64))[32, 32, :3]
-    np.testing.assert_allclose(found, np.array([4 / 9, 2 / 9, 1 / 3]) @ LAYERS[:3], atol=2e-3)
+    result = any_engine.read(sketch, "view.fourth", size=(64, 64))[32, 32, :3]
+    np.testing.assert_allclose(result, np.array([4 / 9, 2 / 9, 1 / 3]) @ LAYERS[:3], atol=2e-3)
     sketch = sketch.with_values({"view.alphas": "shares"})
-    found = any_engine.read(sketch, "view.fourth", size=(64, 64))[32, 32, :3]
-    np.testing.assert_allclose(found, LAYERS[:3].mean(axis=0), atol=2e-3)
+    result = any_engine.read(sketch, "view.fourth", size=(64, 64))[32, 32, :3]
+    np.testing.assert_allclose(result, LAYERS[:3].mean(axis=0), atol=2e-3)
 
 
 @pytest.mark.parametrize("view", ["view/splat", "view/splat_multipass"])

@@ -19,38 +19,38 @@ def over(alphas: np.ndarray, layers: np.ndarray) -> np.ndarray:
 @pytest.fixture
 def weights():
     random = np.random.default_rng(3)
-    found = random.dirichlet([0.3] * 4, 4000)
-    found[:15] = np.array([[(n >> k) & 1 for k in range(4)] for n in range(1, 16)], float)
-    return found / found.sum(axis=1, keepdims=True)
+    dirichlet = random.dirichlet([0.3] * 4, 4000)
+    dirichlet[:15] = np.array([[(n >> k) & 1 for k in range(4)] for n in range(1, 16)], float)
+    return dirichlet / dirichlet.sum(axis=1, keepdims=True)
 
 
 def test_covers_become_what_laying_them_one_over_the_other_leaves(on_gpu):
     covers = np.random.default_rng(4).uniform(size=(3000, 3))
-    found = on_gpu(FILE, "weights_of_covers(c)", c=covers)
+    result = on_gpu(FILE, "weights_of_covers(c)", c=covers)
     for k in range(4):
         seen = [over([1.0, *cover], np.eye(4)[k]) for cover in covers]
-        np.testing.assert_allclose(found[:, k], seen, atol=3e-7)
-    np.testing.assert_allclose(found.sum(axis=1), 1.0, atol=3e-7)
+        np.testing.assert_allclose(result[:, k], seen, atol=3e-7)
+    np.testing.assert_allclose(result.sum(axis=1), 1.0, atol=3e-7)
 
 
 def test_covers_past_their_range_are_held_in_it(on_gpu):
-    found = on_gpu(
+    result = on_gpu(
         FILE, "weights_of_covers(c)", c=np.array([[-1.0, 0.0, 0.0], [0.3, 2.0, 0.0], [9.0, 9.0, 9.0]])
     )
-    np.testing.assert_allclose(found, [[1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], atol=1e-7)
+    np.testing.assert_allclose(result, [[1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], atol=1e-7)
 
 
 def test_a_mask_counts_in_proportion_and_nothing_is_the_first_layer(on_gpu):
     masks = np.random.default_rng(5).uniform(size=(500, 4)) * np.array([1, 200.0, 1e-3, 1])
-    found = on_gpu(FILE, "weights_of_mask(m)", m=masks)
-    np.testing.assert_allclose(found, masks / masks.sum(axis=1, keepdims=True), atol=1e-6)
+    result = on_gpu(FILE, "weights_of_mask(m)", m=masks)
+    np.testing.assert_allclose(result, masks / masks.sum(axis=1, keepdims=True), atol=1e-6)
     np.testing.assert_array_equal(on_gpu(FILE, "weights_of_mask(m)", m=np.zeros((1, 4))), [[1, 0, 0, 0]])
 
 
 def test_in_bytes_the_sum_is_255_in_every_texel_and_none_is_off_by_more_than_rounding(on_gpu, weights):
-    found = on_gpu(FILE, "weights_in_bytes(w)", w=weights).astype(float) * 255
-    whole = np.round(found)
-    np.testing.assert_allclose(found, whole, atol=1e-4)
+    result = on_gpu(FILE, "weights_in_bytes(w)", w=weights).astype(float) * 255
+    whole = np.round(result)
+    np.testing.assert_allclose(result, whole, atol=1e-4)
     assert (whole.sum(axis=1) == 255).all()
     assert whole.min() >= 0
     # The largest takes what the roundings of the others leave: up to half a 255th of each.
@@ -76,12 +76,12 @@ def test_the_weights_themselves_as_alphas_would_not(weights):
 
 def test_heights_shift_the_odds_and_nothing_else(on_gpu, weights):
     heights = np.random.default_rng(6).uniform(0, 2, weights.shape)
-    found = on_gpu(FILE, "weights_by_heights(w, h, 5.0)", w=weights, h=heights)
-    np.testing.assert_allclose(found.sum(axis=1), 1.0, atol=3e-7)
-    assert ((found == 0) == (weights == 0)).all()
+    result = on_gpu(FILE, "weights_by_heights(w, h, 5.0)", w=weights, h=heights)
+    np.testing.assert_allclose(result.sum(axis=1), 1.0, atol=3e-7)
+    assert ((result == 0) == (weights == 0)).all()
     # Odds of each pair, in logarithms: the old ones and five times the difference of heights.
     inside = (weights > 1e-4).all(axis=1)
-    logs = np.log(found[inside].astype(float)) - np.log(weights[inside]) - 5.0 * heights[inside]
+    logs = np.log(result[inside].astype(float)) - np.log(weights[inside]) - 5.0 * heights[inside]
     np.testing.assert_allclose(logs - logs[:, :1], 0.0, atol=2e-4)
 
 

@@ -29,17 +29,17 @@ def test_the_sun_stands_among_the_stars_where_the_almanac_has_it(any_engine, mak
     ):
         universal = hour - longitude / 15
         hour = hour if clock == "sun" else universal  # of the zone of Greenwich
-        given = f"year = 2031, day = {day}, hour = {hour}, latitude = {latitude}, longitude = {longitude}, "
-        text = f'[[pass]]\nname = "day"\nuse = "lighting/daylight"\nset = {{ {given} clock = "{clock}" }}\n'
+        value = f"year = 2031, day = {day}, hour = {hour}, latitude = {latitude}, longitude = {longitude}, "
+        text = f'[[pass]]\nname = "day"\nuse = "lighting/daylight"\nset = {{ {value} clock = "{clock}" }}\n'
         sketch = make_sketch(text)
         sun = sun_vector(*any_engine.read(sketch, "day.place:place")[0, 0, :2].astype(np.float64))
-        _, place, turned, _ = any_engine.read(sketch, "day.place:date")[0, 0].astype(np.float64)
-        found = on_gpu("sky/stars.glsl", "celestial_of(d, l, t)", d=sun[None], l=[place], t=[turned])[0]
+        _, position, turned, _ = any_engine.read(sketch, "day.place:date")[0, 0].astype(np.float64)
+        result = on_gpu("sky/stars.glsl", "celestial_of(d, l, t)", d=sun[None], l=[position], t=[turned])[0]
         ascension, declination = almanac(365 * 31 + 8 + day - 1 + universal / 24 - 0.5)
         level = np.cos(declination)
         truth = [level * np.cos(ascension), level * np.sin(ascension), np.sin(declination)]
         # Refraction lifts a sun this high by less than 0.1 degrees.
-        np.testing.assert_allclose(found, truth, atol=np.radians(0.15))
+        np.testing.assert_allclose(result, truth, atol=np.radians(0.15))
 
 
 def test_their_light_is_that_of_as_many_stars_as_there_are(on_gpu):
@@ -51,15 +51,15 @@ def test_their_light_is_that_of_as_many_stars_as_there_are(on_gpu):
     ahead = rng.normal(size=(400_000, 3))
     ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
     radius = 0.006
-    found = on_gpu("sky/stars.glsl", "stars_towards(d, 1.0)", d=ahead)[:, 1].astype(np.float64)
+    result = on_gpu("sky/stars.glsl", "stars_towards(d, 1.0)", d=ahead)[:, 1].astype(np.float64)
     peak = 3 / radius**2 * MAGNITUDE_0 * 10 ** (-0.4 * 3.0)
     # Of a disc (1 - r²)² of area 1, the part below a level of the brightest is closed in form; so is the
     # number of discs that are hit at all.
-    hit = (found > 0).mean()
+    hit = (result > 0).mean()
     stars = 10 ** (0.51 * FAINTEST + 0.68)
     # Two grids have half of them each.
     assert hit == pytest.approx(1 - (1 - stars / 2 * radius**2 / 4) ** 2, rel=0.03)
-    bright = (found > peak).mean() * 4 / radius**2
+    bright = (result > peak).mean() * 4 / radius**2
     # A star of magnitude m is over the level where (1 - r²)² > 10^(0.4 (m - 3)).
     magnitudes = np.linspace(-2, 3, 2001)
     counts = np.diff(10 ** (0.51 * magnitudes + 0.68))
@@ -78,8 +78,8 @@ def test_a_star_has_the_same_light_in_pixels_of_any_size(on_gpu):
     up = np.cross(middle, side)
     offset = (np.arange(101) - 50) / 50 * 0.014
     x, y = np.meshgrid(offset, offset)
-    for one, first, second in zip(middle, side, up, strict=True):
-        near = (one + x[..., None] * first + y[..., None] * second).reshape(-1, 3)
+    for item, first, second in zip(middle, side, up, strict=True):
+        near = (item + x[..., None] * first + y[..., None] * second).reshape(-1, 3)
         near /= np.linalg.norm(near, axis=1, keepdims=True)
         sums = [
             on_gpu("sky/stars.glsl", f"stars_towards(d, {pixel})", d=near)[:, 1].sum(dtype=np.float64)

@@ -26,10 +26,10 @@ def hardness(engine, make_sketch):
 
 
 def test_level_layers_follow_the_elevation(hardness):
-    found = hardness(thickness=125.0, dip=[0, 0], folds=0.0, blend=0.01, contrast=4.0)
-    assert np.ptp(found, axis=1).max() == 0
+    result = hardness(thickness=125.0, dip=[0, 0], folds=0.0, blend=0.01, contrast=4.0)
+    assert np.ptp(result, axis=1).max() == 0
     # 32 rows are a layer: in each the hardness is one number, above 1 and below in turn.
-    layers = found[:256, 0].reshape(8, 32)
+    layers = result[:256, 0].reshape(8, 32)
     assert np.ptp(layers[:, 1:-1], axis=1).max() == 0
     signs = np.log2(layers[:, 8])
     assert (signs[::2] > 0).all() and (signs[1::2] < 0).all() and np.abs(signs).max() <= 2
@@ -38,13 +38,13 @@ def test_level_layers_follow_the_elevation(hardness):
 
 def test_layers_that_dip_are_planes(hardness):
     """They lead down to the east at 45 degrees: 500 m further east they are 500 m lower."""
-    found = hardness(thickness=250.0, dip=[90, 45], folds=0.0, contrast=9.0, blend=1.0)
-    west, east = found[:, 2], found[:, 62]
+    result = hardness(thickness=250.0, dip=[90, 45], folds=0.0, contrast=9.0, blend=1.0)
+    west, east = result[:, 2], result[:, 62]
     # 60 columns of 8 m are 480 m, and 480 m of height are 122.88 rows.
     rows = np.arange(257)
     expected = np.interp(np.arange(130) + 122.88, rows, np.log2(west))
     np.testing.assert_allclose(np.log2(east[:130]), expected, atol=0.01)
-    assert found.max() > 2 and found.min() < 0.5
+    assert result.max() > 2 and result.min() < 0.5
 
 
 def test_without_contrast_all_rock_is_the_reference(hardness):
@@ -91,5 +91,5 @@ def test_erosion_follows_erosion_and_the_layers_that_it_lays_bare(engine, make_s
     made = passes(raw=hills, once=("./round", wired), worn=rounds)
     sketch = make_sketch(made, size=65, extent=5000.0, relief=800.0)
     raw, once, worn = (engine.read(sketch, name).astype(np.float64) for name in ("raw", "once", "worn"))
-    changes = [800 * np.abs(found - raw).mean() for found in (once, worn)]
+    changes = [800 * np.abs(result - raw).mean() for result in (once, worn)]
     assert np.isfinite(worn).all() and changes[1] > 1.5 * changes[0] > 1.5

@@ -114,10 +114,10 @@ def test_rain_makes_a_steady_state_of_discharges(engine, make_sketch):
     assert dry > 1.5 * wet
 
     # Rain of any size of its own: 4 everywhere is twice the K.
-    found, _ = steady(5, HALF_DRY.replace("2 * texel.x < size.x ? 0.125 : 1.5", "4.0"))
-    wanted, _ = steady(erodibility=10.0)
-    assert np.median(np.abs(found - wanted)) < 0.01 * np.median(wanted)
-    np.testing.assert_allclose(np.quantile(found, [0.5, 0.9]), np.quantile(wanted, [0.5, 0.9]), rtol=0.01)
+    result, _ = steady(5, HALF_DRY.replace("2 * texel.x < size.x ? 0.125 : 1.5", "4.0"))
+    expected, _ = steady(erodibility=10.0)
+    assert np.median(np.abs(result - expected)) < 0.01 * np.median(expected)
+    np.testing.assert_allclose(np.quantile(result, [0.5, 0.9]), np.quantile(expected, [0.5, 0.9]), rtol=0.01)
 
 
 def test_links_are_solved_as_one_after_another(engine, make_sketch):
@@ -143,11 +143,11 @@ vec4 kernel(ivec2 texel) {
 """
     sketch = make_sketch(passes, size=[31, 90], links=links)
     link = engine.read(sketch, "links").reshape(-1, 4).astype(float)
-    wanted = link[:, 0].copy()
+    expected = link[:, 0].copy()
     for number in range(31, len(link)):
-        wanted[number] += link[number, 1] * wanted[int(link[number, 2])]
-    found = engine.read(sketch, "solved")[..., 0].ravel()
-    np.testing.assert_allclose(found, wanted, rtol=2e-6)
+        expected[number] += link[number, 1] * expected[int(link[number, 2])]
+    result = engine.read(sketch, "solved")[..., 0].ravel()
+    np.testing.assert_allclose(result, expected, rtol=2e-6)
 
 
 @pytest.mark.slow
@@ -206,10 +206,10 @@ def test_twice_as_hard_is_half_as_erodible_and_uplift_is_a_factor(worn):
     hard = two.replace('inputs = { height = "low" }', factor.replace("INPUT", "hardness"))
     lifted = two.replace('inputs = { height = "low" }', factor.replace("INPUT", "uplift"))
     for passes, same in ((hard, {"erodibility": 4.0}), (lifted, {"rise": 1.0})):
-        found, *_ = worn(65, passes=passes, **values)
-        wanted, *_ = worn(65, **{**values, **same})
-        assert np.median(np.abs(found - wanted)) < 0.01
-        assert np.abs(wanted - worn(65, **values)[0]).mean() > 10
+        result, *_ = worn(65, passes=passes, **values)
+        expected, *_ = worn(65, **{**values, **same})
+        assert np.median(np.abs(result - expected)) < 0.01
+        assert np.abs(expected - worn(65, **values)[0]).mean() > 10
 
 
 @pytest.mark.slow
@@ -290,8 +290,8 @@ def test_rivers_leave_no_checkerboard(engine, make_sketch, low, values):
 
     sketch = make_sketch(PASSES, size=129, extent=EXTENT, relief=RELIEF, low=low)
     sketch = sketch.with_values({f"rivers.{k}": v for k, v in {"keep": 1.0, **values}.items()})
-    begun, worn = (engine.read(sketch, name).astype(float) for name in ("low", "rivers:height"))
-    corner, band = powers(begun)
+    started, worn = (engine.read(sketch, name).astype(float) for name in ("low", "rivers:height"))
+    corner, band = powers(started)
     assert (corner > 10 * band) == (low is BOARD)
     corner, band = powers(worn)
     assert corner < (1 + 4 / np.sqrt(32)) * band
@@ -334,18 +334,18 @@ use = "water/accumulation"
 
 @pytest.mark.slow
 def test_it_drains_as_a_real_terrain(worn, kept, make_sketch, tmp_path):
-    """The share of texels that drain more than a falls as a^-tau: 0.46 in the Cumberland Mountains."""
+    """The fraction of texels that drain more than a falls as a^-tau: 0.46 in the Cumberland Mountains."""
     shutil.copy(SKETCHES / "data" / "jacksboro_fault_dem.npz", tmp_path / "real.npz")
     real = make_sketch(REAL, size=[403, 344], extent=[402.0, 343.0])
-    found = exceedance_power(kept.read(real, "area"), 1.0)
-    assert found == pytest.approx(0.46, abs=0.02)
+    result = exceedance_power(kept.read(real, "area"), 1.0)
+    assert result == pytest.approx(0.46, abs=0.02)
     *_, area, _ = worn(513)
-    assert exceedance_power(area, (EXTENT / 512) ** 2) == pytest.approx(found, abs=0.1)
+    assert exceedance_power(area, (EXTENT / 512) ** 2) == pytest.approx(result, abs=0.1)
 
 
-def efficiency(found, wanted):
-    """Return the share of the variance that is explained, after Nash and Sutcliffe 1970."""
-    return 1 - ((found - wanted) ** 2).sum() / ((wanted - wanted.mean()) ** 2).sum()
+def efficiency(result, expected):
+    """Return the fraction of the variance that is explained, after Nash and Sutcliffe 1970."""
+    return 1 - ((result - expected) ** 2).sum() / ((expected - expected.mean()) ** 2).sum()
 
 
 @pytest.mark.slow
@@ -359,8 +359,8 @@ def test_it_is_the_same_terrain_at_any_size(worn):
     terrains = {size: worn(size)[0] for size in (257, 513, 1025)}
     for coarse, fine in ((257, 513), (513, 1025)):
         step = (fine - 1) // (coarse - 1)
-        found, wanted = terrains[coarse], terrains[fine][::step, ::step]
-        blocks = [t[:-1, :-1].reshape(16, coarse // 16, 16, -1).mean((1, 3)) for t in (found, wanted)]
+        terrain, expected = terrains[coarse], terrains[fine][::step, ::step]
+        blocks = [t[:-1, :-1].reshape(16, coarse // 16, 16, -1).mean((1, 3)) for t in (terrain, expected)]
         head = 5e-4 / 5e-6 / np.sqrt(3e4) * EXTENT / (coarse - 1)
-        assert abs(found.mean() - wanted.mean()) < head
+        assert abs(terrain.mean() - expected.mean()) < head
         assert efficiency(*blocks) > 0.75

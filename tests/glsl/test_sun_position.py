@@ -22,9 +22,9 @@ def vector(azimuth, elevation):
     return np.stack([np.cos(e) * np.sin(a), np.cos(e) * np.cos(a), np.sin(e)], axis=-1)
 
 
-def apart(one, other):
+def apart(first, other):
     """Return the angle between directions [degrees], right for small ones."""
-    return np.degrees(2 * np.arcsin(np.clip(np.linalg.norm(one - other, axis=-1) / 2, 0, 1)))
+    return np.degrees(2 * np.arcsin(np.clip(np.linalg.norm(first - other, axis=-1) / 2, 0, 1)))
 
 
 def days_since_noon_2000(date, hours):
@@ -80,22 +80,22 @@ def many():
 
 def test_days_are_counted_as_the_calendar_counts_them(on_gpu):
     dates = [datetime.date(1901, 1, 1) + datetime.timedelta(d) for d in range(0, 72_682, 13)]
-    found = on_gpu(
+    result = on_gpu(
         FILE,
         "days_from_2000(year, day)",
         year=np.array([d.year for d in dates]),
         day=np.array([d.timetuple().tm_yday for d in dates]),
     )
-    np.testing.assert_array_equal(found, [(d - datetime.date(2000, 1, 1)).days for d in dates])
+    np.testing.assert_array_equal(result, [(d - datetime.date(2000, 1, 1)).days for d in dates])
 
 
 def test_the_sun_is_where_the_almanac_says_for_a_hundred_years(on_gpu):
     cases = many()
-    found = on_gpu(FILE, UNSEEN, **columns(cases)).astype(np.float64)
+    result = on_gpu(FILE, UNSEEN, **columns(cases)).astype(np.float64)
     truth = np.array([almanac(*case) for case in cases])
-    error = apart(vector(found[:, 0], found[:, 1]), truth)
+    error = apart(vector(result[:, 0], result[:, 1]), truth)
     assert error.max() < 0.03  # the almanac's own 0.01, and this file's
-    assert ((found[:, 0] >= 0) & (found[:, 0] <= 360)).all()
+    assert ((result[:, 0] >= 0) & (result[:, 0] <= 360)).all()
 
 
 def test_sunrise_and_sunset_come_at_the_almanac_s_minute(on_gpu):
@@ -112,16 +112,16 @@ def test_sunrise_and_sunset_come_at_the_almanac_s_minute(on_gpu):
                     low, high = (low, middle) if up == rising else (middle, high)
                 cases.append((date, low, latitude, longitude))
                 risings.append(rising)
-    found = on_gpu(FILE, UNSEEN, **columns(cases))
-    assert np.abs(found[:, 1]).max() < 0.03
-    np.testing.assert_array_equal(found[:, 0] < 180, risings)
+    result = on_gpu(FILE, UNSEEN, **columns(cases))
+    assert np.abs(result[:, 1]).max() < 0.03
+    np.testing.assert_array_equal(result[:, 0] < 180, risings)
 
 
 def test_published_examples(on_gpu):
     # Reda and Andreas 2004, "Solar Position Algorithm": 17 October 2003, 12:30:30, seven hours behind.
     case = (datetime.date(2003, 10, 17), 19 + 30.5 / 60, 39.742476, -105.1786)
-    found = on_gpu(FILE, SEEN, **columns([case])).astype(np.float64)[0]
-    assert apart(vector(*found), vector(194.34024, 90 - 50.11162)) < 0.01
+    result = on_gpu(FILE, SEEN, **columns([case])).astype(np.float64)[0]
+    assert apart(vector(*result), vector(194.34024, 90 - 50.11162)) < 0.01
     # Meeus 1998, examples 25.a and 28.b: 13 October 1992 at 0 h, declination and equation of time.
     course = on_gpu(FILE, "sun_course(days_from_2000(1992, 287), 0.0)").astype(np.float64)[0]
     assert np.degrees(np.arcsin(course[0])) == pytest.approx(-7.78507, abs=0.003)
@@ -140,58 +140,58 @@ def test_the_sun_s_own_noon_is_on_the_meridian(on_gpu):
     rng = np.random.default_rng(8)
     places = np.stack([rng.uniform(-89, 89, 200), rng.uniform(-180, 180, 200)], axis=1)
     days = rng.integers(1, 367, 200)
-    found = on_gpu(FILE, "sun_position_solar(place, 2025, day, 12.0)", place=places, day=days).astype(
+    result = on_gpu(FILE, "sun_position_solar(place, 2025, day, 12.0)", place=places, day=days).astype(
         np.float64
     )
-    upright = np.abs(vector(found[:, 0], found[:, 1])[:, 0])  # nothing of it is east or west
+    upright = np.abs(vector(result[:, 0], result[:, 1])[:, 0])  # nothing of it is east or west
     assert upright.max() < 1e-5
     declination = on_gpu(FILE, "sun_course(days_from_2000(2025, day), 12.0).x", day=days).astype(np.float64)
     height = 90 - np.abs(places[:, 0] - np.degrees(np.arcsin(declination)))
     seen = height > 1
-    np.testing.assert_allclose(found[seen, 1], height[seen], atol=0.45)  # refraction and half a day
+    np.testing.assert_allclose(result[seen, 1], height[seen], atol=0.45)  # refraction and half a day
     high = height > 45
-    np.testing.assert_allclose(found[high, 1], height[high], atol=0.25)
+    np.testing.assert_allclose(result[high, 1], height[high], atol=0.25)
 
 
 def test_the_sun_rises_in_the_east_and_both_clocks_agree(on_gpu):
     hours = np.arange(5, 19.01, 0.5)
-    found = on_gpu(FILE, "sun_position_solar(vec2(36.3, -84.2), 2025, 120, hours)", hours=hours)
-    assert (np.diff(found[:, 0]) > 0).all()
-    assert found[2, 0] < 90 and found[-3, 0] > 270
-    np.testing.assert_allclose(found[:, 1], found[::-1, 1], atol=0.2)  # morning mirrors afternoon
+    result = on_gpu(FILE, "sun_position_solar(vec2(36.3, -84.2), 2025, 120, hours)", hours=hours)
+    assert (np.diff(result[:, 0]) > 0).all()
+    assert result[2, 0] < 90 and result[-3, 0] > 270
+    np.testing.assert_allclose(result[:, 1], result[::-1, 1], atol=0.2)  # morning mirrors afternoon
     # Universal time is the sun's, less the longitude's hours and the equation of time.
     ahead = on_gpu(FILE, "sun_course(days_from_2000(2025, 120), 17.0).y").astype(np.float64)
     universal = hours + 84.2 / 15 - ahead / 15
     other = on_gpu(FILE, "sun_position(vec2(36.3, -84.2), 2025, 120, hours)", hours=universal)
-    assert apart(vector(*found.T.astype(np.float64)), vector(*other.T.astype(np.float64))).max() < 0.02
+    assert apart(vector(*result.T.astype(np.float64)), vector(*other.T.astype(np.float64))).max() < 0.02
 
 
 def test_refraction_is_that_of_the_air(on_gpu):
     heights = np.concatenate([np.linspace(-0.5, 90, 400), [5.0, 85.0, 0.0]])
-    found = on_gpu(FILE, "refraction(h)", h=heights).astype(np.float64)
+    result = on_gpu(FILE, "refraction(h)", h=heights).astype(np.float64)
     # Saemundsson 1986, from heights without air, for 1010 hPa and 10 °C.
     other = 1.02 / np.tan(np.radians(heights + 10.3 / (heights + 5.11))) / 60
-    np.testing.assert_allclose(found, other, atol=0.1)
+    np.testing.assert_allclose(result, other, atol=0.1)
     high = heights > 5
-    np.testing.assert_allclose(found[high], other[high], atol=0.004)
+    np.testing.assert_allclose(result[high], other[high], atol=0.004)
     # By pieces, without steps, and gone at both ends.
     fine = np.linspace(-90, 90, 40_001)
-    found = on_gpu(FILE, "refraction(h)", h=fine).astype(np.float64)
-    assert np.abs(np.diff(found)).max() < 0.01 and (found >= 0).all() and np.isfinite(found).all()
-    assert found[0] < 1e-3 and found[-1] == 0
+    result = on_gpu(FILE, "refraction(h)", h=fine).astype(np.float64)
+    assert np.abs(np.diff(result)).max() < 0.01 and (result >= 0).all() and np.isfinite(result).all()
+    assert result[0] < 1e-3 and result[-1] == 0
 
 
 def test_nothing_breaks_at_poles_zeniths_and_far_hours(on_gpu):
     places = np.array([(90.0, 0.0), (-90.0, 30.0), (0.0, 0.0), (23.43, 180.0), (-90.0, -180.0)])
     hours, days = np.array([-1e4, 0.0, 6.0, 12.0, 24.0, 1e4]), np.array([1, 79, 80, 172, 366])
     which = np.array(np.meshgrid(range(5), hours, days)).reshape(3, -1)
-    place, hour, day = places[which[0].astype(int)], which[1], which[2].astype(int)
-    found = on_gpu(FILE, "sun_position_solar(place, 2025, day, hour)", place=place, hour=hour, day=day)
-    assert np.isfinite(found).all() and np.abs(found[:, 1]).max() < 90.1
+    position, hour, day = places[which[0].astype(int)], which[1], which[2].astype(int)
+    result = on_gpu(FILE, "sun_position_solar(place, 2025, day, hour)", place=position, hour=hour, day=day)
+    assert np.isfinite(result).all() and np.abs(result[:, 1]).max() < 90.1
     overhead = on_gpu(FILE, "sun_over(0.0, 0.0, 0.0)")[0]
     assert overhead[1] == pytest.approx(90, abs=1e-4) and overhead[0] == 0
     # The whole circle, straight north and south included.
     hours = np.linspace(0, 360, 721)
     for declination in (-0.3, 0.0, 0.39):
-        found = on_gpu(FILE, f"sun_over(50.0, {declination}, h)", h=hours).astype(np.float64)
-        assert np.isfinite(found).all() and found[:, 0].min() >= 0 and found[:, 0].max() <= 360
+        result = on_gpu(FILE, f"sun_over(50.0, {declination}, h)", h=hours).astype(np.float64)
+        assert np.isfinite(result).all() and result[:, 0].min() >= 0 and result[:, 0].max() <= 360

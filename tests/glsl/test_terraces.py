@@ -31,23 +31,23 @@ def stepped(engine, make_sketch):
 
 
 def test_even_layers_are_the_curve_through_their_edges(stepped):
-    found = stepped(thickness=100.0, uneven=0.0, wall=0.2, bench=0.3)
+    result = stepped(thickness=100.0, uneven=0.0, wall=0.2, bench=0.3)
     edges = np.arange(-300, 901, 100.0)
-    given = np.sort(np.concatenate([edges, edges[:-1] + 80]))
+    sort = np.sort(np.concatenate([edges, edges[:-1] + 80]))
     kept = np.sort(np.concatenate([edges, edges[:-1] + 30]))
-    np.testing.assert_allclose(found[:, 1], np.interp(METRES, given, kept), atol=1e-3)
-    assert np.ptp(found, axis=1).max() == 0
+    np.testing.assert_allclose(result[:, 1], np.interp(METRES, sort, kept), atol=1e-3)
+    assert np.ptp(result, axis=1).max() == 0
 
 
 def test_uneven_layers_rise_with_the_ground_and_move_it_by_less_than_a_layer(stepped):
-    found = stepped(thickness=100.0, uneven=1.0, wall=0.1, bench=0.3, seed=8)[:, 1]
-    assert np.diff(found).min() >= 0 and np.abs(found - METRES).max() < 140
-    assert (found <= METRES + 1e-3).all()
+    result = stepped(thickness=100.0, uneven=1.0, wall=0.1, bench=0.3, seed=8)[:, 1]
+    assert np.diff(result).min() >= 0 and np.abs(result - METRES).max() < 140
+    assert (result <= METRES + 1e-3).all()
 
 
 def test_outside_its_heights_and_without_strength_nothing_moves(stepped):
-    found = stepped(thickness=60.0, between=[100.0, 300.0])[:, 1]
+    result = stepped(thickness=60.0, between=[100.0, 300.0])[:, 1]
     outside = (METRES < 70) | (METRES > 330)
-    np.testing.assert_allclose(found[outside], METRES[outside], atol=1e-3)
-    assert np.abs(found - METRES)[~outside].max() > 10
+    np.testing.assert_allclose(result[outside], METRES[outside], atol=1e-3)
+    assert np.abs(result - METRES)[~outside].max() > 10
     np.testing.assert_allclose(stepped(strength=0.0)[:, 1], METRES, atol=1e-3)

@@ -19,12 +19,12 @@ def test_swatches_stand_in_their_order_with_paper_between(engine, make_sketch, b
         f"set = {{ begin = {begin}, count = 2, gap = 4, paper = [0.5, 0.25, 0.125] }}\n"
     )
     picture = engine.read(make_sketch(SWATCHES + use, size=[44, 24], **FILES), "picture")[..., :3]
-    wanted = np.empty((24, 44, 3))
-    wanted[:] = (0.5, 0.25, 0.125)
-    for place, name in enumerate(order):
-        left = 24 * place
-        wanted[2:22, left : left + 20] = np.eye(3)[list(COLOURS).index(name)]
-    np.testing.assert_array_equal(picture, wanted)
+    expected = np.empty((24, 44, 3))
+    expected[:] = (0.5, 0.25, 0.125)
+    for index, name in enumerate(order):
+        left = 24 * index
+        expected[2:22, left : left + 20] = np.eye(3)[list(COLOURS).index(name)]
+    np.testing.assert_array_equal(picture, expected)
 
 
 def test_a_swatch_repeats_the_whole_image(any_engine, make_sketch):
@@ -42,9 +42,9 @@ def test_one_of_gives_the_colour_that_is_chosen_and_white_for_none(engine, make_
         'inputs = { first = "red", second = "green", third = "blue" }\n'
     )
     sketch = make_sketch(SWATCHES + use, size=9, **FILES)
-    for chosen, wanted in enumerate([*np.eye(3), np.ones(3)]):
+    for chosen, expected in enumerate([*np.eye(3), np.ones(3)]):
         colour = engine.read(sketch.with_values({"colour.chosen": chosen}), "colour")[..., :3]
-        np.testing.assert_array_equal(colour, np.broadcast_to(wanted, (9, 9, 3)))
+        np.testing.assert_array_equal(colour, np.broadcast_to(expected, (9, 9, 3)))
 
 
 def test_one_of_keeps_a_colour_of_its_own_size_and_interpolates_a_coarser_one(engine, make_sketch):

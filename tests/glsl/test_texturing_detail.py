@@ -36,8 +36,8 @@ CAMERA = Camera(azimuth=180.0, elevation=35.0, distance=500.0, target=(500.0, 40
 
 @pytest.fixture
 def terrain(make_sketch):
-    def make(given="", *, wired=True, height="0.0", cover=COVER, fine="fine"):
-        common = "grid = 33" + given
+    def make(value="", *, wired=True, height="0.0", cover=COVER, fine="fine"):
+        common = "grid = 33" + value
         wires = 'inputs = { detail_image = "detail" }' if wired else ""
         files = {"terrain": HEIGHT.format(height), "cover": PLAIN.format(cover), "fine": FINE}
         files["flat"] = PLAIN.format("vec3(0.07)")
@@ -62,9 +62,9 @@ def on_the_ground(engine, shape):
     way = far[..., :3] / far[..., 3:] - np.asarray(eye.position)
     with np.errstate(divide="ignore", invalid="ignore"):
         length = -eye.position[2] / way[..., 2]
-        place = np.asarray(eye.position) + way * length[..., None]
-    inside = (length > 0) & (place[..., :2] > 20).all(axis=-1) & (place[..., :2] < 980).all(axis=-1)
-    return place, np.linalg.norm(way * length[..., None], axis=-1), inside
+        position = np.asarray(eye.position) + way * length[..., None]
+    inside = (length > 0) & (position[..., :2] > 20).all(axis=-1) & (position[..., :2] < 980).all(axis=-1)
+    return position, np.linalg.norm(way * length[..., None], axis=-1), inside
 
 
 def nearness(distance, reach):
@@ -82,18 +82,18 @@ def test_the_image_moves_the_cover_s_colour_by_its_ratio_to_its_mean_and_by_near
         f", detail_max_distance = {reach}, detail_repeats = {repeats}, detail_strength = {strength}"
     )
     frame = linear_frame(any_engine, sketch)
-    place, distance, inside = on_the_ground(any_engine, frame.shape[:2])
+    position, distance, inside = on_the_ground(any_engine, frame.shape[:2])
     texels = any_engine.read(sketch, "detail")[..., 0].astype(float)
     # Only pixels in the middle of a texel: between texels the filter decides.
-    at = place[..., :2] / 1000 * repeats * 8
+    at = position[..., :2] / 1000 * repeats * 8
     middle = inside & (np.abs(at % 1 - 0.5) < 0.04).all(axis=-1)
     assert middle.sum() > 30
     column, row = (np.floor(at[middle]).astype(int) % 8).T
     ratio = texels[row, column] / texels.mean()
     weight = strength * nearness(distance[middle], reach)
     assert weight.max() > 0.2 and weight.min() < 0.05
-    wanted = np.array([0.2, 0.4, 0.1]) * (1 + weight * (ratio - 1))[:, None]
-    np.testing.assert_allclose(frame[middle], wanted, rtol=0.04)
+    expected = np.array([0.2, 0.4, 0.1]) * (1 + weight * (ratio - 1))[:, None]
+    np.testing.assert_allclose(frame[middle], expected, rtol=0.04)
 
 
 def test_it_is_stronger_the_nearer_the_eye_and_gone_at_its_reach(any_engine, terrain):
@@ -144,16 +144,16 @@ def test_under_small_moves_it_hardly_flickers(any_engine, terrain):
     assert np.sqrt((flicker**2).mean()) < 2.5 * np.sqrt((change**2).mean())
 
 
-@pytest.mark.parametrize(("given", "fine"), [(", detail_strength = 0", "fine"), ("", "flat")])
-def test_without_strength_or_with_an_even_image_it_is_the_plain_view(any_engine, terrain, given, fine):
+@pytest.mark.parametrize(("value", "fine"), [(", detail_strength = 0", "fine"), ("", "flat")])
+def test_without_strength_or_with_an_even_image_it_is_the_plain_view(any_engine, terrain, value, fine):
     height, cover = "0.4 * sin(float(texel.x) * 0.3) + 0.3", "vec3(float(texel.x % 5), 1.0, 0.5) * 0.2"
     plain = terrain(wired=False, height=height, cover=cover)
-    wanted = any_engine.render(plain, size=(160, 90)).array
-    found = any_engine.render(terrain(given, height=height, cover=cover, fine=fine), size=(160, 90)).array
-    if given:
-        np.testing.assert_array_equal(found, wanted)
+    expected = any_engine.render(plain, size=(160, 90)).array
+    array = any_engine.render(terrain(value, height=height, cover=cover, fine=fine), size=(160, 90)).array
+    if value:
+        np.testing.assert_array_equal(array, expected)
     else:
-        np.testing.assert_allclose(found, wanted, atol=1)
+        np.testing.assert_allclose(array, expected, atol=1)
 
 
 def test_terrain_that_is_not_a_number_shows(any_engine, terrain):
@@ -165,8 +165,8 @@ def test_terrain_that_is_not_a_number_shows(any_engine, terrain):
 
 @pytest.fixture
 def tile(make_sketch):
-    def make(size=256, given=""):
-        text = f'[[pass]]\nname = "detail"\nuse = "texturing/detail"\nset = {{ {given} }}\n'
+    def make(size=256, value=""):
+        text = f'[[pass]]\nname = "detail"\nuse = "texturing/detail"\nset = {{ {value} }}\n'
         return make_sketch(text, size=size)
 
     return make
@@ -190,10 +190,12 @@ def test_each_of_its_parts_can_be_taken_out(any_engine, tile):
     none = "cracks = 0, roughness = 0, furrows = 0, grains = 0"
     spread = any_engine.read(tile(given=none), "detail")[..., 0].astype(float).std()
     for part in ("cracks", "roughness", "furrows", "grains"):
-        given = none.replace(f"{part} = 0", f"{part} = 1")
-        assert any_engine.read(tile(given=given), "detail")[..., 0].astype(float).std() > 1.5 * spread, part
+        value = none.replace(f"{part} = 0", f"{part} = 1")
+        assert any_engine.read(tile(given=value), "detail")[..., 0].astype(float).std() > 1.5 * spread, part
 
 
 def test_another_seed_is_another_image(any_engine, tile):
-    one, other = (any_engine.read(tile(given=f"seed = {s}"), "detail")[..., 0].astype(float) for s in (1, 2))
-    assert abs(np.corrcoef(one.ravel(), other.ravel())[0, 1]) < 0.1
+    first, other = (
+        any_engine.read(tile(given=f"seed = {s}"), "detail")[..., 0].astype(float) for s in (1, 2)
+    )
+    assert abs(np.corrcoef(first.ravel(), other.ravel())[0, 1]) < 0.1

@@ -29,8 +29,8 @@ def picture(tmp_path):
     return write
 
 
-def use(technique, given, more=""):
-    return f'[[pass]]\nname = "c"\nuse = "texturing/{technique}"\nset = {{ {given} }}\n{more}'
+def use(technique, value, more=""):
+    return f'[[pass]]\nname = "c"\nuse = "texturing/{technique}"\nset = {{ {value} }}\n{more}'
 
 
 def rgb(engine, sketch, name="c"):
@@ -71,10 +71,10 @@ def test_over_the_terrain_its_corners_stand_on_the_terrain_s_and_no_edge_takes_f
     pixels[:16, :16, 0] = pixels[:16, 16:, 1] = pixels[16:, :16, 2] = 255  # red in the north-west
     sketch = make_sketch(use("drape", f'image = "{picture(pixels)}"'), size=65)
     colour = rgb(engine, sketch)
-    for (row, column), wanted in {
+    for (row, column), expected in {
         (64, 0): [1, 0, 0], (64, 64): [0, 1, 0], (0, 0): [0, 0, 1], (0, 64): [0, 0, 0],
     }.items():  # fmt: skip
-        np.testing.assert_allclose(colour[row, column], wanted, atol=1e-3)
+        np.testing.assert_allclose(colour[row, column], expected, atol=1e-3)
     middle = (colour[32, :31].mean(axis=0), colour[32, 33:].mean(axis=0))
     np.testing.assert_allclose(middle, [[0.5, 0, 0.5], [0, 0.5, 0]], atol=1e-2)
 

@@ -17,11 +17,11 @@ COLOURS = {
 
 @pytest.fixture
 def sketch(make_sketch):
-    def make(given="", size=(256, 3), ramp=EASTWARD, colour_size=""):
+    def make(value="", size=(256, 3), ramp=EASTWARD, colour_size=""):
         colours = ", ".join(f"{name} = {value}" for name, value in COLOURS.items())
         text = '[[pass]]\nname = "height"\nuse = "./ramp"\n'
         text += '[[pass]]\nname = "colour"\nuse = "texturing/height_colour"\n'
-        return make_sketch(f"{text}{colour_size}set = {{ {colours}{given} }}\n", size=list(size), ramp=ramp)
+        return make_sketch(f"{text}{colour_size}set = {{ {colours}{value} }}\n", size=list(size), ramp=ramp)
 
     return make
 
@@ -48,8 +48,8 @@ def test_with_fewer_texels_each_is_the_colour_of_its_own_height(engine, sketch):
     """Not the mean of what lies around it: a vertex has one height."""
     steep = RAMP.format("float((texel.x / 8) % 2)")
     colour = engine.read(sketch(size=(33, 33), ramp=steep, colour_size="size = 5\n"), "colour").astype(float)
-    wanted = np.array([COLOURS["low"], COLOURS["top"]])[[0, 1, 0, 1, 0]]
-    np.testing.assert_allclose(colour[2, :, :3], wanted, atol=4e-4)
+    expected = np.array([COLOURS["low"], COLOURS["top"]])[[0, 1, 0, 1, 0]]
+    np.testing.assert_allclose(colour[2, :, :3], expected, atol=4e-4)
 
 
 @pytest.mark.parametrize("levels", [[200, 100, 50, 10], [80, 80, 80, 80]])

@@ -38,11 +38,11 @@ def test_weights_are_hats_over_the_corners_of_equilateral_triangles(on_gpu):
 @pytest.mark.parametrize("power", [1.0, 3.0, 16.0])
 def test_sharpened_weights_still_sum_to_one_and_keep_their_order(on_gpu, power):
     raw = np.random.default_rng(3).dirichlet([1, 1, 1], 2000)
-    found = on_gpu(LIBRARY, f"hex_sharpened(w, {power})", w=raw).astype(float)
-    np.testing.assert_allclose(found.sum(axis=1), 1, atol=1e-6)
-    assert (np.argmax(found, axis=1) == np.argmax(raw, axis=1)).all()
-    wanted = raw**power / (raw**power).sum(axis=1, keepdims=True)
-    np.testing.assert_allclose(found, wanted, atol=1e-4)
+    result = on_gpu(LIBRARY, f"hex_sharpened(w, {power})", w=raw).astype(float)
+    np.testing.assert_allclose(result.sum(axis=1), 1, atol=1e-6)
+    assert (np.argmax(result, axis=1) == np.argmax(raw, axis=1)).all()
+    expected = raw**power / (raw**power).sum(axis=1, keepdims=True)
+    np.testing.assert_allclose(result, expected, atol=1e-4)
 
 
 @pytest.mark.parametrize("weights", [(1 / 3, 1 / 3, 1 / 3), (0.6, 0.3, 0.1), (0.5, 0.5, 0.0)])
@@ -51,20 +51,20 @@ def test_a_mixture_of_three_that_share_nothing_has_the_mean_and_the_variance_of_
     images = [random.normal(0.5, 0.08, (60000, 3)) for _ in range(3)]
     a, b, c = images
     mean = np.full((60000, 3), 0.5)
-    given = "vec3({}, {}, {})".format(*weights)
-    found = on_gpu(MIXING, f"mixed_with_contrast({given}, a, b, c, m)", a=a, b=b, c=c, m=mean).astype(float)
-    np.testing.assert_allclose(found.mean(axis=0), 0.5, atol=2e-3)
-    np.testing.assert_allclose(found.std(axis=0), 0.08, rtol=0.02)
+    value = "vec3({}, {}, {})".format(*weights)
+    result = on_gpu(MIXING, f"mixed_with_contrast({value}, a, b, c, m)", a=a, b=b, c=c, m=mean).astype(float)
+    np.testing.assert_allclose(result.mean(axis=0), 0.5, atol=2e-3)
+    np.testing.assert_allclose(result.std(axis=0), 0.08, rtol=0.02)
 
 
 @pytest.fixture
 def laid(make_sketch):
     """Give ``laid(technique, settings, image)``: an image over a terrain of 8 x 8 tiles of 64 texels."""
 
-    def make(technique, given, image="rock", size=SIZE):
+    def make(technique, value, image="rock", size=SIZE):
         tile = f'[[pass]]\nname = "tile"\nuse = "texturing/{image}"\nsize = 256\n'
         cover = f'[[pass]]\nname = "c"\nuse = "texturing/{technique}"\ninputs = {{ colour = "tile" }}\n'
-        return make_sketch(f"{tile}{cover}set = {{ repeats = {REPEATS}, {given} }}\n", size=size)
+        return make_sketch(f"{tile}{cover}set = {{ repeats = {REPEATS}, {value} }}\n", size=size)
 
     return make
 
@@ -100,9 +100,9 @@ def test_the_mean_and_the_contrast_are_the_image_s(any_engine, laid, image):
     """Against the image at the same level of detail, read where texels fall between the image's."""
     sketch = laid("hex_tiled", "turn = 0", image)
     tile = rgb(any_engine, sketch, "tile")
-    found = rgb(any_engine, sketch)
+    result = rgb(any_engine, sketch)
     mean = tile.mean(axis=(0, 1))
-    np.testing.assert_allclose(found.mean(axis=(0, 1)), mean, rtol=0.01)
+    np.testing.assert_allclose(result.mean(axis=(0, 1)), mean, rtol=0.01)
     level = tile.reshape(64, 4, 64, 4, 3).mean(axis=(1, 3))
     # The filter takes from a quarter to the whole of each texel: its mean loss, over 8 x 8 places.
     variances = []
@@ -110,7 +110,7 @@ def test_the_mean_and_the_contrast_are_the_image_s(any_engine, laid, image):
         for north in (np.arange(8) + 0.5) / 8:
             row = level * (1 - east) + np.roll(level, -1, axis=1) * east
             variances.append((row * (1 - north) + np.roll(row, -1, axis=0) * north).var(axis=(0, 1)))
-    np.testing.assert_allclose(found.std(axis=(0, 1)), np.sqrt(np.mean(variances, axis=0)), rtol=0.05)
+    np.testing.assert_allclose(result.std(axis=(0, 1)), np.sqrt(np.mean(variances, axis=0)), rtol=0.05)
 
 
 def test_the_contrast_does_not_depend_on_how_narrow_the_borders_are(any_engine, laid):
@@ -125,9 +125,9 @@ def test_there_is_no_seam_between_pieces(any_engine, laid):
     """No step from texel to texel is larger than in the image itself, but by what keeps the variance."""
     sketch = laid("hex_tiled", "sharpness = 1.0", "snow")
     tile = rgb(any_engine, sketch, "tile").reshape(64, 4, 64, 4, 3).mean(axis=(1, 3))
-    found = rgb(any_engine, sketch)
+    result = rgb(any_engine, sketch)
     inside = np.abs(tile - np.roll(tile, 1, axis=1)).max()
-    assert np.abs(np.diff(found, axis=1)).max() < 2 * inside
+    assert np.abs(np.diff(result, axis=1)).max() < 2 * inside
 
 
 def test_less_detail_another_seed_and_a_turn(engine, laid):
@@ -142,9 +142,9 @@ def test_less_detail_another_seed_and_a_turn(engine, laid):
 
 def test_far_more_tiles_than_texels_are_the_mean(any_engine, laid):
     sketch = laid("hex_tiled", "cells = 3.0", size=33).with_values({"c.repeats": 256.0})
-    found = rgb(any_engine, sketch)
+    result = rgb(any_engine, sketch)
     np.testing.assert_allclose(
-        found, np.broadcast_to(rgb(any_engine, sketch, "tile").mean(axis=(0, 1)), found.shape), rtol=0.1
+        result, np.broadcast_to(rgb(any_engine, sketch, "tile").mean(axis=(0, 1)), result.shape), rtol=0.1
     )
 
 

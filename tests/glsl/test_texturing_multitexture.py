@@ -37,10 +37,10 @@ GIVEN = {
 }  # fmt: skip
 
 
-def sketch_of(make_sketch, height="0.3", **given):
+def sketch_of(make_sketch, height="0.3", **value):
     values = ", ".join(
         f"{name} = {f'{chr(34)}{value}{chr(34)}' if isinstance(value, str) else value}"
-        for name, value in {**GIVEN, **given}.items()
+        for name, value in {**GIVEN, **value}.items()
     )
     return make_sketch(PASSES.format(values), size=SIZE, terrain=RAMP.format(height), **FILES)
 
@@ -62,30 +62,30 @@ def sampled(image, east, north):
     return total
 
 
-def truth(engine, sketch, given):
+def truth(engine, sketch, value):
     north, east = np.meshgrid(np.linspace(0, 1, SIZE), np.linspace(0, 1, SIZE), indexing="ij")
-    found = []
+    result = []
     for name, unit in (("one", "first"), ("other", "second")):
-        angle = np.radians(given[f"{unit}_turn"])
+        angle = np.radians(value[f"{unit}_turn"])
         # A picture turned by an angle is read at places turned back by it: complex numbers turn.
-        place = (east + 1j * north) * given[f"{unit}_repeats"] * np.exp(-1j * angle)
-        shift = given[f"{unit}_shift"]
-        found.append(sampled(rgb(engine, sketch, name), place.real - shift[0], place.imag - shift[1]))
-    return found
+        position = (east + 1j * north) * value[f"{unit}_repeats"] * np.exp(-1j * angle)
+        shift = value[f"{unit}_shift"]
+        result.append(sampled(rgb(engine, sketch, name), position.real - shift[0], position.imag - shift[1]))
+    return result
 
 
 @pytest.mark.parametrize("combine", ["mix", "product", "sum"])
 def test_each_image_is_read_by_its_own_coordinates(engine, make_sketch, combine):
     sketch = sketch_of(make_sketch, combine=combine)
-    one, other = truth(engine, sketch, GIVEN)
+    first, other = truth(engine, sketch, GIVEN)
     share = GIVEN["share"]
-    wanted = {
-        "mix": (1 - share) * one + share * other,
-        "product": one - share * one * (1 - other),
-        "sum": one + share * other,
+    expected = {
+        "mix": (1 - share) * first + share * other,
+        "product": first - share * first * (1 - other),
+        "sum": first + share * other,
     }[combine]
     # Filters weigh in steps of 1/256.
-    np.testing.assert_allclose(rgb(engine, sketch, "colour"), wanted, atol=0.012)
+    np.testing.assert_allclose(rgb(engine, sketch, "colour"), expected, atol=0.012)
 
 
 def test_the_share_is_one_for_all_the_terrain(any_engine, make_sketch):

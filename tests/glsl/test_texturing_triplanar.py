@@ -21,7 +21,7 @@ SIZE, METRES, RELIEF = 513, 1000.0, 1000.0
 def plane(make_sketch):
     """Give ``plane(technique, angle, azimuth)``: a plane that faces so far clockwise from north."""
 
-    def make(technique, angle, azimuth=90.0, given="", repeats=2):
+    def make(technique, angle, azimuth=90.0, value="", repeats=2):
         rise = np.tan(np.radians(angle)) * METRES / RELIEF / (SIZE - 1)
         east, north = -rise * np.sin(np.radians(azimuth)), -rise * np.cos(np.radians(azimuth))
         height = HEIGHT.format(f"0.5 + {east:.9f} * float(texel.x) + {north:.9f} * float(texel.y)")
@@ -30,7 +30,7 @@ def plane(make_sketch):
             '[[pass]]\nname = "even"\nuse = "./even"\nsize = 256\n'
             f'[[pass]]\nname = "c"\nuse = "texturing/{technique}"\ninputs = {{ colour = "even" }}\n'
         )
-        more = f"set = {{ repeats = {repeats}{given} }}\n"
+        more = f"set = {{ repeats = {repeats}{value} }}\n"
         return make_sketch(text + more, size=SIZE, extent=METRES, relief=RELIEF, terrain=height, even=EVEN)
 
     return make
@@ -59,11 +59,11 @@ def test_on_a_cliff_the_image_hardly_stretches(any_engine, plane, angle, azimuth
         grey_of(any_engine, plane("tiled", angle, azimuth, ", variety = 0.0")), angle, azimuth
     )
     np.testing.assert_allclose(from_above, 1 / np.cos(np.radians(angle)), rtol=0.12)
-    found = stretch(grey_of(any_engine, plane("triplanar", angle, azimuth)), angle, azimuth)
+    value = stretch(grey_of(any_engine, plane("triplanar", angle, azimuth)), angle, azimuth)
     # Facing an axis, one plane lies nearly flat on the cliff: measured 1.1 to 1.2. Between the axes,
     # planes cut it at up to 45 degrees, and patterns may be longer either way: 0.73 to 1.45.
-    assert 1 / 1.5 < found < (1.25 if azimuth in (0, 90) else 1.5)
-    assert abs(np.log(found)) < 0.6 * np.log(from_above)
+    assert 1 / 1.5 < value < (1.25 if azimuth in (0, 90) else 1.5)
+    assert abs(np.log(value)) < 0.6 * np.log(from_above)
 
 
 def test_the_contrast_of_a_cliff_is_that_of_level_terrain(any_engine, plane):
@@ -76,8 +76,10 @@ def test_the_contrast_of_a_cliff_is_that_of_level_terrain(any_engine, plane):
 
 def test_level_terrain_and_terrain_less_steep_than_the_limit_are_plain_tiles_to_the_bit(engine, plane):
     for angle in (0, 25):
-        found = engine.read(plane("triplanar", angle), "c")
-        np.testing.assert_array_equal(found, engine.read(plane("tiled", angle, given=", variety = 0.0"), "c"))
+        result = engine.read(plane("triplanar", angle), "c")
+        np.testing.assert_array_equal(
+            result, engine.read(plane("tiled", angle, given=", variety = 0.0"), "c")
+        )
 
 
 def test_the_limits_say_where_the_sides_begin_to_count(any_engine, plane):
@@ -85,8 +87,8 @@ def test_the_limits_say_where_the_sides_begin_to_count(any_engine, plane):
     tiles = grey_of(any_engine, plane("tiled", 40, given=", variety = 0.0"))
 
     def likeness(limits):
-        found = grey_of(any_engine, plane("triplanar", 40, given=f", cliffs = {limits}"))
-        return np.corrcoef(found.ravel(), tiles.ravel())[0, 1]
+        grey = grey_of(any_engine, plane("triplanar", 40, given=f", cliffs = {limits}"))
+        return np.corrcoef(grey.ravel(), tiles.ravel())[0, 1]
 
     several = [likeness(limits) for limits in ([41, 60], [30, 50], [10, 20])]
     assert several[0] > 0.999
@@ -96,7 +98,7 @@ def test_the_limits_say_where_the_sides_begin_to_count(any_engine, plane):
 
 @pytest.mark.parametrize("angle", [0, 60, 89])
 def test_much_finer_than_the_texture_it_is_the_mean(any_engine, plane, angle):
-    found = grey_of(any_engine, plane("triplanar", angle, repeats=256))
-    assert np.isfinite(found).all()
-    np.testing.assert_allclose(found.mean(), 0.5, atol=0.02)
-    assert found.std() < 0.04
+    grey = grey_of(any_engine, plane("triplanar", angle, repeats=256))
+    assert np.isfinite(grey).all()
+    np.testing.assert_allclose(grey.mean(), 0.5, atol=0.02)
+    assert grey.std() < 0.04

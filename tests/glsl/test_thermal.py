@@ -29,7 +29,7 @@ def fallen(make_sketch, tmp_path):
         return make_sketch(
             passes(
                 land=source(heights),
-                **{f"map_{name}": source(given) for name, given in maps.items()},
+                **{f"map_{name}": source(value) for name, value in maps.items()},
                 worn=(
                     "erosion/thermal",
                     f"set = {{ {text} }}",
@@ -77,12 +77,12 @@ def stepped(z, spacing, tangent, share):
 
 def steepest(heights, spacing):
     """Return the steepest slope between any two neighbours, and that of the upper percent."""
-    found = [
+    result = [
         np.abs(heights[low] - heights[high]).ravel() / np.hypot(dx * spacing[0], dy * spacing[1])
         for dy, dx in NEIGHBOURS
         for low, high in [pairs(heights.shape, dy, dx)]
     ]
-    slopes = np.concatenate(found)
+    slopes = np.concatenate(result)
     return slopes.max(), np.percentile(slopes, 99)
 
 
@@ -104,9 +104,9 @@ def test_a_step_is_that_of_the_equations(engine, fallen, wired):
     expected = heights.astype(np.float64) * RELIEF
     for steps in range(41):
         if steps in (0, 1, 2, 40):
-            found = RELIEF * engine.read(sketch, "worn", steps={"worn.level.slide": steps})
+            relief = RELIEF * engine.read(sketch, "worn", steps={"worn.level.slide": steps})
             # A step is a mean of neighbours, so that roundings of 2**-24 only add up.
-            np.testing.assert_allclose(found, expected, atol=16 * (steps + 1) * 2**-24 * RELIEF)
+            np.testing.assert_allclose(relief, expected, atol=16 * (steps + 1) * 2**-24 * RELIEF)
         expected = stepped(expected, spacing, tangent, share)
     assert np.abs(expected - RELIEF * heights).max() > 20, "it falls"
 
@@ -121,9 +121,9 @@ def test_the_volume_stays_for_a_thousand_steps(engine, fallen):
 def test_the_volume_stays_from_coarse_to_fine(engine, fallen):
     heights = hills((257, 129), 2)
     sketch = fallen(heights, repose=25.0)
-    found = engine.read(sketch, "worn")
-    assert volume(found) == pytest.approx(volume(heights), rel=1e-6)
-    change = RELIEF * (found.astype(np.float64) - heights)
+    result = engine.read(sketch, "worn")
+    assert volume(result) == pytest.approx(volume(heights), rel=1e-6)
+    change = RELIEF * (result.astype(np.float64) - heights)
     wear, deposit = (engine.read(sketch, f"worn:{name}") for name in ("wear", "deposit"))
     np.testing.assert_allclose(deposit - wear, change, atol=4 * 2**-24 * RELIEF)
     assert wear.min() == deposit.min() == (wear * deposit).max() == 0 and wear.max() > 20
@@ -135,12 +135,12 @@ def test_a_tower_falls_into_a_cone_of_its_angle_of_repose(engine, fallen, repose
     heights = np.zeros((25, 25))
     heights[8:17, 8:17] = 1
     sketch = fallen(heights, 240.0, 300.0, steps=2000, repose=repose, coarse=False)
-    found = 300.0 * engine.read(sketch, "worn").astype(np.float64)
+    result = 300.0 * engine.read(sketch, "worn").astype(np.float64)
     tangent = np.tan(np.radians(repose))
-    assert steepest(found, (10, 10))[0] == pytest.approx(tangent, rel=1e-4)
-    assert found.min() >= 0 and found.argmax() == 25 * 12 + 12
+    assert steepest(result, (10, 10))[0] == pytest.approx(tangent, rel=1e-4)
+    assert result.min() >= 0 and result.argmax() == 25 * 12 + 12
     # Below what is left of its top, a line straight down lies at the angle.
-    flank = found[12, 16:][found[12, 16:] > 15]
+    flank = result[12, 16:][result[12, 16:] > 15]
     assert len(flank) > 2
     np.testing.assert_allclose(-np.diff(flank), 10 * tangent, rtol=0.02)
 
@@ -155,8 +155,8 @@ def test_a_terrain_that_is_turned_or_mirrored_falls_alike_to_the_last_bit(engine
     }[way]
     heights = hills((65, 65), 4)
     plain = engine.read(fallen(heights, steps=100), "worn")
-    found = engine.read(fallen(turned(heights), steps=100), "worn")
-    np.testing.assert_array_equal(found, turned(plain))
+    result = engine.read(fallen(turned(heights), steps=100), "worn")
+    np.testing.assert_array_equal(result, turned(plain))
 
 
 def test_what_is_not_too_steep_stays_to_the_last_bit(engine, fallen):
@@ -178,10 +178,10 @@ def test_terrains_of_several_sizes_fall_alike(engine, make_sketch):
     fell = {}
     for size in (129, 257, 513):
         sketch = make_sketch(passes(raw=land, worn=worn), size=size, extent=10240.0, relief=1800.0)
-        found, raw = (engine.read(sketch, name).astype(np.float64) for name in ("worn", "raw"))
+        result, raw = (engine.read(sketch, name).astype(np.float64) for name in ("worn", "raw"))
         per = (size - 1) // 128
-        fell[size] = (found - raw)[::per, ::per]
-        assert steepest(1800 * found, (10240 / (size - 1),) * 2)[1] < np.tan(np.radians(37))
+        fell[size] = (result - raw)[::per, ::per]
+        assert steepest(1800 * result, (10240 / (size - 1),) * 2)[1] < np.tan(np.radians(37))
         assert steepest(1800 * raw, (10240 / (size - 1),) * 2)[1] > np.tan(np.radians(48))
     scale = np.sqrt((fell[513] ** 2).mean())
     for size in (129, 257):
@@ -193,5 +193,5 @@ def test_a_hostile_terrain_stays_finite(engine, fallen):
         heights = hills(size, 3)
         for repose in (1.0, 89.0):
             sketch = fallen(heights, extent, 20_000.0, repose=repose, steps=200)
-            found = engine.read(sketch, "worn")
-            assert np.isfinite(found).all() and found.min() >= -1e-6 and found.max() <= 1 + 1e-6
+            result = engine.read(sketch, "worn")
+            assert np.isfinite(result).all() and result.min() >= -1e-6 and result.max() <= 1 + 1e-6

@@ -36,16 +36,16 @@ def pictures(make_sketch, any_engine: Engine):
 def test_each_part_is_the_picture_of_its_light(any_engine, pictures, lines):
     together, alone = pictures
     changed = together.with_values({"view.first": lines[0], "view.second": lines[1]})
-    found = any_engine.render(changed, size=SIZE).array
+    array = any_engine.render(changed, size=SIZE).array
     middles = np.arange(SIZE[0]) + 0.5
     first, second = lines[0] * SIZE[0], lines[1] * SIZE[0]
     away = np.minimum(np.abs(middles - first), np.abs(middles - second))
     parts = (middles < first, (middles > first) & (middles < second), middles > second)
     for part, picture in zip(parts, alone, strict=True):
         part &= away > 2
-        np.testing.assert_array_equal(found[:, part], picture[:, part])
-    assert (found[:, away < 0.99, :3] == 255).all()
-    assert not found[:, (away > 1.01) & (away < 1.99), :3].any()
+        np.testing.assert_array_equal(array[:, part], picture[:, part])
+    assert (array[:, away < 0.99, :3] == 255).all()
+    assert not array[:, (away > 1.01) & (away < 1.99), :3].any()
 
 
 @pytest.mark.parametrize(("lines", "which"), [((1, 1), 0), ((0, 1), 1), ((0, 0), 2), ((1, 0), 0)], ids=str)

@@ -1,7 +1,7 @@
 """One tile of details on every part of a terrain, its seams removed layer by layer, against NumPy.
 
 The truth makes a tile that knows nothing of its neighbours, and mends it afterwards: the
-layer's last interval before a seam is drawn anew, from its first column to the neighbour's.
+layer's last interval before a seam is drawn again, from its first column to the neighbour's.
 """
 
 import re
@@ -18,8 +18,8 @@ RANDOM_SIDE = 2**15  # numbers a side of the layer that all nodes read
 @pytest.fixture
 def sketch_of(make_sketch):
     def make(use, size, **values):
-        given = "".join(f"{k} = {v!r}\n" for k, v in ({"seed": SEED} | values).items())
-        head = f'[[pass]]\nname = "terrain"\nuse = "generation/{use}"\n[pass.set]\n{given}'
+        text = "".join(f"{k} = {v!r}\n" for k, v in ({"seed": SEED} | values).items())
+        head = f'[[pass]]\nname = "terrain"\nuse = "generation/{use}"\n[pass.set]\n{text}'
         return make_sketch(head, size=size if isinstance(size, int) else list(size))
 
     return make
@@ -34,11 +34,11 @@ def weights_on_nodes(side, intervals, tiles):
     nodes = [q * side // intervals for q in range(intervals)] + [side - 1]
     numbers = [q * RANDOM_SIDE // (intervals * tiles) for q in range(intervals + 1)]
     matrix = np.zeros((side, intervals + 1))
-    for place in range(side):
-        q = place * intervals // side
-        a = curve((place - nodes[q]) / max(nodes[q + 1] - nodes[q], 1))
-        matrix[place, q] += 1 - a
-        matrix[place, q + 1] += a
+    for index in range(side):
+        q = index * intervals // side
+        a = curve((index - nodes[q]) / max(nodes[q + 1] - nodes[q], 1))
+        matrix[index, q] += 1 - a
+        matrix[index, q + 1] += a
     return np.array(numbers), matrix
 
 
@@ -82,8 +82,8 @@ def laid(tile, size, tiles):
     height, width = (side - 1 for side in tile.shape)
     for j in range(tiles):
         for i in range(tiles):
-            place = terrain[j * height : (j + 1) * height + 1, i * width : (i + 1) * width + 1]
-            place[:] = tile[: place.shape[0], : place.shape[1]]
+            position = terrain[j * height : (j + 1) * height + 1, i * width : (i + 1) * width + 1]
+            position[:] = tile[: position.shape[0], : position.shape[1]]
     return terrain
 
 
@@ -103,8 +103,8 @@ def test_the_mixed_model_is_shape_and_tile(
     shape = engine.read(sketch, "terrain.shape").astype(np.float64)
     truth = (laid(tile, (size, size), tiles) * weights + shape) / (weights + 1)
     np.testing.assert_allclose(engine.read(sketch, "terrain.mix"), truth, atol=2e-6)
-    found = engine.read(sketch, "terrain")
-    assert found.min() == 0 and found.max() == 1
+    result = engine.read(sketch, "terrain")
+    assert result.min() == 0 and result.max() == 1
 
 
 @pytest.mark.parametrize("seams", ["removed", "left"])
@@ -148,8 +148,8 @@ def test_more_tiles_than_texels_and_no_layers_are_numbers(engine, sketch_of, use
 
 
 def test_a_terrain_that_is_no_whole_number_of_parts_cuts_the_last(any_engine, sketch_of):
-    found = any_engine.read(sketch_of("layered_noise_tiled", 100, tiles=4, normalise="none"), "terrain.tile")
-    assert found.shape == (26, 26)  # four parts of 25 texels are 100 wide: one more than there are gaps
+    result = any_engine.read(sketch_of("layered_noise_tiled", 100, tiles=4, normalise="none"), "terrain.tile")
+    assert result.shape == (26, 26)  # four parts of 25 texels are 100 wide: one more than there are gaps
 
 
 # ── seams ────────────────────────────────────────────────────────────────────
@@ -165,7 +165,7 @@ def breaks(terrain, columns):
 def seam_breaks(engine, sketch_of, size, tiles, seams, **values):
     """Return what stands at the seams of the details alone, over what stands there without tiles."""
     columns = np.arange(1, tiles) * ((size - 1) // tiles)
-    found = {}
+    result = {}
     for count in (tiles, 1):
         each = []
         for seed in range(16):
@@ -173,8 +173,8 @@ def seam_breaks(engine, sketch_of, size, tiles, seams, **values):
             tile = engine.read(sketch, "terrain.tile").astype(np.float64)
             detail = laid(tile, (size, size), count)
             each += [breaks(detail, columns), breaks(detail.T, columns)]
-        found[count] = np.mean(each, axis=0)
-    return found[tiles] / found[1]
+        result[count] = np.mean(each, axis=0)
+    return result[tiles] / result[1]
 
 
 @pytest.mark.parametrize(("tiles", "frequency", "octaves"), [(2, 32, 1), (4, 32, 1), (8, 32, 1), (4, 8, 2)])
@@ -257,10 +257,10 @@ def test_the_tile_shows_in_the_curvature(any_engine, sketch_of):
 def test_a_tile_without_detail_is_warned_of(any_engine, sketch_of, use, size, values):
     """Whether a tile has detail is seen in the tile itself."""
     warned = []
-    any_engine.warnings.report = lambda found: warned.append(found.message)
+    any_engine.warnings.report = lambda result: warned.append(result.message)
     sketch = sketch_of(use, size, **values)
     tile = any_engine.read(sketch, "terrain.tile").astype(np.float64)
     any_engine.read(sketch, "terrain")
-    told = [message for message in warned if re.search("adds no detail|has any detail", message)]
-    assert bool(told) == (np.ptp(tile) < 1e-6)
+    messages = [message for message in warned if re.search("adds no detail|has any detail", message)]
+    assert bool(messages) == (np.ptp(tile) < 1e-6)
     assert len(warned) <= 1

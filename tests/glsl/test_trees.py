@@ -113,10 +113,10 @@ def test_farther_away_fewer_are_kept_by_a_known_share(kept, ctx, make_sketch):
 def test_a_tree_stays_where_it_is_when_the_eye_moves(kept, ctx, make_sketch):
     near = "all_round = true, whole = 5000, reach = 700, trees = 200000"
     moves = [dict(at=(1300.0, 700.0)), dict(at=(1553.0, 711.0)), dict(at=(1300.0, 700.0), azimuth=77.0)]
-    found = [table(kept, placed(make_sketch, near, **move)) for move in moves]
+    tables = [table(kept, placed(make_sketch, near, **move)) for move in moves]
     eyes = [kept.plan(placed(make_sketch, near, **m), (640, 360)).eye.position for m in moves]
-    for (tree, _), eye in zip(found[1:], eyes[1:], strict=True):
-        first = found[0][0]
+    for (tree, _), eye in zip(tables[1:], eyes[1:], strict=True):
+        first = tables[0][0]
         # Where both see all trees, both have the same.
         both = [
             rows(
@@ -147,27 +147,27 @@ def test_what_the_picture_shows_does_not_depend_on_its_size(kept, ctx, make_sket
 def test_the_list_is_the_table(kept, ctx, make_sketch):
     sketch = placed(make_sketch)
     tree, _ = table(kept, sketch)
-    found = listed(kept, sketch)
-    assert rows(found[:, :3]) == rows(tree[:, :3]) and len(found) == len(tree)
-    order = [np.lexsort(t[:, :2].T) for t in (found, tree)]
+    result = listed(kept, sketch)
+    assert rows(result[:, :3]) == rows(tree[:, :3]) and len(result) == len(tree)
+    order = [np.lexsort(t[:, :2].T) for t in (result, tree)]
     # Where all are kept, all are as tall as they are.
-    np.testing.assert_array_equal(found[order[0], 3], tree[order[1], 3])
-    assert found[:, 3].min() >= 0.55 * 21 - 1e-3
+    np.testing.assert_array_equal(result[order[0], 3], tree[order[1], 3])
+    assert result[:, 3].min() >= 0.55 * 21 - 1e-3
 
 
 def test_where_there_are_too_many_fewer_are_kept_everywhere(kept, ctx, make_sketch):
     whole = listed(kept, placed(make_sketch))
     budget = 4096
-    found = listed(kept, placed(make_sketch, EVERY.replace("200000", str(budget))))
-    assert 0.85 * budget < len(found) <= budget < len(whole)
-    assert rows(found[:, :3]) <= rows(whole[:, :3])
-    share = len(found) / len(whole)
-    for axis in (0, 1):  # as large a share of every strip, to the last
+    result = listed(kept, placed(make_sketch, EVERY.replace("200000", str(budget))))
+    assert 0.85 * budget < len(result) <= budget < len(whole)
+    assert rows(result[:, :3]) <= rows(whole[:, :3])
+    share = len(result) / len(whole)
+    for axis in (0, 1):  # as large a fraction of every strip, to the last
         bins = np.linspace(0, EXTENT[axis], 9)
-        counts, of = np.histogram(found[:, axis], bins)[0], np.histogram(whole[:, axis], bins)[0]
+        counts, of = np.histogram(result[:, axis], bins)[0], np.histogram(whole[:, axis], bins)[0]
         assert (np.abs(counts - share * of) < 4 * np.sqrt(share * of)).all()
     limit = kept.read(placed(make_sketch, EVERY.replace("200000", str(budget))), "trees:limit")[0, 0]
-    assert found[:, 3].max() <= 21 * limit**-0.4 + 1e-3
+    assert result[:, 3].max() <= 21 * limit**-0.4 + 1e-3
 
 
 @pytest.mark.parametrize("limit", [0.4, 0.9, 1.0])
@@ -179,8 +179,8 @@ def test_what_is_drawn_covers_as_much_as_is_said(on_gpu, limit):
         key = key[key < limit].astype(np.float32)
         sizes = on_gpu("trees/level.glsl", f"shrunk(key, drawn_part({kept}), {limit})", key=key)
         truth = (sizes.astype(np.float64) ** 2).sum() / len(rank)
-        found = on_gpu("trees/level.glsl", "covering_share(k, l)", k=[kept], l=[limit])[0]
-        assert found == pytest.approx(truth, rel=0.03), kept
+        result = on_gpu("trees/level.glsl", "covering_share(k, l)", k=[kept], l=[limit])[0]
+        assert result == pytest.approx(truth, rel=0.03), kept
         assert (sizes == 1).all() == (kept == limit == 1), "all are whole where all are kept"
 
 
@@ -210,7 +210,7 @@ set = {{ {values} }}
 
 
 @pytest.mark.parametrize(
-    "slope, wired, values, wanted",
+    "slope, wired, values, target",
     [
         (0.5, "", "most = 0.5", lambda x, y: 0.5 + 0 * x),
         (0.875, "", "", lambda x, y: 0.5 + 0 * x),  # halfway through the steep ones
@@ -234,21 +234,23 @@ set = {{ {values} }}
         (0.0, "paths", "", lambda x, y: np.where(x == 20, 0.0, 1)),
     ],
 )
-def test_each_reason_for_fewer_trees_is_a_factor(kept, ctx, make_sketch, slope, wired, values, wanted):
+def test_each_reason_for_fewer_trees_is_a_factor(kept, ctx, make_sketch, slope, wired, values, target):
     wires = f', {wired} = "ground:a_{wired}"' if wired else ""
     text = DENSITY.format(slope=slope, wired=wires, values=values)
     density = kept.read(make_sketch(text, size=33, extent=32.0, relief=100.0, plane=PLANE), "density")
     y, x = np.mgrid[:33, :33].astype(float)
-    truth = wanted(x, y)
-    known = np.isfinite(truth) & (x > 0) & (x < 32)
-    np.testing.assert_allclose(density[known], truth[known], atol=4e-3)  # weights of 8 bits, half floats
+    truth = target(x, y)
+    existing = np.isfinite(truth) & (x > 0) & (x < 32)
+    np.testing.assert_allclose(
+        density[existing], truth[existing], atol=4e-3
+    )  # weights of 8 bits, half floats
 
 
 def test_clearings_take_their_share_of_the_ground(kept, ctx, make_sketch):
     for share in (0.2, 0.5, 0.7):
         text = DENSITY.format(slope=0.0, wired="", values=f"clearings = {share}, clearing = 10")
-        found = kept.read(make_sketch(text, size=257, extent=640.0, relief=100.0, plane=PLANE), "density")
-        assert abs(1 - found.mean() - share) < 0.1
+        result = kept.read(make_sketch(text, size=257, extent=640.0, relief=100.0, plane=PLANE), "density")
+        assert abs(1 - result.mean() - share) < 0.1
 
 
 @pytest.mark.slow
@@ -256,16 +258,18 @@ def test_nothing_pops_as_the_eye_comes_nearer(kept, ctx, make_sketch):
     """A hundredth nearer each step: no tree jumps, and those of one place cover as much."""
     sketch = placed(make_sketch, "all_round = true, whole = 200, reach = 1200, trees = 200000")
     for distance, nearer in ((1160.0, 0.999), (950.0, 0.99), (600.0, 0.99), (250.0, 0.99)):
-        found = []
+        result = []
         for step in (1.0, nearer):
             tree = listed(kept, sketch.with_camera(replace(sketch.camera, distance=distance * step)))
             near = tree[np.hypot(tree[:, 0] - 1300, tree[:, 1] - 700) < 120]
-            found.append({(x, y): h for x, y, _, h in near.tolist()})
-        one, other = found
-        areas = [sum(h * h for h in tall.values()) for tall in found]
+            result.append({(x, y): h for x, y, _, h in near.tolist()})
+        first, other = result
+        areas = [sum(h * h for h in tall.values()) for tall in result]
         assert abs(areas[1] / areas[0] - 1) < 0.02 or distance > 0.9 * 1200 - 120
-        jumps = [abs(one.get(at, 0.0) - other.get(at, 0.0)) for at in one.keys() | other.keys()]
+        jumps = [abs(first.get(at, 0.0) - other.get(at, 0.0)) for at in first.keys() | other.keys()]
         # The share that is kept changes by twice a step, so a key by no more, and a height by five of these.
         # In the last tenth of the reach all shrink to nothing, evenly with the distance.
         end = (distance + 120) * (1 - nearer) / (0.1 * 1200) if distance > 0.9 * 1200 - 120 else 0.0
-        assert max(jumps) / max(*one.values(), *other.values()) < 1.2 * (10.0 * (1 - nearer) + end), distance
+        assert max(jumps) / max(*first.values(), *other.values()) < 1.2 * (10.0 * (1 - nearer) + end), (
+            distance
+        )

@@ -35,7 +35,7 @@ def test_no_tree_pops_along_a_flight_of_240_frames(ctx: moderngl.Context) -> Non
             east, north, up = camera.target
             moved = replace(camera, target=(east - STEP * frame, north, up))
             now = sketch.with_camera(moved)
-            plan = engine.plan(now, (96, 54), wanted="view.place:tree")
+            plan = engine.plan(now, (96, 54), text="view.place:tree")
             ground = plan.terrain
             assert ground.extent is not None and ground.relief is not None
             eye = np.array(look(moved, ground.extent, ground.relief, (96, 54)).position)
@@ -46,9 +46,9 @@ def test_no_tree_pops_along_a_flight_of_240_frames(ctx: moderngl.Context) -> Non
             if frame:
                 every = np.union1d(places, before[0])
                 sizes = []
-                for known, trees in ((before[0], before[1]), (places, rows)):
+                for existing, trees in ((before[0], before[1]), (places, rows)):
                     size = np.zeros((len(every), 2))
-                    size[np.searchsorted(every, known)] = trees[:, [3, 2]]
+                    size[np.searchsorted(every, existing)] = trees[:, [3, 2]]
                     sizes.append(size)
                 change = np.abs(sizes[0][:, 0] - sizes[1][:, 0])
                 foot = np.column_stack([every.real, every.imag, np.maximum(sizes[0][:, 1], sizes[1][:, 1])])

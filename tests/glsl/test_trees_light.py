@@ -12,7 +12,7 @@ FIELD = np.array([1 / 150.0, 4.5, 7.0, 9.0])  # trees a square metre, half width
 
 
 def free_share(height, elevation, rng, rays=20000, wide=400.0):
-    """Return the share of rays from a height on, upwards at an elevation, that meet no ellipsoid."""
+    """Return the fraction of rays from a height on, upwards at an elevation, that meet no ellipsoid."""
     dense, across, up, middle = FIELD
     long = (middle + up - height) / np.tan(elevation) + 2 * across
     hits = np.zeros(rays, bool)
@@ -37,15 +37,15 @@ def test_what_reaches_the_ground_is_what_no_crown_is_in_the_way_of(on_gpu, eleva
     stand = "Stand({}, {}, {}, {}, 1.0, 0.0)".format(*FIELD)
     towards = np.array([[np.cos(angle) * 0.6, np.cos(angle) * 0.8, np.sin(angle)]], np.float32)
     for height, bound in ((0.0, 0.012), (9.0, 0.06), (13.0, 0.06)):
-        found = on_gpu(
+        result = on_gpu(
             "trees/stand.glsl", f"reaches({stand}, share_above({stand}, h), d, d.z)", h=[height], d=towards
         )[0]
         # At half a crown's height a ray that starts inside a crown counts as hidden; not so in the model,
         # which counts what is above: so much more open it may be.
         truth = free_share(height, angle, np.random.default_rng(11))
-        assert -bound < found - truth < bound + (0.0 if height == 0 else np.pi * FIELD[0] * FIELD[1] ** 2), (
+        assert -bound < result - truth < bound + (0.0 if height == 0 else np.pi * FIELD[0] * FIELD[1] ** 2), (
             height,
-            found,
+            result,
             truth,
         )
 
@@ -82,13 +82,13 @@ def stand(
     sun="[135, 35]",
     slope=0.0,
     trees=200000,
-    given="",
+    value="",
     passes="",
     shown="view.shaded",
     **files,
 ):
     """Return what the eye sees of a stand on a plain: about 300 m of it, or 5 degrees."""
-    given = given and f", {given}"
+    value = value and f", {value}"
     text = STAND.format(
         **{k: v for k, v in locals().items() if k not in ("engine", "make_sketch", "passes", "files")}
     )
@@ -108,11 +108,11 @@ def stand(
     ],
 )
 def test_a_stand_has_one_mean_colour_at_every_distance(kept, ctx, make_sketch, most, elevation, sun, slope):
-    found = []
+    result = []
     for distance in (1000.0, 3000.0, 5000.0, 6000.0):
         lit = stand(kept, make_sketch, distance, most, elevation, sun, slope)
-        found.append(lit[..., :3].mean((0, 1), dtype=np.float64))
-    np.testing.assert_allclose(found, np.broadcast_to(found[0], (4, 3)), rtol=0.05)
+        result.append(lit[..., :3].mean((0, 1), dtype=np.float64))
+    np.testing.assert_allclose(result, np.broadcast_to(result[0], (4, 3)), rtol=0.05)
 
 
 @pytest.mark.slow
@@ -122,11 +122,11 @@ def test_a_stand_has_that_colour_whatever_there_is_room_for(kept, ctx, make_sket
 
     Of few one sees the lower halves of the crowns as well, which receive less light.
     """
-    found = []
+    result = []
     for room in (200000, trees):
-        lit = [stand(kept, make_sketch, 1500.0, trees=room, given=f"seed = {k}") for k in (5, 6, 7)]
-        found.append(np.mean([each[..., :3].mean((0, 1)) for each in lit], 0))
-    np.testing.assert_allclose(found[1], found[0], rtol=0.05)
+        lit = [stand(kept, make_sketch, 1500.0, trees=room, value=f"seed = {k}") for k in (5, 6, 7)]
+        result.append(np.mean([each[..., :3].mean((0, 1)) for each in lit], 0))
+    np.testing.assert_allclose(result[1], result[0], rtol=0.05)
 
 
 @pytest.mark.slow
@@ -264,8 +264,8 @@ def test_a_wood_shades_the_meadow_beside_it_and_lights_none(kept, ctx, make_sket
 def test_where_all_trees_have_needles_their_wood_has_the_light_of_needles(kept, ctx, make_sketch):
     """Above `needles_from`, as with needles only; 2000 m above sea level here, far beyond single trees."""
     high, only = (
-        stand(kept, make_sketch, 6000.0, given=given)
-        for given in ("needles = 0.12, needles_from = 900", "needles = 1.0")
+        stand(kept, make_sketch, 6000.0, value=name)
+        for name in ("needles = 0.12, needles_from = 900", "needles = 1.0")
     )
     np.testing.assert_allclose(high, only, rtol=2e-3)
 
@@ -273,13 +273,13 @@ def test_where_all_trees_have_needles_their_wood_has_the_light_of_needles(kept, 
 @pytest.mark.slow
 def test_single_trees_end_where_their_table_ends(kept, ctx, make_sketch):
     """The table has no more than 1024 cells each way: what is beyond is in the ground, none is lacking."""
-    found, sides = [], []
+    result, sides = [], []
     for reach in (1024, 8000):
-        given = f"cell = 1, tallest = 3, whole = 60, reach = {reach}"
-        found.append(stand(kept, make_sketch, 1100.0, given=given))
+        text = f"cell = 1, tallest = 3, whole = 60, reach = {reach}"
+        result.append(stand(kept, make_sketch, 1100.0, value=text))
         sides += [max(step.size) for step in kept.record.plan.walk() if step.path == "view.place.cells"]
     assert sides == [2050, 2050]
-    np.testing.assert_array_equal(found[0], found[1])
+    np.testing.assert_array_equal(result[0], result[1])
 
 
 EDGE = """
@@ -325,7 +325,7 @@ canopy_visibility = "high.visibility"
 
 
 def meadow_sun(engine, make_sketch, wide):
-    """Return places in the meadow beside a wood in the west, (n, 3), and the share of the sun on each."""
+    """Return places in the meadow beside a wood in the west, (n, 3), and the fraction of the sun on each."""
     sketch = make_sketch(
         MEADOW.format(wide=wide), size=[65, 49], extent=[512.0, 384.0], relief=60.0, edge=EDGE
     )
@@ -339,7 +339,7 @@ def meadow_sun(engine, make_sketch, wide):
 
 def test_the_sun_beside_a_wood_is_what_its_trees_leave(kept, ctx, on_gpu, make_sketch):
     """Near the eye, by rays through each crown: a wood as one opaque body would take more than they do."""
-    place, share, tree = meadow_sun(kept, make_sketch, 700.0)
+    position, share, tree = meadow_sun(kept, make_sketch, 700.0)
     crowns = "crown_of(t, s)"
     form = f"vec3({crowns}.middle.z, {crowns}.across, {crowns}.up)"
     species = kept.read(kept.record.plan.sketch, "view.species").astype(np.float64)
@@ -349,9 +349,9 @@ def test_the_sun_beside_a_wood_is_what_its_trees_leave(kept, ctx, on_gpu, make_s
     forms = on_gpu("trees/crown.glsl", form, t=tree, s=shares).astype(np.float64)
     turn, rise = np.radians([275.0, 16.0])
     way = np.array([np.sin(turn) * np.cos(rise), np.cos(turn) * np.cos(rise), np.sin(rise)])
-    hidden = np.zeros(len(place), bool)
+    hidden = np.zeros(len(position), bool)
     for (east, north, _, _), (middle, across, up) in zip(tree.astype(float), forms, strict=True):
-        start = (place - [east, north, middle]) / [across, across, up]
+        start = (position - [east, north, middle]) / [across, across, up]
         along = way / [across, across, up]
         t = -(start @ along) / (along @ along)
         hidden |= ((start + t[:, None] * along) ** 2).sum(1) < 1
@@ -361,11 +361,11 @@ def test_the_sun_beside_a_wood_is_what_its_trees_leave(kept, ctx, on_gpu, make_s
 
 
 def test_beyond_the_square_of_tree_shadows_the_wood_shades_as_one_body(kept, ctx, make_sketch):
-    place, share, _ = meadow_sun(kept, make_sketch, 100.0)
+    position, share, _ = meadow_sun(kept, make_sketch, 100.0)
     east, north = np.array(kept.record.plan.eye.position[:2])
-    beyond = np.maximum(abs(place[:, 0] - east), abs(place[:, 1] - north)) > 50.0
+    beyond = np.maximum(abs(position[:, 0] - east), abs(position[:, 1] - north)) > 50.0
     visibility = kept.read(kept.record.plan.sketch, "high.visibility").astype(np.float64)
-    x, y = place[beyond, 0] / 8, place[beyond, 1] / 8
+    x, y = position[beyond, 0] / 8, position[beyond, 1] / 8
     column, row = x.astype(int), y.astype(int)
     corners = [[visibility[row + j, column + i] for i in (0, 1)] for j in (0, 1)]
     south, north = (a + (b - a) * (x - column) for a, b in corners)
@@ -379,8 +379,8 @@ def test_leaves_have_the_season_of_the_daylight(kept, ctx, make_sketch, day, fro
     """One day for sun and leaves: daylight counts from 1, the parameter of trees from 0."""
     daylight = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ day = {day} }}\n'
     by_sun, by_hand = (
-        stand(kept, make_sketch, distance, passes=passes, given=given, shown="view.wooded:albedo")
-        for passes, given in ((daylight, ""), ("", f"day = {from_zero}"))
+        stand(kept, make_sketch, distance, passes=passes, value=value, shown="view.wooded:albedo")
+        for passes, value in ((daylight, ""), ("", f"day = {from_zero}"))
     )
     np.testing.assert_array_equal(by_sun, by_hand)
 
@@ -393,6 +393,6 @@ def test_a_shadow_of_the_sketch_falls_on_ground_and_trees(kept, ctx, make_sketch
     shadow = '[[pass]]\nname = "shadow"\nuse = "./half"\nsize = [320, 180]\n'
     halved = stand(kept, make_sketch, 1000.0, passes=shadow, half=HALF)
     free = stand(kept, make_sketch, 1000.0)
-    sky = stand(kept, make_sketch, 1000.0, given='sun_colour = "#000000"')
+    sky = stand(kept, make_sketch, 1000.0, value='sun_colour = "#000000"')
     np.testing.assert_array_equal(halved[:, :160], free[:, :160])
     np.testing.assert_array_equal(halved[:, 160:], sky[:, 160:])

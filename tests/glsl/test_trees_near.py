@@ -47,7 +47,7 @@ SUN = np.array([0.6, -0.5, 0.62])
 
 
 def drawn(engine, make_sketch, near, species="oaks", azimuth=200.0, distance=120.0):
-    """Return the share of pixels with a tree, and the mean light of sun on those."""
+    """Return the fraction of pixels with a tree, and the mean light of sun on those."""
     passes = PASSES.format(near=near, azimuth=azimuth, distance=distance)
     listed = LIST.replace("SHARES", SPECIES[species])
     sketch = make_sketch(passes, size=33, extent=620.0, relief=1.0, list=listed)
@@ -77,6 +77,6 @@ def test_a_mesh_is_as_large_and_as_bright_as_the_crown_it_becomes(kept, ctx, mak
 def test_nothing_switches_on_the_way_to_a_mesh(kept, ctx, make_sketch):
     """Fiftieths of the way: as the eye stays, all change is the meshes', and spread over all of it."""
     nears = 120.0 / np.linspace(1.02, 0.48, 28)
-    found = np.array([drawn(kept, make_sketch, near)[:2] for near in nears])
-    step = np.abs(np.diff(found, axis=0) / found[0])
+    elements = np.array([drawn(kept, make_sketch, near)[:2] for near in nears])
+    step = np.abs(np.diff(elements, axis=0) / elements[0])
     assert step.max() < 0.02

@@ -17,18 +17,18 @@ def colours(on_gpu, species, days=DAYS, late=0.0):
 
 @pytest.mark.parametrize("species", BROAD + NEEDLES)
 def test_crowns_throw_back_what_crowns_were_measured_to(on_gpu, species):
-    found = colours(on_gpu, species)
-    assert 0.012 < found.min() and found.max() <= 0.27, "0.25 and a tint of 0.08 or less"
-    summer = found[(DAYS > 190) & (DAYS < 240), :, 1]
+    result = colours(on_gpu, species)
+    assert 0.012 < result.min() and result.max() <= 0.27, "0.25 and a tint of 0.08 or less"
+    summer = result[(DAYS > 190) & (DAYS < 240), :, 1]
     low, high = (0.02, 0.065) if species in NEEDLES else (0.03, 0.1)
     assert low < summer.min() and summer.max() < high
-    assert (found.max((1, 2)) > 0.1).any() == (species in BROAD)
+    assert (result.max((1, 2)) > 0.1).any() == (species in BROAD)
 
 
 def test_in_october_woods_are_red_yellow_and_green_at_once(on_gpu):
     """Mid-October: birches yellow, maples orange to red, oaks half green, needles green."""
     oak, maple, birch, pine = (colours(on_gpu, k, [290])[0] for k in (0, 1, 2, 4))
-    redder = [(found[:, 0] / found[:, 1]) for found in (oak, maple, birch, pine)]
+    redder = [(oak[:, 0] / oak[:, 1]) for oak in (oak, maple, birch, pine)]
     assert redder[3].max() < 1 < np.median(redder[2]) < 1.6 < redder[1].max()
     assert redder[0].min() < 1 < redder[0].max(), "oaks are on their way"
     assert np.ptp(redder[1]) > 0.5, "one maple is not as the other"
@@ -37,9 +37,9 @@ def test_in_october_woods_are_red_yellow_and_green_at_once(on_gpu):
 def test_the_mean_tree_is_as_bright_as_its_leaves(on_gpu):
     """Tints differ and take and give nothing: needles at all days, leaves where they are bare."""
     plain = on_gpu("trees/kinds.glsl", "needle_colour(4, t)", t=(np.arange(8, dtype=np.float32) + 0.5) / 8)
-    found = colours(on_gpu, 4, [0])[0]
-    assert np.ptp(found[:, 1] / plain[:, 1]) > 0.2
-    np.testing.assert_allclose((found / plain).mean(0), 1.0, atol=1e-5)
+    colour = colours(on_gpu, 4, [0])[0]
+    assert np.ptp(colour[:, 1] / plain[:, 1]) > 0.2
+    np.testing.assert_allclose((colour / plain).mean(0), 1.0, atol=1e-5)
 
 
 def test_leaves_send_no_more_light_all_round_than_falls_on_them(on_gpu):
@@ -48,8 +48,8 @@ def test_leaves_send_no_more_light_all_round_than_falls_on_them(on_gpu):
     to_eye = rng.normal(size=(200_000, 3))
     to_eye = (to_eye / np.linalg.norm(to_eye, axis=1, keepdims=True)).astype(np.float32)
     sun = np.array([[0.48, 0.6, 0.64]], np.float32)
-    found = on_gpu("trees/stand.glsl", "leaf_phase(e, s)", e=to_eye, s=sun)
-    assert found.mean(dtype=np.float64) == pytest.approx(1.0, abs=0.003)
+    result = on_gpu("trees/stand.glsl", "leaf_phase(e, s)", e=to_eye, s=sun)
+    assert result.mean(dtype=np.float64) == pytest.approx(1.0, abs=0.003)
     # By leaves that face every way, half of their light on either side, in float64.
     leaf = rng.normal(size=(100_000, 3))
     leaf /= np.linalg.norm(leaf, axis=1, keepdims=True)
@@ -86,19 +86,19 @@ def shares(engine, make_sketch, values, size=257):
 
 
 def test_species_stand_in_patches_whatever_the_map_s_size(kept, ctx, make_sketch):
-    found, _ = shares(kept, make_sketch, "needles = 0.2")
-    assert found.min() >= 0 and found.sum(-1).max() < 1 + 3 / 255
-    assert found[..., 2:].sum(-1).mean() == pytest.approx(0.2, abs=0.015), "as many needles as are asked for"
+    result, _ = shares(kept, make_sketch, "needles = 0.2")
+    assert result.min() >= 0 and result.sum(-1).max() < 1 + 3 / 255
+    assert result[..., 2:].sum(-1).mean() == pytest.approx(0.2, abs=0.015), "as many needles as are asked for"
     for k in range(4):
-        assert found[..., k].std() > 0.3 * found[..., k].mean(), "patches"
+        assert result[..., k].std() > 0.3 * result[..., k].mean(), "patches"
     # 12 km over 256 steps: 47 m, a third of the finer waves.
-    step = np.abs(np.diff(found[..., 0], axis=1)).mean()
-    assert step < 0.5 * found[..., 0].std(), "1.13 of it where neighbours know nothing of each other"
+    step = np.abs(np.diff(result[..., 0], axis=1)).mean()
+    assert step < 0.5 * result[..., 0].std(), "1.13 of it where neighbours know nothing of each other"
     half, _ = shares(kept, make_sketch, "needles = 0.2", size=129)
-    np.testing.assert_allclose(half, found[::2, ::2], atol=1.5 / 255)
-    for needles, wanted in ((0.0, 0.0), (1.0, 1.0)):
+    np.testing.assert_allclose(half, result[::2, ::2], atol=1.5 / 255)
+    for needles, expected in ((0.0, 0.0), (1.0, 1.0)):
         only, _ = shares(kept, make_sketch, f"needles = {needles}", size=33)
-        np.testing.assert_allclose(only[..., 2:].sum(-1), wanted, atol=1.5 / 255)
+        np.testing.assert_allclose(only[..., 2:].sum(-1), expected, atol=1.5 / 255)
 
 
 HILL = """
@@ -140,8 +140,8 @@ def test_as_many_trees_are_of_a_species_as_its_share_says(on_gpu):
     n = 40_000
     tree = np.zeros((n, 4), np.float32)
     tree[:, 0], tree[:, 1], tree[:, 3] = 9.0 * (np.arange(n) % 200), 9.0 * (np.arange(n) // 200), 20.0
-    wanted = [0.3, 0.2, 0.15, 0.25]
-    kind = on_gpu("trees/crown.glsl", f"float(crown_of(t, vec4{tuple(wanted)}).kind)", t=tree).astype(int)
+    expected = [0.3, 0.2, 0.15, 0.25]
+    kind = on_gpu("trees/crown.glsl", f"float(crown_of(t, vec4{tuple(expected)}).kind)", t=tree).astype(int)
     counts = np.bincount(kind // 8, minlength=6) / n
     np.testing.assert_allclose(counts, [0.1, 0.3, 0.2, 0.0, 0.15, 0.25], atol=4 * np.sqrt(0.25 / n))
     assert np.abs(np.bincount(kind % 8) / n - 1 / 8).max() < 4 * np.sqrt(1 / 8 / n)

@@ -21,11 +21,11 @@ def by_triangles(size, r, corners, number):
     heights = dict(zip(places, corners or [number(*p) for p in places], strict=True))
 
     def middle(a, b):
-        place = ((a[0] + b[0]) // 2, (a[1] + b[1]) // 2)
-        if place not in heights:
+        position = ((a[0] + b[0]) // 2, (a[1] + b[1]) // 2)
+        if position not in heights:
             k = np.hypot(a[0] - b[0], a[1] - b[1]) / side
-            heights[place] = (heights[a] + heights[b]) / 2 + number(*place) * k**r
-        return place
+            heights[position] = (heights[a] + heights[b]) / 2 + number(*position) * k**r
+        return position
 
     south_west, south_east, north_west, north_east = places
     triangles = [(south_west, south_east, north_east), (south_west, north_west, north_east)]
@@ -42,8 +42,8 @@ def by_triangles(size, r, corners, number):
 
 
 def sketch_of(make_sketch, size, use="generation/triangle_subdivision", **values):
-    given = "".join(f"{k} = {v!r}\n".replace("(", "[").replace(")", "]") for k, v in values.items())
-    return make_sketch(f'[[pass]]\nname = "terrain"\nuse = "{use}"\n[pass.set]\n{given}', size=size)
+    text = "".join(f"{k} = {v!r}\n".replace("(", "[").replace(")", "]") for k, v in values.items())
+    return make_sketch(f'[[pass]]\nname = "terrain"\nuse = "{use}"\n[pass.set]\n{text}', size=size)
 
 
 @pytest.fixture
@@ -80,12 +80,12 @@ def test_each_iteration_halves_the_edges(engine, make_sketch, number):
     sketch = sketch_of(make_sketch, 17, seed=5)
     truth = by_triangles(17, 1.0, None, number(5, 17))
     for turn, values in engine.steps(sketch, "terrain.raw"):
-        known = np.zeros((17, 17), bool)
+        existing = np.zeros((17, 17), bool)
         if turn:
             step = 16 >> (turn - 1)
-            known[::step, ::step] = True
-        assert (values != 0).sum() == known.sum() == ((2 ** (turn - 1) + 1) ** 2 if turn else 0)
-        np.testing.assert_allclose(values[known], truth[known], atol=2e-6)
+            existing[::step, ::step] = True
+        assert (values != 0).sum() == existing.sum() == ((2 ** (turn - 1) + 1) ** 2 if turn else 0)
+        np.testing.assert_allclose(values[existing], truth[existing], atol=2e-6)
 
 
 def test_corners_are_as_given_or_drawn_from_the_seed(engine, make_sketch, number):

@@ -10,7 +10,7 @@ SCREE = DENSITY.replace("trees/density", "objects/scree").replace('name = "densi
 
 
 @pytest.mark.parametrize(
-    "slope, wired, wanted",
+    "slope, wired, expected",
     [
         (0.0, "", 0.1),
         (0.7, "", 0.6),
@@ -20,22 +20,22 @@ SCREE = DENSITY.replace("trees/density", "objects/scree").replace('name = "densi
     ],
 )
 def test_rocks_lie_where_it_is_steep_and_on_rock_and_not_on_paths(
-    kept, ctx, make_sketch, slope, wired, wanted
+    kept, ctx, make_sketch, slope, wired, expected
 ):
     wires = f', {wired} = "ground:a_{wired}"' if wired else ""
     text = SCREE.format(slope=slope, wired=wires, values="strewn = 0.1, piled = 0.6, heaps = 0")
-    found = kept.read(make_sketch(text, size=33, extent=32.0, relief=100.0, plane=PLANE), "rocks")
+    result = kept.read(make_sketch(text, size=33, extent=32.0, relief=100.0, plane=PLANE), "rocks")
     x = np.arange(33)
-    known = (x > 0) & (x < 32) & ((x != 20) | (wired != "paths"))
-    np.testing.assert_allclose(found[:, known], wanted, atol=4e-3)
+    existing = (x > 0) & (x < 32) & ((x != 20) | (wired != "paths"))
+    np.testing.assert_allclose(result[:, existing], expected, atol=4e-3)
     if wired == "paths":
-        assert not found[:, 20].any()
+        assert not result[:, 20].any()
 
 
 def test_heaps_leave_as_many_rocks(kept, ctx, make_sketch):
     text = SCREE.format(slope=0.0, wired="", values="strewn = 0.2, heaps = 1, heap_wide = 10")
-    found = kept.read(make_sketch(text, size=257, extent=640.0, relief=100.0, plane=PLANE), "rocks")
-    assert found.mean(dtype=np.float64) == pytest.approx(0.2, rel=0.05) and found.std() > 0.05
+    result = kept.read(make_sketch(text, size=257, extent=640.0, relief=100.0, plane=PLANE), "rocks")
+    assert result.mean(dtype=np.float64) == pytest.approx(0.2, rel=0.05) and result.std() > 0.05
 
 
 PATH = """

@@ -19,8 +19,8 @@ MAGENTA = (255, 0, 255)
 
 @pytest.fixture
 def terrain(make_sketch):
-    def make(height="0.0", colour="vec4(1.0)", size=33, given="", **more):
-        view = f'[view]\nuse = "view/terrain"\nsamples = 1\nset = {{ {given or "grid = 33"} }}\n'
+    def make(height="0.0", colour="vec4(1.0)", size=33, value="", **more):
+        view = f'[view]\nuse = "view/terrain"\nsamples = 1\nset = {{ {value or "grid = 33"} }}\n'
         files = {"terrain": HEIGHT.format(height), "cover": COLOUR.format(colour)}
         return make_sketch(PASSES + view, size=size, **files, **more)
 
@@ -35,9 +35,9 @@ def pixels_of(engine, points):
     """Where points of the terrain are in the last picture: column and row from the top left."""
     plan = engine.record.plan
     clip = np.c_[points, np.ones(len(points))] @ plan.eye.clip_from_world.astype(float).T
-    place = clip[:, :2] / clip[:, 3:]
+    position = clip[:, :2] / clip[:, 3:]
     width, height = plan.frame_size
-    return np.stack([(place[:, 0] + 1) / 2 * width, (1 - place[:, 1]) / 2 * height], axis=1)
+    return np.stack([(position[:, 0] + 1) / 2 * width, (1 - position[:, 1]) / 2 * height], axis=1)
 
 
 # ── the terrain ─────────────────────────────────────────────────────────────────
@@ -104,8 +104,8 @@ def test_the_sun_lights_the_slopes_that_face_it(any_engine, make_sketch, azimuth
     frame = any_engine.read(above(sketch, elevation=88.0), "view.land", size=(100, 100))[..., 0]
     towards = np.array([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth)), 0.0])
     for side, lit in ((1, True), (-1, False)):
-        place = np.array([500.0, 500.0, 200.0]) + side * 220 * towards
-        column, row = pixels_of(any_engine, place[None])[0].astype(int)
+        position = np.array([500.0, 500.0, 200.0]) + side * 220 * towards
+        column, row = pixels_of(any_engine, position[None])[0].astype(int)
         assert (frame[99 - row, column] > 1.0) == lit
 
 
@@ -119,13 +119,13 @@ def test_no_colour_and_no_light_is_white_terrain(any_engine, make_sketch):
 def test_a_hole_in_the_numbers_shows_and_harms_nothing_else(any_engine, terrain, samples):
     hole = f"all(lessThan(abs(texel - 16), ivec2(2))) ? {NAN} : 0.0"
     whole, broken = (replace(above(terrain(height=h)), samples=samples) for h in ("0.0", hole))
-    one, other = (any_engine.render(s, size=(160, 120)).array for s in (whole, broken))
-    changed = (one != other).any(axis=-1)
+    first, other = (any_engine.render(s, size=(160, 120)).array for s in (whole, broken))
+    changed = (first != other).any(axis=-1)
     magenta = (other[..., :3] == MAGENTA).all(axis=-1)
     assert magenta.sum() > 20
     assert changed.mean() < 0.1
     assert (other[..., 3] == 255).all()
-    assert not (one[..., :3] == MAGENTA).all(axis=-1).any()
+    assert not (first[..., :3] == MAGENTA).all(axis=-1).any()
 
 
 def test_heights_of_any_size_leave_the_picture_opaque(any_engine, terrain):
@@ -135,8 +135,8 @@ def test_heights_of_any_size_leave_the_picture_opaque(any_engine, terrain):
 
 
 def test_the_cut_is_earth_and_the_terrain_is_not(any_engine, terrain):
-    given = 'grid = 33, earth = "#804020", skirt = 0.2'
-    sketch = above(terrain(height="0.5", given=given), elevation=10.0, azimuth=180.0)
+    value = 'grid = 33, earth = "#804020", skirt = 0.2'
+    sketch = above(terrain(height="0.5", given=value), elevation=10.0, azimuth=180.0)
     any_engine.render(sketch, size=(200, 150))
     frame = any_engine.read(sketch, "view.land", size=(200, 150))
     column, row = pixels_of(any_engine, np.array([[500.0, 0.0, 0.0]]))[0].astype(int)
@@ -163,8 +163,8 @@ def test_wires_change_pixels_of_the_terrain_alone(any_engine, terrain):
 
 
 def test_wires_run_along_the_mesh_s_edges(any_engine, terrain):
-    given = 'grid = 5, wireframe = true, wire = "#ff0000", faces = 0.0'
-    sketch = above(terrain(given=given), elevation=89.0)
+    value = 'grid = 5, wireframe = true, wire = "#ff0000", faces = 0.0'
+    sketch = above(terrain(given=value), elevation=89.0)
     any_engine.render(sketch, size=(400, 400))
     frame = any_engine.read(sketch, "view.land", size=(400, 400))[..., 0].astype(float)
     cell = 1000.0 / 4
@@ -177,8 +177,8 @@ def test_wires_run_along_the_mesh_s_edges(any_engine, terrain):
 
 
 def test_wires_closer_than_pixels_become_their_mean_grey(any_engine, terrain):
-    given = 'grid = 41, wireframe = true, wire = "#ffffff", faces = 0.0'
-    sketch = above(terrain(given=given), elevation=89.0)
+    value = 'grid = 41, wireframe = true, wire = "#ffffff", faces = 0.0'
+    sketch = above(terrain(given=value), elevation=89.0)
     any_engine.render(sketch, size=(100, 100))
     frame = any_engine.read(sketch, "view.land", size=(100, 100))[..., 0].astype(float)
     assert frame[30:70, 30:70].std() < 0.04
@@ -196,8 +196,8 @@ def test_where_there_is_no_terrain_there_is_sky(any_engine, terrain):
 
 
 def test_the_horizon_s_colour_is_level_with_the_eye(engine, terrain):
-    given = 'zenith = "#0000ff", horizon = "#00ff00", nadir = "#ff0000"'
-    sketch = above(terrain(given=given), elevation=0.0)
+    value = 'zenith = "#0000ff", horizon = "#00ff00", nadir = "#ff0000"'
+    sketch = above(terrain(given=value), elevation=0.0)
     sky = engine.read(sketch, "view.sky", size=(9, 101)).astype(float)
     assert sky[50, 4, 1] > 0.97
     assert (np.diff(sky[50:, 4, 2]) > 0).all()  # bluer and bluer upwards
@@ -211,8 +211,8 @@ def test_the_horizon_s_colour_is_level_with_the_eye(engine, terrain):
 @pytest.mark.parametrize(("level", "base"), [(25.0, 0.0), (70.0, 0.0), (170.0, 100.0)])
 def test_the_sea_drowns_the_terrain_below_its_level_and_no_other(any_engine, terrain, level, base):
     ramp = "float(texel.x) / float(size.x - 1)"
-    given = f'grid = 33, sea = true, sea_level = {level}, water = "#0000ff", horizon = "#0000ff"'
-    sketch = above(terrain(height=ramp, given=given), elevation=89.0).with_values({"base_elevation": base})
+    text = f'grid = 33, sea = true, sea_level = {level}, water = "#0000ff", horizon = "#0000ff"'
+    sketch = above(terrain(height=ramp, given=text), elevation=89.0).with_values({"base_elevation": base})
     any_engine.render(sketch, size=(200, 200))
     before, after = (any_engine.read(sketch, f"view.{p}", size=(200, 200))[::-1] for p in ("land", "sea"))
     drowned = (np.abs(after - before) > 0.05).any(axis=-1)
@@ -220,14 +220,14 @@ def test_the_sea_drowns_the_terrain_below_its_level_and_no_other(any_engine, ter
     heights = shares[:, 0] * 100.0
     places = pixels_of(any_engine, np.c_[shares * 1000.0, np.maximum(heights, level - base)]).astype(int)
     clear = np.abs(heights - (level - base)) > 1.0
-    found = drowned[places[clear, 1], places[clear, 0]]
-    np.testing.assert_array_equal(found, heights[clear] < level - base)
+    result = drowned[places[clear, 1], places[clear, 0]]
+    np.testing.assert_array_equal(result, heights[clear] < level - base)
 
 
 def test_a_hill_hides_the_sea_behind_it(any_engine, terrain):
     wall = "texel.y == 8 ? 1.0 : 0.0"
-    given = "grid = 33, sea = true, sea_level = 10"
-    sketch = above(terrain(height=wall, given=given, relief=400.0), elevation=5.0)
+    value = "grid = 33, sea = true, sea_level = 10"
+    sketch = above(terrain(height=wall, given=value, relief=400.0), elevation=5.0)
     any_engine.render(sketch, size=(200, 150))
     before, after = (any_engine.read(sketch, f"view.{p}", size=(200, 150))[::-1] for p in ("land", "sea"))
     column, row = pixels_of(any_engine, np.array([[500.0, 250.0, 200.0]]))[0].astype(int)
@@ -243,11 +243,11 @@ SHOWN = 'grid = 33, sea = true, water = "#0000ff", horizon = "#0000ff"'
 def test_a_sea_far_below_the_ground_does_not_float_in_the_air(any_engine, terrain, elevation):
     """From the side it would show below the terrain's walls; only what the ground does not bury is drawn."""
     hills = "0.3 + 0.7 * float((texel.x + texel.y) % 16) / 15.0"
-    given = f"{SHOWN}, sea_level = -150"
-    sketch = above(terrain(height=hills, given=given), elevation=elevation)
-    found = any_engine.render(sketch, size=(120, 90)).array
+    text = f"{SHOWN}, sea_level = -150"
+    sketch = above(terrain(height=hills, given=text), elevation=elevation)
+    array = any_engine.render(sketch, size=(120, 90)).array
     without = any_engine.render(sketch.with_values({"view.sea": False}), size=(120, 90)).array
-    np.testing.assert_array_equal(found, without)
+    np.testing.assert_array_equal(array, without)
 
 
 def test_a_valley_below_height_0_is_filled_by_a_sea_far_below_the_hills(any_engine, terrain):
@@ -284,8 +284,8 @@ def encoded(linear):
 def presented(make_sketch):
     ramp = COLOUR.replace("16f", "32f").format("vec4(float(texel.x) / 63.0 * vec3(1.0, 0.1, 2.0), 0.25)")
 
-    def make(given):
-        view = f'[view]\nuse = "view/present"\ninputs = {{ picture = "ramp" }}\nset = {{ {given} }}\n'
+    def make(value):
+        view = f'[view]\nuse = "view/present"\ninputs = {{ picture = "ramp" }}\nset = {{ {value} }}\n'
         return make_sketch(f'[[pass]]\nname = "ramp"\nuse = "./ramp"\n{view}', size=[64, 4], ramp=ramp)
 
     return make
@@ -313,8 +313,8 @@ def test_a_tone_curve_keeps_order_and_brings_bright_light_in(engine, presented, 
 
 @pytest.fixture
 def shown(make_sketch):
-    def make(height, size, given='channel = "red"'):
-        view = f'[view]\nuse = "view/map"\ninputs = {{ shown = "height" }}\nset = {{ {given} }}\n'
+    def make(height, size, value='channel = "red"'):
+        view = f'[view]\nuse = "view/map"\ninputs = {{ shown = "height" }}\nset = {{ {value} }}\n'
         passes = '[[pass]]\nname = "height"\nuse = "./terrain"\n'
         return make_sketch(passes + view, size=size, terrain=HEIGHT.format(height))
 
@@ -340,8 +340,8 @@ def test_a_shrunk_map_shows_means_or_single_texels(engine, shown):
     board = "float((texel.x & 3) == 0)"
     mean = engine.render(shown(board, [64, 64]), size=(16, 16)).array[..., 0]
     assert np.abs(mean.astype(int) - 64).max() <= 1
-    given = 'channel = "red", shrunk = "nearest"'
-    nearest = engine.render(shown(board, [64, 64], given), size=(16, 16)).array[..., 0]
+    value = 'channel = "red", shrunk = "nearest"'
+    nearest = engine.render(shown(board, [64, 64], value), size=(16, 16)).array[..., 0]
     assert set(np.unique(nearest)) <= {0, 255}
 
 

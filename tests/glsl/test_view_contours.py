@@ -17,10 +17,10 @@ EASTWARD = "float(texel.x) / float(size.x - 1)"
 def cover(make_sketch):
     """Give how much of each texel lines cover, row 0 south."""
 
-    def read(engine, terrain, given, more="", **sketch):
+    def read(engine, terrain, value, more="", **sketch):
         files = {"terrain": HEIGHT.format(terrain)}
-        found = engine.read(make_sketch(PASSES.format("", given, more), **files, **sketch), "lines")
-        return 1.0 - found[..., 0].astype(float)
+        result = engine.read(make_sketch(PASSES.format("", value, more), **files, **sketch), "lines")
+        return 1.0 - result[..., 0].astype(float)
 
     return read
 
@@ -32,19 +32,19 @@ def on_lines(away, wide):
 
 @pytest.mark.parametrize("width", [1.0, 3.0, 0.5])
 def test_on_a_plane_lines_stand_where_the_elevation_is_theirs(engine, cover, width):
-    given = f"interval = 10, every = 0, width = {width}"
-    found = cover(engine, EASTWARD, given, size=[201, 5], extent=[2000.0, 40.0], relief=100.0)
+    text = f"interval = 10, every = 0, width = {width}"
+    result = cover(engine, EASTWARD, text, size=[201, 5], extent=[2000.0, 40.0], relief=100.0)
     x = np.arange(201.0)
     away = np.abs(x[:, None] - np.arange(0, 201, 20.0)).min(axis=1)
-    np.testing.assert_allclose(found[2], on_lines(away, width), atol=2e-3)
+    np.testing.assert_allclose(result[2], on_lines(away, width), atol=2e-3)
 
 
 @pytest.mark.parametrize("size", [[101, 101], [257, 257], [301, 151]])
 def test_on_a_cone_they_are_circles_of_one_width_at_any_resolution(any_engine, cover, size):
     """1000 m of cone, 5 lines; the terrain has 513 texels a side, the lines a size of their own."""
     cone = "1.0 - length(vec2(texel) / float(size.x - 1) - 0.5) * 2.0"
-    given = "interval = 200, every = 0, width = 2"
-    found = cover(any_engine, cone, given, f"size = {size}\n", size=513, extent=1000.0, relief=1000.0)
+    value = "interval = 200, every = 0, width = 2"
+    result = cover(any_engine, cone, value, f"size = {size}\n", size=513, extent=1000.0, relief=1000.0)
     x, y = np.meshgrid(np.linspace(-500, 500, size[0]), np.linspace(-500, 500, size[1]))
     radius = np.hypot(x, y)
     # Metres to the next circle, over metres from texel to texel in its direction.
@@ -53,36 +53,36 @@ def test_on_a_cone_they_are_circles_of_one_width_at_any_resolution(any_engine, c
     steps = np.hypot(unit[..., 0] * 1000 / (size[0] - 1), unit[..., 1] * 1000 / (size[1] - 1))
     inside = (radius > 60) & (radius < 480)
     np.testing.assert_allclose(
-        found[inside], on_lines(metres / np.maximum(steps, 1e-9), 2)[inside], atol=0.06
+        result[inside], on_lines(metres / np.maximum(steps, 1e-9), 2)[inside], atol=0.06
     )
 
 
 def test_their_widths_do_not_depend_on_the_slope(any_engine, cover):
     """Summed across a line its cover is its width, on gentle terrain and on steep."""
     for relief in (50.0, 100.0, 200.0):
-        found = cover(
+        result = cover(
             any_engine, EASTWARD, "interval = 25, every = 0, width = 3", size=[401, 3], relief=relief
         )
         lines = relief / 25
-        inside = found[1, round(200 / lines) : -round(200 / lines)]
+        inside = result[1, round(200 / lines) : -round(200 / lines)]
         np.testing.assert_allclose(inside.sum(), 3 * (lines - 1), rtol=0.02)
 
 
 def test_every_so_manieth_line_is_thick_counted_from_sea_level(any_engine, make_sketch):
-    given = "interval = 10, every = 5, width = 1, thick = 4"
-    text = "base_elevation = 230.0\n" + PASSES.format("", given, "")
+    value = "interval = 10, every = 5, width = 1, thick = 4"
+    text = "base_elevation = 230.0\n" + PASSES.format("", value, "")
     sketch = make_sketch(
         text, size=[401, 3], extent=[4000.0, 20.0], relief=100.0, terrain=HEIGHT.format(EASTWARD)
     )
-    found = 1 - any_engine.read(sketch, "lines")[1, :, 0].astype(float)
+    result = 1 - any_engine.read(sketch, "lines")[1, :, 0].astype(float)
     for elevation in range(240, 330, 10):
         x = (elevation - 230) * 4
-        np.testing.assert_allclose(found[x - 6 : x + 7].sum(), 4 if elevation % 50 == 0 else 1, atol=0.02)
+        np.testing.assert_allclose(result[x - 6 : x + 7].sum(), 4 if elevation % 50 == 0 else 1, atol=0.02)
 
 
 def test_where_they_crowd_their_mean_is_drawn_and_nothing_flickers(any_engine, cover):
-    found = cover(any_engine, EASTWARD, "interval = 0.5, every = 0, width = 0.8", size=[101, 5], relief=50.0)
-    np.testing.assert_allclose(found, min(0.8 * 50 / 100 / 0.5, 1.0), atol=2e-3)
+    result = cover(any_engine, EASTWARD, "interval = 0.5, every = 0, width = 0.8", size=[101, 5], relief=50.0)
+    np.testing.assert_allclose(result, min(0.8 * 50 / 100 / 0.5, 1.0), atol=2e-3)
 
 
 def test_level_terrain_has_no_lines_even_at_the_elevation_of_one(any_engine, cover):
@@ -91,8 +91,8 @@ def test_level_terrain_has_no_lines_even_at_the_elevation_of_one(any_engine, cov
 
 
 def test_below_the_sea_lines_go_on(any_engine, cover):
-    found = cover(any_engine, f"{EASTWARD} - 0.5", "interval = 10, every = 0, width = 1", size=[201, 3])
-    peaks = np.flatnonzero(found[1] > 0.9)
+    result = cover(any_engine, f"{EASTWARD} - 0.5", "interval = 10, every = 0, width = 1", size=[201, 3])
+    peaks = np.flatnonzero(result[1] > 0.9)
     np.testing.assert_array_equal(peaks, np.arange(0, 201, 20))
 
 
@@ -102,12 +102,12 @@ def test_the_ground_is_seen_between_them_at_its_own_resolution(any_engine, make_
     sketch = make_sketch(
         text, size=33, relief=10.0, terrain=HEIGHT.format(f"0.3 + 0.1 * {EASTWARD}"), ground=ground
     )
-    found = any_engine.read(sketch, "lines").astype(float)
+    result = any_engine.read(sketch, "lines").astype(float)
     x, y = np.meshgrid(np.linspace(0, 1, 65), np.linspace(0, 1, 65))
-    np.testing.assert_allclose(found[..., 0], x, atol=2e-3)
-    np.testing.assert_allclose(found[..., 1], y, atol=2e-3)
+    np.testing.assert_allclose(result[..., 0], x, atol=2e-3)
+    np.testing.assert_allclose(result[..., 1], y, atol=2e-3)
 
 
 def test_what_is_not_a_number_leaves_the_ground(any_engine, cover):
-    found = cover(any_engine, "uintBitsToFloat(0x7fc00000u)", "interval = 10", size=5)
-    assert (found == 0).all()
+    result = cover(any_engine, "uintBitsToFloat(0x7fc00000u)", "interval = 10", size=5)
+    assert (result == 0).all()

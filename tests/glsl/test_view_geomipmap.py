@@ -54,9 +54,9 @@ def engine(any_engine):
 
 @pytest.fixture
 def shown(make_sketch):
-    def make(text=ROUGH, size=129, relief=250.0, detail="geomipmap", given=SKY):
-        given = f'detail = "{detail}", earth = "#00ff00", {given}'
-        view = VIEW + f"set = {{ {given} }}\n"
+    def make(text=ROUGH, size=129, relief=250.0, detail="geomipmap", value=SKY):
+        value = f'detail = "{detail}", earth = "#00ff00", {value}'
+        view = VIEW + f"set = {{ {value} }}\n"
         return make_sketch(view, size=size, relief=relief, terrain=terrain(text), green=GREEN)
 
     return make
@@ -72,17 +72,17 @@ def weights(level: int, coarser: int, cells: tuple[int, int] = (16, 16)) -> np.n
     Nodes beyond the cells that a tile has, east and north, lie on its edge.
     """
     nodes = np.minimum(lod.vertices()[:289, :2].astype(np.float64), cells)
-    found = np.full((289, 289), np.nan)
+    array = np.full((289, 289), np.nan)
     for corners in lod.pieces()["fans", level, coarser].reshape(-1, 3):
         system = np.c_[nodes[corners], np.ones(3)]
         if abs(np.linalg.det(system)) < 0.5:
             continue
         shares = np.c_[nodes, np.ones(289)] @ np.linalg.inv(system)
         inside = (shares >= -1e-9).all(axis=1)
-        found[inside] = 0
-        found[np.ix_(inside, corners)] = shares[inside]
-    assert not np.isnan(found).any()
-    return found
+        array[inside] = 0
+        array[np.ix_(inside, corners)] = shares[inside]
+    assert not np.isnan(array).any()
+    return array
 
 
 def places_of(texels: int) -> np.ndarray:
@@ -159,12 +159,12 @@ def test_an_error_is_the_largest_height_between_a_level_s_triangles_and_the_terr
 
 
 def test_both_drivers_give_the_same_bits(ctx, errors_of):
-    found = []
+    result = []
     for driver in ("fragment", "compute"):
         with Engine(ctx, driver=driver) as engine:
-            found.append(errors_of(engine, ROUGH, [65, 50])[1:])
-    for one, other in zip(*found, strict=True):
-        np.testing.assert_array_equal(one, other)
+            result.append(errors_of(engine, ROUGH, [65, 50])[1:])
+    for first, other in zip(*result, strict=True):
+        np.testing.assert_array_equal(first, other)
 
 
 def test_a_tile_with_a_hole_stays_whole_and_its_span_is_of_numbers(any_engine, errors_of):
@@ -267,11 +267,11 @@ def test_what_is_left_out_is_nowhere_in_the_picture(engine, shown, monkeypatch):
 
 def surfaces(levels: np.ndarray, coarser: np.ndarray, heights: np.ndarray) -> np.ndarray:
     """Return the mesh's heights over the nodes of each tile, (ny, nx, 289)."""
-    found = tiles_of(nodes_of(heights))
+    tiles = tiles_of(nodes_of(heights))
     for j, i in np.ndindex(levels.shape):
         sides = coarser[j, i] if levels[j, i] < 4 else (i + j) % 2
-        found[j, i] = weights(int(levels[j, i]), int(sides), cells_of(j, i, heights.shape)) @ found[j, i]
-    return found
+        tiles[j, i] = weights(int(levels[j, i]), int(sides), cells_of(j, i, heights.shape)) @ tiles[j, i]
+    return tiles
 
 
 def in_picture(surface: np.ndarray, texels: tuple[int, ...], view: sight.View) -> np.ndarray:
@@ -279,8 +279,8 @@ def in_picture(surface: np.ndarray, texels: tuple[int, ...], view: sight.View) -
     north, east = (places_of(n) / (n - 1) for n in texels)
     nodes = tiles_of(np.broadcast_to(east * view.extent[0], (north.size, east.size)))
     up = tiles_of(np.broadcast_to(north[:, None] * view.extent[1], (north.size, east.size)))
-    place = np.stack([nodes, up, surface * view.relief, np.ones_like(surface)], axis=-1)
-    clip = place @ view.clip_from_world.T
+    position = np.stack([nodes, up, surface * view.relief, np.ones_like(surface)], axis=-1)
+    clip = position @ view.clip_from_world.T
     outside = (np.abs(clip[..., :3]) > clip[..., 3:]).any(axis=-1)
     at = clip[..., :2] / np.where(outside, 1.0, clip[..., 3])[..., None] * np.array(view.size) / 2
     at[outside] = np.nan
@@ -332,7 +332,7 @@ def test_terrain_s_outline_moves_by_no_more_than_the_tolerance(engine, shown, mo
     """Two frames a change of level apart, seen by one camera: each outline lies within the other, widened."""
     sketch = shown(size=257).with_values({"view.tolerance": 3.0})
     cameras = list(flight(60))[10:30:4]
-    found = []
+    result = []
     for camera in cameras:
         near = replace(camera, distance=camera.distance * 1.15)
         other = lod.levels_of(
@@ -344,19 +344,19 @@ def test_terrain_s_outline_moves_by_no_more_than_the_tolerance(engine, shown, mo
         masks = []
         for levels in (None, other):
             with monkeypatch.context() as patch:
-                given = 3.0
+                value = 3.0
                 if levels is not None:
                     patch.setattr(lod, "levels_of", lambda *_, levels=levels: levels)
-                    given = 3.0000001
-                seen = sketch.with_camera(camera).with_values({"view.tolerance": given})
+                    value = 3.0000001
+                seen = sketch.with_camera(camera).with_values({"view.tolerance": value})
                 masks.append(engine.render(seen, size=SIZE).array[..., 0] < 128)
-        found.append((masks[0] != masks[1]).sum())
+        result.append((masks[0] != masks[1]).sum())
         reach = (
             np.hypot(*np.indices((9, 9)) - 4) <= 4.0
         )  # 3 pixels further off, and a pixel's own half on each side
-        for one, two in (masks, masks[::-1]):
-            assert not (one & ~ndimage.binary_dilation(two, reach)).any()
-    assert sum(found) > 0
+        for first, two in (masks, masks[::-1]):
+            assert not (first & ~ndimage.binary_dilation(two, reach)).any()
+    assert sum(result) > 0
 
 
 # ── what the view asks for ───────────────────────────────────────────────────
@@ -416,8 +416,8 @@ def test_a_draw_that_does_not_read_the_camera_has_a_sentence(engine, make_sketch
 
 
 def test_levels_have_colours(engine, shown):
-    given = "wireframe = true, levels = true, faces = 0.0, skirt = 0.0, " + SKY
-    sketch = shown(size=257, given=given).with_values({"view.tolerance": 4.0})
+    sky = "wireframe = true, levels = true, faces = 0.0, skirt = 0.0, " + SKY
+    sketch = shown(size=257, given=sky).with_values({"view.tolerance": 4.0})
     camera = Camera(elevation=35.0, distance=500.0, target=(500.0, 300.0, 100.0))
     view = engine.read(sketch.with_camera(camera), "view.land", size=SIZE).astype(float)
     levels = chosen_levels(engine, sketch.with_camera(camera), 4.0)

@@ -63,49 +63,49 @@ def forms(engine, sketch, size=SIZE):
     That is where all pixels of a square of four show terrain of one slope: a level of detail follows from
     the slope of a square, which the plain draw takes from each triangle in it, the variant from one.
     """
-    found = engine.read(sketch, "view.sea", size=size)[..., :3].astype(float)
+    result = engine.read(sketch, "view.sea", size=size)[..., :3].astype(float)
     ground = read_texture(engine.record.results["view.land.fast.ground"].textures["ground"])
     slopes = unpacked(np.maximum(ground[..., 1], 0))
     squares = slopes.reshape(size[1] // 2, 2, size[0] // 2, 2, 2)
     low, high = squares.min(axis=(1, 3)), squares.max(axis=(1, 3))
     # Two neighbours of 8 bits.
     alike = ((low > 0) & (high <= low * (1 + 2**-7))).all(axis=-1).repeat(2, 0).repeat(2, 1)
-    return found, engine.read(sketch.plainly(), "view.sea", size=size)[..., :3].astype(float), alike
+    return result, engine.read(sketch.plainly(), "view.sea", size=size)[..., :3].astype(float), alike
 
 
-def assert_agree(found, expected, alike, most=1 / 64 + 1e-3):
+def assert_agree(result, expected, alike, most=1 / 64 + 1e-3):
     """Check that linear frames agree where they must, and anywhere by the bound of the variant.
 
     A level that is 1/128 off moves a colour by twice that, at most, of what two levels differ by, where the
     driver blends them over half of the way; both forms round to halves.
     """
     assert expected.std() > 0.02 and alike.sum() > 200
-    np.testing.assert_allclose(found[alike], expected[alike], atol=most)
-    assert np.sqrt(((found - expected) ** 2).mean()) < 0.01
+    np.testing.assert_allclose(result[alike], expected[alike], atol=most)
+    assert np.sqrt(((result - expected) ** 2).mean()) < 0.01
 
 
 def test_each_pixel_has_its_place_its_distance_and_how_far_the_next_is(software, make_sketch):
     """Level ground under a perspective camera: the pixels' rays meet a plane."""
     sketch = make_sketch(READ, terrain=HEIGHT.format("0.0"), place=PLACE).with_camera(LOOKS[0])
-    found = software.read(sketch, "ground").astype(float)
+    result = software.read(sketch, "ground").astype(float)
     read = software.read(sketch, "place").astype(float)
     eye = software.record.plan.eye
     clip = eye.clip_from_world.astype(float)
     inverse = np.linalg.inv(clip[np.ix_([0, 1, 3], [0, 1, 3])])
 
     def places(rows, columns):
-        place = np.stack([columns / 80 - 1, rows / 50 - 1, np.ones_like(rows)], axis=-1) @ inverse.T
-        return place[..., :2] / place[..., 2:]
+        position = np.stack([columns / 80 - 1, rows / 50 - 1, np.ones_like(rows)], axis=-1) @ inverse.T
+        return position[..., :2] / position[..., 2:]
 
     rows, columns = np.indices((100, 160)) + 0.5
-    place = places(rows, columns)
-    inside = ((place > 5) & (place < 995)).all(axis=-1) & (found[..., 0] > 0)
+    position = places(rows, columns)
+    inside = ((position > 5) & (position < 995)).all(axis=-1) & (result[..., 0] > 0)
     assert inside.sum() > 2000
-    away = np.concatenate([place - eye.position[:2], np.full((100, 160, 1), -eye.position[2])], axis=-1)
-    np.testing.assert_allclose(1 / found[..., 0][inside], away[inside] @ clip[3, :3], rtol=1e-5)
-    np.testing.assert_allclose(read[..., :2][inside], place[inside], atol=2e-2)
+    away = np.concatenate([position - eye.position[:2], np.full((100, 160, 1), -eye.position[2])], axis=-1)
+    np.testing.assert_allclose(1 / result[..., 0][inside], away[inside] @ clip[3, :3], rtol=1e-5)
+    np.testing.assert_allclose(read[..., :2][inside], position[inside], atol=2e-2)
     np.testing.assert_allclose(read[..., 2][inside], np.linalg.norm(away, axis=-1)[inside], rtol=1e-5)
-    change = unpacked(found[..., 1])
+    change = unpacked(result[..., 1])
     # Of a square of four pixels each row, and each column, has one difference.
     low, left = rows - (rows - 0.5) % 2, columns - (columns - 0.5) % 2
     right = np.abs(places(rows, left + 1) - places(rows, left))
@@ -136,8 +136,8 @@ def test_the_splatted_terrain_is_that_of_the_plain_draw(software, make_sketch, m
 def test_with_its_light_it_is_too(software, make_sketch):
     sketch = make_sketch(real_terrain("view/splat", 1), size=65, relief=400.0)
     for look in LOOKS:
-        found, expected, _ = forms(software, sketch.with_camera(look))
-        assert np.sqrt(((found - expected) ** 2).mean()) < 0.01
+        result, expected, _ = forms(software, sketch.with_camera(look))
+        assert np.sqrt(((result - expected) ** 2).mean()) < 0.01
 
 
 @pytest.mark.parametrize(
@@ -156,11 +156,11 @@ def test_a_detail_image_and_a_hole_are_those_of_the_plain_draw(software, make_sk
     text += '[[pass]]\nname = "detail_image"\nuse = "./colour"\nsize = 64\n'
     text += '[view]\nuse = "view/terrain"\nsamples = 1\nset = { grid = 17, detail_repeats = 6 }\n'
     sketch = make_sketch(text, terrain=hole, colour=GRAINS).with_camera(LOOKS[0])
-    found, expected, alike = forms(software, sketch)
+    result, expected, alike = forms(software, sketch)
     magenta = (expected == (1, 0, 1)).all(axis=-1)
     assert magenta.sum() > 20
-    np.testing.assert_array_equal((found == (1, 0, 1)).all(axis=-1), magenta)
-    assert_agree(found, expected, alike)
+    np.testing.assert_array_equal((result == (1, 0, 1)).all(axis=-1), magenta)
+    assert_agree(result, expected, alike)
 
 
 def test_small_tiles_have_the_level_of_the_plain_draw(software, make_sketch):
@@ -200,7 +200,7 @@ def test_the_sky_is_there_where_nothing_else_is(software, make_sketch, view, sea
     sketch = make_sketch(text, size=65, relief=200.0)
     for look in LOOKS:
         seen = sketch.with_camera(look)
-        found = software.render(seen, size=SIZE).array.astype(int)
+        result = software.render(seen, size=SIZE).array.astype(int)
         assert "view.fast.sky" in [step.path for step in software.record.plan.walk()]
         plain = software.render(seen.plainly(), size=SIZE).array.astype(int)
         ground = software.read(seen.plainly(), "view.land", size=SIZE)
@@ -208,5 +208,5 @@ def test_the_sky_is_there_where_nothing_else_is(software, make_sketch, view, sea
         empty = (ground == sky).all(axis=-1)[::-1]
         assert empty.mean() > 0.1
         # Rays to a pixel's middle, which are interpolated or of whole numbers.
-        np.testing.assert_allclose(found[empty], plain[empty], atol=1)
-        assert np.sqrt(((found - plain) ** 2).mean()) < 0.02 * 255
+        np.testing.assert_allclose(result[empty], plain[empty], atol=1)
+        assert np.sqrt(((result - plain) ** 2).mean()) < 0.02 * 255

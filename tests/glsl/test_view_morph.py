@@ -75,8 +75,8 @@ def shown(make_sketch):
     def make(size=257, tolerance=1.0, detail="morph"):
         files = {"terrain": TERRAIN, "green": GREEN, "above": ABOVE}
         sketch = make_sketch(PASSES + TILES + VIEW, size=size, relief=RELIEF, **files)
-        given = {"tolerance": tolerance, "detail": detail}
-        return sketch.with_values({f"{p}.{k}": v for p in ("view", "above") for k, v in given.items()})
+        value = {"tolerance": tolerance, "detail": detail}
+        return sketch.with_values({f"{p}.{k}": v for p in ("view", "above") for k, v in value.items()})
 
     return make
 
@@ -130,8 +130,8 @@ def level_map(chosen: lod.Chosen, cells: tuple[int, int]) -> np.ndarray:
 
 def test_vertices_begin_to_slide_where_the_choice_of_levels_says():
     text = (GLSL / "view" / "vertices.glsl").read_text("utf-8")
-    found = re.search(r"const float MORPH_START = ([\d.]+);", text)
-    assert found is not None and float(found.group(1)) == lod.START
+    result = re.search(r"const float MORPH_START = ([\d.]+);", text)
+    assert result is not None and float(result.group(1)) == lod.START
 
 
 @pytest.mark.parametrize("size", [[257, 257], [300, 130], [129, 500]])
@@ -174,9 +174,9 @@ def edge_of(boxes: sight.Boxes, before: np.ndarray, after: np.ndarray, axis: int
 
 def test_a_pyramid_holds_the_least_and_the_most_of_its_squares():
     spans = spans_of_tiles(np.sort(np.random.default_rng(3).uniform(0, 1, (11, 5, 2)), axis=-1))
-    found = lod.pyramid(spans)
-    assert [s.shape[:2] for s in found] == [(11, 5), (6, 3), (3, 2), (2, 1), (1, 1)]
-    for level, squares in enumerate(found):
+    pyramid = lod.pyramid(spans)
+    assert [s.shape[:2] for s in pyramid] == [(11, 5), (6, 3), (3, 2), (2, 1), (1, 1)]
+    for level, squares in enumerate(pyramid):
         for j, i in np.ndindex(squares.shape[:2]):
             inside = spans[j << level :, i << level :][: 1 << level, : 1 << level]
             assert squares[j, i].tolist() == [inside[..., 0].min(), *inside[..., 1:].max(axis=(0, 1))]
@@ -191,9 +191,9 @@ def test_a_box_s_distances_are_those_of_its_nearest_and_its_furthest_point():
             sides = np.array([boxes.east[:, i], boxes.north[:, j], boxes.up[:, j, i]])
             nearest = np.clip(eye, sides[:, 0], sides[:, 1])
             corners = np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 3)
-            found = [distance[j, i] for distance in boxes.distances(eye)]
+            distances = [distance[j, i] for distance in boxes.distances(eye)]
             away = np.linalg.norm(corners - eye, axis=1)
-            assert found == pytest.approx([np.linalg.norm(nearest - eye), away.max()])
+            assert distances == pytest.approx([np.linalg.norm(nearest - eye), away.max()])
             assert boxes.longest >= np.linalg.norm(sides[:, 1] - sides[:, 0])
 
 
@@ -221,7 +221,7 @@ def test_the_background_would_show_if_levels_met_too_early(engine, shown, monkey
     monkeypatch.setattr(
         lod,
         "level_distances",
-        lambda *given: right(*given) * (1.0, 0.4, 1.0, 0.4, 1.0)[: len(right(*given))],
+        lambda *value: right(*value) * (1.0, 0.4, 1.0, 0.4, 1.0)[: len(right(*value))],
     )
     sketch = shown(tolerance=8.0)
     assert sum(holes(engine.render(sketch.with_camera(c), size=SIZE).array) for c in flight(12)) > 10
@@ -248,17 +248,18 @@ def test_what_is_left_out_is_nowhere_in_the_picture(engine, shown, monkeypatch):
 
 def heights(engine, sketch, camera) -> np.ndarray:
     """Return the heights of what is drawn for a camera, from above."""
-    found = engine.read(sketch.with_camera(camera), "above", size=SIZE)
-    assert (found[..., 2] == 1).all(), "the mesh covers the terrain"
-    return found[..., 0].astype(np.float64)
+    result = engine.read(sketch.with_camera(camera), "above", size=SIZE)
+    assert (result[..., 2] == 1).all(), "the mesh covers the terrain"
+    return result[..., 0].astype(np.float64)
 
 
 def pixels(view: sight.View, truth: np.ndarray) -> np.ndarray:
     """Return how many pixels a metre upwards takes over each place of the terrain, 0 outside the picture."""
     east, north = np.meshgrid(*((np.arange(n) + 0.5) / n * e for n, e in zip(SIZE, EXTENT, strict=True)))
-    place = np.stack([east, north, truth, np.ones_like(truth)], axis=-1)
+    position = np.stack([east, north, truth, np.ones_like(truth)], axis=-1)
     low, high = (
-        np.moveaxis((place + np.array([0, 0, up, 0])) @ view.clip_from_world.T, -1, 0) for up in (0.0, 0.01)
+        np.moveaxis((position + np.array([0, 0, up, 0])) @ view.clip_from_world.T, -1, 0)
+        for up in (0.0, 0.01)
     )
     inside = (np.abs(low[:3]) <= low[3]).all(axis=0)
     low, high = (c[:2] / np.where(inside, c[3], 1.0) for c in (low, high))
@@ -289,14 +290,14 @@ def jumps(engine, sketch, detail: str, step: float) -> float:
     sketch = sketch.with_values({"above.detail": detail})
     most = 0.0
     for camera in list(flight(12))[1::3]:
-        found, before = 0.0, None
+        result, before = 0.0, None
         for k in range(4):
             now = replace(camera, distance=camera.distance * (1.3 + 0.02 * k))
             near = replace(now, distance=now.distance * (1 + step))
             before = heights(engine, sketch, now)
             moved = abs(heights(engine, sketch, near) - before) * pixels(view_of(now), before)
-            found = max(found, moved.max())
-        most = max(most, found)
+            result = max(result, moved.max())
+        most = max(most, result)
     return most
 
 

@@ -29,8 +29,8 @@ DIGITS = [
 
 def read_sign(dots: np.ndarray) -> str:
     """Return the digit that 7 x 5 dots are, top row first; "" for none."""
-    found = [str(k) for k, digit in enumerate(DIGITS) if (digit == dots).all()]
-    return found[0] if found else ""
+    result = [str(k) for k, digit in enumerate(DIGITS) if (digit == dots).all()]
+    return result[0] if result else ""
 
 
 # ── numbers ──────────────────────────────────────────────────────────────────
@@ -53,16 +53,16 @@ def test_a_number_is_written_as_python_writes_it(on_gpu, number, decimals, text)
     assert on_gpu(NUMBERS, f"number_width({number}, {decimals})")[0] == wide
     x, y = np.meshgrid(np.arange(-3, wide + 4), np.arange(-2, 10))
     pixels = np.stack([x.ravel(), y.ravel()], axis=-1).astype(np.int32)
-    found = on_gpu(NUMBERS, f"number_at(p, {number}, {decimals})", p=pixels).reshape(x.shape)[::-1] > 0.5
+    result = on_gpu(NUMBERS, f"number_at(p, {number}, {decimals})", p=pixels).reshape(x.shape)[::-1] > 0.5
     for k, sign in enumerate(text):
-        dots = found[3:10, 3 + 6 * k : 8 + 6 * k]
+        dots = result[3:10, 3 + 6 * k : 8 + 6 * k]
         if sign == "-":
             assert dots[3].sum() == 3 and dots.sum() == 3
         elif sign == ".":
             assert dots[5:].sum() == 4 and dots.sum() == 4
         else:
             assert read_sign(dots) == sign
-    inked = np.argwhere(found)
+    inked = np.argwhere(result)
     assert inked[:, 0].min() >= 3 and inked[:, 0].max() <= 9
     assert inked[:, 1].min() >= 3 and inked[:, 1].max() < 3 + wide
 
@@ -77,14 +77,14 @@ def test_elevations_are_interpolated_along_the_line(engine, make_sketch):
     text += f"set = {{ start = {list(start)}, finish = {list(finish)} }}\n"
     sketch = make_sketch(text, size=[33, 21], relief=250.0)
     height = engine.read(sketch, "height").astype(float)
-    found = engine.read(sketch, "line")[0]
+    result = engine.read(sketch, "line")[0]
     t = np.linspace(0, 1, 200)
     x, y = (np.array([(1 - t) * a + t * b for a, b in zip(start, finish, strict=True)]).T * [32, 20]).T
     i, j = np.minimum(x.astype(int), 31), np.minimum(y.astype(int), 19)
     fx, fy = x - i, y - j
     south = height[j, i] * (1 - fx) + height[j, i + 1] * fx
     north = height[j + 1, i] * (1 - fx) + height[j + 1, i + 1] * fx
-    np.testing.assert_allclose(found, 70 + 250 * (south * (1 - fy) + north * fy), atol=2e-3)
+    np.testing.assert_allclose(result, 70 + 250 * (south * (1 - fy) + north * fy), atol=2e-3)
 
 
 # ── the section ──────────────────────────────────────────────────────────────
@@ -112,18 +112,18 @@ class Section:
 
     def up(self) -> dict[int, int]:
         """Return the elevations at the left axis by the picture's row."""
-        found = {}
+        numbers = {}
         for row in np.flatnonzero(self.ink[: self.foot - 4, self.left - 3]):
             text, x = "", self.left - 11
             while sign := read_sign(self.ink[row - 3 : row + 4, x : x + 5]):
                 text, x = sign + text, x - 6
             if text:  # a tick between two rows is drawn in both
-                found[int(row)] = int(text)
-        return found
+                numbers[int(row)] = int(text)
+        return numbers
 
     def along(self) -> dict[int, int]:
         """Return the distances under the lower axis by the picture's column."""
-        found = {}
+        numbers = {}
         for column in np.flatnonzero(self.ink[self.foot + 4, self.left + 6 :]) + self.left + 6:
             for count in range(1, 6):
                 x = column - (6 * count - 1) // 2
@@ -132,14 +132,14 @@ class Section:
                     for k in range(count)
                 ]
                 if all(signs):
-                    found[int(column)] = int("".join(signs))
-        return found
+                    numbers[int(column)] = int("".join(signs))
+        return numbers
 
 
 @pytest.fixture
 def section(make_sketch):
-    def read(engine, terrain, given="start = [0.0, 0.5], finish = [1.0, 0.5]", **more) -> Section:
-        sketch: Sketch = make_sketch(PASSES.format("", given), terrain=HEIGHT.format(terrain), **more)
+    def read(engine, terrain, value="start = [0.0, 0.5], finish = [1.0, 0.5]", **more) -> Section:
+        sketch: Sketch = make_sketch(PASSES.format("", value), terrain=HEIGHT.format(terrain), **more)
         return Section(engine.render(sketch, size=SIZE).array)
 
     return read
@@ -148,16 +148,16 @@ def section(make_sketch):
 @pytest.mark.parametrize(("extent", "relief"), [(1000.0, 100.0), (5000.0, 640.0), (800.0, 37.0)])
 def test_numbers_at_the_ticks_are_those_of_the_curve(engine, section, extent, relief):
     """On a plane: under a number along, the curve is at the elevation that the numbers upwards say."""
-    found = section(engine, EASTWARD, size=65, extent=extent, relief=relief)
-    up, along = found.up(), found.along()
+    result = section(engine, EASTWARD, size=65, extent=extent, relief=relief)
+    up, along = result.up(), result.along()
     assert len(up) >= 4 and len(along) >= 3
     rows, elevations = np.array(list(up.items())).T
     columns, distances = np.array(list(along.items())).T
     slope, base = np.polyfit(rows, elevations, 1)
     np.testing.assert_allclose(slope * rows + base, elevations, atol=abs(slope) * 0.8)
     for column, distance in zip(columns, distances, strict=True):
-        column = min(column, max(found.curve))  # the last tick stands on the section's rim
-        elevation = slope * found.curve[column] + base
+        column = min(column, max(result.curve))  # the last tick stands on the section's rim
+        elevation = slope * result.curve[column] + base
         np.testing.assert_allclose(elevation, relief * distance / extent, atol=abs(slope) * 1.5)
 
 
@@ -173,15 +173,15 @@ def test_ticks_stand_at_round_numbers(any_engine, section):
 def test_elevations_are_above_sea_level_and_a_long_line_is_in_kilometres(any_engine, make_sketch):
     text = "base_elevation = 1400.0\n" + PASSES.format("", "start = [0.0, 0.5], finish = [1.0, 0.5]")
     sketch = make_sketch(text, size=65, extent=40000.0, relief=500.0, terrain=HEIGHT.format(EASTWARD))
-    found = Section(any_engine.render(sketch, size=SIZE).array)
-    assert min(found.up().values()) >= 1300 and max(found.up().values()) <= 2000
-    assert max(found.along().values()) in (35, 40)
+    result = Section(any_engine.render(sketch, size=SIZE).array)
+    assert min(result.up().values()) >= 1300 and max(result.up().values()) <= 2000
+    assert max(result.along().values()) in (35, 40)
 
 
 def test_the_section_has_room_for_the_line_or_for_the_whole_terrain(any_engine, section):
-    given = 'start = [0.0, 0.5], finish = [0.3, 0.5], elevations = "{}"'
+    value = 'start = [0.0, 0.5], finish = [0.3, 0.5], elevations = "{}"'
     line, terrain = (
-        section(any_engine, EASTWARD, given.format(what), size=65, relief=1000.0)
+        section(any_engine, EASTWARD, value.format(what), size=65, relief=1000.0)
         for what in ("of the line", "of the land")
     )
     assert max(line.up().values()) <= 330

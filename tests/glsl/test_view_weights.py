@@ -22,35 +22,35 @@ def shares(width, height):
 @pytest.mark.parametrize("size", [[33, 17], [65, 50]])
 def test_colours_are_mixed_by_weight(engine, make_sketch, size):
     sketch = make_sketch(PASSES.format(f"size = {size}\n"), size=[33, 17], weights=BILINEAR)
-    found = engine.read(sketch, "colour").astype(float)
-    np.testing.assert_allclose(found[..., :3], shares(*size) @ COLOURS, atol=2e-3)
-    assert (found[..., 3] == 1).all()
+    result = engine.read(sketch, "colour").astype(float)
+    np.testing.assert_allclose(result[..., :3], shares(*size) @ COLOURS, atol=2e-3)
+    assert (result[..., 3] == 1).all()
 
 
 def test_the_strongest_alone(any_engine, make_sketch):
     sketch = make_sketch(PASSES.format('set = { shown = "strongest" }\n'), size=[32, 16], weights=BILINEAR)
-    found = any_engine.read(sketch, "colour").astype(float)[..., :3]
-    np.testing.assert_allclose(found, COLOURS[shares(32, 16).argmax(axis=-1)], atol=2e-3)
+    result = any_engine.read(sketch, "colour").astype(float)[..., :3]
+    np.testing.assert_allclose(result, COLOURS[shares(32, 16).argmax(axis=-1)], atol=2e-3)
 
 
 @pytest.mark.parametrize(("layer", "name"), list(enumerate(("grass", "rock", "snow", "path"))))
 def test_one_layer_alone_is_grey(any_engine, make_sketch, layer, name):
     sketch = make_sketch(PASSES.format(f'set = {{ shown = "{name}" }}\n'), size=[33, 17], weights=BILINEAR)
-    found = any_engine.read(sketch, "colour").astype(float)
+    result = any_engine.read(sketch, "colour").astype(float)
     for channel in range(3):
-        np.testing.assert_allclose(found[..., channel], shares(33, 17)[..., layer], atol=1e-3)
+        np.testing.assert_allclose(result[..., channel], shares(33, 17)[..., layer], atol=1e-3)
 
 
 def test_weights_that_do_not_sum_to_one_show(any_engine, make_sketch):
     sketch = make_sketch(
         PASSES.format(""), size=5, weights=MAP.format("vec4(0.25 + 0.0 * s.x, 0.0, 0.0, 0.0)")
     )
-    found = any_engine.read(sketch, "colour")[..., :3]
-    np.testing.assert_allclose(found, np.broadcast_to(0.25 * COLOURS[0], found.shape), atol=1e-3)
+    result = any_engine.read(sketch, "colour")[..., :3]
+    np.testing.assert_allclose(result, np.broadcast_to(0.25 * COLOURS[0], result.shape), atol=1e-3)
 
 
 def test_a_finer_map_is_averaged(any_engine, make_sketch):
     stripes = MAP.format("texel.x % 2 == 0 ? vec4(1.0, 0.0, 0.0, 0.0) : vec4(0.0, 1.0, 0.0, 0.0)")
     sketch = make_sketch(PASSES.format("size = 17\n"), size=128, weights=stripes)
-    found = any_engine.read(sketch, "colour").astype(float)[2:-2, 2:-2, :3]
-    np.testing.assert_allclose(found, np.broadcast_to(COLOURS[:2].mean(axis=0), found.shape), atol=0.02)
+    result = any_engine.read(sketch, "colour").astype(float)[2:-2, 2:-2, :3]
+    np.testing.assert_allclose(result, np.broadcast_to(COLOURS[:2].mean(axis=0), result.shape), atol=0.02)

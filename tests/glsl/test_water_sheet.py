@@ -103,9 +103,9 @@ def test_a_river_elsewhere_floods_no_shore(any_engine, make_sketch):
     river = '[[pass]]\nname = "river"\nuse = "./nowhere"\n'
     with_river, without = (
         any_engine.read(
-            sketch_of(make_sketch, BOWL, text.format(one), [41, 33], lake=LAKE, nowhere=nowhere), "over"
+            sketch_of(make_sketch, BOWL, text.format(river), [41, 33], lake=LAKE, nowhere=nowhere), "over"
         )
-        for one in (river, "")
+        for river in (river, "")
     )
     np.testing.assert_array_equal(with_river, without)
 

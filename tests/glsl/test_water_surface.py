@@ -32,8 +32,8 @@ def towards(azimuth, elevation):
 
 def test_water_mirrors_the_mean_of_both_polarisations(on_gpu):
     cosine = np.linspace(0.001, 0.9999, 400)
-    found = on_gpu("water/fresnel.glsl", "fresnel_of_water(c)", c=cosine.astype(np.float32))
-    np.testing.assert_allclose(found, fresnel(cosine), rtol=2e-4, atol=1e-6)
+    result = on_gpu("water/fresnel.glsl", "fresnel_of_water(c)", c=cosine.astype(np.float32))
+    np.testing.assert_allclose(result, fresnel(cosine), rtol=2e-4, atol=1e-6)
     assert on_gpu("water/fresnel.glsl", "fresnel_of_water(c)", c=np.float32([0.0]))[0] == 1.0
 
 
@@ -45,8 +45,8 @@ def test_schlick_is_off_by_up_to_six_percent_of_the_light(on_gpu):
     assert off[worst] == pytest.approx(0.059, abs=5e-4)
     assert np.degrees(np.arccos(cosine[worst])) == pytest.approx(84.0, abs=0.5)
     schlick = "0.02 + 0.98 * pow(1.0 - c, 5.0) - fresnel_of_water(c)"
-    found = on_gpu("water/fresnel.glsl", schlick, c=cosine.astype(np.float32))
-    np.testing.assert_allclose(found, off, atol=2e-5)
+    result = on_gpu("water/fresnel.glsl", schlick, c=cosine.astype(np.float32))
+    np.testing.assert_allclose(result, off, atol=2e-5)
 
 
 def test_what_it_mirrors_of_an_even_sky_is_the_integral(on_gpu):
@@ -95,9 +95,9 @@ def waves(make_sketch, any_engine):
         by = {}
         for key, value in values.items():
             by |= {
-                f"{one}.{key}": value
-                for one in ("waves", "slopes")
-                if one == "slopes" or key in ("wind", "fetch")
+                f"{name}.{key}": value
+                for name in ("waves", "slopes")
+                if name == "slopes" or key in ("wind", "fetch")
             }
         return any_engine.read(sketch.with_values(by), name, time=time).astype(float)
 
@@ -109,13 +109,13 @@ def test_drawn_slopes_and_variance_are_the_same_at_any_distance(waves, wind, fet
     """By Cox and Munk 0.003 + 0.00512 U; 6084 places, many waves apart: their mean is off by 2 % or so."""
     drawn, whole = [], []
     for pixel in [0.005, 0.05, 0.2, 0.7, 2.0, 6.0, 40.0]:
-        found = waves(wind=wind, fetch=fetch, row=row, pixel=pixel).reshape(-1, 4)
-        square = (found[:, :2] ** 2).sum(axis=1).mean()
+        result = waves(wind=wind, fetch=fetch, row=row, pixel=pixel).reshape(-1, 4)
+        square = (result[:, :2] ** 2).sum(axis=1).mean()
         drawn.append(square)
-        whole.append(square + found[:, 2].mean())
-    np.testing.assert_allclose(whole, found[0, 3], rtol=0.05)
+        whole.append(square + result[:, 2].mean())
+    np.testing.assert_allclose(whole, result[0, 3], rtol=0.05)
     if row == 0:
-        assert found[0, 3] == pytest.approx(0.003 + 0.00512 * wind)
+        assert result[0, 3] == pytest.approx(0.003 + 0.00512 * wind)
     assert drawn[0] > 0.25 * whole[0] and drawn[-1] == 0.0
     assert np.all(np.diff(drawn) <= 0.03 * whole[0])
 
@@ -140,13 +140,13 @@ def test_waves_are_as_long_and_as_high_as_the_fetch_lets_them_grow(on_gpu):
     """A fully grown sea by Pierson and Moskowitz: its peak at 0.88 g / U, 0.21 U^2 / g high."""
     wind = np.float32([5.0, 10.0, 10.0])
     fetch = np.float32([1e6, 5e6, 2000.0])
-    found = on_gpu("water/waves.glsl", f"vec2({SEA}.longest, {SEA}.high)", wind=wind, fetch=fetch)
-    np.testing.assert_allclose(found[1], [2 * np.pi * 100 / (9.81 * 0.88**2), 0.21 * 100 / 9.81], rtol=1e-3)
+    result = on_gpu("water/waves.glsl", f"vec2({SEA}.longest, {SEA}.high)", wind=wind, fetch=fetch)
+    np.testing.assert_allclose(result[1], [2 * np.pi * 100 / (9.81 * 0.88**2), 0.21 * 100 / 9.81], rtol=1e-3)
     # JONSWAP, 10 m/s over 2 km: a peak frequency of 3.5 g/U (g F / U^2)^-0.33 = 0.567 Hz, 0.23 m high.
     peak = 3.5 * 9.81 / 10 * (9.81 * 2000 / 100) ** -0.33
-    assert found[2, 0] == pytest.approx(9.81 / (2 * np.pi * peak**2), rel=0.05)
-    assert found[2, 1] == pytest.approx(0.0016 * np.sqrt(9.81 * 2000 / 100) * 100 / 9.81, rel=1e-3)
-    assert np.all(found[0] < found[1]) and np.all(found[2] < found[0])
+    assert result[2, 0] == pytest.approx(9.81 / (2 * np.pi * peak**2), rel=0.05)
+    assert result[2, 1] == pytest.approx(0.0016 * np.sqrt(9.81 * 2000 / 100) * 100 / 9.81, rel=1e-3)
+    assert np.all(result[0] < result[1]) and np.all(result[2] < result[0])
 
 
 # ── the rough mirror ─────────────────────────────────────────────────────────────
@@ -179,7 +179,7 @@ def test_a_rough_surface_mirrors_what_its_visible_slopes_do(on_gpu):
         for variance in [1e-4, 0.01, 0.03, 0.06]:
             to_eye = towards(np.float64(70.0), elevation)
             mirrors = "mirrors_of(v, s, variance)"
-            found = on_gpu(
+            result = on_gpu(
                 "water/rough_mirror.glsl",
                 f"vec2({mirrors}.mirrored, {mirrors}.area)",
                 v=tuple(map(float, to_eye)),
@@ -187,16 +187,16 @@ def test_a_rough_surface_mirrors_what_its_visible_slopes_do(on_gpu):
                 variance=np.float32(variance),
             )[0]
             share, area = mirrored_by_slopes(to_eye, (0.03, -0.02), variance)
-            assert found[0] == pytest.approx(share, abs=bound), (elevation, variance)
-            assert found[1] == pytest.approx(area, abs=0.012), (elevation, variance)
+            assert result[0] == pytest.approx(share, abs=bound), (elevation, variance)
+            assert result[1] == pytest.approx(area, abs=0.012), (elevation, variance)
 
 
 def test_calm_water_is_a_mirror(on_gpu):
     to_eye = towards(np.linspace(0, 300, 20), 17.0)
-    found = on_gpu(
+    result = on_gpu(
         "water/rough_mirror.glsl", "mirrors_of(v, vec2(0.0), 0.0).to[1]", v=to_eye.astype(np.float32)
     )
-    np.testing.assert_allclose(found, to_eye * [-1, -1, 1], atol=1e-5)
+    np.testing.assert_allclose(result, to_eye * [-1, -1, 1], atol=1e-5)
     share = on_gpu(
         "water/rough_mirror.glsl", "mirrors_of(v, vec2(0.0), 0.0).mirrored", v=to_eye.astype(np.float32)
     )
@@ -270,20 +270,22 @@ def test_red_goes_first_and_no_more_goes_in_than_falls_on_it(on_gpu):
 
 def test_the_pattern_of_foam_has_its_cover(on_gpu):
     """200,000 places, of which 1000 are foam at the least: their share is off by 3 % or so."""
-    place = np.random.default_rng(2).uniform(0, 20_000, (200_000, 2)).astype(np.float32)
+    position = np.random.default_rng(2).uniform(0, 20_000, (200_000, 2)).astype(np.float32)
     for cover in (0.005, 0.02, 0.1, 0.5):
         for pixel in (0.05, 0.7, 30.0):
-            given = {"cover": np.float32(cover), "pixel": np.float32(pixel)}
-            found = on_gpu("water/foam.glsl", "foam_of(cover, place, 2.0, pixel)", place=place, **given)
-            assert found.mean() == pytest.approx(cover, rel=0.15), (cover, pixel)
-            assert found.min() >= 0 and found.max() <= 1
+            value = {"cover": np.float32(cover), "pixel": np.float32(pixel)}
+            result = on_gpu("water/foam.glsl", "foam_of(cover, place, 2.0, pixel)", place=position, **value)
+            assert result.mean() == pytest.approx(cover, rel=0.15), (cover, pixel)
+            assert result.min() >= 0 and result.max() <= 1
 
 
 def test_sparse_foam_is_no_specks_of_a_pixel(on_gpu):
     """Of a cover of 0.005 patches are about 0.28 m wide in lumps of 2 m: seen by less than 0.14 m."""
-    place = np.random.default_rng(3).uniform(0, 20_000, (20_000, 2)).astype(np.float32)
+    position = np.random.default_rng(3).uniform(0, 20_000, (20_000, 2)).astype(np.float32)
     near, far = (
-        on_gpu("water/foam.glsl", "foam_of(0.005, place, 2.0, pixel)", place=place, pixel=np.float32(pixel))
+        on_gpu(
+            "water/foam.glsl", "foam_of(0.005, place, 2.0, pixel)", place=position, pixel=np.float32(pixel)
+        )
         for pixel in (0.05, 0.15)
     )
     assert near.max() > 0.9
@@ -292,8 +294,8 @@ def test_sparse_foam_is_no_specks_of_a_pixel(on_gpu):
 
 def test_waves_break_where_it_is_shallow(on_gpu):
     depth = np.float32([0.0, 0.3, 1.0, 1.3, 3.0])
-    found = on_gpu("water/foam.glsl", "shore_cover(d, 1.0, 2.0, 0.3)", d=depth)
-    assert np.all(found[:3] > 0.01) and np.all(found[3:] == 0)
+    result = on_gpu("water/foam.glsl", "shore_cover(d, 1.0, 2.0, 0.3)", d=depth)
+    assert np.all(result[:3] > 0.01) and np.all(result[3:] == 0)
     assert on_gpu("water/foam.glsl", "shore_cover(0.001, 0.0, 2.0, 0.3)")[0] == 0
 
 
@@ -301,6 +303,6 @@ def test_waves_break_where_it_is_shallow(on_gpu):
 def test_pixels_of_any_width_have_as_much_of_the_wash(on_gpu, pixel):
     """A ramp from 1 at the shore to 0 at 4 m has the area 2 m, however it is cut into pixels."""
     away = (np.arange(-50, 1000) * pixel + 0.3 * pixel).astype(np.float32)
-    found = on_gpu("water/foam.glsl", "wash_cover(away, 4.0, pixel)", away=away, pixel=np.float32(pixel))
-    assert found.sum() * pixel == pytest.approx(2.0, rel=1e-3)
-    assert found.min() >= 0 and found.max() <= 1 and np.all(found[away > 4.0 + pixel] == 0)
+    result = on_gpu("water/foam.glsl", "wash_cover(away, 4.0, pixel)", away=away, pixel=np.float32(pixel))
+    assert result.sum() * pixel == pytest.approx(2.0, rel=1e-3)
+    assert result.min() >= 0 and result.max() <= 1 and np.all(result[away > 4.0 + pixel] == 0)

@@ -20,8 +20,8 @@ def sketch_of(make_sketch):
 @pytest.mark.parametrize("size", [(33, 33), (40, 17), (1, 1), (2, 2)], ids=str)
 def test_each_height_is_the_hash_of_its_place(engine, sketch_of, python_random, size):
     y, x = np.mgrid[0 : size[1], 0 : size[0]]
-    wanted = python_random(x, y, 11 + salt("generation/white_noise"))
-    np.testing.assert_array_equal(engine.read(sketch_of(size, seed=11), "terrain"), wanted)
+    expected = python_random(x, y, 11 + salt("generation/white_noise"))
+    np.testing.assert_array_equal(engine.read(sketch_of(size, seed=11), "terrain"), expected)
 
 
 @pytest.mark.parametrize("seed", [0, 7, 9999])

@@ -79,10 +79,10 @@ def flooded(height, spacing, fall):
             j, i = y + down, x + along
             if not (0 <= j < rows and 0 <= i < columns) or edge[j, i]:
                 continue
-            found = max(float(height[j, i]), here + fall * np.hypot(along * spacing[0], down * spacing[1]))
-            if found < level[j, i]:
-                level[j, i] = found
-                heapq.heappush(heap, (found, j, i))
+            result = max(float(height[j, i]), here + fall * np.hypot(along * spacing[0], down * spacing[1]))
+            if result < level[j, i]:
+                level[j, i] = result
+                heapq.heappush(heap, (result, j, i))
     return level
 
 

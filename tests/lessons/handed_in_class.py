@@ -27,67 +27,81 @@ def around(text: str, body: str, before: str = "") -> str:
     """Return a kernel's text with another body, which may call the kernel as ``given()``."""
     match = _KERNEL.search(text)
     assert match, "a kernel of another form"
-    kind, place, name = match.groups()
-    inner = text.replace(match[0], f"{kind} inner_kernel({place} {name}) {{", 1)
+    kind, position, name = match.groups()
+    inner = text.replace(match[0], f"{kind} inner_kernel({position} {name}) {{", 1)
     body = body.replace("given()", f"inner_kernel({name})")
-    return f"{inner}\n{before}\n{kind} kernel({place} {name}) {{ {body} }}\n"
+    return f"{inner}\n{before}\n{kind} kernel({position} {name}) {{ {body} }}\n"
 
 
-def right(one: Assignment) -> str:
-    """Return the file of a student who has solved an exercise, in words of their own."""
-    if one.task.file:
-        return answer_text(one.task) + "\n// by myself\n"
-    scene = one.task.scene
+def right(assignment: Assignment) -> str:
+    """Return the file of a student who has solved an exercise, as text of their own."""
+    if assignment.task.file:
+        return answer_text(assignment.task) + "\n// by myself\n"
+    scene = assignment.task.scene
     assert scene is not None
-    return with_values(one, {p: v for p, v in scene.values if p in one.task.sliders})
+    return with_values(assignment, {p: v for p, v in scene.values if p in assignment.task.sliders})
 
 
-def with_values(one: Assignment, values: dict[str, object]) -> str:
+def with_values(assignment: Assignment, values: dict[str, object]) -> str:
     """Return the sketch of an exercise with values set in it."""
-    text = student_files(one)[one.file].decode()
+    text = student_files(assignment)[assignment.file].decode()
     names = re.findall(r'^name\s*=\s*"(\w+)"', text, re.MULTILINE)
     for path, value in values.items():
         owner, _, rest = path.partition(".")
-        place = ("view", "set") if owner == "view" else ("pass", names.index(owner), "set")
-        text = put(text, place, rest, written_value(one.task.begin.sketch, path, value, ""))
+        position = ("view", "set") if owner == "view" else ("pass", names.index(owner), "set")
+        text = put(text, position, rest, written_value(assignment.task.begin.sketch, path, value, ""))
     return text
 
 
-def untouched(one: Assignment) -> str:
+def untouched(assignment: Assignment) -> str:
     """Return the file as it was handed out."""
-    return starter_text(one.task) if one.task.file else student_files(one)[one.file].decode()
+    return (
+        starter_text(assignment.task)
+        if assignment.task.file
+        else student_files(assignment)[assignment.file].decode()
+    )
 
 
-def nearly(one: Assignment) -> str:
+def nearly(assignment: Assignment) -> str:
     """Return a kernel that is a little off everywhere; the hand-out where values are set."""
-    return around(answer_text(one.task), "return given() * 0.97;") if one.task.file else untouched(one)
+    return (
+        around(answer_text(assignment.task), "return given() * 0.97;")
+        if assignment.task.file
+        else untouched(assignment)
+    )
 
 
-def wrong(one: Assignment) -> str:
+def wrong(assignment: Assignment) -> str:
     """Return a text that does not compile."""
-    return around(answer_text(one.task), "return given() + hieght;") if one.task.file else "set = {"
+    return (
+        around(answer_text(assignment.task), "return given() + hieght;")
+        if assignment.task.file
+        else "set = {"
+    )
 
 
-def endless(one: Assignment) -> str:
+def endless(assignment: Assignment) -> str:
     """Return a kernel that never ends, which no compiler can see."""
     # llvmpipe leaves a loop after 65 535 turns: two, one in the other, are endless for it too.
     inner = "for (;;) { k = (k * 5 + 1) & 255; if (k > 300) break; }"
     loop = f"int k = 0; for (;;) {{ {inner} if (k > 301) break; }} return given() + float(k) + 1.0;"
-    return around(answer_text(one.task), loop) if one.task.file else untouched(one)
+    return around(answer_text(assignment.task), loop) if assignment.task.file else untouched(assignment)
 
 
-def hostile(one: Assignment, secret: Path) -> dict[str, str]:
+def hostile(assignment: Assignment, secret: Path) -> dict[str, str]:
     """Return texts that are made to do harm, by what they are."""
-    if not one.task.file:
-        text = untouched(one)
+    if not assignment.task.file:
+        text = untouched(assignment)
         return {
             "climbs": text + '\n[[pass]]\nname = "x"\nuse = "../../other/x"\n',
             "device": text + '\n[[preset]]\nname = "x"\nset = { "height.image" = "/dev/zero" }\n',
             "nested": "a = " + "[" * 5000 + "]" * 5000,
         }
-    text = answer_text(one.task)
+    text = answer_text(assignment.task)
     macros = "".join(f"#define M{k}(x) M{k - 1}(x) + M{k - 1}(x) + M{k - 1}(x)\n" for k in range(1, 15))
-    model = "../" * 8 + str(Path("playground/lessons/exercises").resolve() / one.task.answer).lstrip("/")
+    model = "../" * 8 + str(Path("playground/lessons/exercises").resolve() / assignment.task.answer).lstrip(
+        "/"
+    )
     return {
         "other": f'#include "{secret}"\n{text}',
         "model": f'#include "{model}"\n',
@@ -121,14 +135,16 @@ def write_class(folder: Path, count: int, assignments: Sequence[Assignment]) -> 
     folder.mkdir(parents=True, exist_ok=True)
     for number in range(count):
         files: dict[str, str | bytes] = {}
-        for place, one in enumerate(assignments):
-            make = endless if (number + place) % 33 == 32 else kinds[(number + 3 * place) % len(kinds)]
-            mark = f"\n// student {number}\n" if one.task.file else f"\n# student {number}\n"
-            files[f"week/{one.name}/{one.file}"] = make(one) + mark  # no two texts are the same
+        for index, assignment in enumerate(assignments):
+            make = endless if (number + index) % 33 == 32 else kinds[(number + 3 * index) % len(kinds)]
+            mark = f"\n// student {number}\n" if assignment.task.file else f"\n# student {number}\n"
+            files[f"week/{assignment.name}/{assignment.file}"] = (
+                make(assignment) + mark
+            )  # no two texts are the same
         write(folder, f"Student {number:03}", files, zipped=number % 2 == 1)
 
 
 if __name__ == "__main__":
     chosen = assignments_of(read_lesson(name) for name in sys.argv[3:])[:3]
-    print("\n".join(one.name for one in chosen))
+    print("\n".join(item.name for item in chosen))
     write_class(Path(sys.argv[1]), int(sys.argv[2]), chosen)

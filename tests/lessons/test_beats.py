@@ -27,8 +27,8 @@ from playground.lessons.present.beat import BOTH, Beat, Still, scene_of
 from playground.lessons.present.beats import beats_of, first_of_page
 from playground.lessons.present.block_beats import BOARD_WORDS, CODE_LINES
 from playground.lessons.present.labels import LABELS
-from playground.lessons.present.sentences import MOST_WORDS, sentences, shown_of, words
-from playground.lessons.present.spoken import LEAST, LETTERS, cues_of, plain_text, seconds_of, srt
+from playground.lessons.present.sentences import MAX_WORDS, sentences, shown_of, words
+from playground.lessons.present.spoken import LETTERS, MIN_SECONDS, cues_of, plain_text, seconds_of, srt
 from playground.lessons.read import read_lesson, summaries
 from playground.lessons.scenes import Sketches
 
@@ -38,7 +38,7 @@ pytestmark = pytest.mark.slow
 @cache
 def presented(language: str) -> list[tuple[Lesson, tuple[Beat, ...]]]:
     sketches = Sketches()
-    lessons = [read_lesson(one.name, language, sketches) for one in summaries()]
+    lessons = [read_lesson(summary.name, language, sketches) for summary in summaries()]
     return [(lesson, beats_of(lesson)) for lesson in lessons]
 
 
@@ -50,13 +50,13 @@ def test_every_lesson_is_told_whole_and_in_its_order(language: str) -> None:
         assert {beat.page for beat in beats} == {
             page for page, section in enumerate(lesson.sections) if page == 0 or _tells(section.blocks)
         }, lesson.name
-        told = "\n".join(beat.notes for beat in beats)
+        text = "\n".join(beat.notes for beat in beats)
         at = 0
         for block in lesson.blocks:
             if isinstance(block, Prose) and block.kind in ("paragraph", "formula"):
-                found = told.find(block.markdown, at)
-                assert found >= 0, f"{lesson.name}: {block.markdown}"
-                at = found
+                result = text.find(block.markdown, at)
+                assert result >= 0, f"{lesson.name}: {block.markdown}"
+                at = result
         shown = [(beat.still.block, beat.still.index, beat.still.broken) for beat in beats if beat.still]
         for block in lesson.blocks:
             for picture in _pictures(block):
@@ -69,7 +69,7 @@ def test_no_beat_has_more_to_read_than_a_class_can(language: str) -> None:
         for beat in beats:
             where = f"{lesson.name}: {beat}"
             text = beat.shown.split("\n\n")[0]
-            assert words(text) <= MOST_WORDS or len(sentences(text)) == 1, where
+            assert words(text) <= MAX_WORDS or len(sentences(text)) == 1, where
             assert beat.code.count("\n") < CODE_LINES, where
             items = beat.board.count("\n") + 1 if beat.board.lstrip()[:1] in "-*|" else 1
             assert words(beat.board) <= BOARD_WORDS or items == 1, where
@@ -89,7 +89,7 @@ def test_answers_and_fixes_come_after_what_asks_for_them(language: str) -> None:
                 until = next(beat for beat in beats if beat.notes == early)
                 ahead = beats[: beats.index(until) + 1]
                 stills = [beat.still for beat in ahead if beat.still is not None]
-                assert all(still.block != block.name or still.begun for still in stills), block.name
+                assert all(still.block != block.name or still.started for still in stills), block.name
             else:
                 continue
             first = next(n for n, beat in enumerate(beats) if early in (beat.notes, beat.board))
@@ -113,16 +113,16 @@ def test_an_exercise_shows_its_own_picture_or_no_other_task_s(language: str) -> 
             still = asked.still
             if isinstance(task, Exercise) and task.begin is None:
                 others = {other.name for other in tasks} - {task.name}
-                assert still is None or still.block not in others or not still.begun, task.name
+                assert still is None or still.block not in others or not still.started, task.name
             else:
-                assert still == Still(task.name, begun=isinstance(task, Exercise)), task.name
+                assert still == Still(task.name, started=isinstance(task, Exercise)), task.name
                 assert asked.sliders == (() if task.file or isinstance(task, Challenge) else task.sliders)
 
 
 def test_an_exercise_shows_what_a_student_begins_from(any_engine: Engine) -> None:
     lesson = read_lesson("first_height")
-    for begun, height in ((True, 0.0), (False, 0.5)):  # empty.glsl returns 0, the solution 0.5
-        scene = scene_of(lesson, Still("constant", begun=begun))
+    for started, height in ((True, 0.0), (False, 0.5)):  # empty.glsl returns 0, the solution 0.5
+        scene = scene_of(lesson, Still("constant", started=started))
         assert scene is not None
         heights = any_engine.read(scene.sketch.with_values({"size": 17}), "height")
         assert heights.min() == heights.max() == height
@@ -180,9 +180,9 @@ def test_the_beats_of_a_small_lesson(lesson: Lesson) -> None:
     ],
 )
 def test_sentences_end_where_a_reader_pauses(text: str, count: int) -> None:
-    found = sentences(text)
-    assert len(found) == count
-    assert " ".join(found) == text
+    result = sentences(text)
+    assert len(result) == count
+    assert " ".join(result) == text
 
 
 def test_words_are_counted_as_they_are_read() -> None:
@@ -207,13 +207,13 @@ def test_subtitles_say_the_notes_over_the_whole_beat() -> None:
     assert seconds == pytest.approx(words(text) * 60 / 200)
     cues = cues_of(beat, 7.0, seconds)
     assert cues[0].begin == 7.0 and cues[-1].end == pytest.approx(7.0 + seconds)
-    assert all(one.end == other.begin for one, other in pairwise(cues))
+    assert all(first.end == other.begin for first, other in pairwise(cues))
     lines = [line for cue in cues for line in cue.text.split("\n")]
     assert max(map(len, lines)) <= LETTERS and all(cue.text.count("\n") < 2 for cue in cues)
     assert " ".join(lines) == plain_text(text).replace("\\", "")
     assert lines[0].startswith("A texel has a/b of it.")
     assert srt(cues).startswith("1\n00:00:07,000 --> 00:00:")
-    assert seconds_of(Beat("text", 0, "", shown="Short.")) == LEAST
+    assert seconds_of(Beat("text", 0, "", shown="Short.")) == MIN_SECONDS
 
 
 def test_both_languages_have_every_label() -> None:

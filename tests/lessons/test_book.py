@@ -16,9 +16,9 @@ from PIL import Image
 from playground.errors import DataError
 from playground.lessons.book import build
 from playground.lessons.book import images as pictures
-from playground.lessons.book.blocks import Setting, block_html
+from playground.lessons.book.blocks import LessonContext, block_html
 from playground.lessons.book.build import prepare, write_book
-from playground.lessons.book.html import DEEPEST, formula, line, plain, prose
+from playground.lessons.book.html import MAX_INDENT, formula, line, plain, prose
 from playground.lessons.book.images import is_diagram, larger
 from playground.lessons.book.live_files import LiveBook
 from playground.lessons.figure_renders import draw, pictures_of
@@ -92,18 +92,18 @@ def test_its_files(book):
 
 
 def test_nothing_on_a_page_comes_from_a_network_and_every_link_leads_somewhere(book):
-    found = pages(book)
-    ids = {page.path: set(page.ids) for page in found}
+    result = pages(book)
+    ids = {page.path: set(page.ids) for page in result}
     outside = []
-    for page in found:
+    for page in result:
         for address in page.addresses:
             if address.startswith("https://"):
                 outside.append(address)
                 continue
-            path, place = urldefrag(address)
+            path, position = urldefrag(address)
             target = (page.path.parent / path).resolve() if path else page.path
             assert target.is_file(), (page.path, address)
-            assert not place or place in ids[target], (page.path, address)
+            assert not position or position in ids[target], (page.path, address)
     assert set(outside) == {"https://doi.org/10.1145/358523.358553"}  # a paper, to be followed by hand
     for name in ("book.css", "book.js", "find.js"):
         assert "http" not in (book / name).read_text(encoding="utf-8")
@@ -322,7 +322,7 @@ def test_lines_of_code_wrap_under_their_indent_and_are_copied_as_they_are():
         assert lines == ["", " i4", "", " i8", " i2", ""]
         assert unescape(re.sub(r"<[^>]+>", "", html)).strip("\n") == source
     css = (Path(build.__file__).parent / "book.css").read_text(encoding="utf-8")
-    assert all(f".i{n} {{ --i: {n}; }}" in css for n in range(1, DEEPEST + 1))
+    assert all(f".i{n} {{ --i: {n}; }}" in css for n in range(1, MAX_INDENT + 1))
 
 
 def test_a_picture_that_is_as_good_as_black_is_known(tmp_path):
@@ -337,7 +337,9 @@ def test_a_picture_that_is_as_good_as_black_is_known(tmp_path):
 
 def test_a_series_opens_on_the_first_picture_that_shows_something(lesson, french):
     def opens(blank):
-        setting = Setting(lesson, interface_labels("en"), {}, lambda p: p.name, lambda link: {}, (), blank)
+        setting = LessonContext(
+            lesson, interface_labels("en"), {}, lambda p: p.name, lambda link: {}, (), blank
+        )
         return re.search(r'data-opens="(\d+)"', block_html(lesson.named["turns"], setting))[1]
 
     assert opens(lambda picture: False) == "0"
@@ -360,8 +362,8 @@ def test_the_search_knows_every_section_and_gives_no_answer_away(book):
         assert hidden not in text and "{{" not in text
         ids = {page: set(Page(book / language / page).ids) for page in ("small.html", "glossary.html")}
         for address, *_ in entries:
-            page, place = urldefrag(address)
-            assert not place or place in ids[page], address
+            page, position = urldefrag(address)
+            assert not position or position in ids[page], address
         assert {"glossary.html#texel"} <= {address for address, *_ in entries}
 
 

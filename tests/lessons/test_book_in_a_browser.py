@@ -72,8 +72,8 @@ def test_a_series_is_turned_over_by_keys_and_buttons(page):
 def test_a_button_at_the_end_of_a_series_keeps_the_keys(page):
     page.run("document.querySelector('#smooth .controls button').focus()")
     page.press(ENTER, ENTER)
-    place = "document.querySelector('#smooth input').value"
-    assert page.run(f"return {place}") == "0"
+    position = "document.querySelector('#smooth input').value"
+    assert page.run(f"return {position}") == "0"
     assert page.run("return document.activeElement === document.querySelector('#smooth .controls button')")
     assert page.run("return document.activeElement.getAttribute('aria-disabled')") == "true"
 
@@ -227,7 +227,7 @@ AXE = Path(build.__file__).resolve().parents[2] / "web/node_modules/axe-core/axe
 @pytest.mark.skipif(not AXE.is_file(), reason="npm ci in playground/web installs axe-core")
 def test_no_page_has_a_serious_fault_for_those_who_read_otherwise(page, book):
     """Of axe-core's rules, in the light and in the dark; the search is open on one."""
-    found = []
+    result = []
     for name in ("index.html", "en/index.html", "en/small.html", "fr/small.html", "en/glossary.html"):
         for theme in ("light", "dark"):
             page.emulate("setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
@@ -239,13 +239,13 @@ def test_no_page_has_a_serious_fault_for_those_who_read_otherwise(page, book):
                 page.press(*"texel")
                 page.wait(f"{SEARCHED}.length > 0")
             page.run(AXE.read_text(encoding="utf-8"))
-            found += page.run(
+            result += page.run(
                 "return axe.run({ resultTypes: ['violations'] }).then(({ violations }) => violations"
                 ".filter(({ impact }) => ['serious', 'critical'].includes(impact))"
                 ".map(({ id, nodes }) => `${arguments[0]}: ${id}: ${nodes[0].html}`))",
                 f"{name}, {theme}",
             )
-    assert found == []
+    assert result == []
     page.log()  # axe asks for style sheets that the policy refuses
 
 
@@ -255,10 +255,12 @@ def bare_book(tmp_path, engine, monkeypatch):
     monkeypatch.setattr(images.Album, "draw", lambda *_: None)
     monkeypatch.setattr(build, "is_blank", lambda path: False)
     monkeypatch.setattr(
-        build, "numbers_of", lambda _, lesson: {one.name: Number(0.25, "0.25") for one in lesson.measures}
+        build,
+        "numbers_of",
+        lambda _, lesson: {measure.name: Number(0.25, "0.25") for measure in lesson.measures},
     )
     monkeypatch.setattr(
-        build, "live_book", lambda lessons, _: LiveBook({one.name: frozenset() for one in lessons}, {})
+        build, "live_book", lambda lessons, _: LiveBook({lesson.name: frozenset() for lesson in lessons}, {})
     )
     lessons = {code: read_lessons(code) for code in ("en", "fr")}
     write_book(prepare(tmp_path / "whole", lessons), engine)

@@ -114,8 +114,8 @@ def test_notebooks(texts, tmp_path, capsys):
     run("translated", "small", "--lang", "fr")
     assert run("build", "small", "--notebooks", "-o", str(tmp_path / "books")) == 0
     for language in ("en", "fr"):
-        found = json.loads((tmp_path / "books" / language / "small.ipynb").read_text(encoding="utf-8"))
-        assert found["nbformat"] == 4 and len(found["cells"]) > 15
+        result = json.loads((tmp_path / "books" / language / "small.ipynb").read_text(encoding="utf-8"))
+        assert result["nbformat"] == 4 and len(result["cells"]) > 15
 
 
 def test_languages_are_promised_as_they_are(capsys):

@@ -32,7 +32,7 @@ def course(tmp_path, write_lesson, monkeypatch):
 
 def test_a_lessons_number_is_its_place(course):
     course()
-    assert [(one.number, one.name, one.part) for one in summaries("fr")] == [
+    assert [(summary.number, summary.name, summary.part) for summary in summaries("fr")] == [
         (0, "second", "Tout"),
         (1, "first", "Tout"),
     ]

@@ -52,8 +52,8 @@ def test_a_law_of_slopes_is_found_again(power):
     river = np.cumsum(rise) - rise[0]
     heights = river + 10.0 * abs(np.arange(ny) - ny // 2)[:, None]
     heights[:, -1] += 1.0  # the eastern edge is an outlet: nothing may leave by it
-    found = drainage.slope_area_power(heights, GRID, 0.05, 2.0)
-    assert found == pytest.approx(power, abs=0.03)
+    slope_area_power = drainage.slope_area_power(heights, GRID, 0.05, 2.0)
+    assert slope_area_power == pytest.approx(power, abs=0.03)
     middle = drainage.slope_where_drained(heights, GRID, 0.3, 0.34)
     assert middle == pytest.approx(2.0 * 0.32e6**power, rel=0.1)
     with pytest.raises(ValueError, match="no texel drains"):

@@ -23,10 +23,10 @@ float d;
 
 
 def test_an_anchor_marks_its_lines_without_indentation_and_without_marks():
-    found = anchors("x.glsl", TEXT)
-    assert found["outer"].text == "float b = 1.0;\n\n    float c = 2.0;"
-    assert found["outer"].line == 3
-    assert found["inner"].text == "float c = 2.0;"
+    excerpts = anchors("x.glsl", TEXT)
+    assert excerpts["outer"].text == "float b = 1.0;\n\n    float c = 2.0;"
+    assert excerpts["outer"].line == 3
+    assert excerpts["inner"].text == "float c = 2.0;"
 
 
 @pytest.mark.parametrize(
@@ -55,15 +55,15 @@ def test_every_anchor_of_the_library_can_be_read():
     }
     marked = {path: anchors(path.name, text) for path, text in texts.items() if "// anchor:" in text}
     assert marked
-    for path, found in marked.items():
-        for name, one in found.items():
-            assert 1 <= len(one.text.split("\n")) <= 40, (path, name)
+    for path, result in marked.items():
+        for name, item in result.items():
+            assert 1 <= len(item.text.split("\n")) <= 40, (path, name)
 
 
 def test_the_lines_around_a_bug(lesson):
     block = lesson.named["fault"]
-    found = bug_region(block)
-    correct, broken = found.correct, found.broken
+    result = bug_region(block)
+    correct, broken = result.correct, result.broken
     assert "total / count" in correct and "total / 8.0" in broken
     differing = [
         pair for pair in zip(correct.split("\n"), broken.split("\n"), strict=True) if pair[0] != pair[1]
@@ -73,7 +73,7 @@ def test_the_lines_around_a_bug(lesson):
 
 def test_lines_put_back_make_the_file_again(lesson):
     block = lesson.named["fault"]
-    found = bug_region(block)
+    result = bug_region(block)
     text = (GLSL / block.file).read_text(encoding="utf-8")
     same = [
         line.strip()
@@ -82,11 +82,11 @@ def test_lines_put_back_make_the_file_again(lesson):
     ]
     back = [
         line.strip()
-        for line in found.with_lines(found.correct).split("\n")
+        for line in result.with_lines(result.correct).split("\n")
         if line.strip() and "// anchor" not in line and "// end:" not in line
     ]
     assert back == same
-    assert "8.0" in found.with_lines(found.broken)
+    assert "8.0" in result.with_lines(result.broken)
 
 
 @pytest.mark.parametrize(

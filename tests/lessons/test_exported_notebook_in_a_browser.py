@@ -80,8 +80,8 @@ def live(browser, name):
 
 def asked_for(browser):
     """Return all addresses that a page asked for, but for the icon that any page of a server has."""
-    found = browser.run("return performance.getEntriesByType('resource').map((entry) => entry.name)")
-    return [url for url in found if not url.endswith("/favicon.ico")]
+    result = browser.run("return performance.getEntriesByType('resource').map((entry) => entry.name)")
+    return [url for url in result if not url.endswith("/favicon.ico")]
 
 
 def test_an_exported_notebook_is_live_and_asks_for_nothing(run, shown, engine):

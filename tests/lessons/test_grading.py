@@ -28,7 +28,7 @@ from playground.lessons.grading.entries import _TOO_MANY
 from playground.lessons.grading.grade import read_all
 from playground.lessons.grading.handed_in import lessons_in, read_submission
 from playground.lessons.grading.marks import GRADED, MISSING, REFUSED, STOPPED, Graded, Mark, Pair
-from playground.lessons.grading.page import Setting, page
+from playground.lessons.grading.page import ReportContext, page
 from playground.lessons.grading.report import write_report
 from playground.lessons.grading.submissions import find_submissions
 from playground.lessons.grading.table import table_bytes
@@ -91,27 +91,27 @@ def test_a_zip_in_the_folder_is_looked_into(tmp_path):
 @pytest.mark.parametrize("name", ["ana.zip", "ANA.ZIP", "ana.zip.zip"])
 def test_a_folder_named_like_a_zip_is_a_folder(tmp_path, name):
     students.write(tmp_path, name, {f"week3.zip/{FILE}": TEXT})
-    ((found,), others) = find_submissions(tmp_path, tmp_path / "report")
-    assert found.student == name[:-4] and not others
-    assert read(found.path).text == TEXT
+    ((result,), others) = find_submissions(tmp_path, tmp_path / "report")
+    assert result.student == name[:-4] and not others
+    assert read(result.path).text == TEXT
 
 
 @pytest.mark.parametrize("name", ["ana", "ana.zip.1", "ana.zip (1)", "ana.txt", "ana.cbz"])
 def test_a_zip_by_another_name_is_a_zip(tmp_path, name):
     zipped(tmp_path / name, (FILE, TEXT))
-    ((found,), others) = find_submissions(tmp_path, tmp_path / "report")
-    assert found.student == name and not others and read(found.path).text == TEXT
+    ((result,), others) = find_submissions(tmp_path, tmp_path / "report")
+    assert result.student == name and not others and read(result.path).text == TEXT
     (tmp_path / "class" / "Bea").mkdir(parents=True)
-    found.path.rename(tmp_path / "class" / "Bea" / name)
+    result.path.rename(tmp_path / "class" / "Bea" / name)
     assert read(tmp_path / "class" / "Bea").text == TEXT
 
 
 def test_an_unreadable_zip_takes_no_points_from_other_files(tmp_path):
     students.write(tmp_path, "Ana", {FILE: TEXT, "old.zip": "cut short"})
-    found = read_submission(tmp_path / "Ana", [FILE, "other.glsl"])
-    assert found[FILE].text == TEXT and found[FILE].problem == ""
-    assert found["other.glsl"].problem.startswith("old.zip is no zip that can be read")
-    assert not found["other.glsl"].missing
+    submission = read_submission(tmp_path / "Ana", [FILE, "other.glsl"])
+    assert submission[FILE].text == TEXT and submission[FILE].problem == ""
+    assert submission["other.glsl"].problem.startswith("old.zip is no zip that can be read")
+    assert not submission["other.glsl"].missing
 
 
 def test_a_zip_in_a_zip_is_named(tmp_path):
@@ -124,8 +124,8 @@ def test_of_several_files_the_outermost_counts_and_the_others_are_mentioned(tmp_
     students.write(tmp_path, "Ana", {FILE: TEXT, f"old/{FILE}": TEXT})
     assert read(tmp_path / "Ana").note == ""
     students.write(tmp_path, "Ana", {f"old/{FILE}": "// earlier"})
-    found = read(tmp_path / "Ana")
-    assert found.text == TEXT and found.note == f"2 files of this name were handed in; graded: {FILE}"
+    result = read(tmp_path / "Ana")
+    assert result.text == TEXT and result.note == f"2 files of this name were handed in; graded: {FILE}"
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
@@ -155,8 +155,8 @@ def link(info):
     ],
 )
 def test_a_zip_that_does_harm_is_refused_in_a_sentence(tmp_path, entries, sentence):
-    found = read(zipped(tmp_path / "Ana.zip", *entries, compression=zipfile.ZIP_DEFLATED))
-    assert sentence in found.problem and not found.text and not found.missing
+    result = read(zipped(tmp_path / "Ana.zip", *entries, compression=zipfile.ZIP_DEFLATED))
+    assert sentence in result.problem and not result.text and not result.missing
 
 
 def test_a_zip_that_lies_about_a_size_is_not_believed(tmp_path):
@@ -204,8 +204,8 @@ def test_links_and_pipes_are_not_read(tmp_path):
     (tmp_path / "Dan").mkdir()
     (tmp_path / "Dan" / "out").symlink_to(tmp_path / "Cem", target_is_directory=True)
     assert read(tmp_path / "Dan").missing
-    found, others = find_submissions(tmp_path, tmp_path / "report")
-    assert [one.student for one in found] == ["Ana", "Cem", "Dan"]
+    result, others = find_submissions(tmp_path, tmp_path / "report")
+    assert [item.student for item in result] == ["Ana", "Cem", "Dan"]
     assert others == ["'Bea' is no folder and no zip", "'secret.glsl' is no folder and no zip"]
 
 
@@ -222,8 +222,8 @@ def test_students_go_by_the_names_of_what_they_handed_in(tmp_path):
         (tmp_path / name).mkdir()
     zipped(tmp_path / "Zoë.zip", ("x", ""))
     (tmp_path / "report").mkdir()
-    found, _ = find_submissions(tmp_path, tmp_path / "report")
-    assert {one.student for one in found} == {"李雷", "Zoë", "Zoë.zip", found[0].student}
+    result, _ = find_submissions(tmp_path, tmp_path / "report")
+    assert {item.student for item in result} == {"李雷", "Zoë", "Zoë.zip", result[0].student}
     with pytest.raises(DataError, match="no such folder"):
         find_submissions(tmp_path / "nowhere", tmp_path)
 
@@ -233,8 +233,8 @@ def test_no_two_students_have_one_name(tmp_path):
         (tmp_path / name).mkdir()
     for name in ("Anna.zip", "Anna.zip.zip", "Ben (2).zip"):
         zipped(tmp_path / name, (FILE, name))
-    found, _ = find_submissions(tmp_path, tmp_path / "report")
-    names = {one.path.name: one.student for one in found}
+    result, _ = find_submissions(tmp_path, tmp_path / "report")
+    names = {item.path.name: item.student for item in result}
     assert names == {
         "Anna": "Anna",
         "Anna.zip": "Anna.zip",
@@ -242,7 +242,7 @@ def test_no_two_students_have_one_name(tmp_path):
         "Ben (2)": "Ben (2)",
         "Ben (2).zip": "Ben (2).zip",
     }
-    assert len(read_all(found, [])) == 5
+    assert len(read_all(result, [])) == 5
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere a name is always text")
@@ -250,15 +250,15 @@ def test_names_whose_wrong_bytes_look_the_same_are_numbered(tmp_path):
     for name in (b"Zo\xeb", b"Zo\xec"):
         (tmp_path / os.fsdecode(name)).mkdir()
     (tmp_path / "Zo\ufffd (2)").mkdir()
-    found, _ = find_submissions(tmp_path, tmp_path / "report")
-    assert sorted(one.student for one in found) == ["Zo\ufffd", "Zo\ufffd (2)", "Zo\ufffd (3)"]
+    result, _ = find_submissions(tmp_path, tmp_path / "report")
+    assert sorted(item.student for item in result) == ["Zo\ufffd", "Zo\ufffd (2)", "Zo\ufffd (3)"]
 
 
 def test_an_earlier_report_is_no_student(tmp_path):
     (tmp_path / "Ana").mkdir()
     write_report(tmp_path / "last week", [graded_as("Ana")], {"x-y": "y"}, "en", "llvmpipe")
-    found, others = find_submissions(tmp_path, tmp_path / "report")
-    assert [one.student for one in found] == ["Ana"]
+    result, others = find_submissions(tmp_path, tmp_path / "report")
+    assert [item.student for item in result] == ["Ana"]
     assert others == ["'last week' is an earlier report of grades"]
 
 
@@ -274,8 +274,8 @@ sun = { azimuth = 3 }
 
 def test_only_the_values_that_are_asked_for_are_taken():
     sliders = ["height.smoothing", "height.raw.seed", "view.sun", "height.corners", "size"]
-    found = values_in_toml(TOML, sliders)
-    assert found == {"height.smoothing": 0.3, "height.raw.seed": 4, "view.sun": {"azimuth": 3}}
+    values = values_in_toml(TOML, sliders)
+    assert values == {"height.smoothing": 0.3, "height.raw.seed": 4, "view.sun": {"azimuth": 3}}
     assert values_in_toml(TOML.replace('"raw.seed"', "raw.seed"), ["height.raw.seed"]) == {
         "height.raw.seed": 4
     }
@@ -307,8 +307,8 @@ def test_texts_are_alike_but_for_white_space_and_comments():
     text = "float a = 1.0; // mine\n/* of\nmine */ float b=a;"
     assert normalised(text) == normalised("float  a=1.0;\nfloat b = a ;\n")
     assert normalised("int ab;") != normalised("int a b;")
-    found = alike({"Ana": text, "Bea": "float a=1.0; float b=a;", "Cem": "x", "Dan": "y", "Eva": "y"}, "y")
-    assert found == {"Ana": ("Bea",), "Bea": ("Ana",)}
+    names = alike({"Ana": text, "Bea": "float a=1.0; float b=a;", "Cem": "x", "Dan": "y", "Eva": "y"}, "y")
+    assert names == {"Ana": ("Bea",), "Bea": ("Ana",)}
 
 
 # ── the table and the page ───────────────────────────────────────────────────
@@ -370,15 +370,15 @@ def test_what_grading_says_of_a_file_is_french_in_a_french_report(tmp_path):
 
 
 def test_every_sentence_of_grading_has_its_french_with_the_same_places():
-    known = patterns("fr")
+    names = patterns("fr")
     used = set()
     for path in (HERE / "grading").glob("*.py"), (HERE / "tasks").glob("*.py"):
         for node in (node for file in path for node in ast.walk(ast.parse(file.read_text("utf-8")))):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Said":
                 (said,) = node.args
                 used.add(_TOO_MANY if isinstance(said, ast.Name) else ast.literal_eval(said))
-    assert used - {"{name} {what}"} == set(known)
-    for english, french in known.items():
+    assert used - {"{name} {what}"} == set(names)
+    for english, french in names.items():
         assert re.findall(r"{.*?}", english) == re.findall(r"{.*?}", french), english
 
 
@@ -397,7 +397,9 @@ def test_what_a_teacher_corrected_is_kept_when_the_report_is_written_again(tmp_p
 
 
 def setting():
-    return Setting("en", "llvmpipe", lambda data: f"pictures/{data.decode()}.webp", lambda data: (160, 90))
+    return ReportContext(
+        "en", "llvmpipe", lambda data: f"pictures/{data.decode()}.webp", lambda data: (160, 90)
+    )
 
 
 # ── a whole class ────────────────────────────────────────────────────────────
@@ -503,8 +505,8 @@ def test_the_same_class_in_another_order_gets_the_same_points(class_of_20, one, 
         path = handed / name if (handed / name).is_dir() else handed / f"{name}.zip"
         path.copy(again / f"{9 - number}") if hasattr(path, "copy") else copied(path, again / f"{9 - number}")
     assert run(again, "-o", tmp_path / "report", "--json") == 0
-    found = {row["student"]: row["points"] for row in json.loads(capsys.readouterr().out)}
-    assert {name: found[str(9 - n)] for n, name in enumerate(some)} == {
+    result = {row["student"]: row["points"] for row in json.loads(capsys.readouterr().out)}
+    assert {name: result[str(9 - n)] for n, name in enumerate(some)} == {
         name: rows[name]["points"] for name in some
     }
 
@@ -515,7 +517,7 @@ def test_no_texel_of_another_s_work_is_left_in_a_picture(ctx, monkeypatch):
 
     Kernels may not discard; a word that the preprocessor puts together is not seen by that rule.
     """
-    one = next(x for x in assignments_of([read_lesson("first_height")]) if x.task.name == "wave")
+    assignment = next(x for x in assignments_of([read_lesson("first_height")]) if x.task.name == "wave")
     made = []
 
     def engine(context, *, owns_context, cache_bytes, notice):
@@ -526,16 +528,16 @@ def test_no_texel_of_another_s_work_is_left_in_a_picture(ctx, monkeypatch):
     monkeypatch.setattr(handler, "open_context", lambda **choice: ctx)
     monkeypatch.setattr(handler, "Engine", engine)
     judge = handler.open_service(Silent(), handler.Options(("first_height",), "en")).answer
-    right = answer_text(one.task)
+    right = answer_text(assignment.task)
     for number in range(3):
-        assert judge(handler.Request(one.name, f"{right}\n// {number}\n")).is_full
+        assert judge(handler.Request(assignment.name, f"{right}\n// {number}\n")).is_full
         varied = students.around(right, f"return given() + 1e-9 * {number}.0;")
-        assert judge(handler.Request(one.name, varied)).is_full
+        assert judge(handler.Request(assignment.name, varied)).is_full
     assert len(made[0].runner.pool) > 0, "there are textures to be used again, with right heights in them"
     nothing = students.around(
         right, "if (texel.x >= 0) JOINED(dis, card); return given();", "#define JOINED(a, b) a##b"
     )
-    mark = judge(handler.Request(one.name, nothing))
+    mark = judge(handler.Request(assignment.name, nothing))
     made[0].release()
     assert mark.points == 0.0 and "differs by" in mark.sentences[0]
 
@@ -543,22 +545,26 @@ def test_no_texel_of_another_s_work_is_left_in_a_picture(ctx, monkeypatch):
 @pytest.mark.slow
 def test_a_challenge_has_a_score_in_its_column_and_no_points(ctx, any_engine, monkeypatch):
     """Its picture has 100, what is handed out 0, between them it grows with the slider that was moved."""
-    one = next(x for x in assignments_of([read_lesson("slopes", "fr")]) if isinstance(x.task, Challenge))
+    assignment = next(
+        x for x in assignments_of([read_lesson("slopes", "fr")]) if isinstance(x.task, Challenge)
+    )
     monkeypatch.setattr(handler, "open_context", lambda **choice: ctx)
     monkeypatch.setattr(handler, "Engine", lambda context, **rest: any_engine)
     judge = handler.open_service(Silent(), handler.Options(("slopes",), "fr")).answer
-    begin, wanted = (values_of(scene.sketch)["light.sun"] for scene in (one.task.begin, one.task.scene))
-    half = tuple((a + b) / 2 for a, b in zip(begin, wanted, strict=True))
-    nearer = students.with_values(one, {"light.sun": half})
-    texts = [None, students.right(one), nearer, students.untouched(one), "set = {"]
-    marks = [judge(handler.Request(one.name, text)) for text in texts]
-    answer, solved, near, begun, wrong = marks
-    assert answer.score == solved.score == 100.0 and begun.score == wrong.score == 0.0
+    begin, expected = (
+        values_of(scene.sketch)["light.sun"] for scene in (assignment.task.begin, assignment.task.scene)
+    )
+    half = tuple((a + b) / 2 for a, b in zip(begin, expected, strict=True))
+    nearer = students.with_values(assignment, {"light.sun": half})
+    texts = [None, students.right(assignment), nearer, students.untouched(assignment), "set = {"]
+    marks = [judge(handler.Request(assignment.name, text)) for text in texts]
+    answer, solved, near, started, wrong = marks
+    assert answer.score == solved.score == 100.0 and started.score == wrong.score == 0.0
     assert 0.0 < near.score < 100.0
-    assert [mark.is_full for mark in marks] == [True, True, near.score >= one.task.goal, False, False]
+    assert [mark.is_full for mark in marks] == [True, True, near.score >= assignment.task.goal, False, False]
     assert {(mark.points, mark.of) for mark in marks} == {(0.0, 0)} and wrong.outcome == REFUSED
-    assert solved.sentences == (f"Score 100 sur 100\xa0; réussi à partir de {one.task.goal}.",)
-    row = Graded("Ana", {"lesson-exercise": Mark(1.5, 2, GRADED), one.name: replace(near, pairs=())})
+    assert solved.sentences == (f"Score 100 sur 100\xa0; réussi à partir de {assignment.task.goal}.",)
+    row = Graded("Ana", {"lesson-exercise": Mark(1.5, 2, GRADED), assignment.name: replace(near, pairs=())})
     table = table_bytes([row], list(row.marks), "en").decode("utf-8-sig").splitlines()
     assert table[1] == f"Ana,1.5,{int(near.score)},1.5,2"
     assert f"score {int(near.score)} sur 100" in page(

@@ -49,23 +49,23 @@ def test_the_zip_opens_in_the_window_as_the_exercise_begins(handed_out, one, tmp
     assert one.starter.splitlines()[0] in kernel.read_text()
     begin = scene_of(one.task, Work(one.starter))
     shown = engine.render(load(sketch_file), size=(160, 90)).array
-    wanted = engine.render(begin.sketch, size=(160, 90)).array
-    np.testing.assert_array_equal(shown, wanted)
+    expected = engine.render(begin.sketch, size=(160, 90)).array
+    np.testing.assert_array_equal(shown, expected)
     kernel.write_text(answer_text(one.task))  # its includes are found from there, too
     changed = engine.render(load(sketch_file), size=(160, 90)).array
     assert (changed != shown).any()
 
 
 def test_every_exercise_of_the_course_has_a_sketch_that_loads(tmp_path):
-    found = assignments_of(read_lessons())
-    assert len({one.name for one in found}) == len(found) > 0
-    for one in found:
-        folder = tmp_path / one.name
-        for name, data in student_files(one).items():
+    assignments = assignments_of(read_lessons())
+    assert len({item.name for item in assignments}) == len(assignments) > 0
+    for item in assignments:
+        folder = tmp_path / item.name
+        for name, data in student_files(item).items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
-        sketch = load(tmp_path / one.opens)
-        assert sketch.shots == () and sketch.presets == () and (folder / one.file).is_file()
+        sketch = load(tmp_path / item.opens)
+        assert sketch.shots == () and sketch.presets == () and (folder / item.file).is_file()
 
 
 @pytest.mark.parametrize("lesson", ["diamond_square", "first_height"])
@@ -78,17 +78,17 @@ def test_no_answer_is_in_the_zip(lesson, handed_out, tmp_path):
     with zipfile.ZipFile(path) as archive:
         data = path.read_bytes() + b"\n".join(archive.read(name) for name in archive.namelist())
     spaceless = re.sub(r"\s+", "", re.sub(r"<[^>]+>", "", data.decode("utf-8", "replace")))
-    found = assignments_of([read_lesson(lesson)])
-    given = re.sub(r"\s+", "", "\n".join(one.task.ask for one in found))
-    for one in found:
-        answer = set(answer_text(one.task).splitlines()) - set(one.starter.splitlines())
+    assignments = assignments_of([read_lesson(lesson)])
+    value = re.sub(r"\s+", "", "\n".join(item.task.ask for item in assignments))
+    for item in assignments:
+        answer = set(answer_text(item.task).splitlines()) - set(item.starter.splitlines())
         secrets = [line for line in answer if not line.startswith("//")]
-        secrets += re.split(r"[.`$*\[\]]+", one.task.solution)
+        secrets += re.split(r"[.`$*\[\]]+", item.task.solution)
         secrets = [re.sub(r"\s+", "", secret) for secret in secrets]
-        secrets = [x for x in secrets if len(x) > 15 and x not in given and not re.fullmatch(r"[\w/.]+", x)]
+        secrets = [x for x in secrets if len(x) > 15 and x not in value and not re.fullmatch(r"[\w/.]+", x)]
         assert secrets
-        assert [secret for secret in secrets if secret in spaceless] == [], one.name
-    asked = re.sub(r"\s+", "", found[0].task.ask)
+        assert [secret for secret in secrets if secret in spaceless] == [], item.name
+    asked = re.sub(r"\s+", "", assignments[0].task.ask)
     assert max(re.split(r"[`$*\[\]\\]+", asked), key=len) in spaceless  # the search finds what is there
 
 

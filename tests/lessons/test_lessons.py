@@ -14,14 +14,14 @@ from playground.lessons.library import LANGUAGES, SOURCE, TEXTS, lesson_files
 from playground.lessons.measuring import Number, filled
 from playground.lessons.model import Break, Prose
 from playground.lessons.read import read_lesson, read_lessons, summaries
-from playground.lessons.rules import MOST_MINUTES, broken_rules, wrong_pictures
+from playground.lessons.rules import MAX_MINUTES, broken_rules, wrong_pictures
 from playground.lessons.status import status_of
 from playground.paths import GLSL
 from playground.shader.source import read_text
 
 from .conftest import SKETCHES
 
-NAMES = [one.name for one in summaries()]
+NAMES = [summary.name for summary in summaries()]
 
 
 @pytest.fixture(scope="module", params=NAMES)
@@ -31,9 +31,9 @@ def shipped(request):
 
 @pytest.mark.slow
 def test_they_are_numbered_in_the_order_of_the_course():
-    assert [one.number for one in summaries()] == list(range(len(NAMES))) and len(NAMES) >= 12
+    assert [summary.number for summary in summaries()] == list(range(len(NAMES))) and len(NAMES) >= 12
     assert NAMES == lesson_names() and sorted(NAMES) == lesson_files()
-    assert [one.title for one in read_lessons("fr")] == [one.title for one in summaries("fr")]
+    assert [lesson.title for lesson in read_lessons("fr")] == [summary.title for summary in summaries("fr")]
 
 
 def test_french_has_one_space_before_a_sign_and_a_thin_one_in_numbers():
@@ -41,19 +41,19 @@ def test_french_has_one_space_before_a_sign_and_a_thin_one_in_numbers():
     lessons = list((TEXTS / "fr").glob("*.md"))
     assert len(lessons) == len(NAMES)
     wrong = [
-        f"{path.name}:{number}: {found[0]!r}"
+        f"{path.name}:{number}: {result[0]!r}"
         for path in [*lessons, *TEXTS.parent.rglob("*fr.toml")]
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
-        for found in re.finditer(
+        for result in re.finditer(
             r".?(?:[ \u202f][;:!?»](?!\S)|«[ \u202f]|(?<!\d)\u202f|\u202f(?!\d)).?", line
         )
-        if not re.search(r"`[^`]*$", line[: found.start() + 1])  # code is as it is typed
+        if not re.search(r"`[^`]*$", line[: result.start() + 1])  # code is as it is typed
     ]
     assert not wrong
 
 
 def test_none_takes_longer_than_it_may():
-    assert [one.name for one in summaries() if one.minutes > MOST_MINUTES] == []
+    assert [summary.name for summary in summaries() if summary.minutes > MAX_MINUTES] == []
 
 
 def test_no_translation_is_stale_or_without_a_lesson():
@@ -66,8 +66,8 @@ def test_no_translation_is_stale_or_without_a_lesson():
 
 def test_each_keeps_to_the_rules(shipped):
     for language, lesson in shipped.items():
-        found = [text for _, text in broken_rules(lesson)]
-        assert [text for text in found if not text.startswith("reading takes")] == [], language
+        texts = [text for _, text in broken_rules(lesson)]
+        assert [text for text in texts if not text.startswith("reading takes")] == [], language
 
 
 def test_french_is_set_as_french_is(shipped):
@@ -101,10 +101,10 @@ def test_the_fixed_lines_of_every_bug_restore_its_shader(shipped):
     """The lines that a lesson shows as the fix, put back into its file, make the shipped text again."""
     for block in shipped["en"].blocks:
         if isinstance(block, Break):
-            found = bug_region(block)
+            result = bug_region(block)
             shipped_text = read_text(GLSL / block.file)
-            assert code_of(found.with_lines(found.correct)) == code_of(shipped_text), block.name
-            assert code_of(found.with_lines(found.broken)) == code_of(with_bug(block)), block.name
+            assert code_of(result.with_lines(result.correct)) == code_of(shipped_text), block.name
+            assert code_of(result.with_lines(result.broken)) == code_of(with_bug(block)), block.name
 
 
 def code_of(text):

@@ -10,10 +10,10 @@ import re
 import pytest
 
 from playground.lessons import model
-from playground.lessons.book.blocks import Setting
+from playground.lessons.book.blocks import LessonContext
 from playground.lessons.book.build import prepare, write_book
 from playground.lessons.book.live_blocks import beginning, block_data, lesson_data
-from playground.lessons.book.live_files import FEW, live_book
+from playground.lessons.book.live_files import MAX_INLINE_LETTERS, live_book
 from playground.lessons.book.live_scenes import Library, Scenes
 from playground.lessons.bugs import bug_region
 from playground.lessons.figure_renders import pictures_in
@@ -102,13 +102,13 @@ def compare_scenes(node, lesson):
             scenes = scenes[-1:]
         assert len(scenes) == len(block["scenes"])
         for scene, setting in zip(scenes, block["scenes"], strict=True):
-            found = node.call(
+            result = node.call(
                 "book_data.js", "settled", data["sketches"][setting["sketch"]], setting, kernels
             )
             expected = json.loads(json.dumps(written_alone(scene)))
             for key in ("presets", "notes"):  # no figure offers them
-                del found[key], expected[key]
-            assert found == expected, (name, setting)
+                del result[key], expected[key]
+            assert result == expected, (name, setting)
             count += 1
     return count, data
 
@@ -161,7 +161,11 @@ def test_blocks_of_each_kind(lesson, sky_light, of_sky_light):
 
 def test_degrees_stand_after_both_numbers_of_a_direction(node):
     slider = model.Slider(0, "", "sun", (model.Scene(load("jacksboro"), (32, 18)),), "light.sun")
-    shown = next(one for one in shown_parameters(load("jacksboro")) if one.path == "light.sun")
+    shown = next(
+        shown_parameter
+        for shown_parameter in shown_parameters(load("jacksboro"))
+        if shown_parameter.path == "light.sun"
+    )
     row = row_data(shown, (0.0, 0.0), ("light.sun",))
     for language, text in (("en", "110°, 10.5°"), ("fr", "110°, 10,5°")):
         assert spelled_value(slider, (110.0, 10.5), language) == text
@@ -172,13 +176,17 @@ def test_degrees_stand_after_both_numbers_of_a_direction(node):
 
 def test_a_colour_between_two_is_spelled_as_those_are(node):
     """However many digits its numbers have."""
-    shown = next(one for one in shown_parameters(load("jacksboro")) if one.path == "view.horizon")
+    shown = next(
+        shown_parameter
+        for shown_parameter in shown_parameters(load("jacksboro"))
+        if shown_parameter.path == "view.horizon"
+    )
     row = row_data(shown, (0.0, 0.0, 0.0), ("view.horizon",))
     colour = (0.6120607621465106, 0.5431826535604307, 0.44618878000622914)
     encoded = [round(255 * (1.055 * part ** (1 / 2.4) - 0.055)) for part in colour]  # IEC 61966-2-1
     for comma in (False, True):
-        found = node.call("between.js", "spelled", row, colour, comma)
-        assert found == "#" + "".join(f"{byte:02x}" for byte in encoded)
+        result = node.call("between.js", "spelled", row, colour, comma)
+        assert result == "#" + "".join(f"{byte:02x}" for byte in encoded)
 
 
 def test_iterations_that_only_a_source_reads_stay_pictures(any_engine, tmp_path):
@@ -195,8 +203,8 @@ def test_iterations_that_only_a_source_reads_stay_pictures(any_engine, tmp_path)
     (tmp_path / "sketch.toml").write_text("format = 1\nsize = 17\n" + steps + map_of("noise"))
     scenes = (model.Scene(load(tmp_path), (32, 18)),)
     blocks = [model.Steps(0, "", name, scenes, (name,), (1, 4)) for name in ("spread", "free")]
-    found = [block_data(block, Scenes(Library(any_engine))) for block in blocks]
-    assert found[0] is None and found[1]["passes"] == ["free"]
+    block_datas = [block_data(block, Scenes(Library(any_engine))) for block in blocks]
+    assert block_datas[0] is None and block_datas[1]["passes"] == ["free"]
 
 
 def test_values_that_a_processor_makes_are_listed_ones(delaunay):
@@ -208,10 +216,10 @@ def test_values_that_a_processor_makes_are_listed_ones(delaunay):
 
 def test_lines_of_a_bug_are_put_back_as_in_the_window(lesson, node):
     library = Library()
-    block, found = lesson.named["fault"], lesson_data(lesson, library)["blocks"]["fault"]
+    block, result = lesson.named["fault"], lesson_data(lesson, library)["blocks"]["fault"]
     region, text = bug_region(block), library.data()["files"][block.file]
     for lines in (region.broken, region.correct, "\n float a;\n\nint b;\n"):
-        put = node.call("book_tasks.js", "withLines", text, found, lines)
+        put = node.call("book_tasks.js", "withLines", text, result, lines)
         assert put.rstrip("\n") == region.with_lines(lines).rstrip("\n")
 
 
@@ -223,9 +231,9 @@ def test_the_scripts_hold_the_data(book, lesson):
     for language, say in shared.pop("say").items():
         assert say.items() <= task_labels(language).items() and "wrong_texture" in say
     assert name == "glsl" and shared == json.loads(json.dumps(library.data()))
-    name, found = held(book / "data/small.js")
-    found = json.loads(found)
-    assert name == "data/small" and found.pop("blobs") == {} and found == data
+    name, result = held(book / "data/small.js")
+    result = json.loads(result)
+    assert name == "data/small" and result.pop("blobs") == {} and result == data
     assert packed_json(data) == packed_json(json.loads(json.dumps(data)))
 
 
@@ -240,9 +248,9 @@ def test_nothing_says_where_it_was_made(book):
 
 def test_bytes_that_are_few_are_in_the_lesson_and_others_in_a_script_of_their_own(delaunay):
     own = [name for name in delaunay.files if re.fullmatch(r"data/[0-9a-f]{16}\.js", name)]
-    assert all(len(delaunay.files[name]) > FEW for name in own) and len(own) < 10
+    assert all(len(delaunay.files[name]) > MAX_INLINE_LETTERS for name in own) and len(own) < 10
     blobs = held_in(delaunay.files["data/delaunay.js"])["blobs"]
-    assert len(blobs) > 50 and all(len(text) <= FEW for text in blobs.values())
+    assert len(blobs) > 50 and all(len(text) <= MAX_INLINE_LETTERS for text in blobs.values())
 
 
 def test_only_live_blocks_can_be_started(book, lesson, french):
@@ -255,7 +263,7 @@ def test_only_live_blocks_can_be_started(book, lesson, french):
 
 
 def test_a_page_without_live_blocks_is_as_before(lesson):
-    setting = Setting(lesson, {}, {}, lambda picture: "", lambda link: {})
+    setting = LessonContext(lesson, {}, {}, lambda picture: "", lambda link: {})
     assert setting.started(lesson.named["land"]) == {"data_block": None}
 
 

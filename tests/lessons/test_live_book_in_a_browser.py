@@ -84,8 +84,8 @@ def lessons(tmp_path_factory):
     french.write_text(words + MATCH_FRENCH, encoding="utf-8")
     first = read_document(english)
     write_hashes(first, read_document(french))
-    found = read_file(english, SKETCHES)
-    return {"en": [found], "fr": [translated(found, first, read_document(french), "fr")]}
+    file = read_file(english, SKETCHES)
+    return {"en": [file], "fr": [translated(file, first, read_document(french), "fr")]}
 
 
 @pytest.fixture
@@ -290,9 +290,9 @@ def test_an_exercise_says_when_the_picture_is_that_of_the_solution(page, lesson,
 
 
 def results(page, name):
-    found = f"document.querySelectorAll('#{name} .results li')"
+    text = f"document.querySelectorAll('#{name} .results li')"
     page.wait(f"document.querySelector('#{name} .outcome .verdict')")
-    return page.run(f"return [...{found}].map((each) => [each.className, each.textContent])")
+    return page.run(f"return [...{text}].map((each) => [each.className, each.textContent])")
 
 
 def test_an_exercise_of_values_is_checked_at_values_that_are_not_shown(page):

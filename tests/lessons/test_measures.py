@@ -20,9 +20,9 @@ NOISE = np.random.default_rng(3).random((65, 65))
 
 
 def test_each_says_what_it_returns():
-    for name, found in MEASURES.items():
-        if isinstance(found, OfTexture):
-            assert found.function.__doc__ and found.function.__name__ == name
+    for name, measure in MEASURES.items():
+        if isinstance(measure, OfTexture):
+            assert measure.function.__doc__ and measure.function.__name__ == name
 
 
 def test_plain_statistics():

@@ -132,15 +132,15 @@ def test_a_series_is_dragged_frame_by_frame(opened, lesson, engine):
 
 def test_controls_of_each_kind_of_block(lesson, opened):
     kinds = {name: controls_of(lesson.named[name], "en", opened.label) for name in ("turns", "smooth", "two")}
-    assert [found[0].kind for found in kinds.values()] == ["range", "range", "choice"]
+    assert [result[0].kind for result in kinds.values()] == ["range", "range", "choice"]
     assert kinds["smooth"][0].choices == ("0.1", "0.5", "0.9")
     assert scene_at(lesson.named["two"], {"frame": 9.0}) == lesson.named["two"].scenes[1]
 
 
 def test_the_sun_is_dragged_by_azimuth_and_elevation(opened):
     block = read_lesson("heightfield").named["land"]
-    found = controls_of(block, "fr", interface_labels("fr"))
-    assert [(c.key, c.label, c.value, c.low, c.high, c.unit) for c in found[:2]] == [
+    controls = controls_of(block, "fr", interface_labels("fr"))
+    assert [(c.key, c.label, c.value, c.low, c.high, c.unit) for c in controls[:2]] == [
         ("light.sun:0", "azimut", 105.0, 0.0, 360.0, "°"),
         ("light.sun:1", "élévation", 22.0, -90.0, 90.0, "°"),
     ]
@@ -186,16 +186,16 @@ def test_a_name_that_is_not_there(opened):
 
 
 def test_the_cells_are_the_lesson(lesson, french, engine):
-    for one in (lesson, french):
-        cells = json.loads(notebook_text(one, numbers_of(engine, one)))["cells"]
+    for item in (lesson, french):
+        cells = json.loads(notebook_text(item, numbers_of(engine, item)))["cells"]
         code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
         text = "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "markdown")
         assert 'lesson.show("turns")' in code and 'lesson.measure("spread")' in code
         assert "{{" not in text and "lesson:small" not in text
         assert text.count("<details>") == 7
         definition, section = (
-            terms()["texel"].definition(one.language),
-            interface_labels(one.language)["glossary"],
+            terms()["texel"].definition(item.language),
+            interface_labels(item.language)["glossary"],
         )
         assert f'[texel](#{section} "{definition}")' in text
         assert text.endswith(f"## {section}\n\n- {definition}")
@@ -219,8 +219,8 @@ def test_the_cells_are_the_lesson(lesson, french, engine):
 def test_one_picture_is_requested_at_a_time(events, sent):
     here = Path(__file__).parent
     command = [NODE, str(here / "widget_sends.mjs"), str(WIDGET), *events.split()]
-    found = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
-    assert json.loads(found.stdout) == sent
+    result = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
+    assert json.loads(result.stdout) == sent
 
 
 def test_a_picture_that_fails_ends_the_wait_as_well(lesson, opened, monkeypatch):
@@ -259,8 +259,8 @@ def test_a_notebook_runs_from_end_to_end(engine):
     from nbclient import NotebookClient
 
     for language in ("en", "fr"):
-        found = read_lesson("diamond_square", language)
-        notebook = nbformat.reads(notebook_text(found, numbers_of(engine, found)), as_version=4)
+        lesson = read_lesson("diamond_square", language)
+        notebook = nbformat.reads(notebook_text(lesson, numbers_of(engine, lesson)), as_version=4)
         NotebookClient(notebook, timeout=600, kernel_name="python3").execute()
         shows = [cell for cell in notebook.cells if cell.cell_type == "code" and "lesson.show" in cell.source]
         assert len(shows) >= 5

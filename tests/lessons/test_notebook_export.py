@@ -57,8 +57,8 @@ def notebook_of(widgets, *, saved=True):
 
 def figures(nb):
     """Return the figures of a notebook without its widgets' state, and the resources."""
-    found, resources = LiveFigures().preprocess(nb, {})
-    return [cell.outputs[0].data for cell in found.cells], found, resources
+    result, resources = LiveFigures().preprocess(nb, {})
+    return [cell.outputs[0].data for cell in result.cells], result, resources
 
 
 def kept(html):
@@ -136,7 +136,7 @@ def test_other_widgets_keep_their_network_and_are_named(opened, caplog):
     assert caplog.messages == ["the outputs of cells 2 are shown by scripts that a network gives"]
     assert VIEW in other and resources["needs_network"]
     rest = after.metadata["widgets"][STATES]["state"]
-    assert "other" in rest and not [one for one in rest.values() if "_esm" in one["state"]]
+    assert "other" in rest and not [item for item in rest.values() if "_esm" in item["state"]]
 
 
 def test_a_figure_in_another_widget_keeps_its_state(opened):
@@ -156,7 +156,7 @@ def test_a_page_has_formulas_without_a_script_and_asks_for_nothing(opened, caplo
     nb.cells.insert(0, nbformat.v4.new_markdown_cell(text))
     with caplog.at_level(logging.WARNING):
         html, _ = TerrainHTMLExporter().from_notebook_node(nb)
-    (message,) = [one for one in caplog.messages if "formula" in one]
+    (message,) = [message for message in caplog.messages if "formula" in message]
     assert message == "the formula \\unheard{x} stays LaTeX: it has no MathML here"
     assert html.count("<math") == 2 and "<msqrt>" in html and "$\\unheard{x}$" in html
     assert not re.search(r"<(?:script|link|img|iframe)[^>]*(?:src|href)=\"http", html)

@@ -1,4 +1,4 @@
-"""Which share of a terrain's peaks is on a lattice: against peaks that were put there."""
+"""Which fraction of a terrain's peaks is on a lattice: against peaks that were put there."""
 
 import numpy as np
 

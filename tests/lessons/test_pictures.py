@@ -12,7 +12,7 @@ import pytest
 from playground.lessons.figure_renders import pictures_in, pictures_of
 from playground.lessons.read import read_lesson, summaries
 
-LESSONS = [one.name for one in summaries()]
+LESSONS = [summary.name for summary in summaries()]
 
 
 def check(shot, lesson, pictures):
@@ -33,8 +33,8 @@ def three_of(pictures):
 
 
 def own(name):
-    found = [three_of(list(pictures_in(block))) for block in read_lesson(name).blocks]
-    return [picture for pictures in found for picture in pictures if not picture.scene.plain]
+    result = [three_of(list(pictures_in(block))) for block in read_lesson(name).blocks]
+    return [picture for pictures in result for picture in pictures if not picture.scene.plain]
 
 
 @pytest.mark.slow
@@ -49,9 +49,9 @@ def test_what_is_left_to_shots_is_one():
         for picture in pictures_of(read_lesson(name)):
             if picture.scene.plain:
                 sketch = picture.scene.sketch
-                assert picture.scene.shot in [one.name for one in sketch.shots]
-                one = sketch.shot(picture.scene.shot)
-                assert (one.size, one.time, one.steps) == (
+                assert picture.scene.shot in [shot.name for shot in sketch.shots]
+                shot = sketch.shot(picture.scene.shot)
+                assert (shot.size, shot.time, shot.steps) == (
                     picture.scene.pixels,
                     picture.scene.time,
                     picture.scene.steps,

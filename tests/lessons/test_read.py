@@ -1,4 +1,4 @@
-"""A lesson's file becomes blocks; each mistake in it is one sentence with its line."""
+"""A lesson's file becomes blocks; each mistake in it is one message with its line."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ def test_a_slider_goes_from_one_value_to_the_other(lesson):
 
 def test_variants_stand_over_what_the_block_sets(make_lesson):
     block = 'pixels  = [96, 96]\ncaption = "Two lands."'
-    found = make_lesson((block, f'set = {{ "height.seed" = 3 }}\n{block}')).named["two"]
-    assert [dict(scene.values) for scene in found.scenes] == [
+    result = make_lesson((block, f'set = {{ "height.seed" = 3 }}\n{block}')).named["two"]
+    assert [dict(scene.values) for scene in result.scenes] == [
         {"height.seed": 3, "height.smoothing": smoothing} for smoothing in (0.0, 0.9)
     ]
 
@@ -52,11 +52,11 @@ def test_a_texture_from_above(make_lesson, engine):
     """Its greys are the texture's values between the ends of the range."""
     from playground.lessons.figure_renders import draw
 
-    found = make_lesson(
+    lesson = make_lesson(
         ('pixels    = [96, 96]\ncaption   = "Smoother', 'pixels = [20, 20]\ncaption = "Smoother'),
         ("frames    = 3", 'frames = 3\nview = "height"\nrange = [0.0, 2.0]'),
     )
-    scene = found.named["smooth"].scenes[0]
+    scene = lesson.named["smooth"].scenes[0]
     picture = draw(engine, scene).array[..., 0].astype(float) / 255
     values = engine.read(scene.sketch, "height", size=scene.pixels)
     expected = values[::-1].repeat(4, 0).repeat(4, 1) / 2.0
@@ -147,6 +147,6 @@ def test_a_file_without_front_matter(tmp_path):
 
 def test_a_formula_with_a_label_is_a_formula(make_lesson):
     """Nothing of the text is lost."""
-    found = make_lesson(("A picture first.", "$$\nx = 1\n$$ (one)\n\nA picture first."))
-    assert "x = 1" in found.blocks[0].markdown and "(one)" in found.blocks[0].markdown
-    assert found.blocks[1].markdown == "A picture first."
+    lesson = make_lesson(("A picture first.", "$$\nx = 1\n$$ (one)\n\nA picture first."))
+    assert "x = 1" in lesson.blocks[0].markdown and "(one)" in lesson.blocks[0].markdown
+    assert lesson.blocks[1].markdown == "A picture first."

@@ -70,8 +70,8 @@ def test_each_rule(make_lesson, before, after, words):
 
 def test_a_wrong_link_is_named_by_its_line(make_lesson):
     wrong = make_lesson(("term:texel", "term:tile"))
-    (found,) = [(line, sentence) for line, sentence in broken_rules(wrong) if "term 'tile'" in sentence]
-    assert Path(wrong.file).read_text(encoding="utf-8").split("\n")[found[0] - 1].startswith("The spread is")
+    (result,) = [(line, sentence) for line, sentence in broken_rules(wrong) if "term 'tile'" in sentence]
+    assert Path(wrong.file).read_text(encoding="utf-8").split("\n")[result[0] - 1].startswith("The spread is")
 
 
 def test_a_bug_must_be_visible_and_a_claim_must_hold(make_lesson, engine):

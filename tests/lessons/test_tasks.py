@@ -101,7 +101,7 @@ def task(make_lesson):
         (KERNEL, 'of        = "height"', 'of = "hieght"', "did you mean 'height'?"),
         (KERNEL, "tolerance = 0.0001\n", "", "a check of 'height' needs tolerance"),
         (KERNEL, "tolerance = 0.0001", "tolerance = -1.0", "tolerance = -1.0: expected 0 or more"),
-        (KERNEL, 'at        = { "height.seed" = 5 }\n', "", "hidden = true: what is hidden?"),
+        (KERNEL, 'at        = { "height.seed" = 5 }\n', "", "hidden = true: give at"),
         (KERNEL, '"height.seed" = 5', '"height.sed" = 5', "did you mean 'height.seed'?"),
         (KERNEL, '"height.seed" = 5', '"height.seed" = -5', "height.seed = -5"),
         (KERNEL, "between = [0.81, 0.83]", "", "a measure needs between"),
@@ -122,8 +122,8 @@ def task(make_lesson):
 def test_what_is_wrong_in_an_exercise_is_said_in_one_sentence(task, body, before, after, sentence):
     with pytest.raises(SketchError) as raised:
         task(body, "exercise", (before, after))
-    (found,) = raised.value.diagnostics
-    assert sentence in found.message and found.line
+    (result,) = raised.value.diagnostics
+    assert sentence in result.message and result.line
 
 
 @pytest.mark.parametrize(
@@ -148,9 +148,9 @@ def test_an_exercise_without_work_is_as_before(make_lesson):
 @pytest.mark.parametrize("body", [KERNEL, VALUES])
 def test_the_answer_has_all_points_and_the_starter_none(task, engine, body):
     block = task(body).block
-    wanted = answers(engine, block)
-    assert judge(engine, block, answer(block), wanted).passed
-    assert judge(engine, block, starter(block), wanted).points == 0.0
+    expected = answers(engine, block)
+    assert judge(engine, block, answer(block), expected).passed
+    assert judge(engine, block, starter(block), expected).points == 0.0
     assert judge(engine, block, Work()).points == 0.0
 
 
@@ -159,21 +159,21 @@ def test_the_rules_prove_a_task(task, engine):
         return [s for _, s in wrong_pictures(engine, task(body, "exercise", *changes).lesson)]
 
     assert sentence(KERNEL) == sentence(VALUES) == []
-    (found,) = sentence(KERNEL, ("[0.81, 0.83]", "[0.0, 2.0]"))
-    assert found == "exercise 'third': check 3: the starter passes it already"
-    (found,) = sentence(KERNEL, ("[0.81, 0.83]", "[2.0, 3.0]"))
-    assert "the model answer fails: Spread from lowest to highest of `height` is 0.8" in found
-    (found,) = sentence(KERNEL, ("tolerance = 0.0001", "tolerance = 0.9"), ("0.81", "0.82"))[:1]
-    assert found == "exercise 'third': check 2: the starter passes it already"
-    (found,) = sentence(KERNEL, ('"height.seed" = 5', '"height.seed" = 7821'))
-    assert "check 2: at its values all is as at those that are shown" in found
+    (result,) = sentence(KERNEL, ("[0.81, 0.83]", "[0.0, 2.0]"))
+    assert result == "exercise 'third': check 3: the starter passes it already"
+    (result,) = sentence(KERNEL, ("[0.81, 0.83]", "[2.0, 3.0]"))
+    assert "the model answer fails: Spread from lowest to highest of `height` is 0.8" in result
+    (result,) = sentence(KERNEL, ("tolerance = 0.0001", "tolerance = 0.9"), ("0.81", "0.82"))[:1]
+    assert result == "exercise 'third': check 2: the starter passes it already"
+    (result,) = sentence(KERNEL, ('"height.seed" = 5', '"height.seed" = 7821'))
+    assert "check 2: at its values all is as at those that are shown" in result
 
 
 def test_the_rules_prove_a_challenge(task, engine):
     assert list(wrong_pictures(engine, task(CHALLENGE, "challenge").lesson)) == []
     same = task(CHALLENGE, "challenge", ('smoothing" = 0.1', 'smoothing" = 0.6')).lesson
-    (found,) = [sentence for _, sentence in wrong_pictures(engine, same)]
-    assert "the picture to begin from is the one to match" in found
+    (result,) = [sentence for _, sentence in wrong_pictures(engine, same)]
+    assert "the picture to begin from is the one to match" in result
 
 
 # ── those who try to fool it, and those who err ──────────────────────────────
@@ -267,19 +267,19 @@ def test_a_measure_is_of_the_scenes_own_pixels(task, engine, monkeypatch):
 
 def test_a_texture_of_another_size_differs():
     check = Check(0.1, of="height")
-    one, other = (Wanted(texture=np.zeros(shape, np.float32)) for shape in ((5, 5), (5, 5, 4)))
-    result = compare(check, one, other)
+    first, other = (Wanted(texture=np.zeros(shape, np.float32)) for shape in ((5, 5), (5, 5, 4)))
+    result = compare(check, first, other)
     assert not result.passed and result.sizes == ((5, 5, 1), (5, 5, 4))
 
 
 @pytest.mark.parametrize(
-    ("wanted", "mine", "greys"),
+    ("expected", "mine", "greys"),
     [(0.5, 0.25, (128, 64)), (0.0, 1.0, (0, 255)), (300.0, 150.0, (255, 128)), (-1.0, 0.0, (0, 128))],
 )
-def test_a_texture_that_is_the_same_everywhere_is_shown_as_its_value(wanted, mine, greys):
-    one, other = (Wanted(texture=np.full((5, 5), value, np.float32)) for value in (wanted, mine))
-    found = compare(Check(0.1, of="height"), other, one)
-    assert (np.unique(found.wanted).tolist(), np.unique(found.mine).tolist()) == ([greys[0]], [greys[1]])
+def test_a_texture_that_is_the_same_everywhere_is_shown_as_its_value(expected, mine, greys):
+    first, other = (Wanted(texture=np.full((5, 5), value, np.float32)) for value in (expected, mine))
+    result = compare(Check(0.1, of="height"), other, first)
+    assert (np.unique(result.expected).tolist(), np.unique(result.mine).tolist()) == ([greys[0]], [greys[1]])
 
 
 def test_values_that_are_not_asked_for_are_named(task, engine):
@@ -304,17 +304,17 @@ def test_a_kernels_author_sets_no_values(task, engine):
 def test_pictures_are_compared_as_in_the_browser():
     code = (GLSL.parent / "playground/web/runtime/picture_check.js").read_text(encoding="utf-8")
     assert f"LEVELS = {LEVELS};" in code and f"SHARE = {SHARE};" in code
-    one = np.full((50, 20, 3), 100, np.uint8)
-    other = one.copy()
+    first = np.full((50, 20, 3), 100, np.uint8)
+    other = first.copy()
     other[:] += np.uint8(LEVELS)
-    assert share_differing(one, other) == 0.0
+    assert share_differing(first, other) == 0.0
     other[3, 4, 1] += 1
-    assert share_differing(one, other) == 1 / 1000
-    assert share_differing(one, one[:40]) == 1.0
+    assert share_differing(first, other) == 1 / 1000
+    assert share_differing(first, first[:40]) == 1.0
 
 
 @pytest.mark.parametrize(
-    ("rows", "columns", "place"),
+    ("rows", "columns", "position"),
     [
         (slice(0, 9), slice(0, 9), "top-left"),
         (slice(0, 9), slice(0, 30), "top"),
@@ -323,23 +323,23 @@ def test_pictures_are_compared_as_in_the_browser():
         (slice(0, 30), slice(0, 30), ""),
     ],
 )
-def test_where_a_picture_differs(rows, columns, place):
-    wanted = np.full((30, 30, 3), 90, np.uint8)
-    mine = wanted.copy()
+def test_where_a_picture_differs(rows, columns, position):
+    expected = np.full((30, 30, 3), 90, np.uint8)
+    mine = expected.copy()
     mine[rows, columns] = 10
-    result = compare(Check(SHARE), Wanted(mine), Wanted(wanted))
-    assert result.place == place and result.bias < 0
+    result = compare(Check(SHARE), Wanted(mine), Wanted(expected))
+    assert result.region == position and result.bias < 0
     # A texture's first row is the south's.
     up = compare(
-        Check(1.0, of="x"), *(Wanted(texture=p[::-1, :, 0].astype(np.float32)) for p in (mine, wanted))
+        Check(1.0, of="x"), *(Wanted(texture=p[::-1, :, 0].astype(np.float32)) for p in (mine, expected))
     )
-    assert up.place == place
+    assert up.region == position
 
 
 def test_a_score_is_linear_between_the_beginning_and_the_picture_asked_for():
     target, begin = np.full((9, 16, 3), 200, np.uint8), np.full((9, 16, 3), 100, np.uint8)
-    for level, wanted in ((200, 100.0), (100, 0.0), (150, 50.0), (175, 75.0), (20, 0.0), (250, 50.0)):
-        assert score(target, begin, np.full_like(target, level)) == pytest.approx(wanted)
+    for level, expected in ((200, 100.0), (100, 0.0), (150, 50.0), (175, 75.0), (20, 0.0), (250, 50.0)):
+        assert score(target, begin, np.full_like(target, level)) == pytest.approx(expected)
     with pytest.raises(ValueError, match="one size"):
         score(target, begin, target[:4])
 

@@ -21,15 +21,15 @@ __all__ = ["_starters", "task"]
 
 @pytest.fixture(scope="module")
 def process():
-    with JudgeProcess(limit_seconds=3.0, software=True) as found:
-        yield found
+    with JudgeProcess(limit_seconds=3.0, software=True) as judge_process:
+        yield judge_process
 
 
 @pytest.fixture
 def opened(task, engine, process, monkeypatch):
     monkeypatch.setattr(notebook_lesson, "on_engine", lambda work: work(engine))
     monkeypatch.setattr(notebook_lesson, "_judge", lambda: process)
-    return lambda *given: NotebookLesson(task(*given).lesson)
+    return lambda *value: NotebookLesson(task(*value).lesson)
 
 
 @pytest.mark.slow
@@ -70,8 +70,8 @@ def test_the_cells_hold_the_starter_and_the_check(task, opened):
     text = notebook_text(lesson, {})
     code = ["".join(cell["source"]) for cell in json.loads(text)["cells"] if cell["cell_type"] == "code"]
     asked = []
-    fake = type("L", (), {"check": lambda self, *given: asked.append(given)})()
-    (cell,) = [one for one in code if one.startswith('lesson.check("third"')]
+    fake = type("L", (), {"check": lambda self, *value: asked.append(value)})()
+    (cell,) = [item for item in code if item.startswith('lesson.check("third"')]
     exec(cell, {"lesson": fake})
     assert asked == [("third", "\n" + starter_text(lesson.named["third"]))]
     assert 'lesson.exercise("third")' in code

@@ -66,20 +66,20 @@ def test_a_new_block_is_in_english_until_it_is_translated(pair, write_lesson):
     write_lesson(("## One thing\n", "## One thing\n\nA new paragraph.\n"))
     lost = stale(read_document(english), read_document(french))
     assert lines_of(read_document(english), lost.added) == ["A new paragraph."] and not lost.changed
-    found = translated(read_file(english), read_document(english), read_document(french), "fr")
-    words = [block.markdown for block in found.blocks if hasattr(block, "kind")]
+    result = translated(read_file(english), read_document(english), read_document(french), "fr")
+    words = [block.markdown for block in result.blocks if hasattr(block, "kind")]
     assert "A new paragraph." in words and "Une image d’abord." in words
-    assert found.named["third"].ask == "Changez."  # what comes after keeps its place
-    assert [found.blocks[i].markdown for i in found.stale] == ["A new paragraph."]
+    assert result.named["third"].ask == "Changez."  # what comes after keeps its place
+    assert [result.blocks[i].markdown for i in result.stale] == ["A new paragraph."]
 
 
 def test_a_block_that_is_gone(pair, write_lesson):
     english, french = pair
     write_lesson(("A picture first.\n", ""))
     assert stale(read_document(english), read_document(french)).removed == 1
-    found = translated(read_file(english), read_document(english), read_document(french), "fr")
-    assert found.named["land"].caption == "Cinq sur cinq, tout est connu."
-    assert not any(getattr(block, "markdown", "") == "Une image d’abord." for block in found.blocks)
+    result = translated(read_file(english), read_document(english), read_document(french), "fr")
+    assert result.named["land"].caption == "Cinq sur cinq, tout est connu."
+    assert not any(getattr(block, "markdown", "") == "Une image d’abord." for block in result.blocks)
 
 
 def test_marking_it_again_makes_it_current(pair, write_lesson):
@@ -143,10 +143,10 @@ def test_the_status_of_a_folder_of_lessons(pair, write_lesson, tmp_path, monkeyp
     assert status.status_of("small", "fr").state == "current"
     text = (tmp_path / "en" / "small.md").read_text(encoding="utf-8")
     (tmp_path / "en" / "small.md").write_text(text.replace("A picture first.", "Two."), encoding="utf-8")
-    found = status.status_of("small", "fr")
+    result = status.status_of("small", "fr")
     line = text.split("\n").index("A picture first.") + 1
-    assert (found.state, found.changed) == ("stale", (line,))
-    assert found.sentences == [f"changed: line {line}"]
+    assert (result.state, result.changed) == ("stale", (line,))
+    assert result.sentences == [f"changed: line {line}"]
     (tmp_path / "fr" / "small.md").unlink()
     assert status.status_of("small", "fr").state == "missing"
 
@@ -155,9 +155,9 @@ def test_a_block_that_became_one_of_another_kind_is_in_english(pair, write_lesso
     """A stale translation can be read, whatever the English has become."""
     english, french = pair
     write_lesson(("A picture first.\n", "* A list\n* first\n"))
-    found = translated(read_file(english), read_document(english), read_document(french), "fr")
-    assert found.blocks[0].markdown == "* A list\n* first" and found.stale == (0,)
-    assert found.named["land"].caption == "Cinq sur cinq, tout est connu."
+    result = translated(read_file(english), read_document(english), read_document(french), "fr")
+    assert result.blocks[0].markdown == "* A list\n* first" and result.stale == (0,)
+    assert result.named["land"].caption == "Cinq sur cinq, tout est connu."
 
 
 def test_a_block_that_got_more_parts_is_in_english(pair, write_lesson):
@@ -166,10 +166,10 @@ def test_a_block_that_got_more_parts_is_in_english(pair, write_lesson):
         ('labels  = ["even", "uneven"]', 'labels = ["even", "uneven", "more"]'),
         ("0.9 }\n```", '0.9 }\n[[variant]]\nset = { "height.smoothing" = 0.5 }\n```'),
     )
-    found = translated(read_file(english), read_document(english), read_document(french), "fr")
-    assert found.named["two"].labels == ("even", "uneven", "more")
-    assert [found.blocks[i].name for i in found.stale] == ["two"]
-    assert found.named["third"].ask == "Changez."
+    result = translated(read_file(english), read_document(english), read_document(french), "fr")
+    assert result.named["two"].labels == ("even", "uneven", "more")
+    assert [result.blocks[i].name for i in result.stale] == ["two"]
+    assert result.named["third"].ask == "Changez."
 
 
 @pytest.mark.parametrize(

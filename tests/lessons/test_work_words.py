@@ -20,8 +20,8 @@ pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
 
 @pytest.fixture(scope="module")
 def node() -> Iterator[Node]:
-    with Node() as found:
-        yield found
+    with Node() as result:
+        yield result
 
 
 def said_in_a_page(node: Node, check: Check, outcome: dict[str, Any], language: str) -> str:
@@ -39,25 +39,25 @@ def said_in_a_page(node: Node, check: Check, outcome: dict[str, Any], language: 
     return sentence
 
 
-def both(node: Node, check: Check, mine: Any, wanted: Any) -> list[tuple[str, str]]:
+def both(node: Node, check: Check, mine: Any, expected: Any) -> list[tuple[str, str]]:
     """Return what Python and the page say of two textures or pictures, by language."""
     if check.of:
-        result = compare(check, Wanted(texture=mine), Wanted(texture=wanted))
-        given = [
-            {"size": one.shape[1::-1], "channels": 1, "data": one.ravel().astype(np.float32)}
-            for one in (mine, wanted)
+        result = compare(check, Wanted(texture=mine), Wanted(texture=expected))
+        value = [
+            {"size": mine.shape[1::-1], "channels": 1, "data": mine.ravel().astype(np.float32)}
+            for mine in (mine, expected)
         ]
-        outcome = node.call("work_check.js", "compareTextures", *given, {"tolerance": check.tolerance})
+        outcome = node.call("work_check.js", "compareTextures", *value, {"tolerance": check.tolerance})
     else:
-        result = compare(check, Wanted(picture=mine), Wanted(picture=wanted))
-        given = [
+        result = compare(check, Wanted(picture=mine), Wanted(picture=expected))
+        value = [
             {
-                "size": one.shape[1::-1],
-                "data": np.dstack([one, np.full_like(one[..., :1], 255)])[::-1].ravel(),
+                "size": mine.shape[1::-1],
+                "data": np.dstack([mine, np.full_like(mine[..., :1], 255)])[::-1].ravel(),
             }
-            for one in (mine, wanted)
+            for mine in (mine, expected)
         ]
-        outcome = node.call("work_check.js", "comparePictures", *given, {"tolerance": check.tolerance})
+        outcome = node.call("work_check.js", "comparePictures", *value, {"tolerance": check.tolerance})
     assert outcome["passed"] == result.passed
     return [
         (sentence_of(result, language).replace("`", ""), said_in_a_page(node, check, outcome, language))
@@ -72,13 +72,13 @@ PLACES = (slice(0, 8), slice(8, 16), slice(16, 24), slice(0, 24))
 @pytest.mark.parametrize("columns", PLACES)
 def test_where_and_by_how_much(node: Node, rows: slice, columns: slice):
     random = np.random.default_rng(0)
-    wanted = random.random((24, 25), dtype=np.float32)
-    mine = wanted.copy()
+    expected = random.random((24, 25), dtype=np.float32)
+    mine = expected.copy()
     mine[rows, columns] += 0.25
     texture = Check(tolerance=0.002, at=(("height.seed", 4), ("height.roughness", 0.3)), of="height")
-    for python, page in both(node, texture, mine, wanted):
+    for python, page in both(node, texture, mine, expected):
         assert page == python
-    levels = (200.0 * wanted[..., None] * np.ones(3)).astype(np.uint8)
+    levels = (200.0 * expected[..., None] * np.ones(3)).astype(np.uint8)
     changed = levels.copy()
     changed[rows, columns] += 40
     for hidden in (False, True):
@@ -87,10 +87,10 @@ def test_where_and_by_how_much(node: Node, rows: slice, columns: slice):
 
 
 def test_a_picture_begins_at_the_top_and_a_texture_in_the_south(node: Node):
-    wanted = np.zeros((24, 24), np.float32)
-    mine = wanted.copy()
+    expected = np.zeros((24, 24), np.float32)
+    mine = expected.copy()
     mine[:8, 16:] = 1.0
-    ((_, said), _) = both(node, Check(tolerance=0.1, of="height"), mine, wanted)
+    ((_, said), _) = both(node, Check(tolerance=0.1, of="height"), mine, expected)
     assert "in the south-east" in said
     levels = np.zeros((24, 24, 3), np.uint8)
     changed = levels.copy()
@@ -100,12 +100,18 @@ def test_a_picture_begins_at_the_top_and_a_texture_in_the_south(node: Node):
 
 
 def test_what_is_right_or_is_no_number_or_of_another_size(node: Node):
-    wanted = np.linspace(0.0, 1.0, 35, dtype=np.float32).reshape(5, 7)
+    expected = np.linspace(0.0, 1.0, 35, dtype=np.float32).reshape(5, 7)
     check = Check(tolerance=0.002, of="height")
-    broken = wanted.copy()
+    broken = expected.copy()
     broken[2, 3] = np.nan
-    for mine in (wanted, broken, np.where(wanted > 0.5, np.inf, wanted), wanted[:4], wanted + 0.00301):
-        for python, page in both(node, check, mine, wanted):
+    for mine in (
+        expected,
+        broken,
+        np.where(expected > 0.5, np.inf, expected),
+        expected[:4],
+        expected + 0.00301,
+    ):
+        for python, page in both(node, check, mine, expected):
             assert page == python
 
 

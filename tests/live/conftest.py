@@ -10,7 +10,7 @@ import pytest
 from playground.engine.engine import Engine
 
 from .desk import Bare
-from .lesson_desk import OWN, Desk, shelved
+from .lesson_desk import OWN, Harness, shelved
 from .screen import Screen
 
 
@@ -31,13 +31,13 @@ def bare(folder: Path, any_engine: Engine) -> Iterator[Bare]:
 
 
 @pytest.fixture
-def desk(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
+def harness(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) -> Iterator[Harness]:
     """Give a panel of lessons on the reader's own sketch."""
     shelved(monkeypatch, tmp_path)
     own = tmp_path / "own"
     own.mkdir()
     (own / "sketch.toml").write_text(OWN, encoding="utf-8")
-    made = Desk(any_engine, own)
+    made = Harness(any_engine, own)
     yield made
     made.close()
 

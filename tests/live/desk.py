@@ -17,7 +17,7 @@ from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
 from playground.live.panel import Panel
 from playground.live.theme import Theme
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 
@@ -38,7 +38,7 @@ class Bare:
         self.theme.rescale(scale)
         self.time = 0.0
         self.session = Session(engine, path)
-        self.bench = Bench(self.session, WindowControls(self._quit), folder=path, now=lambda: self.time)
+        self.bench = Workbench(self.session, WindowControls(self._quit), folder=path, now=lambda: self.time)
         self.drops = Drops(self.bench.commands)
         self.panel = Panel()
         self.places: dict[str, tuple[float, float, float, float]] = {}  # by label: x, y, width, height
@@ -112,7 +112,7 @@ class Bare:
                 texture.set_status(imgui.ImTextureStatus.ok)
 
     def point(self, label: str, across: float = 0.5) -> None:
-        """Move the mouse over what has a label, to a share of its width."""
+        """Move the mouse over what has a label, to a fraction of its width."""
         self.run_frames()
         x, y, wide, high = self.places[label]
         imgui.get_io().add_mouse_pos_event(x + across * wide, y + high / 2)
@@ -179,6 +179,6 @@ class Bare:
         imgui.destroy_context(self.context)
 
 
-def errors_of(bench: Bench) -> ErrorsList:
+def errors_of(bench: Workbench) -> ErrorsList:
     """Return the list of errors of one frame."""
     return ErrorsList(bench.problems, bench.files, bench.session, bench.interface)

@@ -254,7 +254,7 @@ def shelved(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
         monkeypatch.delenv(variable, raising=False)
 
 
-class Desk(Bare):
+class Harness(Bare):
     """A panel of lessons next to a sketch, frame by frame."""
 
     lessons: Lessons | None = None
@@ -301,7 +301,7 @@ class Desk(Bare):
         super().close()
 
 
-def value(desk: Desk, path: str) -> object:
+def value(harness: Harness, path: str) -> object:
     """Return a parameter's value in the sketch that is shown."""
-    assert desk.session.shown is not None
-    return dict(desk.session.shown.applied)[path]
+    assert harness.session.shown is not None
+    return dict(harness.session.shown.applied)[path]

@@ -36,22 +36,22 @@ ON_LINUX = [
 
 def script(size: tuple[int, int], **options: object) -> str:
     """Return a program that opens a window on the sketch in its first argument."""
-    given = "".join(f"{name}={value!r}, " for name, value in options.items())
+    text = "".join(f"{name}={value!r}, " for name, value in options.items())
     return (
         "import sys\nfrom playground.live.app import run\n"
-        f"sys.exit(run(sys.argv[1], size={size}, {given}time_limit=300))\n"
+        f"sys.exit(run(sys.argv[1], size={size}, {text}time_limit=300))\n"
     )
 
 
 def needed(program: str) -> str:
     """Return the path of a program; without it a test is skipped, and fails in CI."""
-    found = shutil.which(program)
-    if found is None:
+    text = shutil.which(program)
+    if text is None:
         message = f"{program} is not installed (Debian: apt install xvfb xdotool)"
         if os.environ.get("CI"):
             pytest.fail(message)
         pytest.skip(message)
-    return found
+    return text
 
 
 class Screen:
@@ -108,8 +108,8 @@ class Program:
         """Return the last line of its status; nothing before that."""
         text = self.status.read_text("utf-8") if self.status.exists() else ""
         lines = text[: text.rfind("\n") + 1].splitlines()  # the last may be half written
-        found: dict[str, Any] = json.loads(lines[-1]) if lines else {}
-        return found
+        values: dict[str, Any] = json.loads(lines[-1]) if lines else {}
+        return values
 
     def wait(self, until: Callable[[dict[str, Any]], object]) -> dict[str, Any]:
         """Wait until its status fulfils a condition."""

@@ -50,8 +50,8 @@ def test_a_point_is_dragged_over_its_own_ranges(bare: Bare) -> None:
     bare.press(False)
     draft = bare.session.shown
     assert draft is not None
-    (found,) = (value for path, value in draft.edits.values if path == "a.place")
-    assert found == (pytest.approx(0.5, abs=0.05), pytest.approx(3.0, abs=0.05))
+    (result,) = (value for path, value in draft.edits.values if path == "a.place")
+    assert result == (pytest.approx(0.5, abs=0.05), pytest.approx(3.0, abs=0.05))
 
 
 def test_a_remote_presses_it_for_one_frame_and_sets_the_rest(bare: Bare) -> None:
@@ -73,7 +73,7 @@ def test_a_remote_presses_it_for_one_frame_and_sets_the_rest(bare: Bare) -> None
 def test_a_knob_goes_over_each_range_of_a_point(bare: Bare) -> None:
     sketch = bare.session.sketch
     assert sketch is not None
-    place = next(p for p in sketch.graph.passes[0].technique.parameters if p.name == "place")
-    assert with_share(place, (0.0, 3.0), 0.25, 0) == (-0.5, 3.0)  # type: ignore[arg-type]
-    assert with_share(place, (0.0, 3.0), 0.25, 1) == (0.0, 2.5)  # type: ignore[arg-type]
-    assert share_of(place, (0.0, 3.5), 1) == pytest.approx(0.75)  # type: ignore[arg-type]
+    parameter = next(p for p in sketch.graph.passes[0].technique.parameters if p.name == "place")
+    assert with_share(parameter, (0.0, 3.0), 0.25, 0) == (-0.5, 3.0)  # type: ignore[arg-type]
+    assert with_share(parameter, (0.0, 3.0), 0.25, 1) == (0.0, 2.5)  # type: ignore[arg-type]
+    assert share_of(parameter, (0.0, 3.5), 1) == pytest.approx(0.75)  # type: ignore[arg-type]

@@ -20,8 +20,8 @@ from playground.errors import ParameterError, PlaygroundError
 from playground.extras import install_command
 from playground.sketch.assign import resolve
 from playground.workbench import captures as capturing
-from playground.workbench.bench import Bench
-from playground.workbench.captures import Captures, Wish, parts_of, sweep_text
+from playground.workbench.bench import Workbench
+from playground.workbench.captures import Captures, CaptureSettings, parts_of, sweep_text
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 
@@ -51,14 +51,14 @@ SIZE = (40, 30)
 
 
 @pytest.fixture
-def bench(any_engine: Engine, tmp_path: Path) -> Iterator[Bench]:
+def bench(any_engine: Engine, tmp_path: Path) -> Iterator[Workbench]:
     (tmp_path / "terrain.glsl").write_text(
         TERRAIN.replace("fract(time)", "fract(0.25 * time)"), encoding="utf-8"
     )
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     (tmp_path / "out").mkdir()
     session = Session(any_engine, tmp_path)
-    made = Bench(session, WindowControls(lambda: None), folder=tmp_path / "out")
+    made = Workbench(session, WindowControls(lambda: None), folder=tmp_path / "out")
     session.frame(SIZE)
     assert session.error is None
     yield made
@@ -66,13 +66,13 @@ def bench(any_engine: Engine, tmp_path: Path) -> Iterator[Bench]:
     session.release()
 
 
-def wishing(bench: Bench, wish: Wish) -> Captures:
+def wishing(bench: Workbench, capture_settings: CaptureSettings) -> Captures:
     """Return the captures with a wish."""
-    bench.captures.wish = wish
+    bench.captures.capture_settings = capture_settings
     return bench.captures
 
 
-def wait(bench: Bench) -> None:
+def wait(bench: Workbench) -> None:
     """Wait until the capture has ended; the window goes on meanwhile."""
     end = time.monotonic() + LIMIT
     while bench.captures.working is not None:
@@ -82,12 +82,12 @@ def wait(bench: Bench) -> None:
         time.sleep(0.01)
 
 
-def notices_of(bench: Bench) -> str:
+def notices_of(bench: Workbench) -> str:
     return "\n".join(notice.text for notice in bench.notices.items)
 
 
 @pytest.mark.slow
-def test_a_picture_is_what_the_window_shows_with_all_that_is_set_by_hand(bench: Bench) -> None:
+def test_a_picture_is_what_the_window_shows_with_all_that_is_set_by_hand(bench: Workbench) -> None:
     bench.session.drafts.set("height.level", 0.2)
     bench.session.clock.time = 1.5
     bench.session.frame(SIZE)
@@ -104,14 +104,14 @@ def test_a_picture_is_what_the_window_shows_with_all_that_is_set_by_hand(bench: 
     assert f"saved {made}, 40 x 30 pixels" in notices_of(bench)
     here = bench.session.engine.render(bench.captures.job().sketch, size=SIZE, time=1.5)
     assert np.array_equal(pixels, here.array), "its process gives the bytes of this one"
-    bench.captures.wish.multiple = 4
+    bench.captures.capture_settings.multiple = 4
     larger = do(bench.captures.job(), bench.session.engine, lambda *_: None, lambda _: None)
     assert larger != made and read_png(larger)[0].shape == (120, 160, 4)
 
 
 @pytest.mark.slow
-def test_what_stops_leaves_nothing_and_the_window_may_close_meanwhile(bench: Bench) -> None:
-    bench.captures.wish = Wish(PICTURE, multiple=0, size=(6000, 6000))
+def test_what_stops_leaves_nothing_and_the_window_may_close_meanwhile(bench: Workbench) -> None:
+    bench.captures.capture_settings = CaptureSettings(PICTURE, multiple=0, size=(6000, 6000))
     bench.captures.start()
     assert bench.captures.working is not None
     bench.captures.working.stop()
@@ -122,8 +122,8 @@ def test_what_stops_leaves_nothing_and_the_window_may_close_meanwhile(bench: Ben
     assert bench.captures.working is None and list(bench.captures.folder.iterdir()) == []
 
 
-def test_a_process_that_dies_is_reported(bench: Bench) -> None:
-    bench.captures.wish = Wish(PICTURE, multiple=0, size=(6000, 6000))
+def test_a_process_that_dies_is_reported(bench: Workbench) -> None:
+    bench.captures.capture_settings = CaptureSettings(PICTURE, multiple=0, size=(6000, 6000))
     bench.captures.start()
     assert bench.captures.working is not None
     task = bench.captures.working._task
@@ -135,85 +135,90 @@ def test_a_process_that_dies_is_reported(bench: Bench) -> None:
     assert bench.captures.failed.startswith("the capture "), bench.captures.failed
 
 
-def test_numbered_pictures_a_film_and_a_sheet(bench: Bench) -> None:
+def test_numbered_pictures_a_film_and_a_sheet(bench: Workbench) -> None:
     """In this process, by the job that the other one does."""
     progress: list[tuple[int, int]] = []
-    wish = Wish(PICTURES, seconds=0.2, fps=10, start=1.0)
+    capture_settings = CaptureSettings(PICTURES, seconds=0.2, fps=10, start=1.0)
     with headless() as engine:
 
-        def made(wish: Wish) -> Path:
+        def made(capture_settings: CaptureSettings) -> Path:
             progress.clear()
-            job = wishing(bench, wish).job()
+            job = wishing(bench, capture_settings).job()
             return do(job, engine, lambda done, of: progress.append((done, of)), lambda _: None)
 
-        folder = made(wish)
+        folder = made(capture_settings)
         assert [path.name for path in sorted(folder.iterdir())] == ["00000.png", "00001.png"]
         assert progress == [(0, 2), (1, 2), (2, 2)]
-        job = wishing(bench, wish).job()
+        job = wishing(bench, capture_settings).job()
         for number in range(2):
-            wanted = engine.render(job.sketch, size=SIZE, time=1.0 + number / 10).array
-            assert np.array_equal(read_png(folder / f"{number:05d}.png")[0], wanted)
-        assert made(wish).name == f"{folder.name}-2"
-        sheet = made(Wish(SHEET, sweeps=["height.level=0..1,3", ""]))
+            expected = engine.render(job.sketch, size=SIZE, time=1.0 + number / 10).array
+            assert np.array_equal(read_png(folder / f"{number:05d}.png")[0], expected)
+        assert made(capture_settings).name == f"{folder.name}-2"
+        sheet = made(CaptureSettings(SHEET, sweeps=["height.level=0..1,3", ""]))
         assert sheet.name.endswith("-sweep.png") and progress[-1] == (3, 3)
         pytest.importorskip("av")
-        film = made(Wish(FILM, seconds=0.0, fps=10, ending=".gif"))
+        film = made(CaptureSettings(FILM, seconds=0.0, fps=10, ending=".gif"))
         assert film.suffix == ".gif" and progress[-1] == (5, 5), "to the last keyframe"
     assert not list(bench.captures.folder.rglob("*.part"))
 
 
 def test_an_invalid_capture_is_reported_before_anything_begins(
-    bench: Bench, monkeypatch: pytest.MonkeyPatch
+    bench: Workbench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for wish, sentence in (
-        (Wish(SHEET), "choose a parameter to sweep"),
-        (Wish(SHEET, sweeps=["height.levle=0..1", ""]), "level"),
-        (Wish(PICTURE, multiple=0, size=(70000, 10)), "expected 1 to 65536"),
-        (Wish(FILM, ending=".gif", fps=30), "A GIF cannot|a GIF cannot"),
+    for capture_settings, sentence in (
+        (CaptureSettings(SHEET), "choose a parameter to sweep"),
+        (CaptureSettings(SHEET, sweeps=["height.levle=0..1", ""]), "level"),
+        (CaptureSettings(PICTURE, multiple=0, size=(70000, 10)), "expected 1 to 65536"),
+        (CaptureSettings(FILM, ending=".gif", fps=30), "A GIF cannot|a GIF cannot"),
     ):
         with pytest.raises(PlaygroundError, match=sentence):
-            wishing(bench, wish).job()
-        bench.captures.wish = wish
+            wishing(bench, capture_settings).job()
+        bench.captures.capture_settings = capture_settings
         bench.captures.start()
         assert bench.captures.working is None and bench.captures.failed
         assert bench.captures.failed in notices_of(bench)
 
 
-def test_without_pyav_one_sentence_with_the_command(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_pyav_one_sentence_with_the_command(
+    bench: Workbench, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setitem(__import__("sys").modules, "av", None)
     monkeypatch.setenv("PATH", "")
-    job = wishing(bench, Wish(FILM, seconds=0.2, fps=10)).job()
+    job = wishing(bench, CaptureSettings(FILM, seconds=0.2, fps=10)).job()
     with pytest.raises(PlaygroundError, match=re.escape(install_command("video"))):
         do(job, bench.session.engine, lambda *_: None, lambda _: None)
     assert list(bench.captures.folder.iterdir()) == []
 
 
-def test_sizes_and_lengths(bench: Bench) -> None:
-    assert wishing(bench, Wish(PICTURE, multiple=8)).size() == (320, 240)
-    assert wishing(bench, Wish(FILM, multiple=0, size=(33, 21))).size() == (34, 22)
-    assert wishing(bench, Wish(SHEET)).size() == (320, 240)
-    assert wishing(bench, Wish(FILM, seconds=2.0, fps=30)).summary() == "60 pictures of 40 x 30 pixels"
-    assert wishing(bench, Wish(FILM, fps=10)).summary() == "5 pictures of 40 x 30 pixels"
-    assert "expected" in wishing(bench, Wish(PICTURE, multiple=0, size=(0, 1))).summary()
+def test_sizes_and_lengths(bench: Workbench) -> None:
+    assert wishing(bench, CaptureSettings(PICTURE, multiple=8)).size() == (320, 240)
+    assert wishing(bench, CaptureSettings(FILM, multiple=0, size=(33, 21))).size() == (34, 22)
+    assert wishing(bench, CaptureSettings(SHEET)).size() == (320, 240)
+    assert (
+        wishing(bench, CaptureSettings(FILM, seconds=2.0, fps=30)).summary()
+        == "60 pictures of 40 x 30 pixels"
+    )
+    assert wishing(bench, CaptureSettings(FILM, fps=10)).summary() == "5 pictures of 40 x 30 pixels"
+    assert "expected" in wishing(bench, CaptureSettings(PICTURE, multiple=0, size=(0, 1))).summary()
     with pytest.raises(ParameterError):
-        wishing(bench, Wish(FILM, multiple=0, size=(20000, 100))).size()
+        wishing(bench, CaptureSettings(FILM, multiple=0, size=(20000, 100))).size()
 
 
-def test_the_map_is_captured_where_it_is_shown(bench: Bench) -> None:
+def test_the_map_is_captured_where_it_is_shown(bench: Workbench) -> None:
     bench.session.show("height:height")
     bench.session.frame(SIZE)
     assert bench.session.view.map is not None
-    assert wishing(bench, Wish()).job().sketch == bench.session.view.map.of(bench.session.sketch)  # type: ignore[arg-type]
+    assert wishing(bench, CaptureSettings()).job().sketch == bench.session.view.map.of(bench.session.sketch)  # type: ignore[arg-type]
 
 
-def test_a_chosen_parameter_is_swept_over_its_range(bench: Bench) -> None:
+def test_a_chosen_parameter_is_swept_over_its_range(bench: Workbench) -> None:
     graph = bench.session.sketch.graph  # type: ignore[union-attr]
     level, kind, tint = (resolve(graph, f"height.{n}")[0].parameter for n in ("level", "kind", "tint"))
     assert sweep_text("height.level", level) == "height.level=0..1,9"
     assert sweep_text("height.kind", kind) == "height.kind=one,two"
     assert parts_of(tint) == ("r", "g", "b") and parts_of(level) == ("",)
     for text in (sweep_text("height.kind", kind), sweep_text("height.tint", tint, "g")):
-        assert wishing(bench, Wish(SHEET, sweeps=[text, ""])).job().sweeps == (text,)
+        assert wishing(bench, CaptureSettings(SHEET, sweeps=[text, ""])).job().sweeps == (text,)
 
 
 def test_the_folder_is_shown_or_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -232,8 +237,8 @@ def test_the_folder_is_shown_or_named(tmp_path: Path, monkeypatch: pytest.Monkey
     assert str(tmp_path) in capturing.open_folder(file)
 
 
-def test_a_job_takes_a_new_name_every_time(bench: Bench) -> None:
-    job = wishing(bench, Wish()).job()
+def test_a_job_takes_a_new_name_every_time(bench: Workbench) -> None:
+    job = wishing(bench, CaptureSettings()).job()
     engine = bench.session.engine
     names = [do(job, engine, lambda *_: None, lambda _: None).name for _ in range(3)]
     stem = job.sketch.name
@@ -250,8 +255,8 @@ def test_the_window_is_there_for_c_and_goes_with_esc(
     (tmp_path / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     bare = Bare(any_engine, tmp_path / "sketch.toml")
-    started: list[Wish] = []
-    monkeypatch.setattr(Captures, "start", lambda self: started.append(self.wish))
+    started: list[CaptureSettings] = []
+    monkeypatch.setattr(Captures, "start", lambda self: started.append(self.capture_settings))
     draw = bare.draw
 
     def both() -> None:
@@ -263,14 +268,14 @@ def test_the_window_is_there_for_c_and_goes_with_esc(
         bare.key(imgui.Key.c)
         bare.run_frames(3)
         assert bare.bench.captures.shown
-        wish = bare.bench.captures.wish
+        capture_settings = bare.bench.captures.capture_settings
         for name, kind in (("Film", FILM), ("Numbered pictures", PICTURES), ("Sheet of a sweep", SHEET)):
             bare.click("##kind")
             bare.click(name)
-            assert wish.kind == kind
+            assert capture_settings.kind == kind
         bare.click("##swept0", 0.99)
         bare.click("height.level")
-        assert wish.sweeps[0] == "height.level=0..1,9"
+        assert capture_settings.sweeps[0] == "height.level=0..1,9"
         bare.key(imgui.Key.escape)
         assert not bare.bench.captures.shown and not bare.quits
     finally:

@@ -34,8 +34,8 @@ def sources(bare: Bare) -> dict[str, str]:
 
 
 def warned(bare: Bare) -> list[str]:
-    known = Warnings(lambda kernel: ())
-    return [str(found) for found in known.of(bare.session.sketch, bare.session.plan)]
+    warnings = Warnings(lambda kernel: ())
+    return [str(result) for result in warnings.of(bare.session.sketch, bare.session.plan)]
 
 
 def choose(bare: Bare, channel: str, option: str) -> None:

@@ -182,20 +182,20 @@ def test_an_image_that_is_another_now_leaves_the_picture_as_it_was(
 
 
 def test_swap_and_back(session: Session, compare: Compare) -> None:
-    one = draw_frame(session, compare)
+    frame = draw_frame(session, compare)
     compare.keep()
     draw_frame(session, compare)
     session.drafts.set("height.level", 0.9)
     two = draw_frame(session, compare)
     compare.swap()
-    np.testing.assert_array_equal(draw_frame(session, compare), one)
+    np.testing.assert_array_equal(draw_frame(session, compare), frame)
     np.testing.assert_array_equal(first(compare), two)
     compare.swap()
     np.testing.assert_array_equal(draw_frame(session, compare), two)
-    np.testing.assert_array_equal(first(compare), one)
+    np.testing.assert_array_equal(first(compare), frame)
     compare.back()
-    np.testing.assert_array_equal(draw_frame(session, compare), one)
-    np.testing.assert_array_equal(first(compare), one)
+    np.testing.assert_array_equal(draw_frame(session, compare), frame)
+    np.testing.assert_array_equal(first(compare), frame)
     assert compare.on and not session.notes
 
 
@@ -274,19 +274,19 @@ def test_two_pictures_are_painted_as_they_are(ctx: moderngl.Context) -> None:
     ctx.detect_framebuffer(0).use()  # nothing is bound that another test has taken away
     random = np.random.default_rng(2)
     a, b = (make_texture(ctx, (20, 10), "rgba8") for _ in range(2))
-    one, two = (random.integers(0, 256, (10, 20, 4), dtype=np.uint8) for _ in range(2))
-    for texture, values in ((a, one), (b, two)):
+    item, two = (random.integers(0, 256, (10, 20, 4), dtype=np.uint8) for _ in range(2))
+    for texture, values in ((a, item), (b, two)):
         write_texture(texture, values)
     target = make_texture(ctx, (24, 10), "rgba8")
     framebuffer = make_framebuffer(ctx, [target])
     painter = Blend(ctx)
     painter.paint((a, b), framebuffer, (4, 0, 20, 10), split=0.35)
-    found = read_picture(target)[::-1, 4:, :3]
-    np.testing.assert_array_equal(found[:, :7], one[:, :7, :3])
-    np.testing.assert_array_equal(found[:, 7:], two[:, 7:, :3])
+    picture = read_picture(target)[::-1, 4:, :3]
+    np.testing.assert_array_equal(picture[:, :7], item[:, :7, :3])
+    np.testing.assert_array_equal(picture[:, 7:], two[:, 7:, :3])
     painter.paint((a, b), framebuffer, (4, 0, 20, 10), gain=3.0)
-    wanted = np.minimum(3 * np.abs(one.astype(int) - two), 255)[..., :3]
-    np.testing.assert_array_equal(read_picture(target)[::-1, 4:, :3], wanted)
+    expected = np.minimum(3 * np.abs(item.astype(int) - two), 255)[..., :3]
+    np.testing.assert_array_equal(read_picture(target)[::-1, 4:, :3], expected)
     ctx.detect_framebuffer(0).use()  # what stays bound is bound again by later calls
     for made in (painter, framebuffer, target, a, b):
         made.release()

@@ -23,7 +23,7 @@ from .screen import ROOT
 
 def family(kind: type[PlaygroundError] = PlaygroundError) -> list[type[PlaygroundError]]:
     """Return every kind of error there is."""
-    return [kind, *(found for below in kind.__subclasses__() for found in family(below))]
+    return [kind, *(result for below in kind.__subclasses__() for result in family(below))]
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.errors import ContextError
 from playground.workbench import disk_caching as module
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.disk_caching import SessionCaching
 from playground.workbench.inspect.thumbnails import Thumbnails
 from playground.workbench.interface import WindowControls
@@ -53,7 +53,7 @@ SKETCH = (
 RUN = script((500, 400), cache_limit=2**28)
 
 
-class Desk:
+class Harness:
     """Sessions on one sketch, one after another, and a clock that the test moves."""
 
     def __init__(self, ctx: moderngl.Context, folder: Path) -> None:
@@ -68,7 +68,7 @@ class Desk:
         engine = Engine(self.ctx)
         self.session = Session(engine, self.folder, now=lambda: self.time)
         window = WindowControls(lambda: None)
-        self.bench = Bench(self.session, window, folder=self.folder, now=lambda: self.time)
+        self.bench = Workbench(self.session, window, folder=self.folder, now=lambda: self.time)
         self.watch = FiniteWatch(lambda: self.time)
         self.storing = SessionCaching(self.session, 2**26)
 
@@ -100,14 +100,14 @@ class Desk:
 
 
 @pytest.fixture
-def desk(ctx: moderngl.Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
+def harness(ctx: moderngl.Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Harness]:
     folder = tmp_path / "sketch"
     folder.mkdir()
     for name, text in (("height.glsl", HEIGHT), ("raised.glsl", RAISED), ("sketch.toml", SKETCH)):
         (folder / name).write_text(text, encoding="utf-8")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setattr("playground.engine.disk_cache.place", lambda: tmp_path / "land")
-    made = Desk(ctx, folder)
+    monkeypatch.setattr("playground.engine.disk_cache.cache_directory", lambda: tmp_path / "land")
+    made = Harness(ctx, folder)
 
     def caching(store: object) -> DiskCaching:  # all terrain is worth it, by the test's clock
         return DiskCaching(store, floor=float("-inf"), now=lambda: made.time)  # type: ignore[arg-type]
@@ -122,115 +122,117 @@ def cached(tmp_path: Path) -> set[str]:
     return {each.textures.made_for for each in listed(tmp_path / "land") if each.textures}
 
 
-def test_a_session_reopens_without_running_the_terrain(desk: Desk, tmp_path: Path) -> None:
-    desk.run_frames()
-    assert desk.session is not None
-    seen = desk.session.read()
+def test_a_session_reopens_without_running_the_terrain(harness: Harness, tmp_path: Path) -> None:
+    harness.run_frames()
+    assert harness.session is not None
+    seen = harness.session.read()
     assert seen is not None and not cached(tmp_path)
-    desk.rest()
-    assert desk.storing.patience is None, "nothing more is waited for"
-    desk.open()
+    harness.rest()
+    assert harness.storing.patience is None, "nothing more is waited for"
+    harness.open()
     assert cached(tmp_path) == {"sketch: height"}
-    desk.run_frames()
-    again = desk.session.read()
+    harness.run_frames()
+    again = harness.session.read()
     assert again is not None and again.array.tobytes() == seen.array.tobytes()
-    assert desk.runs == {"view": 1}
+    assert harness.runs == {"view": 1}
 
 
-def test_it_waits_for_the_picture_to_rest_and_says_for_how_long(desk: Desk, tmp_path: Path) -> None:
-    desk.run_frames()
-    assert desk.storing.patience is None, "numbers that are not finite are looked for first"
-    desk.run_frames(2 * REST)
+def test_it_waits_for_the_picture_to_rest_and_says_for_how_long(harness: Harness, tmp_path: Path) -> None:
+    harness.run_frames()
+    assert harness.storing.patience is None, "numbers that are not finite are looked for first"
+    harness.run_frames(2 * REST)
     for _ in range(5):
-        desk.run_frames()
-    assert desk.watch.patience is None
-    assert desk.storing.patience == pytest.approx(LAND_RESTS - 2 * REST)
-    desk.run_frames(LAND_RESTS)
-    assert desk.storing.patience == 0.0
-    desk.rest()
-    desk.close()
+        harness.run_frames()
+    assert harness.watch.patience is None
+    assert harness.storing.patience == pytest.approx(LAND_RESTS - 2 * REST)
+    harness.run_frames(LAND_RESTS)
+    assert harness.storing.patience == 0.0
+    harness.rest()
+    harness.close()
     assert cached(tmp_path) == {"sketch: height"}
 
 
-def test_nothing_is_cached_of_terrain_in_which_a_number_is_not_finite(desk: Desk, tmp_path: Path) -> None:
+def test_nothing_is_cached_of_terrain_in_which_a_number_is_not_finite(
+    harness: Harness, tmp_path: Path
+) -> None:
     """The next session must name the pass that made it, and so must run it."""
-    assert desk.session is not None
-    desk.run_frames()
-    desk.session.drafts.set("low.level", -0.5)
-    desk.rest()
-    assert [found.path for found in desk.watch.found] == ["low"]
-    assert desk.storing.patience is None
-    desk.storing.close()
+    assert harness.session is not None
+    harness.run_frames()
+    harness.session.drafts.set("low.level", -0.5)
+    harness.rest()
+    assert [result.path for result in harness.watch.non_finite] == ["low"]
+    assert harness.storing.patience is None
+    harness.storing.close()
     assert cached(tmp_path) == set()
-    desk.session.drafts.set("low.level", 0.75)
-    desk.rest()
-    desk.open()
+    harness.session.drafts.set("low.level", 0.75)
+    harness.rest()
+    harness.open()
     assert cached(tmp_path) == {"sketch: height"}
 
 
 @pytest.mark.parametrize("tool", ["graph", "inspector"])
-def test_who_looks_at_every_pass_sees_every_pass(desk: Desk, tool: str) -> None:
-    desk.rest()
-    desk.open()
-    desk.run_frames()
-    assert desk.session is not None
-    engine = desk.session.engine
+def test_who_looks_at_every_pass_sees_every_pass(harness: Harness, tool: str) -> None:
+    harness.rest()
+    harness.open()
+    harness.run_frames()
+    assert harness.session is not None
+    engine = harness.session.engine
     assert "low" not in engine.record.results
-    getattr(desk.bench.inspection, tool).on = True
-    desk.run_frames()
-    desk.run_frames()
+    getattr(harness.bench.inspection, tool).on = True
+    harness.run_frames()
+    harness.run_frames()
     assert set(engine.record.results) == {"low", "height", "view"}
-    assert desk.runs["low"] == 1 and desk.runs.get("height", 0) == 0
-    draws = desk.session.draws
+    assert harness.runs["low"] == 1 and harness.runs.get("height", 0) == 0
+    draws = harness.session.draws
     for _ in range(5):
-        desk.run_frames()
-    assert desk.session.draws == draws, "it was requested once"
+        harness.run_frames()
+    assert harness.session.draws == draws, "it was requested once"
 
 
-def test_passes_that_fail_are_requested_once(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    desk.rest()
-    desk.open()
-    desk.run_frames()
-    assert desk.session is not None
+def test_passes_that_fail_are_requested_once(harness: Harness, monkeypatch: pytest.MonkeyPatch) -> None:
+    harness.rest()
+    harness.open()
+    harness.run_frames()
+    assert harness.session is not None
     tries = []
 
     def fails(*_: object, **__: object) -> None:
         tries.append(1)
         raise ContextError("no")
 
-    monkeypatch.setattr(desk.session.engine, "draw", fails)
-    desk.bench.inspection.graph.on = True
+    monkeypatch.setattr(harness.session.engine, "draw", fails)
+    harness.bench.inspection.graph.on = True
     for _ in range(5):
-        desk.run_frames()
+        harness.run_frames()
     assert len(tries) == 1
 
 
-def test_an_edited_kernel_is_another_terrain(desk: Desk) -> None:
-    desk.rest()
-    (desk.folder / "height.glsl").write_text(HEIGHT.replace("66.0", "67.0"), encoding="utf-8")
-    desk.open()
-    desk.run_frames()
-    assert desk.runs == {"low": 1, "height": 1, "view": 1}
+def test_an_edited_kernel_is_another_terrain(harness: Harness) -> None:
+    harness.rest()
+    (harness.folder / "height.glsl").write_text(HEIGHT.replace("66.0", "67.0"), encoding="utf-8")
+    harness.open()
+    harness.run_frames()
+    assert harness.runs == {"low": 1, "height": 1, "view": 1}
 
 
-def test_a_folder_that_cannot_be_written_is_reported_once(desk: Desk, tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_written_is_reported_once(harness: Harness, tmp_path: Path) -> None:
     (tmp_path / "land").write_text("a file")
-    desk.rest()
-    assert desk.session is not None
-    desk.storing.close()
-    desk.run_frames()
-    desk.run_frames()
-    notes = [note for note in desk.session.notes if note.startswith("terrain cannot be cached on disk")]
+    harness.rest()
+    assert harness.session is not None
+    harness.storing.close()
+    harness.run_frames()
+    harness.run_frames()
+    notes = [note for note in harness.session.notes if note.startswith("terrain cannot be cached on disk")]
     assert len(notes) == 1
 
 
-def test_without_a_limit_there_is_no_store(desk: Desk, tmp_path: Path) -> None:
-    assert desk.session is not None
-    desk.session.engine.disk_caching = None
-    desk.storing = SessionCaching(desk.session, 0)
-    desk.rest()
-    desk.close()
-    desk.session = None
+def test_without_a_limit_there_is_no_store(harness: Harness, tmp_path: Path) -> None:
+    assert harness.session is not None
+    harness.session.engine.disk_caching = None
+    harness.storing = SessionCaching(harness.session, 0)
+    harness.rest()
+    harness.close()
+    harness.session = None
     assert not (tmp_path / "land").exists()
 
 
@@ -273,10 +275,10 @@ class TestWindow:
             screen.close()
 
 
-def test_terrain_that_was_read_is_recognised_by_itself_and_not_by_its_texture(desk: Desk) -> None:
+def test_terrain_that_was_read_is_recognised_by_itself_and_not_by_its_texture(harness: Harness) -> None:
     """What is read does not run, and its texture may be one that held another terrain before."""
-    desk.run_frames()
-    session = desk.session
+    harness.run_frames()
+    session = harness.session
     assert session is not None
     engine, name = session.engine, "height:height"
     thumbnails = Thumbnails(session)

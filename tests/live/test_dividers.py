@@ -15,8 +15,8 @@ METHODS = GLSL / "sketches" / "lighting_methods.toml"  # three pictures, two lin
 
 
 def test_the_lines_are_those_of_the_view() -> None:
-    found = dividers_of(load(METHODS))
-    assert found == {"view.first": pytest.approx(0.3333), "view.second": pytest.approx(0.6667)}
+    dividers = dividers_of(load(METHODS))
+    assert dividers == {"view.first": pytest.approx(0.3333), "view.second": pytest.approx(0.6667)}
     moved_one = load(METHODS).with_values({"view.second": 0.9})
     assert dividers_of(moved_one)["view.second"] == pytest.approx(0.9)
 

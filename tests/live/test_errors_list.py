@@ -160,10 +160,10 @@ def test_the_sketch_s_own_kernels_are_looked_at_once(folder: Path) -> None:
     assert warnings.of(sketch) == []
     for _ in range(3):
         warnings.look()
-    (found,) = warnings.of(sketch)
+    (result,) = warnings.of(sketch)
     assert reviewed == ["terrain.glsl"], "once, and the library's view not at all"
-    assert (found.line, found.severity) == (5, "warning") and "nothing reads 'spare'" in found.message
-    assert warnings.of(sketch.with_values({"height.level": 0.2})) == [found]
+    assert (result.line, result.severity) == (5, "warning") and "nothing reads 'spare'" in result.message
+    assert warnings.of(sketch.with_values({"height.level": 0.2})) == [result]
     assert not warnings.waiting
     assert passes_of(sketch, diagnostic("wave.glsl", 3, "wrong")) == ["height"]
 
@@ -171,7 +171,7 @@ def test_the_sketch_s_own_kernels_are_looked_at_once(folder: Path) -> None:
 # ── on the screen ────────────────────────────────────────────────────────────
 
 
-class Desk(Bare):
+class Harness(Bare):
     """The panel with the list and the editor."""
 
     def draw(self) -> None:
@@ -183,64 +183,64 @@ class Desk(Bare):
 
 
 @pytest.fixture
-def desk(any_engine: Engine, folder: Path) -> Iterator[Desk]:
-    made = Desk(any_engine, folder / "sketch.toml")
+def harness(any_engine: Engine, folder: Path) -> Iterator[Harness]:
+    made = Harness(any_engine, folder / "sketch.toml")
     for name in ("small_button", "text_link", "input_text_multiline"):
         made._watch(imgui, name)
     yield made
     made.close()
 
 
-def broken(desk: Desk, folder: Path) -> PlaygroundError:
+def broken(harness: Harness, folder: Path) -> PlaygroundError:
     (folder / "wave.glsl").write_text(WAVE.replace("sin(p.x)", "sine(p.x) * cose(p.y)"), encoding="utf-8")
-    desk.session.drafts.reload()
-    desk.run_frames(4)
-    assert desk.session.error is not None
-    return desk.session.error
+    harness.session.drafts.reload()
+    harness.run_frames(4)
+    assert harness.session.error is not None
+    return harness.session.error
 
 
-def test_an_error_is_listed_copied_folded_and_gone_once_fixed(desk: Desk, folder: Path) -> None:
-    assert not any("##place" in label for label in desk.places)
-    error = broken(desk, folder)
-    assert "wave.glsl:3:" in next(label for label in desk.places if label.endswith("##place"))
-    assert any(label.startswith("terrain.glsl:2##chain") for label in desk.places)
-    desk.click("Copy##errors")
-    assert desk.clipboard == str(error)
-    desk.click("Fold##errors")
-    assert not desk.bench.problems.open
-    desk.click(next(label for label in desk.places if label.endswith("##badge")))
-    assert desk.bench.problems.open
+def test_an_error_is_listed_copied_folded_and_gone_once_fixed(harness: Harness, folder: Path) -> None:
+    assert not any("##place" in label for label in harness.places)
+    error = broken(harness, folder)
+    assert "wave.glsl:3:" in next(label for label in harness.places if label.endswith("##place"))
+    assert any(label.startswith("terrain.glsl:2##chain") for label in harness.places)
+    harness.click("Copy##errors")
+    assert harness.clipboard == str(error)
+    harness.click("Fold##errors")
+    assert not harness.bench.problems.open
+    harness.click(next(label for label in harness.places if label.endswith("##badge")))
+    assert harness.bench.problems.open
     (folder / "wave.glsl").write_text(WAVE, encoding="utf-8")
-    desk.session.drafts.reload()
-    desk.run_frames(2)
-    desk.places.clear()
-    desk.run_frames(2)
-    assert not any("##" in label and ("badge" in label or "place" in label) for label in desk.places)
+    harness.session.drafts.reload()
+    harness.run_frames(2)
+    harness.places.clear()
+    harness.run_frames(2)
+    assert not any("##" in label and ("badge" in label or "place" in label) for label in harness.places)
 
 
-def test_the_words_can_be_selected(desk: Desk, folder: Path) -> None:
-    broken(desk, folder)
-    message = desk.session.error.diagnostics[0].message  # type: ignore[union-attr]
-    desk.click("##message", 0.01)
-    desk.key(imgui.Key.mod_ctrl, imgui.Key.a)
-    desk.key(imgui.Key.mod_ctrl, imgui.Key.c)
-    assert desk.clipboard in [d.message for d in desk.session.error.diagnostics], message  # type: ignore[union-attr]
+def test_the_words_can_be_selected(harness: Harness, folder: Path) -> None:
+    broken(harness, folder)
+    message = harness.session.error.diagnostics[0].message  # type: ignore[union-attr]
+    harness.click("##message", 0.01)
+    harness.key(imgui.Key.mod_ctrl, imgui.Key.a)
+    harness.key(imgui.Key.mod_ctrl, imgui.Key.c)
+    assert harness.clipboard in [d.message for d in harness.session.error.diagnostics], message  # type: ignore[union-attr]
 
 
-def test_f8_steps_through_them(desk: Desk, folder: Path) -> None:
-    broken(desk, folder)
-    count = len(desk.bench.problems.all)
+def test_f8_steps_through_them(harness: Harness, folder: Path) -> None:
+    broken(harness, folder)
+    count = len(harness.bench.problems.all)
     assert count > 1
-    desk.key(imgui.Key.f8)
-    desk.key(imgui.Key.f8)
-    assert desk.bench.problems.at == 1
-    desk.key(imgui.Key.mod_shift, imgui.Key.f8)
-    desk.key(imgui.Key.mod_shift, imgui.Key.f8)
-    assert desk.bench.problems.at == count - 1
+    harness.key(imgui.Key.f8)
+    harness.key(imgui.Key.f8)
+    assert harness.bench.problems.at == 1
+    harness.key(imgui.Key.mod_shift, imgui.Key.f8)
+    harness.key(imgui.Key.mod_shift, imgui.Key.f8)
+    assert harness.bench.problems.at == count - 1
 
 
 def test_a_click_on_the_place_starts_the_editor(
-    desk: Desk, folder: Path, monkeypatch: pytest.MonkeyPatch
+    harness: Harness, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     opened: list[tuple[str, Path, int, int]] = []
     monkeypatch.setattr(sources, "find_editor", lambda: (Editor(("code",)), ""))
@@ -249,57 +249,57 @@ def test_a_click_on_the_place_starts_the_editor(
         opened.append((editor.name, file, line, column))
         return True
 
-    monkeypatch.setattr(desk.bench.files.opener, "open", start)
-    broken(desk, folder)
-    first = desk.bench.problems.all[0]
-    desk.click(f"{first.place}##place")
+    monkeypatch.setattr(harness.bench.files.opener, "open", start)
+    broken(harness, folder)
+    first = harness.bench.problems.all[0]
+    harness.click(f"{first.location}##place")
     assert opened == [("code", folder / "wave.glsl", 3, first.column)]
-    assert not desk.bench.files.editing
-    desk.run_frames()
-    desk.click(next(label for label in desk.places if "##chain" in label))
+    assert not harness.bench.files.editing
+    harness.run_frames()
+    harness.click(next(label for label in harness.places if "##chain" in label))
     assert opened[-1] == ("code", folder / "terrain.glsl", 2, 0)
 
 
 def test_without_an_editor_it_opens_here_is_edited_and_saved(
-    desk: Desk, folder: Path, monkeypatch: pytest.MonkeyPatch
+    harness: Harness, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sources, "find_editor", lambda: (None, ""))
-    broken(desk, folder)
-    first = desk.bench.problems.all[0]
-    desk.click(f"{first.place}##place")
-    (editing,) = desk.bench.files.editing
+    broken(harness, folder)
+    first = harness.bench.problems.all[0]
+    harness.click(f"{first.location}##place")
+    (editing,) = harness.bench.files.editing
     view = code_window._view_of(editing)
-    place = view.editor.get_main_cursor_position()
-    assert (place.line, place.index) == (2, first.column - 1)
-    assert view.editor.has_markers() and not unsaved(desk.bench.files.editing)
-    desk.type("// ")
-    assert unsaved(desk.bench.files.editing) == ["wave.glsl"]
-    wanted = view.editor.get_text()
-    desk.key(imgui.Key.mod_ctrl, imgui.Key.s)
-    assert (folder / "wave.glsl").read_text(encoding="utf-8") == wanted != WAVE
-    assert not unsaved(desk.bench.files.editing)
+    cursor = view.editor.get_main_cursor_position()
+    assert (cursor.line, cursor.index) == (2, first.column - 1)
+    assert view.editor.has_markers() and not unsaved(harness.bench.files.editing)
+    harness.type("// ")
+    assert unsaved(harness.bench.files.editing) == ["wave.glsl"]
+    expected = view.editor.get_text()
+    harness.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    assert (folder / "wave.glsl").read_text(encoding="utf-8") == expected != WAVE
+    assert not unsaved(harness.bench.files.editing)
     view.editor.undo()
-    desk.run_frames(2)
-    assert unsaved(desk.bench.files.editing), "what was saved is no longer what is seen"
+    harness.run_frames(2)
+    assert unsaved(harness.bench.files.editing), "what was saved is no longer what is seen"
 
 
-def test_a_file_that_others_saved_meanwhile_needs_an_answer(desk: Desk, folder: Path) -> None:
+def test_a_file_that_others_saved_meanwhile_needs_an_answer(harness: Harness, folder: Path) -> None:
     wave = folder / "wave.glsl"
-    desk.bench.files.open(wave, 4, 1, here=True)
-    desk.run_frames(3)
-    desk.type("// mine ")
+    harness.bench.files.open(wave, 4, 1, here=True)
+    harness.run_frames(3)
+    harness.type("// mine ")
     theirs = "// wave.glsl -- theirs" + WAVE[WAVE.index("\n") :]
     wave.write_text(theirs, encoding="utf-8")
-    desk.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    harness.key(imgui.Key.mod_ctrl, imgui.Key.s)
     assert wave.read_text(encoding="utf-8") == theirs, "not overwritten"
-    desk.run_frames(3)
-    desk.click("Merge both")
+    harness.run_frames(3)
+    harness.click("Merge both")
     assert wave.read_text(encoding="utf-8") == theirs.replace("}", "// mine }")
-    assert not unsaved(desk.bench.files.editing)
+    assert not unsaved(harness.bench.files.editing)
 
 
 @pytest.mark.parametrize(
-    ("text", "column", "typed", "wanted"),
+    ("text", "column", "typed", "expected"),
     [
         ("a {\n}\n", 4, "\nb;", "a {\n    b;\n}\n"),
         ("a {\n  b {\n    c;\n  }\n}\n", 4, "\nb;", "a {\n  b;\n  b {\n    c;\n  }\n}\n"),
@@ -314,45 +314,47 @@ def test_a_file_that_others_saved_meanwhile_needs_an_answer(desk: Desk, folder: 
     ],
 )
 def test_new_lines_are_indented_as_the_file_is(
-    desk: Desk, folder: Path, text: str, column: int, typed: str, wanted: str
+    harness: Harness, folder: Path, text: str, column: int, typed: str, expected: str
 ) -> None:
     (folder / "wave.glsl").write_text(text, encoding="utf-8")
-    desk.bench.files.open(folder / "wave.glsl", 1, column, here=True)
-    desk.run_frames(3)
-    editor = code_window._view_of(desk.bench.files.editing[0]).editor
+    harness.bench.files.open(folder / "wave.glsl", 1, column, here=True)
+    harness.run_frames(3)
+    editor = code_window._view_of(harness.bench.files.editing[0]).editor
     assert editor.get_text() == text
     for letter in typed:
         if letter == "\n":
-            desk.key(imgui.Key.enter)
+            harness.key(imgui.Key.enter)
         else:
-            desk.type(letter)
-    assert editor.get_text() == wanted
+            harness.type(letter)
+    assert editor.get_text() == expected
     for _ in typed:
-        desk.key(imgui.Key.mod_ctrl, imgui.Key.z)
+        harness.key(imgui.Key.mod_ctrl, imgui.Key.z)
     assert editor.get_text() == text
 
 
 @pytest.mark.parametrize("right", [False, True])
 def test_notices_leave_the_close_button_free(
-    desk: Desk, folder: Path, monkeypatch: pytest.MonkeyPatch, right: bool
+    harness: Harness, folder: Path, monkeypatch: pytest.MonkeyPatch, right: bool
 ) -> None:
     plates: list[tuple[imgui.ImVec2, imgui.ImVec2]] = []
 
-    def noted(paint: object, text: str, place: tuple[float, float], **more: Any) -> imgui.ImVec2:
-        corner = plate(paint, text, place, **more)  # type: ignore[arg-type]
+    def noted(paint: object, text: str, position: tuple[float, float], **more: Any) -> imgui.ImVec2:
+        corner = plate(paint, text, position, **more)  # type: ignore[arg-type]
         plates.append((corner - plate_size(text, more["padding"], more["wrap"]), corner))
         return corner
 
     monkeypatch.setattr(overlay, "plate", noted)
-    desk.bench.files.open(folder / "wave.glsl", here=True)
+    harness.bench.files.open(folder / "wave.glsl", here=True)
     for text in ("saved wave.glsl", "a long notice " * 20, "another"):
-        desk.bench.notices.say(text)
+        harness.bench.notices.say(text)
     area = (330.0, 0.0, 950.0, 720.0)
-    draw = desk.draw
-    monkeypatch.setattr(desk, "draw", lambda: (draw(), draw_notices(desk.bench.notices, desk.theme, area))[0])
+    draw = harness.draw
+    monkeypatch.setattr(
+        harness, "draw", lambda: (draw(), draw_notices(harness.bench.notices, harness.theme, area))[0]
+    )
     if right:  # where the button's left edge is under the notices' right edge
         monkeypatch.setattr(code_window, "_place", lambda *_: (700.0, 30.0, 560.0, 300.0))
-    desk.run_frames(4)
+    harness.run_frames(4)
     shown = imgui.internal.find_window_by_name("wave.glsl###wave.glsl")
     edge, top, high = shown.pos.x + shown.size.x, shown.pos.y, imgui.get_frame_height()
     assert len(plates) == 12
@@ -366,36 +368,36 @@ def test_notices_leave_the_close_button_free(
 @pytest.mark.parametrize(
     ("button", "mine", "open_after"), [("Save and close", True, 0), ("Close", False, 0), ("Stay", False, 1)]
 )
-def test_closing_asks(desk: Desk, folder: Path, button: str, mine: bool, open_after: int) -> None:
-    desk.bench.files.open(folder / "wave.glsl", 4, 1, here=True)
-    desk.run_frames(3)
-    desk.type("// mine ")
-    code_window._view_of(desk.bench.files.editing[0]).closing = True
-    desk.run_frames(3)
-    desk.click(button)
+def test_closing_asks(harness: Harness, folder: Path, button: str, mine: bool, open_after: int) -> None:
+    harness.bench.files.open(folder / "wave.glsl", 4, 1, here=True)
+    harness.run_frames(3)
+    harness.type("// mine ")
+    code_window._view_of(harness.bench.files.editing[0]).closing = True
+    harness.run_frames(3)
+    harness.click(button)
     assert ("mine" in (folder / "wave.glsl").read_text(encoding="utf-8")) == mine
-    assert len(desk.bench.files.editing) == open_after
+    assert len(harness.bench.files.editing) == open_after
 
 
 @pytest.mark.parametrize(("button", "quits"), [("Save and quit", True), ("Quit", True), ("Stay", False)])
-def test_quitting_asks(desk: Desk, folder: Path, button: str, quits: bool) -> None:
-    desk.bench.files.open(folder / "wave.glsl", 4, 1, here=True)
-    desk.run_frames(3)
-    desk.type("// mine ")
-    desk.bench.files.leaving = True
-    desk.run_frames(3)
-    desk.click(button)
-    assert desk.quits == quits
+def test_quitting_asks(harness: Harness, folder: Path, button: str, quits: bool) -> None:
+    harness.bench.files.open(folder / "wave.glsl", 4, 1, here=True)
+    harness.run_frames(3)
+    harness.type("// mine ")
+    harness.bench.files.leaving = True
+    harness.run_frames(3)
+    harness.click(button)
+    assert harness.quits == quits
     assert ("mine" in (folder / "wave.glsl").read_text(encoding="utf-8")) == (button == "Save and quit")
 
 
-def test_a_file_that_is_gone_is_a_sentence(desk: Desk, folder: Path) -> None:
-    desk.bench.files.open(folder / "gone.glsl", here=True)
-    assert desk.bench.notices.items[-1].text == "there is no file gone.glsl to open"
-    assert not desk.bench.files.editing
+def test_a_file_that_is_gone_is_a_sentence(harness: Harness, folder: Path) -> None:
+    harness.bench.files.open(folder / "gone.glsl", here=True)
+    assert harness.bench.notices.items[-1].text == "there is no file gone.glsl to open"
+    assert not harness.bench.files.editing
 
 
-def test_nothing_wrong_draws_nothing(desk: Desk) -> None:
-    desk.run_frames(2)
-    assert desk.bench.problems.all == () and errors_list.MOST > 0
-    assert not any("badge" in label for label in desk.places)
+def test_nothing_wrong_draws_nothing(harness: Harness) -> None:
+    harness.run_frames(2)
+    assert harness.bench.problems.all == () and errors_list.MAX_ROWS > 0
+    assert not any("badge" in label for label in harness.places)

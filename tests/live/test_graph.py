@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 from playground.engine.engine import Engine
 from playground.engine.textures import read_raw
 from playground.paths import SKETCHES
-from playground.workbench.inspect.pass_graph import placed, wiring_of
+from playground.workbench.inspect.pass_graph import node_grid, wiring_of
 from playground.workbench.inspect.thumbnails import APART, SIDE, Thumbnails, picture_of
 from playground.workbench.session import Session
 
@@ -57,7 +57,7 @@ def test_a_pass_is_right_of_all_that_it_reads() -> None:
     for _ in range(30):
         nodes = [f"n{k}" for k in range(int(random.integers(1, 14)))]
         edges = [(a, b) for k, b in enumerate(nodes) for a in nodes[:k] if random.random() < 0.3]
-        places = placed(nodes, edges)
+        places = node_grid(nodes, edges)
         assert set(places) == set(nodes) and len(set(places.values())) == len(nodes)
         for node in nodes:
             before = [places[a][0] for a, b in edges if b == node]
@@ -65,7 +65,7 @@ def test_a_pass_is_right_of_all_that_it_reads() -> None:
 
 
 def test_rows_are_in_the_order_of_what_they_are_joined_to() -> None:
-    places = placed(("a", "b", "c", "d"), (("a", "d"), ("b", "c")))
+    places = node_grid(("a", "b", "c", "d"), (("a", "d"), ("b", "c")))
     assert places["a"][1] < places["b"][1] and places["d"][1] < places["c"][1]  # no two edges cross
 
 
@@ -93,8 +93,8 @@ def test_a_sketch_s_passes_and_their_wires() -> None:
 @pytest.mark.parametrize("path", sorted(SKETCHES.glob("*.toml")), ids=lambda path: path.stem)
 def test_every_sketch_that_ships_has_a_graph(path: Path) -> None:
     for inner in (False, True):
-        found = wiring_of(load(path), inner=inner)
-        assert all(found.places[a][0] < found.places[b][0] for a, b in found.edges)
+        wiring = wiring_of(load(path), inner=inner)
+        assert all(wiring.places[a][0] < wiring.places[b][0] for a, b in wiring.edges)
 
 
 def test_a_thumbnail_is_what_its_texture_shows(folder: Path, any_engine: Engine) -> None:
@@ -143,9 +143,9 @@ def test_only_what_is_stale_is_drawn_and_one_at_a_time(folder: Path, any_engine:
 def test_numbers_that_are_none_are_magenta() -> None:
     values = np.zeros((2, 3, 4), np.float32)
     values[0, 0, 0], values[1, 2, 0], values[1, 1, 0] = np.nan, 5.0, -5.0
-    found = picture_of(values, 1, encoded=False)
-    assert found[0, 0].tolist() == [255, 0, 255, 255]
-    assert found[1, 2].tolist() == [255] * 4 and found[1, 1].tolist() == [0, 0, 0, 255]
+    picture = picture_of(values, 1, encoded=False)
+    assert picture[0, 0].tolist() == [255, 0, 255, 255]
+    assert picture[1, 2].tolist() == [255] * 4 and picture[1, 1].tolist() == [0, 0, 0, 255]
     assert picture_of(np.full((1, 1, 4), 0.5, np.float32), 4, encoded=True)[0, 0].tolist() == [
         128,
         128,

@@ -77,12 +77,12 @@ def draw_frame(draw: Callable[[], None]) -> tuple[float, int]:
     imgui.set_next_window_pos(ImVec2(10, 10))
     imgui.begin("the next part")
     imgui.button("as always")
-    found = imgui.get_item_rect_min().y, imgui.get_item_rect_size().x
+    result = imgui.get_item_rect_min().y, imgui.get_item_rect_size().x
     imgui.end()
     imgui.render()
     for texture in imgui.get_platform_io().textures:
         texture.set_status(imgui.ImTextureStatus.ok)
-    return found
+    return result
 
 
 @pytest.mark.parametrize("bug", BUGS, ids=lambda bug: bug.__name__)
@@ -112,9 +112,9 @@ def test_what_is_left_open_without_a_bug_is_ended(interface: None) -> None:
         imgui.push_id("an id")
         return 7
 
-    found: list[int] = []
-    assert draw_frame(lambda: found.append(guard.draw("the part", draw, 0))) == usual
-    assert found == [7]
+    numbers: list[int] = []
+    assert draw_frame(lambda: numbers.append(guard.draw("the part", draw, 0))) == usual
+    assert numbers == [7]
 
 
 def test_interrupting_is_no_bug(interface: None) -> None:

@@ -40,9 +40,9 @@ FILES = {"terrain.glsl": TERRAIN, "sketch.toml": SKETCH}
 
 def counted(texture: moderngl.Texture, **limits: int) -> tuple[Histogram, int]:
     """Return the histogram, and in how many pieces it was made."""
-    *pieces, found = count(texture, **limits)
-    assert found is not None and not any(pieces)
-    return found, len(pieces) + 1
+    *pieces, result = count(texture, **limits)
+    assert result is not None and not any(pieces)
+    return result, len(pieces) + 1
 
 
 @pytest.mark.parametrize("piece", [10_000_000, 1000, 1])
@@ -56,13 +56,13 @@ def test_it_is_what_numpy_finds(ctx: moderngl.Context, form: str, piece: int) ->
     write_texture(texture, values)
     if form == "rg16":
         values = (np.round(np.clip(values, 0, 1) * 65535) / np.float32(65535)).astype(np.float32)
-    found, pieces = counted(texture, piece=piece)
-    assert found.whole and found.size == (90, 70) and len(found.channels) == texture.components
+    result, pieces = counted(texture, piece=piece)
+    assert result.whole and result.size == (90, 70) and len(result.channels) == texture.components
     assert pieces >= 6300 * 2 // max(piece, 90) - 1
     good = [values[..., c][np.isfinite(values[..., c])].astype(np.float64) for c in range(texture.components)]
     low, high = min(g.min() for g in good), max(g.max() for g in good)
-    assert (found.low, found.high) == (low, high)
-    for number, (channel, numbers) in enumerate(zip(found.channels, good, strict=True)):
+    assert (result.low, result.high) == (low, high)
+    for number, (channel, numbers) in enumerate(zip(result.channels, good, strict=True)):
         assert channel.count == len(numbers)
         assert (channel.nans, channel.infinities) == ((6, 2) if form != "rg16" and number == 0 else (0, 0))
         assert (channel.lowest, channel.highest) == (numbers.min(), numbers.max())
@@ -77,32 +77,32 @@ def test_it_is_what_numpy_finds(ctx: moderngl.Context, form: str, piece: int) ->
 def test_no_finite_number_and_one_number_alone(ctx: moderngl.Context) -> None:
     texture = make_texture(ctx, (4, 4), "r32f")
     write_texture(texture, np.full((4, 4), np.nan, np.float32))
-    found, _ = counted(texture)
+    result, _ = counted(texture)
     assert (
-        found.channels[0].nans == 16
-        and math.isnan(found.channels[0].mean)
-        and not found.channels[0].bins.any()
+        result.channels[0].nans == 16
+        and math.isnan(result.channels[0].mean)
+        and not result.channels[0].bins.any()
     )
     write_texture(texture, np.full((4, 4), 7.0, np.float32))
-    found, _ = counted(texture)
-    assert found.low == found.high == 7.0 and found.channels[0].bins[0] == 16
+    result, _ = counted(texture)
+    assert result.low == result.high == 7.0 and result.channels[0].bins[0] == 16
     texture.release()
 
 
 def test_of_a_large_texture_whole_rows_are_left_out(ctx: moderngl.Context) -> None:
     texture = make_texture(ctx, (50, 100), "r32f")
     write_texture(texture, np.repeat(np.arange(100, dtype=np.float32)[:, None], 50, axis=1))
-    found, _ = counted(texture, most=1500)
-    assert not found.whole and found.read == 50 * 25
-    assert found.channels[0].mean == np.arange(0, 100, 4).mean()
+    result, _ = counted(texture, most=1500)
+    assert not result.whole and result.read == 50 * 25
+    assert result.channels[0].mean == np.arange(0, 100, 4).mean()
     texture.release()
 
 
 def test_shares_of_the_numbers(ctx: moderngl.Context) -> None:
     texture = make_texture(ctx, (100, 100), "r32f")
     write_texture(texture, np.linspace(0, 1, 10_000, dtype=np.float32).reshape(100, 100))
-    found, _ = counted(texture)
-    low, high = found.between(0, 0.1)
+    result, _ = counted(texture)
+    low, high = result.between(0, 0.1)
     assert low == pytest.approx(0.1, abs=1 / BINS) and high == pytest.approx(0.9, abs=1 / BINS)
     texture.release()
 
@@ -194,8 +194,8 @@ def test_around_a_middle_both_sides_have_one_scale(folder: Path, any_engine: Eng
         legend = np.array(colours_of(any_engine.ctx, 4)) * 255
     numbers = np.arange(64) / 63
     places = (numbers - low) / (high - low) * (STEPS - 1)
-    wanted = np.stack([np.interp(places, np.arange(STEPS), legend[:, c]) for c in range(3)], axis=1)
-    np.testing.assert_allclose(frame.array[4, :, :3], wanted, atol=2.0)
+    expected = np.stack([np.interp(places, np.arange(STEPS), legend[:, c]) for c in range(3)], axis=1)
+    np.testing.assert_allclose(frame.array[4, :, :3], expected, atol=2.0)
     session.release()
 
 
@@ -217,9 +217,9 @@ def test_a_range_may_be_any_numbers(folder: Path) -> None:
     ],
 )
 def test_ticks_are_round_and_few(low: float, high: float, marks: tuple[float, ...]) -> None:
-    found = ticks(low, high)
-    assert len(found) <= 5 and set(marks) <= set(found)
-    assert all(low <= mark <= high for mark in found)
+    values = ticks(low, high)
+    assert len(values) <= 5 and set(marks) <= set(values)
+    assert all(low <= mark <= high for mark in values)
 
 
 def test_the_panel_counts_only_while_it_shows_it(bare: Bare) -> None:

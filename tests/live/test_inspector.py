@@ -111,32 +111,32 @@ def test_every_pass_is_read_exactly_where_the_ray_meets_the_terrain(
     met = 0
     for x in range(0, SIZE[0], 7):
         for y in range(0, SIZE[1], 5):
-            found = inspector.at((x, y), picture)
-            assert found is not None and found.picture == tuple(colours[SIZE[1] - 1 - y, x, :3])
-            place = (x + 0.5) / SIZE[0], (y + 0.5) / SIZE[1]
-            truth = ground_under(session.plan.eye, place, heights, (1600.0, 1200.0), 300.0)
-            assert (truth is None) == (found.ground is None)
-            if truth is None or found.ground is None:
+            result = inspector.at((x, y), picture)
+            assert result is not None and result.picture == tuple(colours[SIZE[1] - 1 - y, x, :3])
+            position = (x + 0.5) / SIZE[0], (y + 0.5) / SIZE[1]
+            truth = ground_under(session.plan.eye, position, heights, (1600.0, 1200.0), 300.0)
+            assert (truth is None) == (result.ground is None)
+            if truth is None or result.ground is None:
                 continue
             met += 1
             assert (
-                math.dist((found.ground.east, found.ground.north), (truth[0] * 1600, truth[1] * 1200)) < 0.5
+                math.dist((result.ground.east, result.ground.north), (truth[0] * 1600, truth[1] * 1200)) < 0.5
             )
-            for sample in found.samples:
+            for sample in result.samples:
                 values = whole[sample.name]
                 if values is None:
                     continue
-                share = found.ground.east / 1600, found.ground.north / 1200
+                share = result.ground.east / 1600, result.ground.north / 1200
                 assert sample.texel == (round(share[0] * 64), round(share[1] * 48))
                 assert list(sample.values) == np.atleast_1d(values[sample.texel[::-1]]).tolist()
-            i, j = found.samples[0].texel
+            i, j = result.samples[0].texel
             rise_y, rise_x = np.gradient(heights.astype(np.float64) * 300.0, 25.0)
             steep = math.hypot(rise_x[j, i], rise_y[j, i])
-            assert found.ground.slope == pytest.approx(math.degrees(math.atan(steep)), abs=1e-9)
+            assert result.ground.slope == pytest.approx(math.degrees(math.atan(steep)), abs=1e-9)
             normal = np.array([-rise_x[j, i], -rise_y[j, i], 1.0])
-            np.testing.assert_allclose(found.ground.normal, normal / np.linalg.norm(normal), atol=1e-12)
-            assert found.ground.above_sea == found.ground.height + 120.0
-            assert found.samples[0].metres == found.samples[0].values[0] * 300.0
+            np.testing.assert_allclose(result.ground.normal, normal / np.linalg.norm(normal), atol=1e-12)
+            assert result.ground.above_sea == result.ground.height + 120.0
+            assert result.samples[0].metres == result.samples[0].values[0] * 300.0
     assert met > 40
     assert dict(engine.runs) == runs and session.draws == draws  # nothing was drawn for it
 
@@ -156,15 +156,15 @@ def test_in_a_map_it_is_the_texel_that_the_pixel_shows(session: Session, inspect
         inside = 0
         for y in range(size[1]):
             for x in range(y % 4, size[0], 4):  # every row and every column
-                found = inspector.at((x, y), picture)
-                assert found is not None
-                if found.shown is None:
+                result = inspector.at((x, y), picture)
+                assert result is not None
+                if result.shown is None:
                     assert colours[y, x, :3].max() == 0
                     continue
                 inside += 1
-                i, j = found.shown.texel
-                assert list(found.shown.values) == whole[j, i].tolist()
-                assert abs(int(colours[y, x, 0]) - 255 * found.shown.values[1]) <= 0.51
+                i, j = result.shown.texel
+                assert list(result.shown.values) == whole[j, i].tolist()
+                assert abs(int(colours[y, x, 0]) - 255 * result.shown.values[1]) <= 0.51
         assert inside > 300
 
 
@@ -173,11 +173,11 @@ def test_the_light_of_another_size_is_read_at_its_own_node(session: Session, ins
     session.show("light:light")
     picture = session.frame((32, 24))
     assert picture is not None
-    found = inspector.at((8, 12), picture)
-    assert found is not None and found.shown is not None and found.ground is not None
-    assert found.shown.texel == (8, 12)
-    assert found.ground.east == pytest.approx(1600 * 8 / 31)
-    high = next(r for r in found.samples if r.name == "height:height")
+    result = inspector.at((8, 12), picture)
+    assert result is not None and result.shown is not None and result.ground is not None
+    assert result.shown.texel == (8, 12)
+    assert result.ground.east == pytest.approx(1600 * 8 / 31)
+    high = next(r for r in result.samples if r.name == "height:height")
     assert high.texel == (round(64 * 8 / 31), round(48 * 12 / 23))
 
 
@@ -206,9 +206,9 @@ def test_numbers_that_are_not_finite_are_named(folder: Path, session: Session, i
     session.show("height:height")
     picture = session.frame((65, 49))
     assert picture is not None
-    found = inspector.at((30, 5), picture)
-    assert found is not None and found.shown is not None and math.isnan(found.shown.values[0])
-    assert any("nan" in text for _, text, _ in lines_of(found))
+    result = inspector.at((30, 5), picture)
+    assert result is not None and result.shown is not None and math.isnan(result.shown.values[0])
+    assert any("nan" in text for _, text, _ in lines_of(result))
 
 
 def test_a_key_brings_the_box_and_takes_it_away(folder: Path, any_engine: Engine) -> None:

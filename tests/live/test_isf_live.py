@@ -37,8 +37,8 @@ def opened(tmp_path: Path, any_engine: Engine):
         return desks[-1]
 
     yield made
-    for one in desks:
-        one.close()
+    for item in desks:
+        item.close()
 
 
 def count(bare: Bare) -> int:

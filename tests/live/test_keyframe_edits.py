@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.sketch.model import Camera
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 
@@ -33,21 +33,21 @@ SIZE = (48, 32)
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    found = tmp_path / "sketch.toml"
-    found.write_text(SKETCH, encoding="utf-8")
-    return found
+    result = tmp_path / "sketch.toml"
+    result.write_text(SKETCH, encoding="utf-8")
+    return result
 
 
 @pytest.fixture
-def bench(any_engine: Engine, path: Path) -> Iterator[Bench]:
+def bench(any_engine: Engine, path: Path) -> Iterator[Workbench]:
     session = Session(any_engine, path)
-    made = Bench(session, WindowControls(lambda: None), folder=path.parent)
+    made = Workbench(session, WindowControls(lambda: None), folder=path.parent)
     draw_frame(made)
     yield made
     session.release()
 
 
-def draw_frame(bench: Bench) -> np.ndarray:
+def draw_frame(bench: Workbench) -> np.ndarray:
     for _ in range(2):
         bench.session.frame(SIZE)
         bench.undo.record()
@@ -58,7 +58,7 @@ def draw_frame(bench: Bench) -> np.ndarray:
     return frame.array
 
 
-def add(bench: Bench, time: float, camera: Camera, gain: float) -> np.ndarray:
+def add(bench: Workbench, time: float, camera: Camera, gain: float) -> np.ndarray:
     bench.session.clock.time = time
     bench.session.drafts.set_camera(camera)
     bench.session.drafts.set("light.gain", gain)
@@ -69,24 +69,24 @@ def add(bench: Bench, time: float, camera: Camera, gain: float) -> np.ndarray:
     return after
 
 
-def test_what_is_seen_is_keyed_and_is_no_longer_set_by_hand(bench: Bench, path: Path) -> None:
+def test_what_is_seen_is_keyed_and_is_no_longer_set_by_hand(bench: Workbench, path: Path) -> None:
     first = add(bench, 0.0, Camera(200.0, 30.0, 1500.0), 1.0)
     second = add(bench, 2.0, Camera(120.0, 50.0, 900.0), 2.5)
     draft = bench.session.shown
     assert draft is not None and draft.edits.camera is None and draft.edits.values == ()
-    found = load(path)
-    assert [k.time for k in found.keyframes] == [0.0, 2.0]
+    result = load(path)
+    assert [k.time for k in result.keyframes] == [0.0, 2.0]
     assert path.read_text(encoding="utf-8").startswith(SKETCH)
     bench.session.clock.time = 0.0
     assert np.array_equal(draw_frame(bench), first)
     bench.session.clock.time = 1.0
-    between = found.at(1.0)
+    between = result.at(1.0)
     assert 900.0 < between.camera.distance < 1500.0
     assert not np.array_equal(draw_frame(bench), first) and not np.array_equal(draw_frame(bench), second)
 
 
 @pytest.mark.slow
-def test_each_step_is_undone_and_done_again_in_the_file_too(bench: Bench, path: Path) -> None:
+def test_each_step_is_undone_and_done_again_in_the_file_too(bench: Workbench, path: Path) -> None:
     texts = [path.read_text(encoding="utf-8")]
 
     def step(done: bool) -> None:
@@ -122,7 +122,7 @@ def test_each_step_is_undone_and_done_again_in_the_file_too(bench: Bench, path: 
     assert [(k.time, k.ease) for k in load(path).keyframes] == [(0.0, "linear")]
 
 
-def test_undoing_a_keyframe_gives_back_what_was_set_by_hand(bench: Bench) -> None:
+def test_undoing_a_keyframe_gives_back_what_was_set_by_hand(bench: Workbench) -> None:
     picture = add(bench, 1.0, Camera(200.0, 30.0, 1500.0), 2.0)
     bench.undo.undo()
     assert np.array_equal(draw_frame(bench), picture)
@@ -131,20 +131,20 @@ def test_undoing_a_keyframe_gives_back_what_was_set_by_hand(bench: Bench) -> Non
     assert dict(draft.edits.values) == {"light.gain": 2.0} and draft.file.keyframes == ()
 
 
-def test_a_second_at_the_same_time_goes_into_the_first(bench: Bench, path: Path) -> None:
+def test_a_second_at_the_same_time_goes_into_the_first(bench: Workbench, path: Path) -> None:
     add(bench, 1.0, Camera(200.0, 30.0, 1500.0), 2.0)
     bench.session.drafts.set("light.ambient", 0.25)
     draw_frame(bench)
     assert bench.keyframes.add_here(["light.ambient"], camera=False)
-    (found,) = load(path).keyframes
+    (result,) = load(path).keyframes
     assert (
-        dict(found.values) == {"light.gain": 2.0, "light.ambient": 0.25}
-        and dict(found.camera)["azimuth"] == 200
+        dict(result.values) == {"light.gain": 2.0, "light.ambient": 0.25}
+        and dict(result.camera)["azimuth"] == 200
     )
 
 
 @pytest.mark.slow
-def test_an_invalid_edit_is_reported_and_nothing_is_written(bench: Bench, path: Path) -> None:
+def test_an_invalid_edit_is_reported_and_nothing_is_written(bench: Workbench, path: Path) -> None:
     assert not bench.keyframes.add_here([], camera=False)
     assert "choose what the keyframe sets" in bench.notices.items[-1].text
     assert not bench.keyframes.add_here(["size"], camera=False)
@@ -158,18 +158,18 @@ def test_an_invalid_edit_is_reported_and_nothing_is_written(bench: Bench, path: 
         bench.keyframes.set_ease(0, "bouncy")
 
 
-def test_the_whole_terrain_is_given_in_metres(bench: Bench, path: Path) -> None:
+def test_the_whole_terrain_is_given_in_metres(bench: Workbench, path: Path) -> None:
     assert bench.keyframes.add_here([])
     draw_frame(bench)
-    (found,) = load(path).keyframes
+    (result,) = load(path).keyframes
     plan = bench.session.plan
-    assert plan is not None and dict(found.camera)["distance"] == pytest.approx(plan.eye.distance, abs=0.01)
+    assert plan is not None and dict(result.camera)["distance"] == pytest.approx(plan.eye.distance, abs=0.01)
 
 
 @pytest.mark.slow
 def test_a_sketch_that_ships_offers_a_copy(any_engine: Engine, tmp_path: Path) -> None:
     session = Session(any_engine, "l_dot_n", values={"size": 33})
-    bench = Bench(session, WindowControls(lambda: None), folder=tmp_path)
+    bench = Workbench(session, WindowControls(lambda: None), folder=tmp_path)
     draw_frame(bench)
     assert not bench.keyframes.add_here([])
     assert bench.file.asks and "belongs to the playground" in bench.file.offer

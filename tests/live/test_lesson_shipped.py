@@ -29,9 +29,9 @@ def test_there_are_lessons_in_every_language():
 @pytest.mark.parametrize("path", FILES, ids=lambda p: f"{p.parent.name}/{p.stem}")
 def test_every_formula_can_be_set(path):
     for latex in formulas(path.read_text(encoding="utf-8")):
-        found = set_formula(latex, 20, 0xFFEEEEEE, display=False)
-        assert found is not None, latex
-        shown = found.pixels[found.pixels[..., 3] > 0].astype(int)
+        typeset_formula = set_formula(latex, 20, 0xFFEEEEEE, display=False)
+        assert typeset_formula is not None, latex
+        shown = typeset_formula.pixels[typeset_formula.pixels[..., 3] > 0].astype(int)
         assert not ((shown[:, 0] > 200) & (shown[:, 1] < 50)).any(), f"{latex}: red is what is not known"
 
 

@@ -76,30 +76,30 @@ sliders = ["height.smoothing"]
 
 
 @pytest.fixture
-def tasks(desk):
+def tasks(harness):
     (library.TEXTS / "en" / "after.md").write_text(LESSON, encoding="utf-8")
-    assert desk.reader.open("after", page=0)
-    desk.run_frames(4)
-    return desk.reader.tasks
+    assert harness.reader.open("after", page=0)
+    harness.run_frames(4)
+    return harness.reader.tasks
 
 
-def block(desk, name):
-    return desk.reader.lesson.named[name]
+def block(harness, name):
+    return harness.reader.lesson.named[name]
 
 
-def judged(desk):
+def judged(harness):
     """Draw frames until the process has judged."""
-    drawn_elsewhere(desk, lambda: not desk.reader.tasks.judging.at)
+    drawn_elsewhere(harness, lambda: not harness.reader.tasks.judging.at)
 
 
-def drawn_elsewhere(desk, until):
+def drawn_elsewhere(harness, until):
     """Draw frames until the process has done something."""
     end = time.monotonic() + 60.0
     while not until():
         assert time.monotonic() < end
-        desk.run_frames(1)
+        harness.run_frames(1)
         time.sleep(0.02)
-    desk.run_frames(2)
+    harness.run_frames(2)
 
 
 def typed(editing, text):
@@ -113,196 +113,196 @@ def attempts():
 
 
 @pytest.mark.slow
-def test_a_kernel_is_begun_checked_and_kept_over_a_restart(desk, tasks):
+def test_a_kernel_is_begun_checked_and_kept_over_a_restart(harness, tasks):
     monkeypatch = pytest.MonkeyPatch()
-    desk.click("Start##start")
-    desk.run_frames(4)
-    assert tasks.is_begun(block(desk, "power")) and desk.session.path.stem == "diamond_square_steps"
-    (editing,) = desk.bench.files.editing
+    harness.click("Start##start")
+    harness.run_frames(4)
+    assert tasks.is_begun(block(harness, "power")) and harness.session.path.stem == "diamond_square_steps"
+    (editing,) = harness.bench.files.editing
     assert editing.text.base == RAW
-    desk.click("Check##check")
-    judged(desk)
+    harness.click("Check##check")
+    judged(harness)
     verdict = tasks.judging.verdicts["power"]
     assert verdict.points == 0.0 and [result.passed for result in verdict.results] == [False, False]
-    desk.click("What differs")
-    desk.run_frames(2)
+    harness.click("What differs")
+    harness.run_frames(2)
 
-    right = answer_text(block(desk, "power"))
+    right = answer_text(block(harness, "power"))
     said = []
     monkeypatch.setattr(Page, "text", lambda page, words, **rest: said.append(words))
-    desk.run_frames(1)
+    harness.run_frames(1)
     assert "You have changed it since: check again." not in said
     typed(editing, right)  # not saved
-    desk.run_frames(2)
+    harness.run_frames(2)
     assert "You have changed it since: check again." in said
     monkeypatch.undo()
-    desk.click("Check##check")
-    judged(desk)
+    harness.click("Check##check")
+    judged(harness)
     assert tasks.judging.verdicts["power"].passed
     kept = attempts()["after/power"]
     assert kept.text.strip() == right.strip() and (kept.points, kept.of) == (2.0, 2)
 
-    desk.reader.go(1)
-    desk.run_frames(4)
-    assert desk.bench.files.editing == [] and not desk.session.drafts.texts
-    desk.reader.go(0)
-    desk.run_frames(4)
-    desk.click("Go on##start")
-    desk.run_frames(4)
-    assert desk.bench.files.editing[0].text.base.strip() == right.strip()
+    harness.reader.go(1)
+    harness.run_frames(4)
+    assert harness.bench.files.editing == [] and not harness.session.drafts.texts
+    harness.reader.go(0)
+    harness.run_frames(4)
+    harness.click("Go on##start")
+    harness.run_frames(4)
+    assert harness.bench.files.editing[0].text.base.strip() == right.strip()
 
-    desk.click("Begin again##again")
-    desk.run_frames(4)
-    assert desk.bench.files.editing[0].text.base == RAW
-    desk.click("Bring mine back##back")
-    desk.run_frames(4)
-    assert desk.bench.files.editing[0].text.base.strip() == right.strip()
+    harness.click("Begin again##again")
+    harness.run_frames(4)
+    assert harness.bench.files.editing[0].text.base == RAW
+    harness.click("Bring mine back##back")
+    harness.run_frames(4)
+    assert harness.bench.files.editing[0].text.base.strip() == right.strip()
 
 
-def test_begin_again_and_bring_back_exchange_what_is_typed(desk, tasks):
+def test_begin_again_and_bring_back_exchange_what_is_typed(harness, tasks):
     """Neither loses anything that was typed; a bare starter is not kept."""
-    power = block(desk, "power")
+    power = block(harness, "power")
     tasks.start(power)
-    desk.run_frames(4)
+    harness.run_frames(4)
 
     def now():
-        (editing,) = desk.bench.files.editing
+        (editing,) = harness.bench.files.editing
         return editing.text.base.strip()
 
     def press(label):
-        desk.run_frames(2)
-        desk.click(label)
-        desk.run_frames(4)
+        harness.run_frames(2)
+        harness.click(label)
+        harness.run_frames(4)
 
     first, second = RAW + "// first", RAW + "// second"
-    typed(desk.bench.files.editing[0], first)  # none of what is typed here is saved
+    typed(harness.bench.files.editing[0], first)  # none of what is typed here is saved
     press("Begin again##again")
     assert now() == RAW.strip()
-    typed(desk.bench.files.editing[0], second)
+    typed(harness.bench.files.editing[0], second)
     press("Bring mine back##back")
     assert now() == first.strip()
     press("Bring mine back##back")
     assert now() == second.strip(), "what was typed after it began again is kept as well"
-    typed(desk.bench.files.editing[0], RAW)
+    typed(harness.bench.files.editing[0], RAW)
     press("Bring mine back##back")
     assert now() == first.strip() and tasks.attempt(power).before is None
     press("Begin again##again")  # is offered again
     assert now() == RAW.strip() and attempts()["after/power"].before[0].strip() == first.strip()
 
 
-def test_values_are_exchanged_as_they_are_in_the_picture(desk, tasks):
-    desk.reader.go(1)
-    desk.run_frames(4)
-    rough = block(desk, "rough")
+def test_values_are_exchanged_as_they_are_in_the_picture(harness, tasks):
+    harness.reader.go(1)
+    harness.run_frames(4)
+    rough = block(harness, "rough")
     tasks.start(rough)
-    desk.run_frames(4)
+    harness.run_frames(4)
     for value in (0.8, 0.2):
-        desk.session.drafts.set("height.smoothing", value)
-        desk.run_frames(4, step=0.01)  # before it is stored by itself
+        harness.session.drafts.set("height.smoothing", value)
+        harness.run_frames(4, step=0.01)  # before it is stored by itself
         (tasks.start_again if value == 0.8 else tasks.undo)(rough)
-        desk.run_frames(4)
+        harness.run_frames(4)
     assert dict(tasks.work(rough).values) == {"height.smoothing": 0.8}
     assert tasks.attempt(rough).before == ("", {"height.smoothing": 0.2})
 
 
-def test_what_is_typed_and_never_saved_is_there_at_the_next_start(desk, tasks):
-    tasks.start(block(desk, "power"))
-    desk.run_frames(4)
-    (editing,) = desk.bench.files.editing
+def test_what_is_typed_and_never_saved_is_there_at_the_next_start(harness, tasks):
+    tasks.start(block(harness, "power"))
+    harness.run_frames(4)
+    (editing,) = harness.bench.files.editing
     typed(editing, RAW + "// mine\n")
-    desk.run_frames(10, step=0.5)
+    harness.run_frames(10, step=0.5)
     assert attempts()["after/power"].text.endswith("// mine\n"), "also where the program crashes"
     typed(editing, RAW + "// later\n")
-    desk.run_frames(1)
-    desk.lessons.release()
+    harness.run_frames(1)
+    harness.lessons.release()
     assert attempts()["after/power"].text.endswith("// later\n")
 
 
-def test_a_slider_that_a_student_adds_is_there_to_drag(desk, tasks):
-    power = block(desk, "power")
+def test_a_slider_that_a_student_adds_is_there_to_drag(harness, tasks):
+    power = block(harness, "power")
     tasks.start(power)
-    desk.run_frames(4)
+    harness.run_frames(4)
     assert tasks.sliders(power) == ()
     own = "uniform float mine = 0.5; //! slider(0, 1) Mine\nuniform uint seed"
     tasks.copies.open[(GLSL / FILE).resolve()].save(RAW.replace("uniform uint seed", own))
-    desk.run_frames(4)
+    harness.run_frames(4)
     assert tasks.sliders(power) == ("height.raw.mine",)
-    desk.click("##height.raw.mine", 0.9)
-    assert dict(desk.session.shown.applied)["height.raw.mine"] > 0.8
+    harness.click("##height.raw.mine", 0.9)
+    assert dict(harness.session.shown.applied)["height.raw.mine"] > 0.8
 
 
-def test_the_text_of_another_block_is_no_attempt(desk, tasks):
+def test_the_text_of_another_block_is_no_attempt(harness, tasks):
     """A bug put into the same file takes the place of the copy."""
-    one = block(desk, "power")
-    tasks.start(one)
-    desk.run_frames(4)
+    first = block(harness, "power")
+    tasks.start(first)
+    harness.run_frames(4)
     copies = tasks.copies
     mine = copies.open[(GLSL / FILE).resolve()]
     other = type(mine)(mine.path, "// another's")
     copies.edit(other)
     tasks.store()
-    assert tasks.work(one).text == RAW and tasks.attempt(one).text == ""
+    assert tasks.work(first).text == RAW and tasks.attempt(first).text == ""
     tasks.leave()
     assert copies.text_of(mine.path) == "// another's"
 
 
-def test_the_solution_s_picture_is_that_of_the_model_answer(desk, tasks):
-    desk.reader.show(block(desk, "power"))
-    desk.run_frames(4)
-    ((path, text),) = desk.session.drafts.texts.items()
-    assert path.endswith("raw.glsl") and text == answer_text(block(desk, "power"))
-    assert not tasks.is_begun(block(desk, "power"))
-    desk.reader.go(1)
-    desk.run_frames(4)
-    assert not desk.session.drafts.texts
+def test_the_solution_s_picture_is_that_of_the_model_answer(harness, tasks):
+    harness.reader.show(block(harness, "power"))
+    harness.run_frames(4)
+    ((path, text),) = harness.session.drafts.texts.items()
+    assert path.endswith("raw.glsl") and text == answer_text(block(harness, "power"))
+    assert not tasks.is_begun(block(harness, "power"))
+    harness.reader.go(1)
+    harness.run_frames(4)
+    assert not harness.session.drafts.texts
 
 
 @pytest.mark.slow
-def test_values_are_set_with_sliders_and_checked(desk, tasks):
-    desk.reader.go(1)
-    desk.run_frames(4)
-    rough = block(desk, "rough")
+def test_values_are_set_with_sliders_and_checked(harness, tasks):
+    harness.reader.go(1)
+    harness.run_frames(4)
+    rough = block(harness, "rough")
     tasks.start(rough)
-    desk.run_frames(4)
+    harness.run_frames(4)
     assert dict(tasks.work(rough).values) == {"height.smoothing": 0.5}
     tasks.check(rough)
-    judged(desk)
+    judged(harness)
     assert tasks.judging.verdicts["rough"].points == 0.0
-    desk.session.drafts.set("height.smoothing", 0.8)
-    desk.run_frames(4)
+    harness.session.drafts.set("height.smoothing", 0.8)
+    harness.run_frames(4)
     tasks.check(rough)
-    judged(desk)
+    judged(harness)
     assert tasks.judging.verdicts["rough"].passed
     assert attempts()["after/rough"].values == {"height.smoothing": 0.8}
 
 
 @pytest.mark.slow
-def test_a_score_follows_the_picture_and_the_best_is_kept(desk, tasks):
-    desk.reader.go(1)
-    desk.run_frames(4)
-    seen = block(desk, "seen")
-    drawn_elsewhere(desk, lambda: tasks.judging.target(seen) is not None)  # before one begins
+def test_a_score_follows_the_picture_and_the_best_is_kept(harness, tasks):
+    harness.reader.go(1)
+    harness.run_frames(4)
+    seen = block(harness, "seen")
+    drawn_elsewhere(harness, lambda: tasks.judging.target(seen) is not None)  # before one begins
     tasks.start(seen)
-    desk.run_frames(8, step=0.2)
+    harness.run_frames(8, step=0.2)
     assert tasks.scoring.matches["seen"].score == 0.0
     scores = []
     for smoothing in (0.4, 0.8, 0.6):
-        desk.session.drafts.set("height.smoothing", smoothing)
-        desk.run_frames(20, step=0.2)
+        harness.session.drafts.set("height.smoothing", smoothing)
+        harness.run_frames(20, step=0.2)
         scores.append(tasks.scoring.matches["seen"].score)
     assert scores[1] == 100.0 and 0.0 < scores[0] < 100.0 and 0.0 < scores[2] < 100.0
     assert attempts()["after/seen"].score == 100.0
     last = tasks.scoring.matches["seen"]
-    desk.run_frames(20, step=0.2)
+    harness.run_frames(20, step=0.2)
     assert tasks.scoring.matches["seen"] is last, "a picture that rests is scored once"
 
 
-def test_the_window_says_that_attempts_could_not_be_read(desk):
+def test_the_window_says_that_attempts_could_not_be_read(harness):
     progress_file().parent.mkdir(parents=True, exist_ok=True)
     progress_file().write_text("damaged", encoding="utf-8")
-    Lessons(desk.bench, desk.autosave, lambda: None)
-    desk.run_frames(1)
-    said = [notice.text for notice in desk.bench.notices.items]
+    Lessons(harness.bench, harness.autosave, lambda: None)
+    harness.run_frames(1)
+    said = [notice.text for notice in harness.bench.notices.items]
     assert any("what was remembered of lessons cannot be read; it is kept in" in text for text in said)
 
 

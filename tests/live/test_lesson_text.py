@@ -20,7 +20,7 @@ from playground.live.lesson.line_breaking import Extent, broken
 from playground.live.lesson.markdown_runs import Run, parts_of, plain
 from playground.workbench.lesson.labels import _ALL, labels_in
 from playground.workbench.lesson.progress import (
-    NARROWEST,
+    MIN_WIDTH,
     Attempt,
     Progress,
     open_progress,
@@ -40,13 +40,13 @@ def ruler(run: Run) -> Extent:
 
 
 def texts(lines) -> list[str]:
-    return ["".join(placed.run.text for placed in line.placed) for line in lines]
+    return ["".join(positioned.run.text for positioned in line.runs) for line in lines]
 
 
 def test_styles_links_and_formulas_are_runs_of_their_own():
     (part,) = parts_of("A **bold** *word*, `x(1)` at [a *place*](lesson:fourier) of $h^2$.")
-    found = [(run.text, run.bold, run.italic, run.code, run.formula, run.link) for run in part.runs]
-    assert found == [
+    result = [(run.text, run.bold, run.italic, run.code, run.formula, run.link) for run in part.runs]
+    assert result == [
         ("A ", False, False, False, False, ""),
         ("bold", True, False, False, False, ""),
         (" ", False, False, False, False, ""),
@@ -64,8 +64,8 @@ def test_styles_links_and_formulas_are_runs_of_their_own():
 
 def test_lists_are_marked_and_indented_by_their_depth():
     parts = parts_of("1. one\n2. two\n   - inner\n\nafter")
-    found = [(part.mark, part.indent, plain("".join(run.text for run in part.runs))) for part in parts]
-    assert found == [("1.", 1, "one"), ("2.", 1, "two"), ("•", 2, "inner"), ("", 0, "after")]
+    result = [(part.mark, part.indent, plain("".join(run.text for run in part.runs))) for part in parts]
+    assert result == [("1.", 1, "one"), ("2.", 1, "two"), ("•", 2, "inner"), ("", 0, "after")]
 
 
 def test_a_table_keeps_its_cells_and_which_columns_are_numbers():
@@ -115,8 +115,8 @@ def test_no_letter_is_lost_doubled_or_out_of_its_line(seed):
     assert "".join(texts(lines)).replace(" ", "") == "".join(text for text, _ in pieces).replace(" ", "")
     for line in lines:
         assert line.width <= width + 1e-6
-        ends = [0.0, *(placed.x + placed.extent.width for placed in line.placed)]
-        assert [placed.x for placed in line.placed] == pytest.approx(ends[:-1])
+        ends = [0.0, *(positioned.x + positioned.extent.width for positioned in line.runs)]
+        assert [positioned.x for positioned in line.runs] == pytest.approx(ends[:-1])
 
 
 def test_a_line_is_as_high_as_its_highest():
@@ -154,9 +154,13 @@ def test_a_formula_is_set_as_one():
     ],
 )
 def test_what_lessons_write_can_be_set(latex):
-    found = set_formula(latex, 20, INK, display=False)
-    assert found is not None and found.pixels[..., 3].max() == 255
-    red = (found.pixels[..., 0] > 200) & (found.pixels[..., 1] < 50) & (found.pixels[..., 3] > 0)
+    typeset_formula = set_formula(latex, 20, INK, display=False)
+    assert typeset_formula is not None and typeset_formula.pixels[..., 3].max() == 255
+    red = (
+        (typeset_formula.pixels[..., 0] > 200)
+        & (typeset_formula.pixels[..., 1] < 50)
+        & (typeset_formula.pixels[..., 3] > 0)
+    )
     assert not red.any(), "MicroTeX writes what it does not know in red"
 
 
@@ -241,7 +245,7 @@ def test_a_file_that_cannot_be_read_is_kept_and_no_earlier_one_is_overwritten(tm
 def test_a_width_that_no_window_has_is_brought_into_range(tmp_path):
     file = tmp_path / "lessons.json"
     write_progress(Progress(width=1.0), file)
-    assert read_progress(file).width == NARROWEST
+    assert read_progress(file).width == MIN_WIDTH
 
 
 def test_what_cannot_be_written_is_reported_in_a_sentence(tmp_path):

@@ -47,14 +47,14 @@ def value(bare: Bare, path: str) -> object:
 
 def drawn_for(name: str, *, everything: bool = False) -> tuple[list[str], str]:
     sketch = load(find(name))
-    found, words = targets(Draft(sketch, sketch), Listing(), Filter(), everything=everything)
-    return [path for path, _ in found], words
+    result, words = targets(Draft(sketch, sketch), Listing(), Filter(), everything=everything)
+    return [path for path, _ in result], words
 
 
 def test_the_main_parameters_stand_first_in_their_order_and_the_passes_are_folded(bare: Bare) -> None:
-    found = bare.panel.memory.listing.main(bare.session.shown)
-    assert [item.path for item in found] == ["light.seed", "height.seed"]
-    assert [item.title for item in found] == ["Light: seed", "Height: seed"], "a title alone would not do"
+    result = bare.panel.memory.listing.main(bare.session.shown)
+    assert [item.path for item in result] == ["light.seed", "height.seed"]
+    assert [item.title for item in result] == ["Light: seed", "Height: seed"], "a title alone would not do"
     bare.run_frames(2)
     light, height = bare.places["##main light.seed"], bare.places["##main height.seed"]
     assert light[1] < height[1]
@@ -132,11 +132,11 @@ def test_random_values_are_for_the_shape_unless_everything_is_chosen(bare: Bare)
     ],
 )
 def test_random_values_of_shipped_sketches(name: str, least: set[str], words: str) -> None:
-    found, label = drawn_for(name)
-    assert least <= set(found) and label == words
-    assert not any(path.startswith("view.") or path.endswith("raw_size") for path in found)
+    result, label = drawn_for(name)
+    assert least <= set(result) and label == words
+    assert not any(path.startswith("view.") or path.endswith("raw_size") for path in result)
 
 
 def test_everything_is_everything() -> None:
-    found, _ = drawn_for("daylight", everything=True)
-    assert {"view.exposure", "height.raw_size", "light.gain"} <= set(found)
+    result, _ = drawn_for("daylight", everything=True)
+    assert {"view.exposure", "height.raw_size", "light.gain"} <= set(result)

@@ -13,7 +13,7 @@ import pytest
 from playground.engine.engine import Engine
 from playground.engine.non_finite import NotFinite
 from playground.live.non_finite import place_in, ref_of
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.interface import WindowControls
 from playground.workbench.non_finite import REST, FiniteWatch, summary
 from playground.workbench.session import Session
@@ -38,7 +38,7 @@ SKETCH = (
 )
 
 
-class Desk:
+class Harness:
     """A session, the watch on it, and a clock that the test moves."""
 
     def __init__(self, engine: Engine, folder: Path) -> None:
@@ -46,7 +46,9 @@ class Desk:
             (folder / name).write_text(text, encoding="utf-8")
         self.time = 100.0
         self.session = Session(engine, folder, now=lambda: self.time)
-        self.bench = Bench(self.session, WindowControls(lambda: None), folder=folder, now=lambda: self.time)
+        self.bench = Workbench(
+            self.session, WindowControls(lambda: None), folder=folder, now=lambda: self.time
+        )
         self.watch = FiniteWatch(lambda: self.time)
 
     def run_frames(self, seconds: float = 0.0, held: bool = False) -> None:
@@ -59,87 +61,87 @@ class Desk:
         self.run_frames(2 * REST)
         for _ in range(20):
             self.run_frames()
-        return [found.path for found in self.watch.found]
+        return [result.path for result in self.watch.non_finite]
 
 
 @pytest.fixture
-def desk(any_engine: Engine, tmp_path: Path) -> Iterator[Desk]:
-    made = Desk(any_engine, tmp_path)
+def harness(any_engine: Engine, tmp_path: Path) -> Iterator[Harness]:
+    made = Harness(any_engine, tmp_path)
     yield made
     made.session.release()
 
 
-def test_the_first_pass_is_named_and_what_follows_is_counted(desk: Desk) -> None:
-    assert desk.rest() == ["first", "second"]
-    first = desk.watch.found[0]
+def test_the_first_pass_is_named_and_what_follows_is_counted(harness: Harness) -> None:
+    assert harness.rest() == ["first", "second"]
+    first = harness.watch.non_finite[0]
     assert (first.output, first.texel, first.value, first.count) == ("first", (12, 30), "NaN", 4)
     expected = "pass 'first' makes NaN at texel (12, 30), 4 texels; first of 2 passes"
-    assert summary(desk.watch.found) == expected
-    assert desk.watch.patience is None, "nothing more is waited for"
+    assert summary(harness.watch.non_finite) == expected
+    assert harness.watch.patience is None, "nothing more is waited for"
 
 
-def test_it_waits_for_rest_and_for_the_button_and_looks_at_one_pass_a_turn(desk: Desk) -> None:
-    desk.run_frames()
-    desk.run_frames(REST / 2)
-    assert desk.watch.looks == 0 and desk.watch.patience is not None
-    desk.run_frames(REST, held=True)
-    assert desk.watch.looks == 0
+def test_it_waits_for_rest_and_for_the_button_and_looks_at_one_pass_a_turn(harness: Harness) -> None:
+    harness.run_frames()
+    harness.run_frames(REST / 2)
+    assert harness.watch.looks == 0 and harness.watch.patience is not None
+    harness.run_frames(REST, held=True)
+    assert harness.watch.looks == 0
     for number in range(1, 3):
-        desk.run_frames(REST if number == 1 else 0.0)
-        assert desk.watch.looks == number
-    desk.session.drafts.set("first.root", 0.25)
-    desk.run_frames()
-    assert desk.watch.looks == 2, "another picture: what was under way is of no use"
+        harness.run_frames(REST if number == 1 else 0.0)
+        assert harness.watch.looks == number
+    harness.session.drafts.set("first.root", 0.25)
+    harness.run_frames()
+    assert harness.watch.looks == 2, "another picture: what was under way is of no use"
 
 
-def test_it_goes_once_fixed(desk: Desk) -> None:
-    assert desk.rest()
-    desk.session.drafts.set("first.root", 0.25)
-    assert desk.rest() == []
-    desk.session.drafts.set("first.root", -0.25)
-    assert desk.rest() == ["first", "second"]
+def test_it_goes_once_fixed(harness: Harness) -> None:
+    assert harness.rest()
+    harness.session.drafts.set("first.root", 0.25)
+    assert harness.rest() == []
+    harness.session.drafts.set("first.root", -0.25)
+    assert harness.rest() == ["first", "second"]
 
 
-def test_a_map_of_the_texture_shows_it_in_magenta_where_the_mark_is(desk: Desk) -> None:
-    assert desk.rest()
-    first = desk.watch.found[0]
-    desk.bench.session.show(ref_of(first))
-    assert desk.rest() == ["first", "second"], "what the map does not need is as it was"
-    frame = desk.session.read()
+def test_a_map_of_the_texture_shows_it_in_magenta_where_the_mark_is(harness: Harness) -> None:
+    assert harness.rest()
+    first = harness.watch.non_finite[0]
+    harness.bench.session.show(ref_of(first))
+    assert harness.rest() == ["first", "second"], "what the map does not need is as it was"
+    frame = harness.session.read()
     assert frame is not None
     magenta = (frame.array[..., :3] == (255, 0, 255)).all(axis=2)
     assert 0 < magenta.sum() <= 16
     x, y = place_in(first, (0.0, 0.0, 40.0, 40.0))
     assert magenta[int(y), int(x)]
-    desk.session.drafts.set("first.root", 0.25)
-    assert desk.rest() == []
+    harness.session.drafts.set("first.root", 0.25)
+    assert harness.rest() == []
 
 
-def test_a_texture_that_was_read_since_changes_nothing(desk: Desk) -> None:
-    desk.run_frames()
-    desk.session.read_values("first:first")
-    ran = list(desk.session.engine.record.ran)
-    runs = dict(desk.session.engine.runs)
-    assert desk.rest() == ["first", "second"]
-    assert dict(desk.session.engine.runs) == runs and desk.session.engine.record.ran == ran, (
+def test_a_texture_that_was_read_since_changes_nothing(harness: Harness) -> None:
+    harness.run_frames()
+    harness.session.read_values("first:first")
+    ran = list(harness.session.engine.record.ran)
+    runs = dict(harness.session.engine.runs)
+    assert harness.rest() == ["first", "second"]
+    assert dict(harness.session.engine.runs) == runs and harness.session.engine.record.ran == ran, (
         "nothing ran again"
     )
 
 
-def test_time_that_runs_is_looked_at_now_and_then(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_time_that_runs_is_looked_at_now_and_then(harness: Harness, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Session, "animated", True)
-    desk.session.clock.playing = True
-    desk.run_frames(held=True)
-    assert desk.watch.looks == 0
-    desk.run_frames()
-    seen = desk.watch.looks
-    assert desk.watch.found and seen > 0
+    harness.session.clock.playing = True
+    harness.run_frames(held=True)
+    assert harness.watch.looks == 0
+    harness.run_frames()
+    seen = harness.watch.looks
+    assert harness.watch.non_finite and seen > 0
     for _ in range(10):
-        desk.session.redraw()
-        desk.run_frames(0.05)
-    assert desk.watch.looks == seen
-    desk.run_frames(3.0)
-    assert desk.watch.looks > seen
+        harness.session.redraw()
+        harness.run_frames(0.05)
+    assert harness.watch.looks == seen
+    harness.run_frames(3.0)
+    assert harness.watch.looks > seen
 
 
 def test_a_map_is_placed_as_its_kernel_places_it() -> None:
@@ -154,7 +156,7 @@ def test_the_words_lead_to_the_texture_and_back(
 ) -> None:
     from playground.live import non_finite as finite
 
-    Desk(any_engine, tmp_path).session.release()
+    Harness(any_engine, tmp_path).session.release()
     bare = Bare(any_engine, tmp_path / "sketch.toml")
     try:
         bare._watch(finite.imgui, "small_button")
@@ -234,37 +236,39 @@ def test_a_hole_that_the_view_makes_is_shown_too(
         sketch = sketch.replace("set = { root = -1.0 }\n", "")
     for name, text in (("lit.glsl", LIT), ("shown.glsl", SHOWN), ("look.toml", VIEW)):
         (tmp_path / name).write_text(text, encoding="utf-8")
-    desk = Desk(any_engine, tmp_path)
+    harness = Harness(any_engine, tmp_path)
     (tmp_path / "sketch.toml").write_text(sketch, encoding="utf-8")
-    desk.session.drafts.reload()
-    desk.run_frames()
+    harness.session.drafts.reload()
+    harness.run_frames()
     if by_hand:
-        desk.session.drafts.set("view.root", -1.0)
-    desk.rest()
-    (found,) = desk.watch.found
-    assert (found.path, found.texel, found.size, found.value) == ("view.lit", (7, 5), (40, 40), "NaN")
-    ref = ref_of(found)
-    assert ref == "view.lit:frame" and desk.session.can_show(ref)
-    desk.bench.session.show(ref)
-    desk.run_frames()
-    assert desk.session.view.map is not None and desk.session.error is None and not desk.session.notes
-    frame = desk.session.read()
+        harness.session.drafts.set("view.root", -1.0)
+    harness.rest()
+    (result,) = harness.watch.non_finite
+    assert (result.path, result.texel, result.size, result.value) == ("view.lit", (7, 5), (40, 40), "NaN")
+    ref = ref_of(result)
+    assert ref == "view.lit:frame" and harness.session.can_show(ref)
+    harness.bench.session.show(ref)
+    harness.run_frames()
+    assert (
+        harness.session.view.map is not None and harness.session.error is None and not harness.session.notes
+    )
+    frame = harness.session.read()
     assert frame is not None
     magenta = np.argwhere((frame.array[::-1, :, :3] == (255, 0, 255)).all(axis=2))
     assert magenta.tolist() == [[5, 7]], "the texel itself, in a picture of its size"
-    desk.rest()
-    assert desk.watch.found == (found,), "it has its own name, under any name in the map"
-    desk.bench.session.show(None)
-    desk.run_frames()
-    desk.rest()
-    assert desk.watch.found == (found,)
-    desk.session.release()
+    harness.rest()
+    assert harness.watch.non_finite == (result,), "it has its own name, under any name in the map"
+    harness.bench.session.show(None)
+    harness.run_frames()
+    harness.rest()
+    assert harness.watch.non_finite == (result,)
+    harness.session.release()
 
 
 def test_what_the_view_lacks_cannot_be_shown(any_engine: Engine, tmp_path: Path) -> None:
-    desk = Desk(any_engine, tmp_path)
-    desk.run_frames()
-    session = desk.session
+    harness = Harness(any_engine, tmp_path)
+    harness.run_frames()
+    session = harness.session
     assert session.can_show("view:frame") and session.can_show("first:first")
     for wrong in ("view:light", "view.lit:frame", "other:frame", "first.view:first", "view"):
         assert not session.can_show(wrong)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from playground.live.part_labels import Part, parts_of
+from playground.live.part_labels import PictureRegion, parts_of
 from playground.sketch.find import find
 from playground.sketch.model import Sketch
 from playground.sketch.replace_technique import with_technique
@@ -48,7 +48,7 @@ def test_lines_that_cross_leave_nothing_between_them() -> None:
 
 def test_a_difference_is_one_picture_of_both() -> None:
     sketch = sketch_of("interreflection").with_values({"view.mode": "difference"})
-    assert parts_of(sketch) == [Part(0.0, 1.0, "Cone against Thrown", "")]
+    assert parts_of(sketch) == [PictureRegion(0.0, 1.0, "Cone against Thrown", "")]
 
 
 def test_another_technique_in_a_pass_is_named_at_once() -> None:

@@ -31,17 +31,17 @@ M, LEFT = 77, 37
 
 @pytest.fixture
 def keys(bare: Bare, monkeypatch) -> PictureKeys:
-    found = PictureKeys(bare.bench)
+    picture_keys = PictureKeys(bare.bench)
     bare.session.clock.playing = False
 
     def act(bench):
-        if not found.act():
+        if not picture_keys.act():
             act_on_keys(bench)
 
     monkeypatch.setattr(desk, "act_on_keys", act)
-    found.frames = bare.run_frames
-    found.frames(2)
-    return found
+    picture_keys.frames = bare.run_frames
+    picture_keys.frames(2)
+    return picture_keys
 
 
 def down(bare: Bare) -> tuple[int, ...]:

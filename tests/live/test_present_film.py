@@ -40,10 +40,10 @@ def test_a_lesson_is_filmed_with_its_notes_as_subtitles(folder: Path, any_engine
         assert count >= round(seconds_of(beat) * FPS) and count >= 3 * FPS
     edge = film.sizes.picture[1]
 
-    def change(one: int, other: int, *, strip: bool) -> float:
+    def change(first: int, other: int, *, strip: bool) -> float:
         pair = [
             pictures[n].astype(int)[edge + 4 :] if strip else pictures[n].astype(int)[:edge]
-            for n in (one, other)
+            for n in (first, other)
         ]
         return float(np.abs(pair[0] - pair[1]).mean())
 
@@ -54,10 +54,10 @@ def test_a_lesson_is_filmed_with_its_notes_as_subtitles(folder: Path, any_engine
     assert change(last, starts[sweep + 1], strip=True) > 1, "another beat says something else"
     bug = next(n for n, beat in enumerate(film.beats) if beat.kind == "fix")
     assert change(starts[bug] - 1, starts[bug], strip=False) > 1, "the fixed picture is another"
-    told = subtitles.read_text("utf-8")
-    assert subtitles.name == "talk.srt" and "Une moyenne divise par leur nombre." in told
-    assert "{{" not in told and told.index("Quatre coins") < told.index("Rugosité.")
-    end = told.rstrip().rsplit("-->", 1)[1].split()[0]
+    text = subtitles.read_text("utf-8")
+    assert subtitles.name == "talk.srt" and "Une moyenne divise par leur nombre." in text
+    assert "{{" not in text and text.index("Quatre coins") < text.index("Rugosité.")
+    end = text.rstrip().rsplit("-->", 1)[1].split()[0]
     hours, minutes, seconds = end.replace(",", ".").split(":")
     assert int(hours) * 3600 + int(minutes) * 60 + float(seconds) == pytest.approx(film.seconds, abs=0.002)
     assert Fraction(len(pictures)) / FPS == Fraction(film.seconds).limit_denominator(100)

@@ -15,7 +15,7 @@ from playground.lessons.read import read_lesson, summaries
 from playground.lessons.scenes import Sketches
 from playground.live.present.faces import Face
 from playground.live.present.slide import (
-    LEAST,
+    MIN_LETTER_HEIGHT,
     Gauge,
     Sizes,
     board_of,
@@ -33,7 +33,7 @@ FULL_HD = Sizes(1920, 1080)
 @cache
 def beats(language: str) -> list[tuple[str, Beat]]:
     sketches = Sketches()
-    lessons = [read_lesson(one.name, language, sketches) for one in summaries()]
+    lessons = [read_lesson(summary.name, language, sketches) for summary in summaries()]
     return [(lesson.name, beat) for lesson in lessons for beat in beats_of(lesson)]
 
 
@@ -45,12 +45,12 @@ def test_every_beat_of_every_lesson_fits_in_large_letters(language: str) -> None
         where = f"{name}: {beat.kind}: {beat.shown or beat.board}"
         body = body_of(beat, FULL_HD)
         if body is not None:
-            assert body.size >= LEAST and body.height <= high and body.width <= wide + 1, where
+            assert body.size >= MIN_LETTER_HEIGHT and body.height <= high and body.width <= wide + 1, where
         if beat.code:
-            assert code_size(beat, FULL_HD) >= LEAST, where
+            assert code_size(beat, FULL_HD) >= MIN_LETTER_HEIGHT, where
         elif beat.has_board:
             board = board_text(beat, FULL_HD)
-            assert board.size >= LEAST and board.height <= FULL_HD.picture[1], where
+            assert board.size >= MIN_LETTER_HEIGHT and board.height <= FULL_HD.picture[1], where
             assert board.width <= FULL_HD.width, where
 
 
@@ -59,7 +59,7 @@ def test_letters_grow_with_the_screen(size: tuple[int, int]) -> None:
     sizes = Sizes(*size)
     beat = Beat("text", 0, "A heading", "Hint", "Some words that are read.")
     body = body_of(beat, sizes)
-    assert body is not None and body.size >= LEAST * min(size[0] / 1920, size[1] / 1080)
+    assert body is not None and body.size >= MIN_LETTER_HEIGHT * min(size[0] / 1920, size[1] / 1080)
     strip = strip_of(beat, (3, 12), sizes)
     assert strip.size == (size[0], sizes.strip)
     assert sizes.strip + sizes.picture[1] == size[1]
@@ -72,7 +72,7 @@ def test_code_of_a_hundred_columns_is_whole_at_its_full_width() -> None:
     line = "vec3 " + "a" * 94 + ";"
     beat = Beat("code", 0, "", code="\n".join([line] * 20), file="x.glsl", line=101)
     size = code_size(beat, FULL_HD)
-    assert size >= LEAST
+    assert size >= MIN_LETTER_HEIGHT
     image = board_of(beat, FULL_HD)
     assert image is not None
     ink = np.asarray(image.convert("L")) > 70

@@ -11,10 +11,10 @@ AREA = 0.0, 0.0, 320.0, 180.0
 
 
 def test_a_beat_s_sketch_is_loaded_after_its_words_and_beats_that_are_skipped_load_none(
-    desk, monkeypatch: pytest.MonkeyPatch
+    harness, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    stage = Stage(desk.bench, desk.reader, lambda: None)
-    assert desk.reader.open("halving", page=0, show=False)
+    stage = Stage(harness.bench, harness.reader, lambda: None)
+    assert harness.reader.open("halving", page=0, show=False)
     stage.begin(Presenting(notes=False))
     shown: list[str] = []
     monkeypatch.setattr(FigureView, "show", lambda view, scene, key, texts=None: shown.append(key[0]))
@@ -22,7 +22,7 @@ def test_a_beat_s_sketch_is_loaded_after_its_words_and_beats_that_are_skipped_lo
     def frame() -> bool:
         """Run a frame of the window; return whether it draws words alone."""
         turned = []
-        desk.run_frames(1, around=lambda draw: turned.append((stage.act(AREA), stage.turned())[1]))
+        harness.run_frames(1, around=lambda draw: turned.append((stage.act(AREA), stage.turned())[1]))
         return turned[0]
 
     frames = frame(), frame()

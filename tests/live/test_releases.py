@@ -50,9 +50,9 @@ def slider() -> Iterator[Slider]:
 
 
 def move(share: float) -> tuple[float, float]:
-    place = PAD + share * WIDE, 48.0
-    imgui.get_io().add_mouse_pos_event(*place)
-    return place
+    position = PAD + share * WIDE, 48.0
+    imgui.get_io().add_mouse_pos_event(*position)
+    return position
 
 
 def test_a_drag_ends_where_it_was_let_go_however_slow_the_frames_are(slider: Slider) -> None:
@@ -62,8 +62,8 @@ def test_a_drag_ends_where_it_was_let_go_however_slow_the_frames_are(slider: Sli
     io.add_mouse_button_event(0, True)
     slider.frames()
     move(0.4)
-    place = move(0.75)
-    before_release(place)
+    position = move(0.75)
+    before_release(position)
     io.add_mouse_button_event(0, False)
     move(0.3)  # what comes later is no part of it
     after_events()
@@ -77,11 +77,11 @@ def test_a_drag_ends_where_it_was_let_go_however_slow_the_frames_are(slider: Sli
 
 def test_a_release_at_rest_is_the_mouses_own(slider: Slider) -> None:
     io = imgui.get_io()
-    place = move(0.5)
+    position = move(0.5)
     slider.frames()
     io.add_mouse_button_event(0, True)
     slider.frames()
-    before_release(place)
+    before_release(position)
     io.add_mouse_button_event(0, False)
     after_events()
     slider.frame()

@@ -90,9 +90,9 @@ def is_red(pixel: NDArray[np.uint8]) -> bool:
 def soon(is_so: Callable[[], bool], seconds: float = 60.0) -> bool:
     """Return whether something comes true: the screen may show a moment later what the status reports."""
     end = time.monotonic() + seconds
-    while not (found := is_so()) and time.monotonic() < end:
+    while not (result := is_so()) and time.monotonic() < end:
         time.sleep(0.05)
-    return found
+    return result
 
 
 def test_an_edit_that_works_one_that_breaks_and_one_that_fixes(shared: App) -> None:

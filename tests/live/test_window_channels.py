@@ -50,8 +50,8 @@ def program(screen: Screen, folder: Path) -> Iterator[Program]:
     made.close()
 
 
-def pixel(screen: Screen, place: tuple[int, int]) -> tuple[int, ...]:
-    return tuple(int(n) for n in screen.pixels()[place])
+def pixel(screen: Screen, position: tuple[int, int]) -> tuple[int, ...]:
+    return tuple(int(n) for n in screen.pixels()[position])
 
 
 def test_a_channel_is_chosen_and_a_dropped_image_feeds_the_other(

@@ -38,18 +38,18 @@ def opened(screen: Screen, folder: Path) -> Program:
 def test_a_key_starts_the_editor_at_the_line(
     screen: Screen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    given = tmp_path / "opened.txt"
+    value = tmp_path / "opened.txt"
     script = tmp_path / "editor.py"
     script.write_text("import pathlib, sys\npathlib.Path(sys.argv[1]).write_text('|'.join(sys.argv[2:]))\n")
-    command = f"{sys.executable} {script} {given} {{file}} {{line}} {{column}}"
+    command = f"{sys.executable} {script} {value} {{file}} {{line}} {{column}}"
     monkeypatch.setenv("PLAYGROUND_EDITOR", command)
     window = opened(screen, tmp_path)
     try:
         (tmp_path / "terrain.glsl").write_text(TERRAIN.replace("sin", "sine"), encoding="utf-8")
         window.wait(lambda now: now["error"])
         screen.do("key", "e")
-        window.wait(lambda _: given.exists() and given.read_text())
-        assert given.read_text() == f"{tmp_path / 'terrain.glsl'}|4|12"
+        window.wait(lambda _: value.exists() and value.read_text())
+        assert value.read_text() == f"{tmp_path / 'terrain.glsl'}|4|12"
         window.wait(lambda now: any("opened terrain.glsl in" in text for text in now["notices"]))
     finally:
         window.close()

@@ -32,8 +32,8 @@ def test_the_words_lead_to_the_texels_in_magenta(screen: Screen, tmp_path: Path)
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     program = Program(screen, tmp_path, [sys.executable, "-c", RUN, str(tmp_path)], tmp_path)
     try:
-        found = program.wait(lambda now: now["not_finite"])["not_finite"]
-        assert "pass 'height', output 'height': NaN at texel (12, 20)" in found[0]
+        result = program.wait(lambda now: now["not_finite"])["not_finite"]
+        assert "pass 'height', output 'height': NaN at texel (12, 20)" in result[0]
         screen.do("mousemove", *SHOW_IT, "sleep", 1, "click", 1)
         program.wait(lambda now: now["map"] == "height:height")
         pixels = screen.pixels()[:, 340:]

@@ -73,10 +73,10 @@ def test_a_text_is_pasted_into_the_window_and_the_first_sketch_comes_back(
 def test_the_clipboard_is_read_before_there_is_a_window(screen: Screen) -> None:
     read = "from playground.live.clipboard import clipboard_text\nprint(clipboard_text(), end='')"
     environment = {**os.environ, "DISPLAY": screen.display, "PYTHONPATH": str(ROOT)}
-    found = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-c", read], env=environment, capture_output=True, text=True, timeout=60, check=True
     )
-    assert found.stdout == SHADER
+    assert result.stdout == SHADER
 
 
 def test_a_text_from_standard_input_opens(screen: Screen, folder: Path) -> None:

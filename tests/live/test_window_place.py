@@ -73,8 +73,8 @@ class Windows:
         return self.ask("search", "--sync", "--onlyvisible", "--name", "terrain shader playground").split()[0]
 
     def geometry(self) -> tuple[int, ...]:
-        found = self.ask("getwindowgeometry", "--shell", self.id())
-        return tuple(int(n) for n in re.findall(r"(?:X|Y|WIDTH|HEIGHT)=(-?\d+)", found))
+        result = self.ask("getwindowgeometry", "--shell", self.id())
+        return tuple(int(n) for n in re.findall(r"(?:X|Y|WIDTH|HEIGHT)=(-?\d+)", result))
 
     def end(self) -> None:
         self.screen.do("key", "ctrl+q")
@@ -110,6 +110,6 @@ def test_it_opens_where_it_was_and_follows_its_sketch(windows: Windows) -> None:
 
 def soon(is_so) -> bool:
     end = time.monotonic() + LIMIT
-    while not (found := is_so()) and time.monotonic() < end:
+    while not (result := is_so()) and time.monotonic() < end:
         time.sleep(0.1)
-    return found
+    return result

@@ -6,19 +6,19 @@ from pathlib import Path
 
 import pytest
 
-from playground.live.window_place import Place, on_screen
+from playground.live.window_place import WindowPlacement, on_screen
 
 
 def test_what_is_dropped_is_taken_once(monkeypatch: pytest.MonkeyPatch) -> None:
     listening = []
     monkeypatch.setattr("glfw.set_drop_callback", lambda handle, act: listening.append((handle, act)))
     handles = ["first"]
-    place = Place(lambda: handles[0])
-    assert place.dropped() == []
+    window_placement = WindowPlacement(lambda: handles[0])
+    assert window_placement.dropped() == []
     listening[0][1]("first", ["/a/b.png", "/c"])
-    assert place.dropped() == [Path("/a/b.png"), Path("/c")] and place.dropped() == []
-    handles[0] = "second"  # the window was opened anew
-    place.dropped()
+    assert window_placement.dropped() == [Path("/a/b.png"), Path("/c")] and window_placement.dropped() == []
+    handles[0] = "second"  # the window was opened again
+    window_placement.dropped()
     assert [handle for handle, _ in listening] == ["first", "second"]
 
 

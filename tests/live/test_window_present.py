@@ -66,8 +66,8 @@ def test_a_clicker_and_the_notes_drive_a_presentation_that_escape_leaves(
         press("Home", 1)
         screen.do("type", "05")
         press("Return", 5)
-        found = _ask(window, {"go": "next"})
-        assert found == 6
+        result = _ask(window, {"go": "next"})
+        assert result == 6
         before = window.now()["edited"]
         press("Home", 1)
         screen.do("key", "1", "sleep", 0.2, "key", "Up")

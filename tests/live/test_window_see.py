@@ -107,8 +107,8 @@ def test_all_of_it_by_keys_and_by_mouse(screen: Screen, program: Program) -> Non
     # The bar of time: a click there goes to that moment, and a full stop a picture on.
     now = program.wait(lambda now: now["stage"] == "NONE")["picture"]
     screen.do("mousemove", WIDTH - 40, HEIGHT - 20, "sleep", 0.3, "mousedown", 1, "sleep", 0.3, "mouseup", 1)
-    late = program.wait(lambda found: found["picture"] != now)["picture"]
+    late = program.wait(lambda result: result["picture"] != now)["picture"]
     screen.do("mousemove", 620, 300, "type", ",")
-    program.wait(lambda found: found["picture"] != late)
+    program.wait(lambda result: result["picture"] != late)
     screen.do("key", "ctrl+q")
     assert program.ended() == 0, program.complaint()

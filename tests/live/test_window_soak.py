@@ -166,8 +166,8 @@ def window(screen: Screen, tmp_path: Path) -> Iterator[Program]:
 
 def test_the_window_outlives_every_save_and_shows_the_last_good_one(window: Program, tmp_path: Path) -> None:
     rng, home = random.Random(SEED), tmp_path / "sketch"
-    known = learned(window, home)
-    assert len(set(known.values())) == len(FILES) * (GOOD - 1) + 1, "each good text has its own picture"
+    names = learned(window, home)
+    assert len(set(names.values())) == len(FILES) * (GOOD - 1) + 1, "each good text has its own picture"
     counts: Counter[str] = Counter()
     good = window.now()["picture"]
     for _ in range(SAVES):
@@ -184,14 +184,14 @@ def test_the_window_outlives_every_save_and_shows_the_last_good_one(window: Prog
             else:
                 time.sleep(rng.uniform(0.0, 0.3))
             rng.choice(STYLES)(path, FILES[name].format(n=1).encode(), rng)
-            good = settled(window, known[name, 1])
+            good = settled(window, names[name, 1])
         else:
             number = rng.randint(1, GOOD)
             save(path, FILES[name].format(n=number).encode(), rng)
             counts[f"good, {save.__name__}"] += 1
-            good = settled(window, known[name, number])
+            good = settled(window, names[name, number])
             rng.choice(STYLES)(path, FILES[name].format(n=1).encode(), rng)
-            good = settled(window, known[name, 1])
+            good = settled(window, names[name, 1])
         counts["good, shown"] += 1
     log = window.complaint()
     counts["deaths"] = int(window.process.poll() is not None)
@@ -203,7 +203,7 @@ def test_the_window_outlives_every_save_and_shows_the_last_good_one(window: Prog
 def learned(window: Program, home: Path) -> dict[tuple[str, int], str]:
     """Return the picture of each good text of each file, with the other files as they began."""
     first = window.now()["picture"]
-    known = {(name, 1): first for name in FILES}
+    names = {(name, 1): first for name in FILES}
     for name, text in FILES.items():
         before = first
         for number in [*range(2, GOOD + 1), 1]:
@@ -213,9 +213,9 @@ def learned(window: Program, home: Path) -> dict[tuple[str, int], str]:
             )
             before = now["picture"]
             if number > 1:
-                known[name, number] = before
+                names[name, number] = before
         assert before == first
-    return known
+    return names
 
 
 def settled(window: Program, picture: str) -> str:

@@ -183,7 +183,7 @@ def test_a_bomb_costs_the_window_nothing(screen: Screen, folder: Path) -> None:
 
 
 def forget_most_memory(window: Program) -> int:
-    """Count the most memory anew from here on; return what there is now [bytes]."""
+    """Count the most memory again from here on; return what there is now [bytes]."""
     Path(f"/proc/{window.process.pid}/clear_refs").write_text("5")
     return most_memory(window)
 

@@ -132,8 +132,8 @@ class Editor:
 
     def at(self, method: str, uri: str, line: int, character: int, **more: Any) -> Any:
         """Ask about a place."""
-        place = {"line": line, "character": character}
-        return self.ask(f"textDocument/{method}", textDocument={"uri": uri}, position=place, **more)
+        position = {"line": line, "character": character}
+        return self.ask(f"textDocument/{method}", textDocument={"uri": uri}, position=position, **more)
 
     def diagnostics(
         self, uri: str, version: int | None = None, after: int = 0, *, some: bool = False

@@ -65,8 +65,8 @@ def written(folder: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def editor(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Editor]:
-    with Editor(written(tmp_path_factory.mktemp("lsp") / "work")) as found:
-        yield found
+    with Editor(written(tmp_path_factory.mktemp("lsp") / "work")) as result:
+        yield result
 
 
 @pytest.fixture

@@ -19,8 +19,8 @@ from .client import Editor
 from .conftest import KERNEL, LIBRARY, SKETCH, written
 
 
-def places(found: list[dict[str, Any]]) -> list[tuple[int, int]]:
-    return [(d["range"]["start"]["line"], d["range"]["start"]["character"]) for d in found]
+def places(values: list[dict[str, Any]]) -> list[tuple[int, int]]:
+    return [(d["range"]["start"]["line"], d["range"]["start"]["character"]) for d in values]
 
 
 @pytest.mark.slow
@@ -29,12 +29,12 @@ def test_what_is_typed_has_the_diagnostics_of_check(editor: Editor, folder: Path
     editor.open(uri, KERNEL)
     assert editor.diagnostics(uri, 1) == []
     wrong = KERNEL.replace("kept_of(", "kept_off(")
-    found = editor.diagnostics(uri, editor.type(uri, wrong))
+    diagnostics = editor.diagnostics(uri, editor.type(uri, wrong))
     (folder / "hill.glsl").write_text(wrong)  # check reads files
     with Sandbox(software=True) as sandbox:
         expected = check_file(folder / "hill.glsl", sandbox)
-    assert [d["message"] for d in found] == [d.message for d in expected.errors] != []
-    assert [d["range"]["start"]["line"] + 1 for d in found] == [d.line for d in expected.errors]
+    assert [d["message"] for d in diagnostics] == [d.message for d in expected.errors] != []
+    assert [d["range"]["start"]["line"] + 1 for d in diagnostics] == [d.line for d in expected.errors]
     assert editor.diagnostics(uri, editor.type(uri, KERNEL)) == []
 
 
@@ -46,21 +46,21 @@ def test_a_mistake_in_an_included_text_is_shown_there(editor: Editor, folder: Pa
     editor.open(library, LIBRARY)
     editor.diagnostics(library, 1)
     wrong = LIBRARY.replace("1.0 - loss", "1.0 - lost")
-    found = editor.diagnostics(library, editor.type(library, wrong))
-    assert places(found)[0] == (6, wrong.split("\n")[6].index("lost"))
+    diagnostics = editor.diagnostics(library, editor.type(library, wrong))
+    assert places(diagnostics)[0] == (6, wrong.split("\n")[6].index("lost"))
     before = len(editor.notes)
     editor.type(library, LIBRARY.replace("float loss", "vec2 loss").replace("1.0 - loss", "1.0 - loss.x"))
-    found = editor.diagnostics(kernel, after=before, some=True)
-    assert {d["range"]["start"]["line"] for d in found} == {11}
+    diagnostics = editor.diagnostics(kernel, after=before, some=True)
+    assert {d["range"]["start"]["line"] for d in diagnostics} == {11}
 
 
 def test_an_include_that_is_not_open_gets_the_mistake_that_it_has(editor: Editor, folder: Path) -> None:
     (folder / "shade.glsl").write_text(LIBRARY.replace("value *", "valu *"))
     before = len(editor.notes)
     editor.open((folder / "hill.glsl").as_uri(), KERNEL)
-    found = editor.diagnostics((folder / "shade.glsl").as_uri(), after=before, some=True)
-    assert places(found)[0][0] == 6
-    assert "valu" in found[0]["message"]
+    diagnostics = editor.diagnostics((folder / "shade.glsl").as_uri(), after=before, some=True)
+    assert places(diagnostics)[0][0] == 6
+    assert "valu" in diagnostics[0]["message"]
 
 
 def test_columns_are_counted_in_utf_16(editor: Editor, folder: Path) -> None:
@@ -71,9 +71,9 @@ def test_columns_are_counted_in_utf_16(editor: Editor, folder: Path) -> None:
     before = wrong.split("\n")[line].partition("kept_off")[0]
     assert len(before.encode("utf-16-le")) // 2 == len(before) + 2
     editor.open(uri, wrong)
-    found = editor.diagnostics(uri, 1)
+    diagnostics = editor.diagnostics(uri, 1)
     units = len(before.encode("utf-16-le")) // 2
-    assert places(found)[0] == (line, units)
+    assert places(diagnostics)[0] == (line, units)
     hover = editor.at("hover", uri, line, units + len("kept_off(tint.x * tow"))
     assert "towards_sun" in hover["contents"]["value"]
 
@@ -87,8 +87,11 @@ def test_an_editor_that_counts_in_utf_8_gets_bytes(tmp_path: Path) -> None:
         assert editor.initialized["capabilities"]["positionEncoding"] == "utf-8"
         uri = (folder / "hill.glsl").as_uri()
         editor.open(uri, wrong)
-        found = editor.diagnostics(uri, 1)
-        assert places(found)[0] == (line, len(wrong.split("\n")[line].partition("kept_off")[0].encode()))
+        diagnostics = editor.diagnostics(uri, 1)
+        assert places(diagnostics)[0] == (
+            line,
+            len(wrong.split("\n")[line].partition("kept_off")[0].encode()),
+        )
 
 
 def test_a_text_with_crlf_has_the_same_places(editor: Editor, folder: Path) -> None:
@@ -96,8 +99,8 @@ def test_a_text_with_crlf_has_the_same_places(editor: Editor, folder: Path) -> N
     wrong = KERNEL.replace("kept_of(", "kept_off(")
     editor.open(uri, wrong)
     expected = editor.diagnostics(uri, 1)
-    found = editor.diagnostics(uri, editor.type(uri, wrong.replace("\n", "\r\n")))
-    assert found == expected != []
+    diagnostics = editor.diagnostics(uri, editor.type(uri, wrong.replace("\n", "\r\n")))
+    assert diagnostics == expected != []
 
 
 def test_a_text_that_was_never_saved_is_checked(editor: Editor, folder: Path) -> None:
@@ -119,8 +122,8 @@ def test_a_file_that_is_deleted_goes_on_as_it_is_open(editor: Editor, folder: Pa
     library.unlink()
     before = len(editor.notes)
     editor.send("workspace/didChangeWatchedFiles", changes=[{"uri": library.as_uri(), "type": 3}])
-    found = editor.diagnostics(kernel, after=before, some=True)
-    assert "no file 'shade.glsl'" in found[0]["message"] and places(found)[0][0] == 1
+    diagnostics = editor.diagnostics(kernel, after=before, some=True)
+    assert "no file 'shade.glsl'" in diagnostics[0]["message"] and places(diagnostics)[0][0] == 1
 
 
 def test_a_folder_that_is_renamed_takes_its_texts_with_it(editor: Editor, folder: Path) -> None:
@@ -134,10 +137,10 @@ def test_a_folder_that_is_renamed_takes_its_texts_with_it(editor: Editor, folder
     files = [{"oldUri": old.as_uri(), "newUri": new.as_uri()}]
     before = len(editor.notes)
     editor.send("workspace/didRenameFiles", files=files)
-    found = editor.diagnostics(
+    diagnostics = editor.diagnostics(
         (old / "hill.glsl").as_uri(), after=before, some=True
     )  # its include is elsewhere now
-    assert "dusk.glsl" in found[0]["message"]
+    assert "dusk.glsl" in diagnostics[0]["message"]
     editor.close((old / "hill.glsl").as_uri())
     del editor.versions[(old / "hill.glsl").as_uri()]
     editor.open((new / "hill.glsl").as_uri(), kernel)
@@ -155,8 +158,8 @@ def test_a_sketch_is_checked_with_the_kernels_that_are_open(editor: Editor, fold
     editor.type(
         kernel, KERNEL.replace("uniform int rounds", "uniform int turns").replace('"rounds"', '"turns"')
     )
-    found = editor.diagnostics(sketch, after=before, some=True)
-    assert "rounds" in found[0]["message"] and "turns" in found[0]["message"]
+    diagnostics = editor.diagnostics(sketch, after=before, some=True)
+    assert "rounds" in diagnostics[0]["message"] and "turns" in diagnostics[0]["message"]
 
 
 def test_the_toml_of_another_program_is_left_alone(editor: Editor, folder: Path) -> None:
@@ -191,9 +194,9 @@ def test_an_endless_loop_does_not_hold_up_what_is_typed_next(editor: Editor, fol
     assert not [n for n in editor.notes[editor.since[uri] :] if n["params"].get("version") == 2], (
         "it has ended"
     )
-    begun = time.perf_counter()
+    started = time.perf_counter()
     assert editor.diagnostics(uri, editor.type(uri, KERNEL + "// again\n")) == []
-    assert time.perf_counter() - begun < 9.0, "waited for the sandbox's limit, which is 10 s"
+    assert time.perf_counter() - started < 9.0, "waited for the sandbox's limit, which is 10 s"
 
 
 @pytest.mark.slow
@@ -202,8 +205,8 @@ def test_a_crash_of_the_compiler_is_a_diagnostic_and_the_next_text_is_checked(
 ) -> None:
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, CRASH)
-    (found,) = editor.diagnostics(uri, 1)
-    assert "in the sandbox" in found["message"]
+    (result,) = editor.diagnostics(uri, 1)
+    assert "in the sandbox" in result["message"]
     assert editor.diagnostics(uri, editor.type(uri, KERNEL)) == []
 
 
@@ -216,8 +219,8 @@ def test_without_a_gpu_there_is_one_message_and_texts_are_checked(tmp_path: Path
         assert "menue" in editor.diagnostics(uri, 1)[0]["message"]
         for text in (KERNEL, KERNEL + "\n", KERNEL):
             assert editor.diagnostics(uri, editor.type(uri, text)) == []
-        told = [n["params"]["message"] for n in editor.notes if n["method"] == "window/showMessage"]
-        assert len(told) == 1 and "97" in told[0], told
+        notes = [n["params"]["message"] for n in editor.notes if n["method"] == "window/showMessage"]
+        assert len(notes) == 1 and "97" in notes[0], notes
     assert "Traceback" not in editor.errors.read_text()
 
 
@@ -255,10 +258,10 @@ def test_a_diagnostic_comes_within_300_ms_of_a_keystroke_on_a_shipped_kernel(edi
         changed = text.replace(
             "    return vec4", f"    float typed_{number} = 1.0{semicolon}\n    return vec4"
         )
-        begun = time.perf_counter()
-        found = editor.diagnostics(uri, editor.type(uri, changed))
-        taken.append(time.perf_counter() - begun)
-        assert bool(found) == (number % 2 == 1)
+        started = time.perf_counter()
+        diagnostics = editor.diagnostics(uri, editor.type(uri, changed))
+        taken.append(time.perf_counter() - started)
+        assert bool(diagnostics) == (number % 2 == 1)
     editor.close(uri)
     assert statistics.median(taken) < 0.3, sorted(taken)
 

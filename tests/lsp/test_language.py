@@ -25,8 +25,8 @@ def place(text: str, word: str, into: int = 0) -> tuple[int, int]:
     return text.count("\n", 0, at), at - (text.rfind("\n", 0, at) + 1)
 
 
-def labels(found: Any) -> set[str]:
-    return {item["label"] for item in found["items"]}
+def labels(value: Any) -> set[str]:
+    return {item["label"] for item in value["items"]}
 
 
 def completed(editor: Editor, uri: str, text: str) -> set[str]:
@@ -45,7 +45,7 @@ def applied(text: str, edits: list[dict[str, Any]]) -> str:
     spans = [
         [starts[e["range"][k]["line"]] + e["range"][k]["character"] for k in ("start", "end")] for e in edits
     ]
-    for (start, end), edit in sorted(zip(spans, edits, strict=True), key=lambda one: one[0], reverse=True):
+    for (start, end), edit in sorted(zip(spans, edits, strict=True), key=lambda item: item[0], reverse=True):
         text = text[:start] + edit["newText"] + text[end:]
     return text
 
@@ -57,13 +57,13 @@ def applied(text: str, edits: list[dict[str, Any]]) -> str:
 def test_a_kernel_is_completed_with_all_that_it_may_name(editor: Editor, folder: Path) -> None:
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, KERNEL)
-    found = completed(editor, uri, KERNEL.replace("    return", "    float more = |;\n    return"))
-    assert found >= {*GIVEN, "towards_sun", "previous"}, "given names"
-    assert found >= {"rounds", "tint", "shape", "sun"}, "parameters"
-    assert found >= {"far", "texel", "kept_of"}, "what the function and its include declare"
-    found = completed(editor, uri, KERNEL.replace("    return", "    float more = r|;\n    return"))
-    assert found >= {name for name in library() if name.startswith("r")}
-    assert "random" in found and "reflect" in found
+    names = completed(editor, uri, KERNEL.replace("    return", "    float more = |;\n    return"))
+    assert names >= {*GIVEN, "towards_sun", "previous"}, "given names"
+    assert names >= {"rounds", "tint", "shape", "sun"}, "parameters"
+    assert names >= {"far", "texel", "kept_of"}, "what the function and its include declare"
+    names = completed(editor, uri, KERNEL.replace("    return", "    float more = r|;\n    return"))
+    assert names >= {name for name in library() if name.startswith("r")}
+    assert "random" in names and "reflect" in names
 
 
 def test_a_function_of_the_library_brings_its_include(editor: Editor, folder: Path) -> None:
@@ -71,10 +71,10 @@ def test_a_function_of_the_library_brings_its_include(editor: Editor, folder: Pa
     text = KERNEL.replace("    return", "    float more = rando;\n    return")
     editor.open(uri, text)
     line, column = place(text, "rando", 5)
-    found = {i["label"]: i for i in editor.at("completion", uri, line, column)["items"]}["random"]
-    assert found["detail"] == "float random(ivec2 point, uint seed)"
-    assert "One number in [0, 1)" in found["documentation"]["value"]
-    changed = applied(text, found["additionalTextEdits"]).replace("rando;", "random(texel, 1u);")
+    result = {i["label"]: i for i in editor.at("completion", uri, line, column)["items"]}["random"]
+    assert result["detail"] == "float random(ivec2 point, uint seed)"
+    assert "One number in [0, 1)" in result["documentation"]["value"]
+    changed = applied(text, result["additionalTextEdits"]).replace("rando;", "random(texel, 1u);")
     assert editor.diagnostics(uri, editor.type(uri, changed)) == []
 
 
@@ -95,9 +95,9 @@ def test_directives_and_annotations_are_completed(
 ) -> None:
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, KERNEL)
-    found = completed(editor, uri, f"// one line\n{line}\n{KERNEL}")
-    assert found >= expected
-    assert "relief" not in found, "names of code do not belong here"
+    names = completed(editor, uri, f"// one line\n{line}\n{KERNEL}")
+    assert names >= expected
+    assert "relief" not in names, "names of code do not belong here"
 
 
 def test_a_comment_is_not_completed(editor: Editor, folder: Path) -> None:
@@ -136,9 +136,9 @@ def test_hover_says_what_a_name_is(editor: Editor, folder: Path, word: str, expe
 def test_go_to_definition(editor: Editor, folder: Path, word: str, file: str, line: str) -> None:
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, KERNEL)
-    found = editor.at("definition", uri, *place(KERNEL, word, 1))
-    assert found["uri"] == (folder / file).as_uri()
-    text = (folder / file).read_text().split("\n")[found["range"]["start"]["line"]]
+    result = editor.at("definition", uri, *place(KERNEL, word, 1))
+    assert result["uri"] == (folder / file).as_uri()
+    text = (folder / file).read_text().split("\n")[result["range"]["start"]["line"]]
     assert line in text
 
 
@@ -146,8 +146,8 @@ def test_a_function_that_is_not_included_is_found_in_the_library(editor: Editor,
     uri = (folder / "hill.glsl").as_uri()
     text = KERNEL.replace("kept_of(", "random(")
     editor.open(uri, text)
-    found = editor.at("definition", uri, *place(text, "random("))
-    assert found["uri"] == (GLSL / "noise/hash.glsl").as_uri()
+    result = editor.at("definition", uri, *place(text, "random("))
+    assert result["uri"] == (GLSL / "noise/hash.glsl").as_uri()
     assert (
         '#include "noise/hash.glsl"' in editor.at("hover", uri, *place(text, "random("))["contents"]["value"]
     )
@@ -157,10 +157,10 @@ def test_symbols_are_what_a_file_declares(editor: Editor, folder: Path) -> None:
     uri, sketch = (folder / "hill.glsl").as_uri(), (folder / "sketch.toml").as_uri()
     editor.open(uri, KERNEL)
     editor.open(sketch, SKETCH, "toml")
-    found = editor.ask("textDocument/documentSymbol", textDocument={"uri": uri})
-    assert [one["name"] for one in found] == ["rounds", "tint", "shape", "sun", "kernel"]
-    found = editor.ask("textDocument/documentSymbol", textDocument={"uri": sketch})
-    assert [one["name"] for one in found] == ["pass height", "preset sharp", "shot sharp"]
+    result = editor.ask("textDocument/documentSymbol", textDocument={"uri": uri})
+    assert [item["name"] for item in result] == ["rounds", "tint", "shape", "sun", "kernel"]
+    result = editor.ask("textDocument/documentSymbol", textDocument={"uri": sketch})
+    assert [item["name"] for item in result] == ["pass height", "preset sharp", "shot sharp"]
 
 
 # ── sketches ─────────────────────────────────────────────────────────────────
@@ -219,10 +219,10 @@ def test_go_to_what_a_sketch_names(editor: Editor, folder: Path) -> None:
     editor.open(uri, SKETCH, "toml")
     kernel = (folder / "hill.glsl").as_uri()
     assert editor.at("definition", uri, *place(SKETCH, "./hill", 1))["uri"] == kernel
-    found = editor.at("definition", uri, *place(SKETCH, "rounds = 2", 1))
-    assert (found["uri"], found["range"]["start"]["line"]) == (kernel, 4)
-    found = editor.at("definition", uri, *place(SKETCH, 'preset = "sharp"', 11))
-    assert found["range"]["start"]["line"] == place(SKETCH, "[[preset]]")[0] + 1
+    result = editor.at("definition", uri, *place(SKETCH, "rounds = 2", 1))
+    assert (result["uri"], result["range"]["start"]["line"]) == (kernel, 4)
+    result = editor.at("definition", uri, *place(SKETCH, 'preset = "sharp"', 11))
+    assert result["range"]["start"]["line"] == place(SKETCH, "[[preset]]")[0] + 1
 
 
 # ── rename ───────────────────────────────────────────────────────────────────
@@ -232,33 +232,33 @@ def renamed(editor: Editor, folder: Path, word: str, new: str, text: str = KERNE
     """Return the texts of the files that a rename changes, by name."""
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, text)
-    found = editor.at("rename", uri, *place(text, word), newName=new)["changes"]
-    named = {u.rpartition("/")[2]: edits for u, edits in found.items()}
+    result = editor.at("rename", uri, *place(text, word), newName=new)["changes"]
+    named = {u.rpartition("/")[2]: edits for u, edits in result.items()}
     texts = {"hill.glsl": text, "shade.glsl": LIBRARY, "sketch.toml": SKETCH}
     return {name: applied(texts[name], edits) for name, edits in named.items()}
 
 
 def test_a_functions_own_name_changes_there_alone(editor: Editor, folder: Path) -> None:
     text = KERNEL + "\nfloat other(float far) {\n    return far;\n}\n"
-    found = renamed(editor, folder, "far =", "away", text)
-    assert found == {"hill.glsl": text.replace("far =", "away =").replace("z, far)", "z, away)")}
+    result = renamed(editor, folder, "far =", "away", text)
+    assert result == {"hill.glsl": text.replace("far =", "away =").replace("z, far)", "z, away)")}
 
 
 def test_a_function_changes_in_every_file_that_calls_it(editor: Editor, folder: Path) -> None:
-    found = renamed(editor, folder, "kept_of(", "remaining")
-    assert found == {
+    result = renamed(editor, folder, "kept_of(", "remaining")
+    assert result == {
         "hill.glsl": KERNEL.replace("kept_of", "remaining"),
         "shade.glsl": LIBRARY.replace("kept_of", "remaining"),
     }
 
 
 def test_a_parameter_changes_in_the_sketches_that_set_it(editor: Editor, folder: Path) -> None:
-    found = renamed(editor, folder, "rounds = 1", "turns")
-    assert found == {
+    result = renamed(editor, folder, "rounds = 1", "turns")
+    assert result == {
         "hill.glsl": KERNEL.replace("rounds", "turns"),
         "sketch.toml": SKETCH.replace("rounds", "turns"),
     }
-    for name, text in found.items():
+    for name, text in result.items():
         (folder / name).write_text(text)
     assert load(folder / "sketch.toml").main == ("height.turns",)
 
@@ -287,8 +287,8 @@ def test_a_parameter_that_a_technique_shows_outside(
     (folder / "more.toml").write_text(sketch)
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, KERNEL)
-    found = editor.at("rename", uri, *place(KERNEL, "rounds = 1"), newName="turns")["changes"]
-    for changed, edits in found.items():
+    result = editor.at("rename", uri, *place(KERNEL, "rounds = 1"), newName="turns")["changes"]
+    for changed, edits in result.items():
         path = folder / changed.rpartition("/")[2]
         path.write_text(applied(path.read_text(), edits))
     assert load(folder / "more.toml").main == (f"height.{inside}",)
@@ -298,8 +298,8 @@ def test_a_parameter_that_a_technique_shows_outside(
 
 
 def test_a_direction_takes_the_vector_towards_it_along(editor: Editor, folder: Path) -> None:
-    found = renamed(editor, folder, "sun =", "lamp")
-    assert found == {"hill.glsl": KERNEL.replace("vec2 sun", "vec2 lamp").replace("s_sun", "s_lamp")}
+    result = renamed(editor, folder, "sun =", "lamp")
+    assert result == {"hill.glsl": KERNEL.replace("vec2 sun", "vec2 lamp").replace("s_sun", "s_lamp")}
 
 
 @pytest.mark.parametrize(
@@ -395,8 +395,8 @@ def test_a_rename_changes_what_the_name_stands_for(editor: Editor, folder: Path,
     text = marked.replace("«", "").replace("»", "")
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, text)
-    found = editor.at("rename", uri, *place(marked, "«"), newName="east")["changes"]
-    assert applied(text, found[uri]) == re.sub("«.*?»", "east", marked)
+    result = editor.at("rename", uri, *place(marked, "«"), newName="east")["changes"]
+    assert applied(text, result[uri]) == re.sub("«.*?»", "east", marked)
 
 
 @pytest.mark.parametrize(
@@ -440,10 +440,10 @@ def test_a_uniform_behind_a_pragma_with_slashes_has_a_symbol(editor: Editor, fol
     )
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, text)
-    found = editor.ask("textDocument/documentSymbol", textDocument={"uri": uri})
-    assert [symbol["name"] for symbol in found] == ["gain", "kernel"]
-    found = editor.at("rename", uri, *place(text, "gain"), newName="loss")["changes"]
-    assert applied(text, found[uri]) == text.replace("gain", "loss")
+    result = editor.ask("textDocument/documentSymbol", textDocument={"uri": uri})
+    assert [symbol["name"] for symbol in result] == ["gain", "kernel"]
+    result = editor.at("rename", uri, *place(text, "gain"), newName="loss")["changes"]
+    assert applied(text, result[uri]) == text.replace("gain", "loss")
 
 
 # ── colours ──────────────────────────────────────────────────────────────────
@@ -452,18 +452,18 @@ def test_a_uniform_behind_a_pragma_with_slashes_has_a_symbol(editor: Editor, fol
 def test_colours_of_a_kernel_are_shown_encoded_and_written_linear(editor: Editor, folder: Path) -> None:
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, KERNEL)
-    (found,) = editor.ask("textDocument/documentColor", textDocument={"uri": uri})
+    (result,) = editor.ask("textDocument/documentColor", textDocument={"uri": uri})
     start, end = place(KERNEL, "vec3(0.2, 0.5, 1.0)"), place(KERNEL, "vec3(0.2, 0.5, 1.0)", 19)
-    assert found["range"] == {
+    assert result["range"] == {
         "start": {"line": start[0], "character": start[1]},
         "end": {"line": end[0], "character": end[1]},
     }
     encoded = [1.055 * c ** (1 / 2.4) - 0.055 for c in (0.2, 0.5, 1.0)]  # IEC 61966-2-1
-    assert [found["color"][k] for k in ("red", "green", "blue")] == pytest.approx(encoded, abs=0.5 / 255)
+    assert [result["color"][k] for k in ("red", "green", "blue")] == pytest.approx(encoded, abs=0.5 / 255)
     (shown,) = editor.ask(
         "textDocument/colorPresentation",
         textDocument={"uri": uri},
-        range=found["range"],
+        range=result["range"],
         color={"red": 0.5, "green": 0.0, "blue": 1.0, "alpha": 1.0},
     )
     numbers = [float(n) for n in shown["label"].removeprefix("vec3(").rstrip(")").split(",")]
@@ -474,12 +474,12 @@ def test_colours_of_a_kernel_are_shown_encoded_and_written_linear(editor: Editor
 def test_colours_of_a_sketch(editor: Editor, folder: Path) -> None:
     uri = (folder / "sketch.toml").as_uri()
     editor.open(uri, SKETCH, "toml")
-    (found,) = editor.ask("textDocument/documentColor", textDocument={"uri": uri})
-    assert [round(found["color"][k] * 255) for k in ("red", "green", "blue")] == [0x33, 0x66, 0x99]
+    (result,) = editor.ask("textDocument/documentColor", textDocument={"uri": uri})
+    assert [round(result["color"][k] * 255) for k in ("red", "green", "blue")] == [0x33, 0x66, 0x99]
     (shown,) = editor.ask(
         "textDocument/colorPresentation",
         textDocument={"uri": uri},
-        range=found["range"],
+        range=result["range"],
         color={"red": 1.0, "green": 0.0, "blue": 128 / 255, "alpha": 1.0},
     )
     changed = applied(SKETCH, [shown["textEdit"]])

@@ -39,10 +39,10 @@ extension.activate().then(extension.deactivate).then(() => console.log(JSON.stri
 
 
 def test_its_endings_are_those_that_the_playground_reads() -> None:
-    languages = {one["id"]: one for one in PACKAGE["contributes"]["languages"]}
+    languages = {item["id"]: item for item in PACKAGE["contributes"]["languages"]}
     assert sorted(languages["glsl"]["extensions"]) == sorted(SHADERS)
-    for one in languages.values():
-        json.loads((FOLDER / one["configuration"]).read_text(encoding="utf-8"))
+    for language in languages.values():
+        json.loads((FOLDER / language["configuration"]).read_text(encoding="utf-8"))
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="Node is not installed")
@@ -52,7 +52,7 @@ def test_it_starts_the_server_and_says_so_where_it_cannot() -> None:
     )
     started, message, stopped = json.loads(done.stdout)
     assert started[2] == {"command": "playground", "args": ["lsp"]}
-    selected = {(one["scheme"], one["language"]) for one in started[3]["documentSelector"]}
+    selected = {(item["scheme"], item["language"]) for item in started[3]["documentSelector"]}
     assert selected == {(s, language) for s in ("file", "untitled") for language in ("glsl", "toml")}
     assert "ENOENT" in message and "playground.command" in message
     assert stopped == "stopped"

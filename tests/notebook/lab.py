@@ -65,9 +65,9 @@ class Lab:
     def _address(self) -> str:
         end = time.monotonic() + GENEROUS
         while True:
-            found = re.search(r"http://(?:localhost|127\.0\.0\.1):(\d+)/", self.log())
-            if found:
-                return f"http://127.0.0.1:{found[1]}"
+            result = re.search(r"http://(?:localhost|127\.0\.0\.1):(\d+)/", self.log())
+            if result:
+                return f"http://127.0.0.1:{result[1]}"
             assert self._server.poll() is None and time.monotonic() < end, self.log()
             time.sleep(0.1)
 

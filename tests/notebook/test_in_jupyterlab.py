@@ -59,9 +59,9 @@ def picture(lab, at, side=0):
 
     It is brought into sight first, for what nobody sees is drawn only once it is seen.
     """
-    found, before = f"{widget(at)}.querySelectorAll('canvas')[{side}]", ""
+    text, before = f"{widget(at)}.querySelectorAll('canvas')[{side}]", ""
     lab.browser.run(f"{widget(at)}.scrollIntoView()")
-    script = f"const c = {found}; return c.width === {SIZE[0]} ? c.toDataURL() : String(Math.random())"
+    script = f"const c = {text}; return c.width === {SIZE[0]} ? c.toDataURL() : String(Math.random())"
     for _ in range(60):
         time.sleep(0.4)
         now = lab.browser.run(script)

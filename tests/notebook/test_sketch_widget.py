@@ -85,14 +85,14 @@ def test_a_value_that_cannot_be_is_refused_and_nothing_changes(widget, path, val
 
 
 def test_who_listens_is_told_what_has_changed_whoever_changed_it(widget):
-    told = []
-    end = widget.on_change(told.append)
+    message = []
+    end = widget.on_change(message.append)
     widget["height.rise"] = 0.25
     widget.set_state({"values": {"height.rise": 0.25, "height.far": [0.5, 0.5]}})  # as a browser does
     widget["height.rise"] = 0.25
     end()
     widget["height.rise"] = 1.0
-    assert told == [{"height.rise": 0.25}, {"height.far": (0.5, 0.5)}]
+    assert message == [{"height.rise": 0.25}, {"height.far": (0.5, 0.5)}]
 
 
 def test_the_camera_of_the_browser_is_the_sketch_s(widget):
@@ -241,7 +241,7 @@ def test_two_are_compared_by_their_values_or_as_sketches(engine, slope):
     assert (both.left["height.rise"], both.right["height.rise"]) == (0.25, 0.75)
     assert both.rows == ["height.rise"]
     assert both.names == ["height.rise = 0.25", "height.rise = 0.75"]
-    left, right = (engine.render(one, size=SIZE).array for one in both.sketches)
+    left, right = (engine.render(sketch, size=SIZE).array for sketch in both.sketches)
     assert (left != right).any()
     np.testing.assert_array_equal(pixels(both.picture), np.hstack([left, right]))
     both.right = {"height.rise": 0.5}
@@ -255,13 +255,13 @@ def test_two_are_compared_by_their_values_or_as_sketches(engine, slope):
 @pytest.mark.slow
 def test_closing_the_last_releases_what_all_hold(slope):
     """The engine of all widgets, with its context; the next one opens another."""
-    one, other = (playground.widget(slope, size=SIZE) for _ in range(2))
+    first, other = (playground.widget(slope, size=SIZE) for _ in range(2))
     (engine,) = engine_thread._open
-    one.close()
+    first.close()
     assert engine_thread._open == [engine] and not engine._context.released
     other.close()
     other.close()
-    assert engine_thread._open == [] and engine._context.released and other.page == "" == one.page
+    assert engine_thread._open == [] and engine._context.released and other.page == "" == first.page
     again = playground.widget(slope, size=SIZE)
     assert again.page
     again.close()

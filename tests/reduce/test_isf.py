@@ -29,10 +29,10 @@ def test_what_is_written_fails_in_the_same_way(any_engine, write, name):
     write("a.vs", VERTEX.get(name, "void main() { isf_vertShaderInit(); }\n"))
     case = inline_sketch(load(write("a.fs", text)), frame=(8, 8))
     assert case.passes[0].text.count("not_declared") == 1
-    found = {path: write(f"small/{path}", written) for path, written in case.texts().items()}
-    assert sorted(found) == ["shader.frag", "shader.vs"]
+    result = {path: write(f"small/{path}", written) for path, written in case.texts().items()}
+    assert sorted(result) == ["shader.frag", "shader.vs"]
     with pytest.raises(ShaderError, match="not_declared"):
-        any_engine.render(load(found["shader.frag"]), size=(8, 8))
+        any_engine.render(load(result["shader.frag"]), size=(8, 8))
 
 
 def test_its_images_go_with_it(write):

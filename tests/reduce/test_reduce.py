@@ -91,7 +91,7 @@ def shrink(
 
 
 def text_of(search: Search, name: str = "height") -> str:
-    return next(one.text for one in search.best.live if one.name == name)
+    return next(item.text for item in search.best.live if item.name == name)
 
 
 # ── what is not a number ─────────────────────────────────────────────────────
@@ -173,9 +173,9 @@ def results(values) -> list[DrawResult]:
 def test_not_finite_means_the_same_kind_in_no_new_place():
     failure = NotFinite()
     nan, inf = np.nan, np.inf
-    before = failure.found(results([[1, nan], [1, nan]]))
+    before = failure.finding(results([[1, nan], [1, nan]]))
     assert before is not None
-    assert failure.found(results([[1, 2], [1, 2]])) is None
+    assert failure.finding(results([[1, 2], [1, 2]])) is None
     for values, same in (
         ([[1, nan], [1, nan]], True),
         ([[1, 1], [1, nan]], True),
@@ -184,7 +184,7 @@ def test_not_finite_means_the_same_kind_in_no_new_place():
         ([[1, inf], [1, inf]], False),
         ([[1, nan, 1]], True),  # another size: only the kind can be compared
     ):
-        after = failure.found(results(values))
+        after = failure.finding(results(values))
         assert after is not None
         assert failure.same(before, after) == same, values
 
@@ -211,7 +211,7 @@ def test_a_compile_error_in_an_include_is_isolated(sketch, worker, tmp_path):
 
 def test_another_message_is_another_failure():
     failure = Refused("undeclared")
-    before = failure.found([DrawResult("shader", ("`x' undeclared", "wrong type"))])
+    before = failure.finding([DrawResult("shader", ("`x' undeclared", "wrong type"))])
     assert before is not None
     for messages, same in (
         (("`x' undeclared",), True),
@@ -219,11 +219,11 @@ def test_another_message_is_another_failure():
         (("`y' undeclared",), False),
         (("`x' undeclared", "syntax error"), False),
     ):
-        after = failure.found([DrawResult("shader", messages)])
+        after = failure.finding([DrawResult("shader", messages)])
         assert after is not None
         assert failure.same(before, after) == same, messages
-    assert failure.found([DrawResult("shader", ("syntax error",))]) is None
-    assert failure.found([DrawResult("refused", ("`x' undeclared",))]) is None
+    assert failure.finding([DrawResult("shader", ("syntax error",))]) is None
+    assert failure.finding([DrawResult("refused", ("`x' undeclared",))]) is None
 
 
 # ── two ways to draw ─────────────────────────────────────────────────────────
@@ -259,8 +259,8 @@ def test_where_a_fast_variant_disagrees_only_its_defect_stays(sketch, worker, tm
 def test_a_difference_is_of_the_same_kind_where_it_is_as_large():
     failure = Differs((Side(), Side()), ("one", "other"))
 
-    def found(one, other):
-        return failure.found(results(one) + results(other))
+    def found(first, other):
+        return failure.finding(results(first) + results(other))
 
     wide, last = found([[1, 2]], [[1, 2.5]]), found([[1, 2]], [[1, 2.0000002]])
     assert wide is not None
@@ -271,7 +271,7 @@ def test_a_difference_is_of_the_same_kind_where_it_is_as_large():
     assert found([[1, np.nan]], [[1, np.nan]]) is None
     assert "not finite by one" in found([[1, np.nan]], [[1, 2]]).kind
     assert not failure.same(wide, found([[1, 2]], [[1.5, 2]])), "where they agreed they must agree"
-    assert failure.found(
+    assert failure.finding(
         [DrawResult("drawn", values=np.zeros((1, 1), np.float32)), DrawResult("crash")]
     ).kind.startswith("only by other: crash")
 
@@ -525,11 +525,11 @@ def test_a_shipped_sketch_inlined_is_a_sketch_with_the_same_passes(name, tmp_pat
     case = inline_sketch(load(name), frame=(64, 36))
     Probe(NotFinite(), [], tmp_path, 1.0).write(case)
     again = inline_sketch(load(tmp_path / "sketch.toml"), frame=(64, 36))
-    assert [one.name for one in again.passes] == [one.name for one in case.live]
-    assert [one.text for one in again.passes] == [one.text for one in case.live]
-    assert [one.size for one in again.passes] == [one.size for one in case.live]
-    assert [dict(one.values) for one in again.passes] == [dict(one.values) for one in case.live]
-    assert [dict(one.inputs) for one in again.passes] == [dict(one.inputs) for one in case.live]
+    assert [pass_.name for pass_ in again.passes] == [item.name for item in case.live]
+    assert [pass_.text for pass_ in again.passes] == [item.text for item in case.live]
+    assert [pass_.size for pass_ in again.passes] == [item.size for item in case.live]
+    assert [dict(pass_.values) for pass_ in again.passes] == [dict(item.values) for item in case.live]
+    assert [dict(pass_.inputs) for pass_ in again.passes] == [dict(item.inputs) for item in case.live]
 
 
 @pytest.mark.parametrize("name", NOT_INLINED)

@@ -66,8 +66,8 @@ def test_blocks_are_read_and_written_whole():
 
 def test_lines_go_until_none_can():
     """What must stay is named; all else goes, a block's braces with what they hold or without."""
-    wanted = ["float kernel(ivec2 texel) {", "h -= 1.0;", "return h"]
-    text = blocks.fewer_lines(tidy(TEXT), lambda some: all(word in some for word in wanted))
+    expected = ["float kernel(ivec2 texel) {", "h -= 1.0;", "return h"]
+    text = blocks.fewer_lines(tidy(TEXT), lambda some: all(word in some for word in expected))
     assert text.split("\n") == [
         "float kernel(ivec2 texel) {",
         "        h -= 1.0;",  # no longer in its else; tidy moves it back
@@ -89,7 +89,7 @@ def every_edit(text: str) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    "wanted",
+    "expected",
     [
         "return x;",  # 2.0 * x, one side
         "twice(float x)",  # a parameter gone …
@@ -113,20 +113,20 @@ def every_edit(text: str) -> list[str]:
         "uniform sampler2D terrain;  //! input\n",
     ],
 )
-def test_an_edit_gives(wanted: str):
+def test_an_edit_gives(expected: str):
     text = tidy(TEXT)
-    assert wanted not in text
-    assert any(wanted in edited for edited in map(tidy, every_edit(text)))
+    assert expected not in text
+    assert any(expected in edited for edited in map(tidy, every_edit(text)))
 
 
 def test_edits_come_to_an_end():
     """Taking any edit, over and over, comes to a text that has none left: no edit undoes another."""
     text = tidy(TEXT)
     for step in range(3000):
-        found = [e for e in map(tidy, every_edit(text)) if e != text]
-        if not found:
+        result = [e for e in map(tidy, every_edit(text)) if e != text]
+        if not result:
             break
-        text = found[(7 * step) % len(found)]
+        text = result[(7 * step) % len(result)]
     else:
         raise AssertionError("there is always another edit")
 

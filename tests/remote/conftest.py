@@ -9,11 +9,11 @@ import pytest
 
 from playground.engine.engine import Engine
 
-from .desk import Desk, write_sketch
+from .desk import Harness, write_sketch
 
 
 @pytest.fixture
-def desk(tmp_path: Path, any_engine: Engine) -> Iterator[Desk]:
-    made = Desk(any_engine, write_sketch(tmp_path / "hills"))
+def harness(tmp_path: Path, any_engine: Engine) -> Iterator[Harness]:
+    made = Harness(any_engine, write_sketch(tmp_path / "hills"))
     yield made
     made.close()

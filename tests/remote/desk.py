@@ -11,7 +11,7 @@ from typing import Any
 from playground.engine.engine import Engine
 from playground.remote.remotes import RemoteOptions, Remotes
 from playground.sketch.assign import values_of
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 
@@ -59,12 +59,12 @@ def write_sketch(folder: Path) -> Path:
     return folder
 
 
-class Desk:
+class Harness:
     """A session, and the remotes that drive it."""
 
     def __init__(self, engine: Engine, path: Path) -> None:
         self.session = Session(engine, path)
-        self.bench = Bench(self.session, WindowControls(lambda: None), folder=path.parent)
+        self.bench = Workbench(self.session, WindowControls(lambda: None), folder=path.parent)
         self.remotes = Remotes()
         self.woken = 0
         self.frame()
@@ -94,13 +94,13 @@ class Desk:
 
     def during(self, act: Callable[[], Any], limit: float = 60.0) -> Any:
         """Draw frames while another thread acts; return what it returns."""
-        found: list[Any] = []
+        values: list[Any] = []
 
         def run() -> None:
             try:
-                found.append((act(), None))
+                values.append((act(), None))
             except BaseException as error:
-                found.append((None, error))
+                values.append((None, error))
 
         thread = threading.Thread(target=run, daemon=True)
         thread.start()
@@ -109,7 +109,7 @@ class Desk:
             assert time.monotonic() < end, "the client does not end"
             self.frame()
             time.sleep(0.002)
-        answer, error = found[0]
+        answer, error = values[0]
         if error is not None:
             raise error
         return answer
@@ -123,10 +123,10 @@ class Desk:
 
     def pressed(self) -> list[str]:
         """Return a list of the buttons that are pressed from now on."""
-        found: list[str] = []
+        names: list[str] = []
         press = self.session.press
-        self.session.press = lambda path: (found.append(path), press(path))[1]  # type: ignore
-        return found
+        self.session.press = lambda path: (names.append(path), press(path))[1]  # type: ignore
+        return names
 
     def value(self, path: str) -> Any:
         assert self.session.sketch is not None

@@ -14,7 +14,7 @@ from playground.engine.engine import Engine
 from playground.workbench.control.controller_file import read_bindings
 
 from ..docs.pages import DOCS, Block, blocks_of
-from .desk import Desk
+from .desk import Harness
 
 PAGE = DOCS / "how-to" / "remotes.md"
 SKETCH = """format = 1
@@ -35,63 +35,63 @@ set = { "light.sun" = [250.0, 12.0] }
 
 
 @pytest.fixture
-def desk(tmp_path: Path, any_engine: Engine) -> object:
+def harness(tmp_path: Path, any_engine: Engine) -> object:
     (tmp_path / "land").mkdir()
     (tmp_path / "land" / "sketch.toml").write_text(SKETCH, encoding="utf-8")
-    made = Desk(any_engine, tmp_path / "land")
+    made = Harness(any_engine, tmp_path / "land")
     yield made
     made.close()
 
 
 def block(language: str, holds: str) -> Block:
-    (found,) = [b for b in blocks_of(PAGE) if b.language == language and holds in b.text]
-    return found
+    (result,) = [b for b in blocks_of(PAGE) if b.language == language and holds in b.text]
+    return result
 
 
-def runs(desk: Desk, text: str, folder: Path, *words: str) -> str:
+def runs(harness: Harness, text: str, folder: Path, *words: str) -> str:
     command = [sys.executable, "-W", "error", "-c", text, *words]
 
     def run() -> subprocess.CompletedProcess[str]:
         return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=60)
 
-    done = desk.during(run)
+    done = harness.during(run)
     assert done.returncode == 0, done.stderr
     return str(done.stdout)
 
 
-def test_the_script_by_http(desk: Desk, tmp_path: Path) -> None:
-    server = desk.open(port=0).server
+def test_the_script_by_http(harness: Harness, tmp_path: Path) -> None:
+    server = harness.open(port=0).server
     assert server is not None
-    printed = runs(desk, block("python", "urlopen").text, tmp_path, server.url)
-    assert desk.value("light.sun") == (250.0, 12.0) and "light.sun 250,12" in printed
+    printed = runs(harness, block("python", "urlopen").text, tmp_path, server.url)
+    assert harness.value("light.sun") == (250.0, 12.0) and "light.sun 250,12" in printed
     with Image.open(tmp_path / "evening.png") as picture:
         assert picture.size == (640, 360)
 
 
-def test_the_script_by_websocket(desk: Desk, tmp_path: Path) -> None:
-    server = desk.open(port=0).server
+def test_the_script_by_websocket(harness: Harness, tmp_path: Path) -> None:
+    server = harness.open(port=0).server
     assert server is not None
-    before = desk.value("light.sun")
-    printed = runs(desk, block("python", "aiohttp").text, tmp_path, server.url)
+    before = harness.value("light.sun")
+    printed = runs(harness, block("python", "aiohttp").text, tmp_path, server.url)
     events = [json.loads(line) for line in printed.splitlines()]
     assert events[0]["event"] == "state" and events[-1] == {"ok": True, "id": "done"}
-    assert desk.value("light.sun") == before, "the stream of values is one step, undone at the end"
+    assert harness.value("light.sun") == before, "the stream of values is one step, undone at the end"
 
 
-def test_the_script_by_osc(desk: Desk, tmp_path: Path) -> None:
-    osc = desk.open(osc=("127.0.0.1", 0)).osc
+def test_the_script_by_osc(harness: Harness, tmp_path: Path) -> None:
+    osc = harness.open(osc=("127.0.0.1", 0)).osc
     assert osc is not None and osc.source is not None
     text = block("python", "SimpleUDPClient").text.replace("9000", str(osc.source[1]))
-    runs(desk, text, tmp_path)
-    desk.until(lambda: desk.value("light.sun") == (250.0, 12.0))
+    runs(harness, text, tmp_path)
+    harness.until(lambda: harness.value("light.sun") == (250.0, 12.0))
 
 
-def test_what_to_do_and_the_controllers_are_as_shown(desk: Desk, tmp_path: Path) -> None:
-    desk.open(port=0)
+def test_what_to_do_and_the_controllers_are_as_shown(harness: Harness, tmp_path: Path) -> None:
+    harness.open(port=0)
     wishes = json.loads(block("json", "preset").text)
     from playground.workbench.control.controls import Controls
 
-    controls = Controls(desk.bench)
+    controls = Controls(harness.bench)
     assert list(wishes) == controls.names
     controls.do(wishes)
     file = tmp_path / "a.controllers"
@@ -100,13 +100,13 @@ def test_what_to_do_and_the_controllers_are_as_shown(desk: Desk, tmp_path: Path)
     assert (binding.path, binding.part, binding.source.number) == ("light.sun", "elevation", 21)
 
 
-def test_a_packed_sketch_leaves_its_controllers_behind(desk: Desk, tmp_path: Path) -> None:
+def test_a_packed_sketch_leaves_its_controllers_behind(harness: Harness, tmp_path: Path) -> None:
     from zipfile import ZipFile
 
     from playground.capture.pack import pack
 
     (tmp_path / "land" / "sketch.controllers").write_text("format = 1\n", encoding="utf-8")
-    assert desk.session.sketch is not None
-    names = ZipFile(pack(desk.session.sketch, tmp_path / "land.zip")).namelist()
+    assert harness.session.sketch is not None
+    names = ZipFile(pack(harness.session.sketch, tmp_path / "land.zip")).namelist()
     assert any(name.endswith("sketch.toml") for name in names)
     assert not any("controllers" in name for name in names)

@@ -13,7 +13,7 @@ import pytest
 
 from playground import local_server
 from playground.errors import ParameterError
-from playground.remote.notes import LARGEST_REQUEST, Notes
+from playground.remote.notes import MAX_REQUEST_BYTES, Notes
 
 from ..crowds import crowd, wait_until_open
 
@@ -97,7 +97,7 @@ def test_a_mistake_is_answered_with_a_sentence(window: Window) -> None:
     assert window.ask("do", "POST", b'{"stay": 1}') == (400, {"error": "go where?"})
     assert window.ask("do", "POST", b"[1]")[0] == 400
     assert window.ask("do", "POST", b"not JSON")[0] == 400
-    assert window.ask("do", "POST", b" " * (LARGEST_REQUEST + 1))[0] == 400
+    assert window.ask("do", "POST", b" " * (MAX_REQUEST_BYTES + 1))[0] == 400
     assert window.ask("../../etc/passwd")[0] == 404
     assert window.ask("notes.html")[0] == 404
     assert window.asked == []

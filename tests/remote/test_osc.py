@@ -18,21 +18,21 @@ from pythonosc.udp_client import SimpleUDPClient
 from playground import cli
 from playground.errors import ContextError, DataError
 from playground.extras import install_command
-from playground.remote.osc import MOST, Osc, messages_of
+from playground.remote.osc import MAX_WAITING, Osc, messages_of
 from playground.remote.remotes import RemoteOptions, Remotes
 
-from .desk import Desk
+from .desk import Harness
 
 
 class Surface:
     """A control surface: it sends, and hears what is sent to it."""
 
-    def __init__(self, desk: Desk) -> None:
-        self.desk = desk
+    def __init__(self, harness: Harness) -> None:
+        self.harness = harness
         self.ear = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.ear.bind(("127.0.0.1", 0))
         self.ear.setblocking(False)
-        osc = desk.open(osc=("127.0.0.1", 0), osc_to=self.ear.getsockname()).osc
+        osc = harness.open(osc=("127.0.0.1", 0), osc_to=self.ear.getsockname()).osc
         assert osc is not None and osc.source is not None
         self.client = SimpleUDPClient(*osc.source)
         self.greeting = self.heard()
@@ -43,30 +43,30 @@ class Surface:
         self.taken()
 
     def raw(self, data: bytes) -> None:
-        osc = self.desk.remotes.osc
+        osc = self.harness.remotes.osc
         assert osc is not None and osc.source is not None
         self.ear.sendto(data, osc.source)
 
     def taken(self) -> None:
-        osc = self.desk.remotes.osc
+        osc = self.harness.remotes.osc
         assert osc is not None
         end = time.monotonic() + 10
         while not osc.waits:
             assert time.monotonic() < end
             time.sleep(0.001)
-        self.desk.frame()
-        self.desk.frame()
+        self.harness.frame()
+        self.harness.frame()
 
     def heard(self) -> dict[str, list[Any]]:
         """Return what was sent to it since the last time: the last arguments by address."""
         time.sleep(0.05)
-        found = {}
+        values = {}
         while True:
             try:
                 packet = OscPacket(self.ear.recv(65536))
             except BlockingIOError:
-                return found
-            found |= {timed.message.address: timed.message.params for timed in packet.messages}
+                return values
+            values |= {timed.message.address: timed.message.params for timed in packet.messages}
 
     def close(self) -> None:
         self.ear.close()
@@ -74,61 +74,61 @@ class Surface:
 
 
 @pytest.fixture
-def surface(desk: Desk) -> Iterator[Surface]:
-    made = Surface(desk)
+def surface(harness: Harness) -> Iterator[Surface]:
+    made = Surface(harness)
     yield made
     made.close()
 
 
-def test_values_come_in_by_address(desk: Desk, surface: Surface):
+def test_values_come_in_by_address(harness: Harness, surface: Surface):
     surface.send("/height/level", 0.5)
-    assert desk.value("height.level") == 0.5
+    assert harness.value("height.level") == 0.5
     surface.send("/height/level", 0.3)
-    assert desk.value("height.level") == 0.3, "not 0.30000001192092896"
+    assert harness.value("height.level") == 0.3, "not 0.30000001192092896"
     surface.send("/height/sun", 200.0, 40.0)
-    assert desk.value("height.sun") == (200.0, 40.0)
+    assert harness.value("height.sun") == (200.0, 40.0)
     surface.send("/height/sun/elevation", 25)
-    assert desk.value("height.sun") == (200.0, 25.0)
+    assert harness.value("height.sun") == (200.0, 25.0)
     surface.send("/sun/azimuth", 90)
-    assert desk.value("height.sun") == (90.0, 25.0), "the pass may be left out"
+    assert harness.value("height.sun") == (90.0, 25.0), "the pass may be left out"
     surface.send("/height/kind", "flat")
-    assert desk.value("height.kind") == 2
+    assert harness.value("height.kind") == 2
     surface.send("/height/kind", 1)
-    assert desk.value("height.kind") == 1
+    assert harness.value("height.kind") == 1
     surface.send("/height/rocks", False)
-    assert desk.value("height.rocks") is False
+    assert harness.value("height.rocks") is False
     surface.send("/height/rocks", 1.0)
-    assert desk.value("height.rocks") is True
+    assert harness.value("height.rocks") is True
     surface.send("/height/count", 6.7)
-    assert desk.value("height.count") == 7, "a fader sends fractions"
+    assert harness.value("height.count") == 7, "a fader sends fractions"
     surface.send("/height/tint", "#00ff00")
-    assert desk.value("height.tint") == (0.0, 1.0, 0.0)
+    assert harness.value("height.tint") == (0.0, 1.0, 0.0)
     surface.send("/height/tint/b", 0.25)
-    assert desk.value("height.tint") == (0.0, 1.0, 0.25)
+    assert harness.value("height.tint") == (0.0, 1.0, 0.25)
     surface.send("/height/middle", 0.25, 0.75)
-    assert desk.value("height.middle") == (0.25, 0.75)
+    assert harness.value("height.middle") == (0.25, 0.75)
     surface.send("/relief", 300.0)
-    assert desk.session.sketch is not None and desk.session.sketch.relief == 300.0
-    assert desk.notices == []
+    assert harness.session.sketch is not None and harness.session.sketch.relief == 300.0
+    assert harness.notices == []
 
 
-def test_a_button_is_pressed_where_its_message_is_no_zero(desk: Desk, surface: Surface):
-    pressed = desk.pressed()
+def test_a_button_is_pressed_where_its_message_is_no_zero(harness: Harness, surface: Surface):
+    pressed = harness.pressed()
     surface.send("/height/fire", 1)
     surface.send("/height/fire", 0)
     surface.send("/height/fire", True)
-    assert pressed == ["height.fire"] * 2 and desk.value("height.fire") is False
+    assert pressed == ["height.fire"] * 2 and harness.value("height.fire") is False
 
 
-def test_a_colour_of_osc_itself(desk: Desk, surface: Surface):
+def test_a_colour_of_osc_itself(harness: Harness, surface: Surface):
     builder = OscMessageBuilder("/height/tint")
     builder.add_arg(0xFF000080, "r")  # red, half opaque
     surface.raw(builder.build().dgram)
     surface.taken()
-    assert desk.value("height.tint") == (1.0, 0.0, 0.0)
+    assert harness.value("height.tint") == (1.0, 0.0, 0.0)
 
 
-def test_a_bundle_is_done_at_once_in_its_order(desk: Desk, surface: Surface):
+def test_a_bundle_is_done_at_once_in_its_order(harness: Harness, surface: Surface):
     late = OscBundleBuilder(time.time() + 3600)
     inner = OscBundleBuilder(IMMEDIATELY)
     for builder, value in ((late, 0.6), (inner, 0.8)):
@@ -138,32 +138,32 @@ def test_a_bundle_is_done_at_once_in_its_order(desk: Desk, surface: Surface):
     late.add_content(inner.build())
     surface.raw(late.build().dgram)
     surface.taken()
-    assert desk.value("height.level") == 0.6 and desk.value("height.scale") == 8.0
+    assert harness.value("height.level") == 0.6 and harness.value("height.scale") == 8.0
 
 
-def test_time_presets_and_undo(desk: Desk, surface: Surface):
+def test_time_presets_and_undo(harness: Harness, surface: Surface):
     surface.send("/playground/playing", 0)
     surface.send("/playground/time", 2.5)
-    clock = desk.session.clock
+    clock = harness.session.clock
     assert clock.time == 2.5 and not clock.playing
     surface.send("/playground/speed", 0.5)
     assert clock.speed == 0.5
     surface.send("/playground/preset", "high")
-    assert desk.value("height.level") == 0.75
+    assert harness.value("height.level") == 0.75
     surface.send("/playground/undo")
-    assert desk.value("height.level") == 0.25
+    assert harness.value("height.level") == 0.25
     surface.send("/playground/undo", 0)  # the button is let go
     surface.send("/playground/redo", 1)
-    assert desk.value("height.level") == 0.75
+    assert harness.value("height.level") == 0.75
     surface.send("/playground/undo")
     surface.send("/playground/preset", 0)
-    assert desk.value("height.level") == 0.75
+    assert harness.value("height.level") == 0.75
 
 
-def test_what_does_not_fit_is_said_once_with_the_nearest_address(desk: Desk, surface: Surface):
+def test_what_does_not_fit_is_said_once_with_the_nearest_address(harness: Harness, surface: Surface):
     said: list[str] = []
-    say = desk.bench.notices.say
-    desk.bench.notices.say = lambda text: (said.append(text), say(text))[1]  # type: ignore
+    say = harness.bench.notices.say
+    harness.bench.notices.say = lambda text: (said.append(text), say(text))[1]  # type: ignore
     for _ in range(5):
         surface.send("/height/levle", 0.5)
     assert len(said) == 1 and "did you mean '/height/level'?" in said[0]
@@ -187,41 +187,41 @@ def test_what_does_not_fit_is_said_once_with_the_nearest_address(desk: Desk, sur
     assert len(said) < 30 and "further" in said[-1]
 
 
-def test_an_address_that_fits_several_names_them(desk: Desk):
+def test_an_address_that_fits_several_names_them(harness: Harness):
     from playground.workbench.control.addresses import Addresses
     from playground.workbench.control.controls import Controls
 
-    folder = desk.session.path.parent
+    folder = harness.session.path.parent
     text = (folder / "sketch.toml").read_text("utf-8")
     (folder / "sketch.toml").write_text(
         text.replace("[view]", '[[pass]]\nname = "second"\nuse = "./hills"\n[view]'), "utf-8"
     )
-    desk.session.drafts.reload()
-    desk.frame()
-    addresses = Addresses(Controls(desk.bench))
+    harness.session.drafts.reload()
+    harness.frame()
+    addresses = Addresses(Controls(harness.bench))
     addresses.receive("/level", [0.5])
-    assert "/height/level or /second/level" in desk.notices[-1]
+    assert "/height/level or /second/level" in harness.notices[-1]
 
 
-def test_values_go_out_when_they_change_but_not_back_to_who_sent_them(desk: Desk, surface: Surface):
+def test_values_go_out_when_they_change_but_not_back_to_who_sent_them(harness: Harness, surface: Surface):
     assert surface.greeting["/height/level"] == [0.25] and surface.greeting["/height/kind"] == ["round"]
     assert surface.greeting["/height/sun"] == [135.0, 25.0] and surface.greeting["/height/rocks"] == [1]
-    desk.session.drafts.set("height.level", 0.5)
-    desk.session.drafts.set("height.kind", 2)
-    desk.frame()
+    harness.session.drafts.set("height.level", 0.5)
+    harness.session.drafts.set("height.kind", 2)
+    harness.frame()
     assert surface.heard() == {"/height/level": [0.5], "/height/kind": ["flat"]}
-    desk.frame()
+    harness.frame()
     assert surface.heard() == {}
     surface.send("/height/level", 0.75)
     assert surface.heard() == {}
-    desk.bench.undo.undo()
-    desk.frame()
+    harness.bench.undo.undo()
+    harness.frame()
     assert surface.heard() == {"/height/level": [0.5]}
     surface.send("/height/sun")
     assert surface.heard() == {"/height/sun": [135.0, 25.0]}, "a message without arguments asks"
 
 
-def test_ten_thousand_messages_lose_not_the_last_value(desk: Desk, surface: Surface):
+def test_ten_thousand_messages_lose_not_the_last_value(harness: Harness, surface: Surface):
     def flood() -> None:
         for n in range(10_000):
             surface.client.send_message("/height/level", n / 10_000)
@@ -229,25 +229,25 @@ def test_ten_thousand_messages_lose_not_the_last_value(desk: Desk, surface: Surf
             surface.client.send_message("/height/level", 0.875)
             time.sleep(0.005)
 
-    desk.during(flood)
-    desk.until(lambda: desk.value("height.level") == 0.875)
-    assert desk.notices == []
+    harness.during(flood)
+    harness.until(lambda: harness.value("height.level") == 0.875)
+    assert harness.notices == []
 
 
 def test_what_waits_is_bounded():
     osc = Osc(None, None)
-    for n in range(3 * MOST):
+    for n in range(3 * MAX_WAITING):
         osc._put(message(f"/a/{n}", 1.0))
         osc._put(message("/playground/undo"))
         osc._put(message("/a/0", float(n)))
-    assert len(osc._waiting) == MOST and len(osc._acts) == MOST and osc._lost == 4 * MOST
-    assert osc._waiting[b"/a/0"] == message("/a/0", 3 * MOST - 1.0)
+    assert len(osc._waiting) == MAX_WAITING and len(osc._acts) == MAX_WAITING and osc._lost == 4 * MAX_WAITING
+    assert osc._waiting[b"/a/0"] == message("/a/0", 3 * MAX_WAITING - 1.0)
 
 
 def message(address: str, *arguments: Any) -> bytes:
     builder = OscMessageBuilder(address)
-    for one in arguments:
-        builder.add_arg(one)
+    for argument in arguments:
+        builder.add_arg(argument)
     return bytes(builder.build().dgram)
 
 
@@ -259,8 +259,8 @@ def test_bytes_that_are_no_osc_raise_nothing():
     wrong = (b"/", b"/a\0\0\0,f\0\0", b"\0" * 64, b"#bundle\0", deep, bytes(range(256)) * 8)
     for data in wrong:
         osc._put(data)
-        assert all(isinstance(given, bytes) for given in osc._waiting.values())
-        assert [m for given in osc._waiting.values() for m in messages_of(given)] == []
+        assert all(isinstance(value, bytes) for value in osc._waiting.values())
+        assert [m for value in osc._waiting.values() for m in messages_of(value)] == []
 
 
 def test_a_taken_port_an_unknown_host_and_a_missing_package_are_one_sentence(monkeypatch: pytest.MonkeyPatch):
@@ -289,11 +289,11 @@ def test_wrong_options_are_one_sentence(words: list[str], capfd: pytest.CaptureF
     assert complaint.startswith("error: --osc") and complaint.count("\n") == 1
 
 
-def test_closing_frees_the_port_and_ends_the_thread(desk: Desk):
-    osc = desk.open(osc=("127.0.0.1", 0)).osc
+def test_closing_frees_the_port_and_ends_the_thread(harness: Harness):
+    osc = harness.open(osc=("127.0.0.1", 0)).osc
     assert osc is not None
     source = osc.source
-    desk.remotes.close()
+    harness.remotes.close()
     assert not osc._thread.is_alive() and source is not None
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as again:
         again.bind(source)

@@ -12,7 +12,7 @@ import pytest
 from playground.engine.engine import Engine
 
 from ..report.browser import MISSING, Browser
-from .desk import TOKEN, Desk
+from .desk import TOKEN, Harness
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]
 
@@ -26,42 +26,44 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
 
 
 @pytest.fixture
-def page(desk: Desk, browser: Browser) -> Iterator[Browser]:
-    server = desk.open(port=0, token=TOKEN).server
+def page(harness: Harness, browser: Browser) -> Iterator[Browser]:
+    server = harness.open(port=0, token=TOKEN).server
     assert server is not None
-    desk.during(lambda: browser.open(server.url))
-    desk.during(lambda: browser.wait("document.querySelectorAll('.row').length > 8"))
-    desk.during(lambda: browser.wait("document.getElementById('picture').naturalWidth === 48"))
+    harness.during(lambda: browser.open(server.url))
+    harness.during(lambda: browser.wait("document.querySelectorAll('.row').length > 8"))
+    harness.during(lambda: browser.wait("document.getElementById('picture').naturalWidth === 48"))
     try:
         yield browser
-        assert desk.during(browser.log) == [], "nothing was refused, nothing failed"
+        assert harness.during(browser.log) == [], "nothing was refused, nothing failed"
     finally:
-        desk.during(lambda: browser.open("about:blank"))
+        harness.during(lambda: browser.open("about:blank"))
 
 
-def shown(desk: Desk, page: Browser, name: str, what: str) -> object:
-    return desk.during(lambda: page.run(f"return {ROW.format(name)}.{what}"))
+def shown(harness: Harness, page: Browser, name: str, what: str) -> object:
+    return harness.during(lambda: page.run(f"return {ROW.format(name)}.{what}"))
 
 
-def test_a_slider_sets_a_value_and_follows_the_window(desk: Desk, page: Browser, tmp_path: Path) -> None:
+def test_a_slider_sets_a_value_and_follows_the_window(
+    harness: Harness, page: Browser, tmp_path: Path
+) -> None:
     level = '.row[data-path="height.level"] input'
-    desk.during(lambda: page.drag(level, (0, 0), (100, 0)))
-    desk.until(lambda: desk.value("height.level") > 0.5)
-    text = shown(desk, page, "level", "querySelector('.number').value")
-    assert text == f"{desk.value('height.level'):.3f}"
-    assert "changed" in str(shown(desk, page, "level", "className"))
-    desk.during(lambda: page.click("#undo"))
-    desk.until(lambda: desk.value("height.level") == 0.25)
-    desk.session.drafts.set("height.level", 0.75)
-    desk.during(lambda: page.wait(f"{ROW.format('level')}.querySelector('input').value == 0.75"))
+    harness.during(lambda: page.drag(level, (0, 0), (100, 0)))
+    harness.until(lambda: harness.value("height.level") > 0.5)
+    text = shown(harness, page, "level", "querySelector('.number').value")
+    assert text == f"{harness.value('height.level'):.3f}"
+    assert "changed" in str(shown(harness, page, "level", "className"))
+    harness.during(lambda: page.click("#undo"))
+    harness.until(lambda: harness.value("height.level") == 0.25)
+    harness.session.drafts.set("height.level", 0.75)
+    harness.during(lambda: page.wait(f"{ROW.format('level')}.querySelector('input').value == 0.75"))
     if target := os.environ.get("PAGE_PICTURE"):
-        Path(target).write_bytes(desk.during(page.picture))
+        Path(target).write_bytes(harness.during(page.picture))
 
 
-def test_each_widget_sets_what_the_window_has(desk: Desk, page: Browser) -> None:
+def test_each_widget_sets_what_the_window_has(harness: Harness, page: Browser) -> None:
     def change(name: str, script: str) -> None:
         at = f"const at = (n) => {ROW.format(name)}.querySelectorAll('input, select')[n];"
-        desk.during(lambda: page.run(at + script))
+        harness.during(lambda: page.run(at + script))
 
     for name, script, value in (
         ("scale", "at(0).value = 0.5; at(0).oninput()", 1000**0.5),
@@ -74,56 +76,60 @@ def test_each_widget_sets_what_the_window_has(desk: Desk, page: Browser) -> None
         ("free", "at(0).value = -3.5; at(0).onchange()", -3.5),
     ):
         change(name, script)
-        before, end = desk.value(f"height.{name}"), time.monotonic() + 20
-        while desk.value(f"height.{name}") != pytest.approx(value, rel=1e-3):  # type: ignore[arg-type]
-            assert time.monotonic() < end, f"{name} is {desk.value(f'height.{name}')}, and was {before}"
-            desk.frame()
-    pressed = desk.pressed()
-    desk.during(lambda: page.run(f"{ROW.format('fire')}.querySelector('button').click()"))
-    desk.until(lambda: pressed == ["height.fire"])
+        before, end = harness.value(f"height.{name}"), time.monotonic() + 20
+        while harness.value(f"height.{name}") != pytest.approx(value, rel=1e-3):  # type: ignore[arg-type]
+            assert time.monotonic() < end, f"{name} is {harness.value(f'height.{name}')}, and was {before}"
+            harness.frame()
+    pressed = harness.pressed()
+    harness.during(lambda: page.run(f"{ROW.format('fire')}.querySelector('button').click()"))
+    harness.until(lambda: pressed == ["height.fire"])
     change("place", "at(1).value = 2.5; at(1).onchange()")
-    desk.until(lambda: desk.value("height.place") == (0.0, 2.5))
+    harness.until(lambda: harness.value("height.place") == (0.0, 2.5))
     change("grass", "at(0).value = '/etc/passwd'; at(0).onchange()")
-    desk.during(lambda: page.wait("document.getElementById('message').textContent.includes('own folder')"))
+    harness.during(lambda: page.wait("document.getElementById('message').textContent.includes('own folder')"))
 
 
-def test_a_pad_turns_the_sun_and_a_row_goes_back_to_the_file(desk: Desk, page: Browser) -> None:
+def test_a_pad_turns_the_sun_and_a_row_goes_back_to_the_file(harness: Harness, page: Browser) -> None:
     """The rows are those of an exported page: pads, digits of a colour, what sets a row back."""
     sun = '.row[data-path="height.sun"]'
     seen = f"document.querySelector('{sun}').scrollIntoView({{ block: 'end' }})"
-    desk.during(lambda: page.run(seen))
-    desk.during(lambda: page.drag(f"{sun} .pad", (0, 0), (-20, 0)))
-    desk.until(lambda: desk.value("height.sun")[0] == pytest.approx(270.0, abs=4.0))  # to a pixel
-    assert 0 < desk.value("height.sun")[1] < 90
-    desk.during(lambda: page.wait(f"document.querySelector('{sun}').className.includes('changed')"))
-    desk.during(lambda: page.click(f"{sun} .reset"))
-    desk.until(lambda: desk.value("height.sun") == (135.0, 25.0))
-    desk.during(lambda: page.wait(f"!document.querySelector('{sun}').className.includes('changed')"))
+    harness.during(lambda: page.run(seen))
+    harness.during(lambda: page.drag(f"{sun} .pad", (0, 0), (-20, 0)))
+    harness.until(lambda: harness.value("height.sun")[0] == pytest.approx(270.0, abs=4.0))  # to a pixel
+    assert 0 < harness.value("height.sun")[1] < 90
+    harness.during(lambda: page.wait(f"document.querySelector('{sun}').className.includes('changed')"))
+    harness.during(lambda: page.click(f"{sun} .reset"))
+    harness.until(lambda: harness.value("height.sun") == (135.0, 25.0))
+    harness.during(lambda: page.wait(f"!document.querySelector('{sun}').className.includes('changed')"))
     digits = f"{ROW.format('tint')}.querySelector('.hex')"
-    desk.during(lambda: page.run(f"{digits}.value = '#0000ff'; {digits}.onchange()"))
-    desk.until(lambda: desk.value("height.tint") == (0.0, 0.0, 1.0))
+    harness.during(lambda: page.run(f"{digits}.value = '#0000ff'; {digits}.onchange()"))
+    harness.until(lambda: harness.value("height.tint") == (0.0, 0.0, 1.0))
 
 
-def test_time_presets_errors_and_the_search(desk: Desk, page: Browser, tmp_path: Path) -> None:
-    desk.during(lambda: page.click("#play"))
-    desk.until(lambda: not desk.session.clock.playing)
-    desk.during(lambda: page.wait("document.getElementById('play').textContent === 'Play'"))
-    desk.during(lambda: page.run("const t = document.getElementById('time'); t.value = 2.5; t.onchange()"))
-    desk.until(lambda: desk.session.clock.time == 2.5)
-    desk.during(
+def test_time_presets_errors_and_the_search(harness: Harness, page: Browser, tmp_path: Path) -> None:
+    harness.during(lambda: page.click("#play"))
+    harness.until(lambda: not harness.session.clock.playing)
+    harness.during(lambda: page.wait("document.getElementById('play').textContent === 'Play'"))
+    harness.during(lambda: page.run("const t = document.getElementById('time'); t.value = 2.5; t.onchange()"))
+    harness.until(lambda: harness.session.clock.time == 2.5)
+    harness.during(
         lambda: page.run("const p = document.getElementById('preset'); p.value = 'high'; p.onchange()")
     )
-    desk.until(lambda: desk.value("height.level") == 0.75)
-    desk.during(lambda: page.run("const s = document.getElementById('search'); s.value = 'lev'; s.oninput()"))
-    assert desk.during(lambda: page.run("return document.querySelectorAll('.row:not([hidden])').length")) == 1
-    kernel = desk.session.path.parent / "hills.glsl"
+    harness.until(lambda: harness.value("height.level") == 0.75)
+    harness.during(
+        lambda: page.run("const s = document.getElementById('search'); s.value = 'lev'; s.oninput()")
+    )
+    assert (
+        harness.during(lambda: page.run("return document.querySelectorAll('.row:not([hidden])').length")) == 1
+    )
+    kernel = harness.session.path.parent / "hills.glsl"
     text = kernel.read_text("utf-8")
     kernel.write_text(text.replace("return level", "return nothing"), encoding="utf-8")
-    desk.session.drafts.reload()
-    desk.during(lambda: page.wait("document.getElementById('message').textContent.includes('hills.glsl')"))
+    harness.session.drafts.reload()
+    harness.during(lambda: page.wait("document.getElementById('message').textContent.includes('hills.glsl')"))
     kernel.write_text(text, encoding="utf-8")
-    desk.session.drafts.reload()
-    desk.during(lambda: page.wait("document.getElementById('message').hidden"))
+    harness.session.drafts.reload()
+    harness.during(lambda: page.wait("document.getElementById('message').hidden"))
 
 
 def test_a_channel_keeps_the_name_that_the_shader_gives_it(
@@ -135,15 +141,15 @@ def test_a_channel_keeps_the_name_that_the_shader_gives_it(
         "uniform float gain;\nvoid mainImage(out vec4 c, in vec2 p) { c = gain * texture(iChannel0, p); }\n"
     )
     toy.write_text(text, "utf-8")
-    desk = Desk(any_engine, toy)
+    harness = Harness(any_engine, toy)
     try:
-        server = desk.open(port=0, token=TOKEN).server
+        server = harness.open(port=0, token=TOKEN).server
         assert server is not None
-        desk.during(lambda: browser.open(server.url))
-        desk.during(lambda: browser.wait("document.querySelectorAll('.row').length > 1"))
+        harness.during(lambda: browser.open(server.url))
+        harness.during(lambda: browser.wait("document.querySelectorAll('.row').length > 1"))
         heads = "return [...document.querySelectorAll('h2')].map(head => head.innerText)"
-        found = desk.during(lambda: browser.run(heads))
-        assert "iChannel0" in found and "View" in found
+        value = harness.during(lambda: browser.run(heads))
+        assert "iChannel0" in value and "View" in value
     finally:
-        desk.during(lambda: browser.open("about:blank"))
-        desk.close()
+        harness.during(lambda: browser.open("about:blank"))
+        harness.close()

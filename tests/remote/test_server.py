@@ -22,11 +22,11 @@ from playground.errors import ContextError, DataError, ParameterError
 from playground.extras import install_command
 from playground.local_server import MAX_UNAUTHENTICATED
 from playground.remote.access import check_token, new_token, refusal
-from playground.remote.calls import MOST, Busy, Calls
+from playground.remote.calls import MAX_WAITING, Busy, Calls
 from playground.remote.remotes import RemoteOptions, Remotes
 
 from ..crowds import crowd, wait_until_open
-from .desk import KERNEL, SIZE, TOKEN, Desk
+from .desk import KERNEL, SIZE, TOKEN, Harness
 
 
 def fetched(url: str, body: Any = None, **headers: str) -> tuple[int, bytes]:
@@ -42,22 +42,22 @@ def fetched(url: str, body: Any = None, **headers: str) -> tuple[int, bytes]:
     return asyncio.run(go())
 
 
-def opened(desk: Desk) -> str:
-    server = desk.open(port=0, token=TOKEN).server
+def opened(harness: Harness) -> str:
+    server = harness.open(port=0, token=TOKEN).server
     assert server is not None
     return server.url
 
 
-def get(desk: Desk, path: str) -> Any:
-    assert desk.remotes.server is not None
-    status, text = desk.during(lambda: fetched(desk.remotes.server.url + path))
+def get(harness: Harness, path: str) -> Any:
+    assert harness.remotes.server is not None
+    status, text = harness.during(lambda: fetched(harness.remotes.server.url + path))
     assert status == 200, text
     return json.loads(text)
 
 
-def do(desk: Desk, **wishes: Any) -> Any:
-    assert desk.remotes.server is not None
-    status, text = desk.during(lambda: fetched(desk.remotes.server.url + "do", wishes))
+def do(harness: Harness, **wishes: Any) -> Any:
+    assert harness.remotes.server is not None
+    status, text = harness.during(lambda: fetched(harness.remotes.server.url + "do", wishes))
     answer = json.loads(text)
     assert (status == 200) == ("error" not in answer)
     return answer
@@ -68,7 +68,7 @@ def do(desk: Desk, **wishes: Any) -> Any:
 
 def test_only_this_machine_with_the_token_and_no_foreign_origin_may_ask():
     def why(host: str | None, origin: str | None, token: str) -> str:
-        return refusal(host, origin, token, wanted="secret", port=80)
+        return refusal(host, origin, token, token_expected="secret", port=80)
 
     assert why("127.0.0.1:80", None, "secret") == ""
     assert why("localhost:80", "http://127.0.0.1:80", "secret") == ""
@@ -88,8 +88,8 @@ def test_tokens_are_random_and_long_unless_they_are_given():
             check_token(token)
 
 
-def test_requests_that_may_not_ask_are_refused_and_do_nothing(desk: Desk):
-    url = opened(desk)
+def test_requests_that_may_not_ask_are_refused_and_do_nothing(harness: Harness):
+    url = opened(harness)
     bare = url.removesuffix(f"{TOKEN}/")
     body = {"set": {"height.level": 0.9}}
     wishes = json.dumps(body).encode()
@@ -102,9 +102,9 @@ def test_requests_that_may_not_ask_are_refused_and_do_nothing(desk: Desk):
         lambda: fetched(f"{url}do", wishes, Origin="http://evil.example"),
     ]
     for request in refused:
-        status, text = desk.during(request)
+        status, text = harness.during(request)
         assert status == 403 and json.loads(text)["error"].count("\n") == 0
-    assert desk.value("height.level") == 0.25
+    assert harness.value("height.level") == 0.25
 
     def handshake() -> int:
         async def go() -> int:
@@ -115,117 +115,117 @@ def test_requests_that_may_not_ask_are_refused_and_do_nothing(desk: Desk):
 
         return asyncio.run(go())
 
-    assert desk.during(handshake) == 403
+    assert harness.during(handshake) == 403
 
 
-def test_it_listens_on_this_machine_alone(desk: Desk):
-    opened(desk)
-    server = desk.remotes.server
+def test_it_listens_on_this_machine_alone(harness: Harness):
+    opened(harness)
+    server = harness.remotes.server
     assert server is not None and server._socket.getsockname()[0] == "127.0.0.1"
 
 
 # ── what is answered ─────────────────────────────────────────────────────────
 
 
-def test_parameters_are_listed_with_their_ranges_units_and_groups(desk: Desk):
-    opened(desk)
-    found = {one["path"]: one for one in get(desk, "parameters")}
-    level = found["height.level"]
+def test_parameters_are_listed_with_their_ranges_units_and_groups(harness: Harness):
+    opened(harness)
+    result = {item["path"]: item for item in get(harness, "parameters")}
+    level = result["height.level"]
     assert (level["low"], level["high"], level["value"], level["group"]) == (0.0, 1.0, 0.25, "Shape")
     assert level["description"] == "How high" and level["pass"] == "height" and not level["changed"]
-    assert found["height.scale"]["unit"] == "m" and found["height.scale"]["widget"] == "log_slider"
-    assert found["height.kind"]["value"] == "round" and found["height.kind"]["choices"][-1] == "flat"
-    assert found["height.sun"]["parts"] == ["azimuth", "elevation"]
-    assert found["height.rocks"]["value"] is True and found["height.free"]["low"] is None
-    assert found["height.tint"]["parts"] == ["r", "g", "b"]
+    assert result["height.scale"]["unit"] == "m" and result["height.scale"]["widget"] == "log_slider"
+    assert result["height.kind"]["value"] == "round" and result["height.kind"]["choices"][-1] == "flat"
+    assert result["height.sun"]["parts"] == ["azimuth", "elevation"]
+    assert result["height.rocks"]["value"] is True and result["height.free"]["low"] is None
+    assert result["height.tint"]["parts"] == ["r", "g", "b"]
 
 
-def test_each_value_that_is_listed_can_be_set_again(desk: Desk):
-    opened(desk)
-    before = get(desk, "parameters")
+def test_each_value_that_is_listed_can_be_set_again(harness: Harness):
+    opened(harness)
+    before = get(harness, "parameters")
     for key in ("value", "text"):
-        values = {one["path"]: one[key] for one in before}
-        assert "error" not in do(desk, set=values)
-        assert [one["value"] for one in get(desk, "parameters")] == [one["value"] for one in before]
+        values = {item["path"]: item[key] for item in before}
+        assert "error" not in do(harness, set=values)
+        assert [item["value"] for item in get(harness, "parameters")] == [item["value"] for item in before]
 
 
-def test_values_are_set_with_the_checks_and_sentences_of_set(desk: Desk):
-    opened(desk)
-    assert desk.session.sketch is not None
+def test_values_are_set_with_the_checks_and_sentences_of_set(harness: Harness):
+    opened(harness)
+    assert harness.session.sketch is not None
     good = {"height.level": 0.5, "height.sun": [90, 10], "height.kind": "sharp", "height.tint": "#ffffff"}
-    do(desk, set=good)
-    assert desk.value("height.level") == 0.5 and desk.value("height.sun") == (90.0, 10.0)
-    assert desk.value("height.kind") == 1 and desk.value("height.tint") == (1.0, 1.0, 1.0)
+    do(harness, set=good)
+    assert harness.value("height.level") == 0.5 and harness.value("height.sun") == (90.0, 10.0)
+    assert harness.value("height.kind") == 1 and harness.value("height.tint") == (1.0, 1.0, 1.0)
     wrong = {"height.level": 2, "height.levle": 0.5, "height.kind": "shrp", "height.sun": "x", "size": -1}
-    for path, given in wrong.items():
+    for path, value in wrong.items():
         with pytest.raises(ParameterError) as caught:
-            desk.session.sketch.with_values({path: given})
-        assert do(desk, set={"height.count": 7, path: given})["error"] == str(caught.value)
-    assert desk.value("height.count") == 3, "all or none"
-    assert "own folder" in do(desk, set={"height.grass": "/etc/passwd"})["error"]
-    assert "own folder" in do(desk, set={"height.grass": "../../x.png"})["error"]
-    desk.session.drafts.lock("height.level", True)
-    assert "locked" in do(desk, set={"height.level": 0.1})["error"]
-    assert "locked" in do(desk, reset="height.level")["error"]
+            harness.session.sketch.with_values({path: value})
+        assert do(harness, set={"height.count": 7, path: value})["error"] == str(caught.value)
+    assert harness.value("height.count") == 3, "all or none"
+    assert "own folder" in do(harness, set={"height.grass": "/etc/passwd"})["error"]
+    assert "own folder" in do(harness, set={"height.grass": "../../x.png"})["error"]
+    harness.session.drafts.lock("height.level", True)
+    assert "locked" in do(harness, set={"height.level": 0.1})["error"]
+    assert "locked" in do(harness, reset="height.level")["error"]
 
 
-def test_a_button_is_pressed_once_and_sets_nothing(desk: Desk):
-    opened(desk)
-    pressed = desk.pressed()
-    do(desk, set={"height.fire": True, "height.level": 0.5})
-    assert pressed == ["height.fire"] and desk.value("height.fire") is False
-    do(desk, set={"height.fire": False})
-    assert pressed == ["height.fire"] and desk.value("height.level") == 0.5
-    ranges = {one["path"]: one["ranges"] for one in get(desk, "parameters")}
+def test_a_button_is_pressed_once_and_sets_nothing(harness: Harness):
+    opened(harness)
+    pressed = harness.pressed()
+    do(harness, set={"height.fire": True, "height.level": 0.5})
+    assert pressed == ["height.fire"] and harness.value("height.fire") is False
+    do(harness, set={"height.fire": False})
+    assert pressed == ["height.fire"] and harness.value("height.level") == 0.5
+    ranges = {item["path"]: item["ranges"] for item in get(harness, "parameters")}
     assert ranges["height.place"] == [[-1, 1], [0, 10]] and ranges["height.sun"] == [[0, 360], [0, 90]]
     assert ranges["height.free"] == [None]
 
 
-def test_what_a_remote_sets_is_a_step_that_can_be_undone(desk: Desk):
-    opened(desk)
-    assert do(desk, set={"height.level": 0.5})["can_undo"]
-    do(desk, set={"height.count": 9})
-    assert len(desk.bench.undo.history.steps) == 2
-    assert do(desk, undo=True)["can_redo"] and desk.value("height.count") == 3
-    desk.bench.undo.undo()  # by a key of the window
-    assert desk.value("height.level") == 0.25
-    do(desk, redo=True)
-    assert desk.value("height.level") == 0.5
-    do(desk, reset=["height.level"])
-    assert desk.value("height.level") == 0.25
+def test_what_a_remote_sets_is_a_step_that_can_be_undone(harness: Harness):
+    opened(harness)
+    assert do(harness, set={"height.level": 0.5})["can_undo"]
+    do(harness, set={"height.count": 9})
+    assert len(harness.bench.undo.history.steps) == 2
+    assert do(harness, undo=True)["can_redo"] and harness.value("height.count") == 3
+    harness.bench.undo.undo()  # by a key of the window
+    assert harness.value("height.level") == 0.25
+    do(harness, redo=True)
+    assert harness.value("height.level") == 0.5
+    do(harness, reset=["height.level"])
+    assert harness.value("height.level") == 0.25
 
 
-def test_time_and_presets(desk: Desk):
-    opened(desk)
-    state = do(desk, time=2.5, playing=False, speed=2.0)
+def test_time_and_presets(harness: Harness):
+    opened(harness)
+    state = do(harness, time=2.5, playing=False, speed=2.0)
     assert (state["time"], state["playing"], state["speed"]) == (2.5, False, 2.0)
     assert state["moves"] and state["presets"] == ["high"]
-    do(desk, preset="high")
-    assert desk.value("height.level") == 0.75 and desk.value("height.kind") == 2
-    do(desk, undo=True)
-    assert desk.value("height.level") == 0.25, "a preset is one step"
-    assert "did you mean 'high'?" in do(desk, preset="hihg")["error"]
-    assert "from 0 to" in do(desk, time=-1)["error"] and "from 0 to" in do(desk, time="now")["error"]
-    assert "true or false" in do(desk, playing=1)["error"]
-    assert "did you mean 'speed'?" in do(desk, sped=1)["error"]
+    do(harness, preset="high")
+    assert harness.value("height.level") == 0.75 and harness.value("height.kind") == 2
+    do(harness, undo=True)
+    assert harness.value("height.level") == 0.25, "a preset is one step"
+    assert "did you mean 'high'?" in do(harness, preset="hihg")["error"]
+    assert "from 0 to" in do(harness, time=-1)["error"] and "from 0 to" in do(harness, time="now")["error"]
+    assert "true or false" in do(harness, playing=1)["error"]
+    assert "did you mean 'speed'?" in do(harness, sped=1)["error"]
 
 
-def test_the_picture_is_the_windows_or_one_of_a_size(desk: Desk):
-    opened(desk)
+def test_the_picture_is_the_windows_or_one_of_a_size(harness: Harness):
+    opened(harness)
 
     def picture(query: str = "") -> Any:
-        status, data = desk.during(lambda: fetched(f"{desk.remotes.server.url}picture.png{query}"))  # type: ignore
+        status, data = harness.during(lambda: fetched(f"{harness.remotes.server.url}picture.png{query}"))  # type: ignore
         return np.asarray(Image.open(io.BytesIO(data))) if status == 200 else json.loads(data)["error"]
 
-    own = desk.session.read()
+    own = harness.session.read()
     assert own is not None
     np.testing.assert_array_equal(picture(), own.array)
     assert picture("?width=24").shape[:2] == (SIZE[1] // 2, 24)
     assert picture("?width=4000").shape[:2] == SIZE[::-1], "it is not enlarged"
     drawn = picture("?size=64x40")
-    sketch, now = desk.session.sketch, desk.session.clock.time
+    sketch, now = harness.session.sketch, harness.session.clock.time
     assert sketch is not None
-    expected = desk.session.engine.render(sketch, size=(64, 40), time=now).array
+    expected = harness.session.engine.render(sketch, size=(64, 40), time=now).array
     np.testing.assert_array_equal(drawn, expected)
     np.testing.assert_array_equal(picture(), own.array)
     for query in ("?size=0x9", "?size=9", "?size=5000x5000", "?width=-1", "?width=a", "?size=axb"):
@@ -234,37 +234,37 @@ def test_the_picture_is_the_windows_or_one_of_a_size(desk: Desk):
 
 @pytest.mark.slow
 def test_a_picture_waits_for_the_frames_before_it_and_does_not_hold_the_window_up(
-    desk: Desk, monkeypatch: pytest.MonkeyPatch
+    harness: Harness, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    url = opened(desk)
+    url = opened(harness)
     left = 3  # frames of the window in which it is behind
-    frame, read = desk.session.frame, desk.session.read
+    frame, read = harness.session.frame, harness.session.read
 
     def slow(size: tuple[int, int]) -> Any:
         nonlocal left
         texture, left = frame(size), left - 1
-        desk.session.catch_up.behind = (5, 36_001) if left > 0 else None
+        harness.session.catch_up.behind = (5, 36_001) if left > 0 else None
         return texture
 
     def in_time() -> Any:
         assert left <= 0, "all frames are computed between two of the window"
         return read()
 
-    monkeypatch.setattr(desk.session, "frame", slow)
-    monkeypatch.setattr(desk.session, "read", in_time)
-    desk.frame()
-    assert desk.during(lambda: fetched(f"{url}picture.png"))[0] == 200
+    monkeypatch.setattr(harness.session, "frame", slow)
+    monkeypatch.setattr(harness.session, "read", in_time)
+    harness.frame()
+    assert harness.during(lambda: fetched(f"{url}picture.png"))[0] == 200
     assert left <= 0
 
     monkeypatch.setattr("playground.remote.server.PATIENCE", 0.5)
     left = 10**9
-    desk.frame()
-    status, data = desk.during(lambda: fetched(f"{url}picture.png?size=8x8"))
+    harness.frame()
+    status, data = harness.during(lambda: fetched(f"{url}picture.png?size=8x8"))
     assert status == 503 and "frame 5 of 36,001" in json.loads(data)["error"]
 
 
-def test_what_is_no_request_of_it_is_answered_in_a_sentence(desk: Desk):
-    url = opened(desk)
+def test_what_is_no_request_of_it_is_answered_in_a_sentence(harness: Harness):
+    url = opened(harness)
     for path, body, status in (
         ("nothing", None, 404),
         ("do", b"{", 400),
@@ -277,13 +277,13 @@ def test_what_is_no_request_of_it_is_answered_in_a_sentence(desk: Desk):
         ("do", b'"' + b"a" * 100_000 + b'"', 413),
         ("state", b"{}", 405),
     ):
-        found, text = desk.during(lambda path=path, body=body: fetched(url + path, body))
-        assert found == status and json.loads(text)["error"], (path, body, text)
-    assert desk.value("height.level") == 0.25
+        result, text = harness.during(lambda path=path, body=body: fetched(url + path, body))
+        assert result == status and json.loads(text)["error"], (path, body, text)
+    assert harness.value("height.level") == 0.25
 
 
-def test_the_page_is_served_and_loads_nothing_from_elsewhere(desk: Desk):
-    url = opened(desk)
+def test_the_page_is_served_and_loads_nothing_from_elsewhere(harness: Harness):
+    url = opened(harness)
 
     def page() -> tuple[str, str, str]:
         async def go() -> tuple[str, str, str]:
@@ -294,7 +294,7 @@ def test_the_page_is_served_and_loads_nothing_from_elsewhere(desk: Desk):
 
         return asyncio.run(go())
 
-    text, policy, script = desk.during(page)
+    text, policy, script = harness.during(page)
     assert '<script src="remote.js"' in text and "default-src 'none'" in policy
     assert set(re.findall(r"https?:[^\"'`]*", text + script)) <= {"http://www.w3.org/2000/svg"}  # a name
     assert TOKEN not in text + script
@@ -312,38 +312,38 @@ async def until(client: aiohttp.ClientWebSocketResponse, kind: str) -> dict[str,
 
 async def both(client: aiohttp.ClientWebSocketResponse, *kinds: str) -> list[dict[str, Any]]:
     """Return a message of each of two kinds, whichever comes first."""
-    found: dict[str, dict[str, Any]] = {}
-    while len(found) < 2:
+    values: dict[str, dict[str, Any]] = {}
+    while len(values) < 2:
         message = json.loads((await client.receive(timeout=20)).data)
-        found |= {kind: message for kind in kinds if kind in (message.get("event"), *message)}
-    return [found[kind] for kind in kinds]
+        values |= {kind: message for kind in kinds if kind in (message.get("event"), *message)}
+    return [values[kind] for kind in kinds]
 
 
-def test_events_tell_of_values_saves_and_errors(desk: Desk, tmp_path: Path):
-    url = opened(desk)
+def test_events_tell_of_values_saves_and_errors(harness: Harness, tmp_path: Path):
+    url = opened(harness)
     file = tmp_path / "hills" / "hills.glsl"
 
     def listen() -> list[dict[str, Any]]:
         async def go() -> list[dict[str, Any]]:
             async with aiohttp.ClientSession() as client, client.ws_connect(f"{url}events") as events:
-                found = [await until(events, "state")]
+                values = [await until(events, "state")]
                 await events.send_str(json.dumps({"id": 7, "set": {"height.level": 0.5}}))
-                found += await both(events, "values", "ok")
+                values += await both(events, "values", "ok")
                 await events.send_str(json.dumps({"set": {"height.level": 5}}))
-                found.append(await until(events, "error"))
+                values.append(await until(events, "error"))
                 await events.send_str(json.dumps({"playing": False}))
-                found.append(await until(events, "time"))
+                values.append(await until(events, "time"))
                 file.write_text(KERNEL.replace("level *", "level + nothing *"), encoding="utf-8")
-                desk.remotes.calls.ask(desk.session.drafts.reload)
-                found.append(await until(events, "errors"))
+                harness.remotes.calls.ask(harness.session.drafts.reload)
+                values.append(await until(events, "errors"))
                 file.write_text(KERNEL.replace("level *", "0.5 * level *"), encoding="utf-8")
-                desk.remotes.calls.ask(desk.session.drafts.reload)
-                found += await both(events, "reloaded", "errors")
-                return found
+                harness.remotes.calls.ask(harness.session.drafts.reload)
+                values += await both(events, "reloaded", "errors")
+                return values
 
         return asyncio.run(go())
 
-    state, values, ok, refused, paused, wrong, reloaded, fixed = desk.during(listen)
+    state, values, ok, refused, paused, wrong, reloaded, fixed = harness.during(listen)
     assert state["title"] == "Hills" and values["values"] == {"height.level": 0.5}
     assert ok == {"ok": True, "id": 7} and "outside its range 0 to 1" in refused["error"]
     assert paused["playing"] is False
@@ -352,17 +352,17 @@ def test_events_tell_of_values_saves_and_errors(desk: Desk, tmp_path: Path):
 
 
 @pytest.mark.slow
-def test_ten_thousand_values_lose_neither_the_last_nor_an_error(desk: Desk):
-    url = opened(desk)
+def test_ten_thousand_values_lose_neither_the_last_nor_an_error(harness: Harness):
+    url = opened(harness)
     count, frames = 10_000, 0
-    draw = desk.frame
+    draw = harness.frame
 
     def counting() -> None:
         nonlocal frames
         frames += 1
         draw()
 
-    desk.frame = counting  # type: ignore
+    harness.frame = counting  # type: ignore
 
     def flood() -> list[str]:
         async def go() -> list[str]:
@@ -380,15 +380,15 @@ def test_ten_thousand_values_lose_neither_the_last_nor_an_error(desk: Desk):
 
         return asyncio.run(go())
 
-    refused = desk.during(flood)
-    desk.frame()
-    assert desk.value("height.level") == 0.875 and desk.value("height.count") == 3
+    refused = harness.during(flood)
+    harness.frame()
+    assert harness.value("height.level") == 0.875 and harness.value("height.count") == 3
     assert len(refused) == 1 and "height.count" in refused[0]
     assert frames > 20, "frames went on meanwhile"
-    assert desk.bench.undo.history.steps[-1].after == {("value", "height.level"): 0.875}
+    assert harness.bench.undo.history.steps[-1].after == {("value", "height.level"): 0.875}
 
 
-def test_a_reader_that_does_not_read_costs_no_memory(desk: Desk):
+def test_a_reader_that_does_not_read_costs_no_memory(harness: Harness):
     from playground.remote.server import IN_FLIGHT, _Client
 
     class Socket:
@@ -408,38 +408,38 @@ def test_a_reader_that_does_not_read_costs_no_memory(desk: Desk):
     assert client.room._value == IN_FLIGHT
 
 
-def test_more_clients_than_may_listen_are_refused(desk: Desk):
-    from playground.remote.server import MOST_CLIENTS
+def test_more_clients_than_may_listen_are_refused(harness: Harness):
+    from playground.remote.server import MAX_CLIENTS
 
-    url = opened(desk)
+    url = opened(harness)
 
     def crowd() -> int:
         async def go() -> int:
             async with aiohttp.ClientSession() as client:
-                open_ones = [await client.ws_connect(f"{url}events") for _ in range(MOST_CLIENTS)]
+                open_ones = [await client.ws_connect(f"{url}events") for _ in range(MAX_CLIENTS)]
                 with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
                     await client.ws_connect(f"{url}events")
-                assert not any(one.closed for one in open_ones)
-                for one in open_ones:
-                    await one.close()
+                assert not any(item.closed for item in open_ones)
+                for item in open_ones:
+                    await item.close()
                 return int(caught.value.status)
 
         return asyncio.run(go())
 
-    assert desk.during(crowd) == 503
+    assert harness.during(crowd) == 503
 
 
-def test_a_silent_crowd_does_not_lock_the_owner_out(desk: Desk, monkeypatch: pytest.MonkeyPatch):
+def test_a_silent_crowd_does_not_lock_the_owner_out(harness: Harness, monkeypatch: pytest.MonkeyPatch):
     for module in ("remote.server", "local_server"):
         monkeypatch.setattr(f"playground.{module}.MAX_SILENCE", 0.5)
-    url = opened(desk)
-    assert desk.remotes.server is not None
+    url = opened(harness)
+    assert harness.remotes.server is not None
 
     def listens() -> None:
         async def go() -> None:
             async with aiohttp.ClientSession() as client, client.ws_connect(f"{url}events") as events:
                 await until(events, "state")
-                with crowd(desk.remotes.server.port) as strangers:
+                with crowd(harness.remotes.server.port) as strangers:
                     async with client.get(f"{url}state") as answer:
                         assert answer.status == 200
                     assert await asyncio.to_thread(wait_until_open, strangers, MAX_UNAUTHENTICATED) > 0
@@ -450,19 +450,19 @@ def test_a_silent_crowd_does_not_lock_the_owner_out(desk: Desk, monkeypatch: pyt
 
         asyncio.run(go())
 
-    desk.during(listens)
+    harness.during(listens)
 
 
 def test_calls_are_bounded_run_in_order_and_refused_once_closed():
     calls, done = Calls(), list[int]()
-    futures = [calls.ask(lambda n=n: done.append(n)) for n in range(MOST)]
+    futures = [calls.ask(lambda n=n: done.append(n)) for n in range(MAX_WAITING)]
     with pytest.raises(Busy, match="wait for the window"):
         calls.ask(lambda: None)
     calls.run(0.0)
     assert done == [0], "at least one in each frame, and no more than the budget allows"
     while calls.run():
         pass
-    assert done == list(range(MOST)) and all(future.done() for future in futures)
+    assert done == list(range(MAX_WAITING)) and all(future.done() for future in futures)
     late = calls.ask(lambda: None)
     calls.close()
     assert isinstance(late.exception(), Busy)
@@ -504,10 +504,10 @@ def test_wrong_options_are_one_sentence(words: list[str], capfd: pytest.CaptureF
     assert complaint.startswith("error: ") and complaint.count("\n") == 1
 
 
-def test_closing_frees_the_port_and_ends_the_thread(desk: Desk):
-    server = desk.open(port=0).server
+def test_closing_frees_the_port_and_ends_the_thread(harness: Harness):
+    server = harness.open(port=0).server
     assert server is not None
-    desk.remotes.close()
+    harness.remotes.close()
     assert not server._thread.is_alive()
     with closing(socket.socket()) as again:
         again.bind(("127.0.0.1", server.port))
@@ -526,12 +526,12 @@ def test_importing_the_playground_imports_no_server():
     assert done.stdout.strip() == "[]"
 
 
-def test_closing_ends_open_sockets_and_requests_that_wait(desk: Desk):
+def test_closing_ends_open_sockets_and_requests_that_wait(harness: Harness):
     import threading
     import time
 
-    url = opened(desk)
-    server = desk.remotes.server
+    url = opened(harness)
+    server = harness.remotes.server
     closed: list[object] = []
     listening = threading.Event()
 
@@ -551,13 +551,13 @@ def test_closing_ends_open_sockets_and_requests_that_wait(desk: Desk):
 
     listener = threading.Thread(target=listen, daemon=True)
     listener.start()
-    desk.until(listening.is_set)
+    harness.until(listening.is_set)
     asker = threading.Thread(target=ask, daemon=True)
     asker.start()
-    while not desk.remotes.calls:
+    while not harness.remotes.calls:
         time.sleep(0.001)
     start = time.monotonic()
-    desk.remotes.close()
+    harness.remotes.close()
     listener.join(5)
     asker.join(5)
     assert server is not None and not server._thread.is_alive() and time.monotonic() - start < 4
@@ -565,10 +565,10 @@ def test_closing_ends_open_sockets_and_requests_that_wait(desk: Desk):
 
 
 def test_bytes_that_are_no_http_and_bugs_print_nothing(
-    desk: Desk, capfd: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
+    harness: Harness, capfd: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
 ):
-    url = opened(desk)
-    server = desk.remotes.server
+    url = opened(harness)
+    server = harness.remotes.server
     assert server is not None
     for data in (b"\xff" * 200, b"GET / HTTP/9.9\r\n\r\n", b"GET " + b"a" * 100_000 + b" HTTP/1.1\r\n\r\n"):
         with closing(socket.create_connection(("127.0.0.1", server.port))) as other:
@@ -581,7 +581,7 @@ def test_bytes_that_are_no_http_and_bugs_print_nothing(
     def fails(*_: object) -> None:
         raise ZeroDivisionError("as a bug would")
 
-    desk.remotes._controls.state = fails  # type: ignore
-    status, text = desk.during(lambda: fetched(f"{url}state"))
+    harness.remotes._controls.state = fails  # type: ignore
+    status, text = harness.during(lambda: fetched(f"{url}state"))
     assert status == 500 and "ZeroDivisionError" in json.loads(text)["error"]
     assert capfd.readouterr() == ("", "") and caplog.records == []

@@ -75,9 +75,9 @@ class Driven:
             screen, folder, [sys.executable, "-c", FRAMES, str(self.frames), *words], folder
         )
         self.program.wait(lambda now: now["draws"] > 0)
-        found = re.search(r"http://\S+", self.program.complaint())
-        assert found, self.program.complaint()
-        self.url = found[0]
+        result = re.search(r"http://\S+", self.program.complaint())
+        assert result, self.program.complaint()
+        self.url = result[0]
 
     def level(self) -> float:
         return float(self.program.now()["edited"].get("height.level", 0.5))
@@ -85,9 +85,9 @@ class Driven:
     def memory(self) -> float:
         """Return its resident memory [MiB]."""
         text = Path(f"/proc/{self.program.process.pid}/status").read_text("utf-8")
-        found = re.search(r"VmRSS:\s*(\d+)", text)
-        assert found
-        return int(found[1]) / 1024
+        result = re.search(r"VmRSS:\s*(\d+)", text)
+        assert result
+        return int(result[1]) / 1024
 
     def processor(self) -> float:
         """Return the processor time that it has used [s]: what other programs do meanwhile is not in it."""
@@ -128,7 +128,7 @@ def test_a_script_drives_a_window_and_ctrl_c_ends_it(driven: Driven) -> None:
 
     before, after, parameters = asyncio.run(go())
     assert before[:8] == after[:8] == b"\x89PNG\r\n\x1a\n" and before != after
-    assert {one["path"]: one["value"] for one in parameters}["height.level"] == 0.9
+    assert {parameter["path"]: parameter["value"] for parameter in parameters}["height.level"] == 0.9
     driven.program.wait(lambda now: now["edited"].get("height.level") == 0.9)
     driven.program.process.send_signal(signal.SIGINT)
     assert driven.program.ended() == 130, driven.program.complaint()
@@ -172,9 +172,9 @@ def test_a_flood_loses_no_last_value_and_frames_go_on(driven: Driven) -> None:
         took, used = time.monotonic() - start, driven.processor() - used
         if last is not None:
             driven.program.wait(lambda now, last=last: now["edited"].get("height.level") == last)
-        found = driven.intervals(start)
-        middle, worst = found[len(found) // 2], found[int(len(found) * 0.99)]
-        figures[name] = (took, len(found), middle * 1e3, worst * 1e3, used * 1e3)
+        intervals = driven.intervals(start)
+        middle, worst = intervals[len(intervals) // 2], intervals[int(len(intervals) * 0.99)]
+        figures[name] = (took, len(intervals), middle * 1e3, worst * 1e3, used * 1e3)
     asyncio.run(sockets(COUNT, 0.25))
     driven.program.wait(lambda now: now["edited"].get("height.level") == 0.25)
     growth = driven.memory() - memory

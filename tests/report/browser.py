@@ -81,16 +81,16 @@ class Browser:
     def wait(self, condition: str, *arguments: object) -> Any:
         """Return what an expression gives as soon as that is true."""
         end = time.monotonic() + GENEROUS
-        while not (found := self.run(f"return {condition}", *arguments)):
+        while not (value := self.run(f"return {condition}", *arguments)):
             assert time.monotonic() < end, f"never: {condition}; log: {self.log()}"
             time.sleep(0.05)
-        return found
+        return value
 
     def click(self, selector: str) -> None:
         """Click on an element as a hand would: it has to be there and uncovered."""
-        found = self._ask("POST", "/element", {"using": "css selector", "value": selector})
-        self.run("arguments[0].scrollIntoView({ block: 'center', behavior: 'instant' })", found)
-        self._ask("POST", f"/element/{found[ELEMENT]}/click", {})
+        result = self._ask("POST", "/element", {"using": "css selector", "value": selector})
+        self.run("arguments[0].scrollIntoView({ block: 'center', behavior: 'instant' })", result)
+        self._ask("POST", f"/element/{result[ELEMENT]}/click", {})
 
     def press(self, *keys: str) -> None:
         """Press keys one after the other, wherever the focus is."""
@@ -103,8 +103,8 @@ class Browser:
 
     def drag(self, selector: str, start: tuple[int, int], end: tuple[int, int]) -> None:
         """Drag from one place to another, in pixels from an element's middle."""
-        found = self._ask("POST", "/element", {"using": "css selector", "value": selector})
-        move = {"type": "pointerMove", "duration": 0, "origin": found}
+        result = self._ask("POST", "/element", {"using": "css selector", "value": selector})
+        move = {"type": "pointerMove", "duration": 0, "origin": result}
         actions: list[dict[str, object]] = [{**move, "x": start[0], "y": start[1]}]
         actions += [{"type": "pointerDown", "button": 0}, {**move, "x": end[0], "y": end[1]}]
         actions += [{"type": "pointerUp", "button": 0}]
@@ -116,8 +116,8 @@ class Browser:
 
     def log(self) -> list[str]:
         """Return the errors on the console since the last call, and what a policy refused."""
-        found = self._ask("POST", "/se/log", {"type": "browser"})
-        return [str(entry["message"]) for entry in found if entry["level"] == "SEVERE"]
+        result = self._ask("POST", "/se/log", {"type": "browser"})
+        return [str(entry["message"]) for entry in result if entry["level"] == "SEVERE"]
 
     def picture(self) -> bytes:
         """Return a PNG of the window."""

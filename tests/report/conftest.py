@@ -29,19 +29,19 @@ def leave(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Reco
         **fields: object,
     ) -> Record:
         sketch, shot = name.split("/")
-        place = tmp_path / "screenshots" / sketch / "llvmpipe"
+        position = tmp_path / "screenshots" / sketch / "llvmpipe"
         pictures = {}
         values: dict[str, object] = {"word": "crash", "sentence": "the process died"}
         if actual is not None:
-            found = compare(actual, expected)
-            values = {"word": found.verdict, "sentence": str(found), "renderer": "llvmpipe", "texts": TEXTS}
-            values |= {"size": found.size, "expected_size": found.expected_size, "place": found.place}
+            result = compare(actual, expected)
+            values = {"word": result.verdict, "sentence": str(result), "renderer": "llvmpipe", "texts": TEXTS}
+            values |= {"size": result.size, "expected_size": result.expected_size, "place": result.position}
             values |= {"root": str(tmp_path), "home": "screenshots"}
             pictures = {"actual": actual}
         if expected is not None:
-            place.mkdir(parents=True, exist_ok=True)
-            (place / f"{shot}.png").write_bytes(encode_png(expected, BEFORE))
-            files = accepted_in(place, shot)
+            position.mkdir(parents=True, exist_ok=True)
+            (position / f"{shot}.png").write_bytes(encode_png(expected, BEFORE))
+            files = accepted_in(position, shot)
             values |= {"expected_texts": BEFORE, "compared": f"{shot}.png", "references": digests_of(files)}
             values |= {
                 "tier": "same build",

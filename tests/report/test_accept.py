@@ -1,4 +1,4 @@
-"""Accepting: the very picture that was looked at becomes the reference, or a sentence says why not."""
+"""Accepting: the very picture that was looked at becomes the reference, or a message says why not."""
 
 from __future__ import annotations
 

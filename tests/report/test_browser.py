@@ -43,7 +43,7 @@ def page(leave, browser: Browser) -> Iterator[Browser]:
 
 
 def pixel(browser: Browser, x: float, y: float) -> list[int]:
-    """Return what the first pane shows at a share of its width and height."""
+    """Return what the first pane shows at a fraction of its width and height."""
     browser.run("return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     return browser.run(
         f"const c = {CANVAS}; return [...c.getContext('2d').getImageData("
@@ -110,10 +110,10 @@ def test_zoomed_to_the_worst_pixel_it_is_one_square(page: Browser) -> None:
     page.wait('document.querySelector(".current .level").textContent.trim() === "1600 %"')  # drawn by now
     assert shown(page, ".current .where") == f"x {x}, y {y}"
     difference = read_png(Path("results/hills/dawn.difference.png"))[0]
-    found = page.run("return [viewer.x, viewer.y, viewer.zoom]")
+    result = page.run("return [viewer.x, viewer.y, viewer.zoom]")
     width, height = page.run(f"return [{CANVAS}.clientWidth, {CANVAS}.clientHeight]")
     for dx, dy in ((0.3, 0.3), (0.7, 0.7), (0.3, 0.7)):  # inside it, off the grid and the frame
-        left, top = width / 2 + (x + dx - found[0]) * 16, height / 2 + (y + dy - found[1]) * 16
+        left, top = width / 2 + (x + dx - result[0]) * 16, height / 2 + (y + dy - result[1]) * 16
         assert pixel(page, left / width, top / height) == difference[y, x].tolist()
 
 
@@ -139,10 +139,10 @@ def test_names_stay_text(page: Browser) -> None:
 
 
 def test_a_click_accepts_and_another_undoes(leave, browser: Browser) -> None:
-    place = Path("screenshots/hills/llvmpipe")
+    path = Path("screenshots/hills/llvmpipe")
     leave("hills/dawn", picture(1, 64, 36), picture(2, 64, 36))
     leave("hills/dusk", picture(3))
-    before = (place / "dawn.png").read_bytes()
+    before = (path / "dawn.png").read_bytes()
     with Review(Path("results")) as review:
         serving = threading.Thread(target=review.serve, daemon=True)
         serving.start()
@@ -151,11 +151,11 @@ def test_a_click_accepts_and_another_undoes(leave, browser: Browser) -> None:
         browser.wait('document.querySelector(".current [data-do=accept]:enabled")')
         browser.click(".current [data-do=accept]")
         browser.wait('document.querySelector(".current").dataset.state === "accepted"')
-        np.testing.assert_array_equal(read_png(place / "dawn.png")[0], picture(1, 64, 36))
+        np.testing.assert_array_equal(read_png(path / "dawn.png")[0], picture(1, 64, 36))
         assert "wrote screenshots/hills/llvmpipe/dawn.png" in shown(browser, ".current .message")
         browser.press("u")
         browser.wait('document.querySelector(".current").dataset.state === "open"')
-        assert (place / "dawn.png").read_bytes() == before
+        assert (path / "dawn.png").read_bytes() == before
         browser.click("#accept-shown")
         assert browser.run('return document.querySelector("#ask-list").innerText.split("\\n")') == [
             "hills/dawn",
@@ -166,7 +166,7 @@ def test_a_click_accepts_and_another_undoes(leave, browser: Browser) -> None:
         browser.wait(
             'document.querySelectorAll(".shot[data-state=further], .shot[data-state=accepted]").length === 2'
         )
-        assert sorted(path.name for path in place.iterdir()) == ["dawn.2.png", "dawn.png", "dusk.png"]
+        assert sorted(path.name for path in path.iterdir()) == ["dawn.2.png", "dawn.png", "dusk.png"]
         browser.click("#done")
         serving.join(120)
         assert not serving.is_alive()

@@ -52,16 +52,16 @@ class Page(HTMLParser):
         for index in self._open:
             self.elements[index][2].append(text)
 
-    def all(self, name: str, **wanted: str) -> list[tuple[dict[str, str | None], str]]:
+    def all(self, name: str, **expected: str) -> list[tuple[dict[str, str | None], str]]:
         return [
             (attributes, "".join(text))
-            for found, attributes, text in self.elements
-            if found == name
-            and all(attributes.get(k.rstrip("_").replace("_", "-")) == v for k, v in wanted.items())
+            for result, attributes, text in self.elements
+            if result == name
+            and all(attributes.get(k.rstrip("_").replace("_", "-")) == v for k, v in expected.items())
         ]
 
-    def text(self, name: str, **wanted: str) -> str:
-        return self.all(name, **wanted)[0][1]
+    def text(self, name: str, **expected: str) -> str:
+        return self.all(name, **expected)[0][1]
 
 
 def made() -> Page:
@@ -193,15 +193,15 @@ def test_every_word_has_its_own_explanation(leave) -> None:
     leave(actual=picture(1), expected=picture(2))
     (record,) = read_results(Path("results"))
     sentences = set()
-    for word, found in MEANINGS.items():
+    for word, meaning in MEANINGS.items():
         if word == "same":
             continue
         page = Page(report_html([replace(record, word=word, tier="")], Path("results")))
-        assert page.text("p", class_="meaning") == found.sentence
-        sentences.add(found.sentence)
+        assert page.text("p", class_="meaning") == meaning.sentence
+        sentences.add(meaning.sentence)
         commands = [text for _, text in page.all("code")]
         assert bool(commands) is (word not in NEVER_ACCEPTED)
-        assert found.broken is (word in NEVER_ACCEPTED)
+        assert meaning.broken is (word in NEVER_ACCEPTED)
     assert len(sentences) == len(MEANINGS) - 1
     page = Page(report_html([replace(record, tier="same build", catches="Any change.")], Path("results")))
     assert page.text("p", class_="meaning").endswith(" Any change.")
@@ -229,8 +229,8 @@ def test_pictures_of_passed_shots_are_left_out_and_too_many_become_links(leave, 
     for number in range(4):
         leave(f"a/shot-{number}", picture(number), picture(number + 10))
     records = read_results(Path("results"))
-    one = sum((Path("results") / name).stat().st_size for name in records[0].pictures.values())
-    html = report_html(records, Path("results"), Path("../results"), most=int(one * 1.4 * 2.5))
+    item = sum((Path("results") / name).stat().st_size for name in records[0].pictures.values())
+    html = report_html(records, Path("results"), Path("../results"), most=int(item * 1.4 * 2.5))
     page = Page(html)
     assert len(page.all("img")) == 6
     links = [a["href"] for a, _ in page.all("a") if not a["href"].startswith("#")]

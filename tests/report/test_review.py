@@ -120,7 +120,7 @@ def test_nearly_its_token_is_not_its_token(client: Client) -> None:
     "host", ["evil.example", "evil.example:{port}", "127.0.0.1", "127.0.0.1:1", "127.0.0.1.:{port}", ""]
 )
 def test_a_name_that_was_made_to_lead_here_is_turned_away(client: Client, host: str) -> None:
-    """DNS rebinding: the browser believes that it asks a foreign host, and says so."""
+    """DNS rebinding: the browser believes that it asks a foreign host, and reports it."""
     host = host.format(port=client.review.port)
     for method, path in (("GET", ""), ("GET", "state"), ("POST", "act"), ("POST", "done")):
         status, text, _ = client.ask(method, path, {} if method == "POST" else None, Host=host)
@@ -334,8 +334,8 @@ def test_accept_as_further_keeps_the_reference(client: Client) -> None:
 
 
 def test_several_are_accepted_and_each_refusal_has_its_words(client: Client) -> None:
-    found = records()
-    answers = client.act("accept", found["dawn"], found["night"], found["noon"], found["dusk"])
+    result = records()
+    answers = client.act("accept", result["dawn"], result["night"], result["noon"], result["dusk"])
     assert [answer["ok"] for answer in answers] == [True, False, False, True]
     assert answers[1]["message"] == "no reference can be made of it (took more than 60 s)"
     assert "it passed" in str(answers[2]["message"])
@@ -348,7 +348,7 @@ def test_a_second_tab_cannot_accept_or_undo_twice(client: Client) -> None:
     assert client.act("undo", dawn)[0] == {
         "name": "hills/dawn",
         "ok": False,
-        "message": "there is nothing to undo",
+        "message": "nothing to undo",
     }
     client.act("accept", dawn)
     before = files()
@@ -454,14 +454,14 @@ def test_the_command_prints_its_address_and_says_at_the_end_what_was_accepted(
     opened: list[str] = []
 
     def accept_and_end(url: str) -> None:
-        found = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/([\w-]+)/", url)
-        assert found, url
-        connection = http.client.HTTPConnection("127.0.0.1", int(found[1]), timeout=GENEROUS)
+        result = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/([\w-]+)/", url)
+        assert result, url
+        connection = http.client.HTTPConnection("127.0.0.1", int(result[1]), timeout=GENEROUS)
         for path, body in (
             ("act", {"action": "accept", "shots": [{"name": record.name, "stamp": record.stamp}]}),
             ("done", {}),
         ):
-            connection.request("POST", f"/{found[2]}/{path}", json.dumps(body), {"X-Shots-Token": found[2]})
+            connection.request("POST", f"/{result[2]}/{path}", json.dumps(body), {"X-Shots-Token": result[2]})
             assert connection.getresponse().read()
         connection.close()
 

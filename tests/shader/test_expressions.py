@@ -66,7 +66,7 @@ def test_random_expressions_agree_with_exact_arithmetic():
         if abs(value) > 2**40 or value.denominator > 2**40:
             continue
         try:
-            found = evaluate(text, NAMES)
+            result = evaluate(text, NAMES)
         except ExpressionError as error:
             fine = "whole number" in str(error) and value.denominator != 1
             assert fine or "grows" in str(error) or "large" in str(error) or "longer" in str(error), (
@@ -74,7 +74,7 @@ def test_random_expressions_agree_with_exact_arithmetic():
                 error,
             )
         else:
-            assert found == value and type(found) is int, text
+            assert result == value and type(result) is int, text
             exact += 1
     assert exact > 1000
 
@@ -102,8 +102,8 @@ def test_random_expressions_agree_with_exact_arithmetic():
     ],
 )
 def test_what_an_expression_gives(text, value):
-    found = evaluate(text, NAMES)
-    assert found == value and type(found) is int
+    result = evaluate(text, NAMES)
+    assert result == value and type(result) is int
 
 
 @each("n", range(63))

@@ -32,9 +32,9 @@ def parse(tmp_path):
 @pytest.fixture
 def parameter(parse):
     def parameter_(line: str) -> Parameter:
-        found = parse(KERNEL + line + "\n")
-        assert found is not None
-        return found.parameters[0]
+        result = parse(KERNEL + line + "\n")
+        assert result is not None
+        return result.parameters[0]
 
     return parameter_
 
@@ -44,10 +44,10 @@ def refused(parse):
     def refused_(text: str, words: str, line: int = 1) -> None:
         with pytest.raises(ShaderError) as caught:
             parse(text)
-        found = caught.value.diagnostics[0]
-        assert words in found.message and "\n" not in found.message, found.message
-        assert (Path(found.file).name, found.line) == ("main.glsl", line), found
-        assert found.excerpt == text.split("\n")[line - 1]
+        diagnostic = caught.value.diagnostics[0]
+        assert words in diagnostic.message and "\n" not in diagnostic.message, diagnostic.message
+        assert (Path(diagnostic.file).name, diagnostic.line) == ("main.glsl", line), diagnostic
+        assert diagnostic.excerpt == text.split("\n")[line - 1]
 
     return refused_
 
@@ -56,7 +56,7 @@ def refused(parse):
 
 
 def test_a_kernel_s_header(parse):
-    found = parse(
+    result = parse(
         """\
 // main.glsl -- terrain by halving.
 #pragma kernel(output = "height:r32f, water:rgba16f", repeat = "2 * log2(size.x - 1)", \\
@@ -68,22 +68,22 @@ uniform int steps = 3;     //! slider(1, 9) unit("steps") label("How often") gro
                            //  too often
 """
     )
-    assert found.kind == "kernel" and found.title == "Terrain by halving"
-    assert [(o.name, o.format, o.components, o.glsl) for o in found.outputs] == [
+    assert result.kind == "kernel" and result.title == "Terrain by halving"
+    assert [(o.name, o.format, o.components, o.glsl) for o in result.outputs] == [
         ("height", "r32f", 1, "float"),
         ("water", "rgba16f", 4, "vec4"),
     ]
-    assert (found.repeat, found.accepts) == ("2 * log2(size.x - 1)", "2**n + 1")
-    assert found.visits == "size.x, 2 if iteration == 0 else steps"
-    before, light = found.inputs
+    assert (result.repeat, result.accepts) == ("2 * log2(size.x - 1)", "2**n + 1")
+    assert result.visits == "size.x, 2 if iteration == 0 else steps"
+    before, light = result.inputs
     assert (before.sampling.filter, before.sampling.wrap, before.sampling.mipmap) == (
         "linear",
         "repeat",
         True,
     )
     assert (light.fallback, light.sampling.filter, light.sampling.wrap) == ("white", "nearest", "clamp")
-    assert found.needs_inputs == ("before",)
-    grass, steps = found.parameters
+    assert result.needs_inputs == ("before",)
+    grass, steps = result.parameters
     assert (grass.default, grass.group, grass.tooltip, grass.sampling.wrap) == (
         "textures/grass.png",
         "Ground",
@@ -133,11 +133,11 @@ uniform int steps = 3;     //! slider(1, 9) unit("steps") label("How often") gro
     ],
 )
 def test_a_parameter(parameter, line, glsl, default, kind, low, high):
-    found = parameter(line)
-    assert (found.name, found.type, found.widget.kind) == ("a", glsl, kind)
-    assert found.default == default and type(found.default) is type(default)
-    assert (found.widget.low, found.widget.high) == (low, high)
-    assert found.line == 2 and Path(found.file).name == "main.glsl"
+    result = parameter(line)
+    assert (result.name, result.type, result.widget.kind) == ("a", glsl, kind)
+    assert result.default == default and type(result.default) is type(default)
+    assert (result.widget.low, result.widget.high) == (low, high)
+    assert result.line == 2 and Path(result.file).name == "main.glsl"
 
 
 @pytest.mark.parametrize(
@@ -154,21 +154,21 @@ def test_a_parameter(parameter, line, glsl, default, kind, low, high):
     ],
 )
 def test_a_tooltip_begins_where_the_calls_end(parameter, note, kind, tooltip):
-    found = parameter(f"uniform float a = 0.5; //! {note}")
-    assert (found.widget.kind, found.tooltip) == (kind, tooltip)
+    result = parameter(f"uniform float a = 0.5; //! {note}")
+    assert (result.widget.kind, result.tooltip) == (kind, tooltip)
     if "unit(" in note:
-        assert found.unit == 'm (up), "z"'
+        assert result.unit == 'm (up), "z"'
 
 
 def test_the_parts_of_a_vector_have_names(parameter):
-    found = parameter('uniform vec4 a; //! slider(0, 1) parts("SW", "SE", "NW", "NE") Heights')
-    assert found.parts == ("SW", "SE", "NW", "NE") and found.tooltip == "Heights"
+    result = parameter('uniform vec4 a; //! slider(0, 1) parts("SW", "SE", "NW", "NE") Heights')
+    assert result.parts == ("SW", "SE", "NW", "NE") and result.tooltip == "Heights"
     assert parameter("uniform vec4 a; //! slider(0, 1)").parts == ()
 
 
 def test_brackets_and_commas_in_a_menu_s_names(parameter):
-    found = parameter('uniform int a = 0; //! menu("plain (thesis)", "a, b", "c) d") Which')
-    assert found.widget.choices == ("plain (thesis)", "a, b", "c) d") and found.tooltip == "Which"
+    result = parameter('uniform int a = 0; //! menu("plain (thesis)", "a, b", "c) d") Which')
+    assert result.widget.choices == ("plain (thesis)", "a, b", "c) d") and result.tooltip == "Which"
 
 
 def test_the_choice_of_previews_is_one_of_the_menu_s(parameter):
@@ -185,8 +185,8 @@ def test_a_library_file_declares_nothing(parse):
 
 def test_an_included_kernel_gives_its_functions_and_parameters_only(parse, tmp_path):
     (tmp_path / "other.glsl").write_text('#pragma kernel(output = "x:r8")\nuniform float gain = 1.0;\n')
-    found = parse(KERNEL + '#include "other.glsl"\n')
-    assert [o.name for o in found.outputs] == ["height"] and [p.name for p in found.parameters] == ["gain"]
+    result = parse(KERNEL + '#include "other.glsl"\n')
+    assert [o.name for o in result.outputs] == ["height"] and [p.name for p in result.parameters] == ["gain"]
     assert parse('#include "other.glsl"\n') is None
 
 
@@ -194,8 +194,8 @@ def test_a_guarded_file_may_come_twice_by_two_ways(parse, tmp_path):
     (tmp_path / "base.glsl").write_text("#ifndef B\n#define B\nuniform float gain = 1.0;\n#endif\n")
     for name in "ab":
         (tmp_path / f"{name}.glsl").write_text('#include "base.glsl"\n')
-    found = parse(KERNEL + '#include "a.glsl"\n#include "b.glsl"\n')
-    assert [p.name for p in found.parameters] == ["gain"]
+    result = parse(KERNEL + '#include "a.glsl"\n#include "b.glsl"\n')
+    assert [p.name for p in result.parameters] == ["gain"]
 
 
 @pytest.mark.parametrize(
@@ -216,32 +216,32 @@ def test_a_guarded_file_may_come_twice_by_two_ways(parse, tmp_path):
 )
 def test_a_title_is_the_file_s_first_sentence(parse, tmp_path, text, title):
     (tmp_path / "lib.glsl").write_text("// lib.glsl -- a library.\n")
-    found = parse(text + ("void main() {}\n" if "#version" in text else KERNEL))
-    assert found.title == title
+    result = parse(text + ("void main() {}\n" if "#version" in text else KERNEL))
+    assert result.title == title
 
 
 def test_sources_draws_and_compute_variants(parse):
-    found = parse('#pragma source("elevation_file", output = "height:r32f")\n')
-    assert (found.kind, found.registry, found.outputs[0].name) == ("source", "elevation_file", "height")
-    found = parse(
+    result = parse('#pragma source("elevation_file", output = "height:r32f")\n')
+    assert (result.kind, result.registry, result.outputs[0].name) == ("source", "elevation_file", "height")
+    result = parse(
         '#pragma draw(mesh = "grid", blend = "alpha", depth = "none", repeat = "1 if sea else 0")\n'
         "uniform bool sea;\n"
     )
-    assert (found.kind, found.mesh, found.blend, found.depth) == ("draw", "grid", "alpha", "none")
-    assert (found.outputs[0].name, found.outputs[0].format) == ("frame", "rgba16f")
-    assert (found.count, found.samples) == ("", 0)
-    found = parse(
+    assert (result.kind, result.mesh, result.blend, result.depth) == ("draw", "grid", "alpha", "none")
+    assert (result.outputs[0].name, result.outputs[0].format) == ("frame", "rgba16f")
+    assert (result.count, result.samples) == ("", 0)
+    result = parse(
         '#pragma draw(mesh = "triangles", count = "2 * points + size.x", samples = 1)\nuniform int points;\n'
     )
-    assert (found.count, found.samples) == ("2 * points + size.x", 1)
+    assert (result.count, result.samples) == ("2 * points + size.x", 1)
     table = '#pragma draw(mesh = "triangles", count = "t.size.x // 3")\nuniform sampler2D t;  //! input\n'
     assert parse(table).count == "t.size.x // 3"
-    found = parse(
+    result = parse(
         '#pragma compute(groups = "size.y, 1", local = "256, 1", '
         'buffers = "stack:vec4:size.x * 64; n:uint:1")\n'
     )
-    assert (found.kind, found.groups, found.local) == ("compute", "size.y, 1", (256, 1))
-    assert [(b.name, b.type, b.count) for b in found.storage.buffers] == [
+    assert (result.kind, result.groups, result.local) == ("compute", "size.y, 1", (256, 1))
+    assert [(b.name, b.type, b.count) for b in result.storage.buffers] == [
         ("stack", "vec4", "size.x * 64"),
         ("n", "uint", "1"),
     ]
@@ -259,21 +259,21 @@ uniform int computed = 1 + 2
 out vec4 colour;
 void main() { colour = vec4(texture2D(x, gl_FragCoord.xy)); }
 """
-    found = parse(text)
-    assert (found.kind, found.title) == ("plain_fragment", "A plain one")
-    assert [p.name for p in found.parameters] == ["gain"]
+    result = parse(text)
+    assert (result.kind, result.title) == ("plain_fragment", "A plain one")
+    assert [p.name for p in result.parameters] == ["gain"]
     text = "#version 430\nlayout(local_size_x = 16, local_size_y = 8) in;\n"
     text += "layout(rgba16f, binding = 0) writeonly uniform image2D picture;\nvoid main() {}\n"
-    found = parse(text)
-    assert (found.kind, found.local, found.outputs[0].format) == ("plain_compute", (16, 8), "rgba16f")
+    result = parse(text)
+    assert (result.kind, result.local, result.outputs[0].format) == ("plain_compute", (16, 8), "rgba16f")
 
 
 @each("path", sorted(GLSL.rglob("*.glsl")), ids=lambda p: p.stem)
 def test_every_shipped_file_has_a_header_that_can_be_read(path):
-    found = read_kernel(path, GLSL)
-    if found is not None:
-        assert found.title and found.outputs
-        assert all(p.tooltip for p in found.parameters)
+    kernel = read_kernel(path, GLSL)
+    if kernel is not None:
+        assert kernel.title and kernel.outputs
+        assert all(p.tooltip for p in kernel.parameters)
 
 
 def test_the_readme_lists_every_option_of_a_pragma():
@@ -445,9 +445,9 @@ def test_a_mistake_in_an_included_file_is_reported_there(parse, tmp_path):
     (tmp_path / "lib.glsl").write_text("\nuniform float a = x;\n")
     with pytest.raises(ShaderError) as caught:
         parse(KERNEL + '#include "lib.glsl"\n')
-    found = caught.value.diagnostics[0]
-    assert (Path(found.file).name, found.line, found.column) == ("lib.glsl", 2, 19)
-    assert [Path(place).name for place in found.chain] == ["main.glsl:2"]
+    diagnostic = caught.value.diagnostics[0]
+    assert (Path(diagnostic.file).name, diagnostic.line, diagnostic.column) == ("lib.glsl", 2, 19)
+    assert [Path(position).name for position in diagnostic.chain] == ["main.glsl:2"]
 
 
 def test_columns_point_at_the_word(parse):

@@ -63,9 +63,9 @@ def stones(write, tmp_path):
 def refused(path):
     with pytest.raises(ShaderError) as caught:
         load(path)
-    (found,) = caught.value.diagnostics
-    assert "\n" not in found.message
-    return found
+    (result,) = caught.value.diagnostics
+    assert "\n" not in result.message
+    return result
 
 
 def test_an_include_is_found_once_its_library_is_named(write, stones, any_engine):
@@ -76,10 +76,10 @@ def test_an_include_is_found_once_its_library_is_named(write, stones, any_engine
         "folder once: playground library add stones FOLDER"
     )
     assert named.add_library("stones", stones) == stones
-    found = load(path)
-    files = [Path(name).name for name in found.graph.find("view").technique.files]
+    result = load(path)
+    files = [Path(name).name for name in result.graph.find("view").technique.files]
     assert files == ["a.frag", "red.glsl", "half.glsl", "twice.glsl"]
-    picture = any_engine.render(found, size=(4, 2)).array
+    picture = any_engine.render(result, size=(4, 2)).array
     assert picture[0, :, 0].tolist() == [32, 96, 159, 223]  # (x + 1/2) / 4, twice a half
 
 
@@ -150,8 +150,12 @@ def test_a_mistake_in_a_library_is_at_its_own_line(write, stones, any_engine):
     named.add_library("stones", stones)
     with pytest.raises(ShaderError) as caught:
         any_engine.render(load(write("own/a.frag", TOP)), size=(4, 2))
-    found = caught.value.diagnostics[0]
-    assert (found.file.endswith("maths/twice.glsl"), found.line, len(found.chain)) == (True, 2, 2)
+    diagnostic = caught.value.diagnostics[0]
+    assert (diagnostic.file.endswith("maths/twice.glsl"), diagnostic.line, len(diagnostic.chain)) == (
+        True,
+        2,
+        2,
+    )
 
 
 def test_what_is_wrong_is_one_sentence(write, stones, tmp_path):
@@ -255,5 +259,9 @@ def test_passes_of_one_text_include_from_it_once_for_all(write, stones, any_engi
     write("far/stones/blur.glsl", blur.replace("* 0.5", "* not_declared"))
     with pytest.raises(ShaderError) as caught:
         any_engine.render(load(path), size=(4, 4))
-    found = caught.value.diagnostics[0]
-    assert (found.file.endswith("stones/blur.glsl"), found.line, len(found.chain)) == (True, 5, 1)
+    diagnostic = caught.value.diagnostics[0]
+    assert (diagnostic.file.endswith("stones/blur.glsl"), diagnostic.line, len(diagnostic.chain)) == (
+        True,
+        5,
+        1,
+    )

@@ -140,8 +140,8 @@ def test_a_remainder_of_floats_on_other_drivers(message: str) -> None:
 def test_nothing_is_guessed_where_nothing_is_sure(tmp_path: Path, line: str, message: str) -> None:
     text = "const float heat1 = 1.0;\nconst float heat2 = 2.0;\n" + BODY.format(line)
     kernel = read(tmp_path, text)
-    place = next(ln for ln in kernel.source.lines if line in ln.code)
-    assert guess(message, kernel.source, place) == ""
+    position = next(ln for ln in kernel.source.lines if line in ln.code)
+    assert guess(message, kernel.source, position) == ""
 
 
 def test_what_a_driver_warns_of_is_reported_in_the_kernel_s_lines(
@@ -152,9 +152,9 @@ def test_what_a_driver_warns_of_is_reported_in_the_kernel_s_lines(
     wrapped = wrap(read(tmp_path, BODY.format("float a; return a;")), FRAGMENT)
     compile_wrapped(ctx, wrapped).release()
     for _ in range(2):  # a text that is in the driver's cache by now is reported all the same
-        (found,) = warnings_of(ctx, wrapped)
-        assert (found.severity, found.line, found.column) == ("warning", 5, 21)
-        assert "`a' used uninitialized" in found.message and found.file.endswith("k.glsl")
+        (result,) = warnings_of(ctx, wrapped)
+        assert (result.severity, result.line, result.column) == ("warning", 5, 21)
+        assert "`a' used uninitialized" in result.message and result.file.endswith("k.glsl")
     assert warnings_of(ctx, wrap(read(tmp_path, BODY.format("return level;")), FRAGMENT)) == ()
     assert warnings_of(ctx, wrap(read(tmp_path, BODY.format("return leve;")), FRAGMENT)) == ()
     assert ctx.error == "GL_NO_ERROR"
@@ -197,9 +197,9 @@ AROUND = """void mainImage(out vec4 c, in vec2 p) {{
 def test_a_name_is_one_error_and_other_mistakes_stay(ctx: moderngl.Context, tmp_path: Path) -> None:
     if "llvmpipe" not in ctx.info["GL_RENDERER"]:
         pytest.skip("each driver finds other mistakes")
-    found = errors(ctx, foreign(tmp_path, AROUND.format("iChanel0")))
-    assert [(line, column) for line, column, _ in found] == [(4, 9), (6, 5)]
-    assert "did you mean `iChannel0`?" in found[0][2]
+    result = errors(ctx, foreign(tmp_path, AROUND.format("iChanel0")))
+    assert [(line, column) for line, column, _ in result] == [(4, 9), (6, 5)]
+    assert "did you mean `iChannel0`?" in result[0][2]
 
 
 def test_the_forms_of_a_function_are_the_few_nearest(ctx: moderngl.Context, tmp_path: Path) -> None:
@@ -232,8 +232,8 @@ def test_other_drivers_errors_are_folded_too(tmp_path: Path, name: str) -> None:
     wrapped = wrap(foreign(tmp_path, text), FRAGMENT, 450)
     first = wrapped.stages["fragment"].first
     log = LOGS[name].format(first + 1, first + 2)
-    found = explain(f"GLSL Compiler failed\n\nfragment_shader\n======\n{log}", wrapped).diagnostics
-    assert [(d.line, "iChannel0" in d.message) for d in found] == [(2, True), (3, False)]
+    diagnostics = explain(f"GLSL Compiler failed\n\nfragment_shader\n======\n{log}", wrapped).diagnostics
+    assert [(d.line, "iChannel0" in d.message) for d in diagnostics] == [(2, True), (3, False)]
 
 
 # ── names by dialect ─────────────────────────────────────────────────────────

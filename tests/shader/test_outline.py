@@ -33,8 +33,8 @@ uniform vec3 tint = vec3(1.0);  //! colour
 
 
 def test_each_declaration_has_its_kind_its_signature_and_its_comment() -> None:
-    found = {one.name: one for one in outline(TEXT)}
-    assert {name: one.kind for name, one in found.items()} == {
+    result = {item.name: item for item in outline(TEXT)}
+    assert {name: item.kind for name, item in result.items()} == {
         "TWICE": "macro",
         "March": "struct",
         "steep": "function",
@@ -42,25 +42,25 @@ def test_each_declaration_has_its_kind_its_signature_and_its_comment() -> None:
         "LEAST": "variable",
         "tint": "uniform",
     }
-    assert found["steep"].signature == "float steep(vec2 slope, const in March march)"
-    assert found["steep"].comment == "How steep it is.\nNot how high."
-    assert found["asked"].is_prototype and not found["steep"].is_prototype
-    for one in found.values():
-        assert TEXT[one.at :].startswith(one.name)
-    assert TEXT[found["steep"].body] == "{" and TEXT[found["steep"].end - 1] == "}"
+    assert result["steep"].signature == "float steep(vec2 slope, const in March march)"
+    assert result["steep"].comment == "How steep it is.\nNot how high."
+    assert result["asked"].is_prototype and not result["steep"].is_prototype
+    for item in result.values():
+        assert TEXT[item.at :].startswith(item.name)
+    assert TEXT[result["steep"].body] == "{" and TEXT[result["steep"].end - 1] == "}"
 
 
 def test_a_function_knows_its_arguments_and_all_that_it_declares() -> None:
-    steep = next(one for one in outline(TEXT) if one.name == "steep")
-    found = locals_of(TEXT, steep)
-    assert [one.name for one in found] == ["slope", "march", "first", "second", "step", "far"]
-    assert all(TEXT[one.at :].startswith(one.name) for one in found)
+    steep = next(item for item in outline(TEXT) if item.name == "steep")
+    result = locals_of(TEXT, steep)
+    assert [item.name for item in result] == ["slope", "march", "first", "second", "step", "far"]
+    assert all(TEXT[item.at :].startswith(item.name) for item in result)
 
 
 def test_words_are_those_of_the_code() -> None:
-    found = {word for word, _ in words('#include "a/b.glsl"\n' + TEXT)}
-    assert found >= {"steep", "TWICE", "march", "far"}
-    assert not found & {"no", "comment", "hidden", "Not", "glsl", "colour"}
+    result = {word for word, _ in words('#include "a/b.glsl"\n' + TEXT)}
+    assert result >= {"steep", "TWICE", "march", "far"}
+    assert not result & {"no", "comment", "hidden", "Not", "glsl", "colour"}
     assert len(code_of(TEXT)) == len(TEXT)
 
 
@@ -82,12 +82,12 @@ def test_what_follows_a_pragma_with_slashes_is_declared(pragma: str) -> None:
     text = (
         pragma + "\nuniform float gain = 1.0;  //! slider(0, 1)\nfloat kernel(ivec2 texel) { return gain; }\n"
     )
-    assert [one.name for one in outline(text)] == ["gain", "kernel"]
+    assert [item.name for item in outline(text)] == ["gain", "kernel"]
 
 
 def test_what_a_bracket_never_closes_is_no_other_function() -> None:
     text = "float a(float x) {\n    if (x > 0.0) {\n    return x;\n}\nfloat b() { return 1.0; }\n"
-    assert [one.name for one in outline(text)] == ["a"]
+    assert [item.name for item in outline(text)] == ["a"]
 
 
 def test_every_function_of_the_library_is_in_the_outline_of_its_file() -> None:
@@ -96,7 +96,7 @@ def test_every_function_of_the_library_is_in_the_outline_of_its_file() -> None:
         name
         for name, files in library().items()
         for file in files
-        if name not in {one.name for one in outline((GLSL / file).read_text(encoding="utf-8"))}
+        if name not in {item.name for item in outline((GLSL / file).read_text(encoding="utf-8"))}
     ]
     assert missing == []
 

@@ -82,13 +82,13 @@ POINT = of("point", "vec2", 0.0, 1.0)
     ],
 )
 def test_what_is_taken(parameter, given, value):
-    found = coerce(parameter, given)
-    assert found == value and type(found) is type(value)
-    hash(found)
+    result = coerce(parameter, given)
+    assert result == value and type(result) is type(value)
+    hash(result)
 
 
 @pytest.mark.parametrize(
-    ("parameter", "given", "words"),
+    ("parameter", "value", "words"),
     [
         (SLIDER, 1.01, "outside its range 0 to 1"),
         (SLIDER, "x", "expected a number from 0 to 1"),
@@ -129,9 +129,9 @@ def test_what_is_taken(parameter, given, value):
         (POINT, "0.5,1.5", "outside its range"),
     ],
 )
-def test_what_is_refused_in_one_sentence(parameter, given, words):
+def test_what_is_refused_in_one_sentence(parameter, value, words):
     with pytest.raises(ParameterError, match=None) as caught:
-        coerce(parameter, given, "pass.p")
+        coerce(parameter, value, "pass.p")
     message = str(caught.value)
     assert words in message and message.startswith("pass.p") and "\n" not in message and len(message) < 300
 

@@ -27,9 +27,9 @@ def kernel(tmp_path):
         (tmp_path / "lib.glsl").write_text("float one() {\n    return 1.0;\n}\n")
         path = tmp_path / name
         path.write_text(text)
-        found = parse_kernel("k", read_source(path, (tmp_path,)))
-        assert found is not None
-        return found
+        result = parse_kernel("k", read_source(path, (tmp_path,)))
+        assert result is not None
+        return result
 
     return make
 
@@ -40,19 +40,19 @@ def kernel(tmp_path):
 def test_every_line_of_the_kernel_is_found_again(kernel, driver, stage, version):
     made = kernel(ONE)
     wrapped = wrap(made, driver)
-    found = wrapped.stages[stage]
-    lines = found.text.split("\n")
+    result = wrapped.stages[stage]
+    lines = result.text.split("\n")
     assert lines[0] == f"#version {version}"
     seen = 0
     for number, text in enumerate(lines, 1):
-        line = found.locate(number)
+        line = result.locate(number)
         if line is not None:
             assert line.code == text
             seen += 1
     assert seen == len(made.source.lines)
-    assert found.locate(0) is None
-    assert found.locate(1) is None
-    assert found.locate(len(lines) + 1) is None
+    assert result.locate(0) is None
+    assert result.locate(1) is None
+    assert result.locate(len(lines) + 1) is None
 
 
 def test_only_what_the_text_names_is_given(kernel):

@@ -133,8 +133,8 @@ def write_references(run: Run, written_references: dict[str, dict[Path, bytes]])
     def write(file: str, tests: int) -> Run:
         if file not in written_references:
             run(file, "--shots-update").assert_outcomes(passed=tests)
-            found = Path("screenshots").rglob("*.png")
-            written_references[file] = {path: path.read_bytes() for path in found}
+            paths = Path("screenshots").rglob("*.png")
+            written_references[file] = {path: path.read_bytes() for path in paths}
             shutil.rmtree("shots-report")
         for path, data in written_references[file].items():
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -81,16 +81,16 @@ Defect = Change | Rendering
 def changes_of(file: str) -> tuple[Change, ...]:
     """Return the changes of a shader file, spread evenly over it; comments and declarations stay."""
     text = read_text(Path(file))
-    code = _COMMENTS.sub(lambda found: re.sub(r"[^\n]", " ", found[0]), text)
-    code = _DECLARED.sub(lambda found: " " * len(found[0]), code)
-    found = [
+    code = _COMMENTS.sub(lambda result: re.sub(r"[^\n]", " ", result[0]), text)
+    code = _DECLARED.sub(lambda result: " " * len(result[0]), code)
+    changes = [
         Change(file, match.start(), match.end(), put(match[0]))
         for pattern, put in _CHANGES
         for match in re.finditer(pattern, code)
     ]
-    found.sort(key=lambda change: change.start)
-    chosen = np.linspace(0, len(found) - 1, min(EACH, len(found))).round().astype(int)
-    return tuple(found[i] for i in chosen)
+    changes.sort(key=lambda change: change.start)
+    chosen = np.linspace(0, len(changes) - 1, min(EACH, len(changes))).round().astype(int)
+    return tuple(changes[i] for i in chosen)
 
 
 def applied(defect: Defect, sketch: Sketch) -> Sketch:
@@ -142,11 +142,11 @@ class Judge:
         later = defect.later if isinstance(defect, Rendering) else 0.0
         try:
             there = replace(case, shot=replace(case.shot, time=case.shot.time + later))
-            found = self.draw(there, applied(defect, shown))
+            draw = self.draw(there, applied(defect, shown))
         except PlaygroundError as error:
             raise DoesNotApply(str(error)) from error
-        comparison = compare(found.array, self.whole[case].array)
-        return bool(comparison.most > ROUNDING or found.not_finite or found.gl_error)
+        comparison = compare(draw.array, self.whole[case].array)
+        return bool(comparison.most > ROUNDING or draw.not_finite or draw.gl_error)
 
 
 def earn(judge: Judge, say: Callable[[str], None]) -> tuple[dict[ShotCase, list[Defect]], list[Defect]]:

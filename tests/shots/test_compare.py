@@ -19,15 +19,15 @@ def picture(width: int = 7, height: int = 5, low: int = 0, high: int = 256) -> n
 
 def slow(actual: np.ndarray, expected: np.ndarray, tolerance: int) -> tuple[list[int], int, tuple[int, int]]:
     """Return (most by channel, pixels over, first worst place), one pixel after the other."""
-    channels, over, worst, place = [0] * 4, 0, -1, (0, 0)
+    channels, over, worst, position = [0] * 4, 0, -1, (0, 0)
     for y in range(actual.shape[0]):
         for x in range(actual.shape[1]):
-            found = [abs(a - b) for a, b in zip(actual[y, x].tolist(), expected[y, x].tolist(), strict=True)]
-            channels = [max(pair) for pair in zip(channels, found, strict=True)]
-            over += max(found) > tolerance
-            if max(found) > worst:
-                worst, place = max(found), (x, y)
-    return channels, over, place
+            result = [abs(a - b) for a, b in zip(actual[y, x].tolist(), expected[y, x].tolist(), strict=True)]
+            channels = [max(pair) for pair in zip(channels, result, strict=True)]
+            over += max(result) > tolerance
+            if max(result) > worst:
+                worst, position = max(result), (x, y)
+    return channels, over, position
 
 
 def changed(base: np.ndarray, x: int, y: int, channel: int, by: int) -> np.ndarray:
@@ -43,56 +43,56 @@ def test_agrees_with_the_slow_comparison(spread: int, tolerance: int, size: tupl
     expected = picture(*size)
     noise = RNG.integers(-spread, spread + 1, expected.shape)
     actual = np.clip(expected.astype(int) + noise, 0, 255).astype(np.uint8)
-    channels, over, place = slow(actual, expected, tolerance)
-    found = compare(actual, expected, tolerance)
-    assert list(found.channels) == channels
-    assert found.most == max(channels)
-    assert found.over == over
-    assert found.place == (place if max(channels) else None)
-    assert found.verdict == ("differs" if over else "same")
+    channels, over, position = slow(actual, expected, tolerance)
+    result = compare(actual, expected, tolerance)
+    assert list(result.channels) == channels
+    assert result.most == max(channels)
+    assert result.over == over
+    assert result.position == (position if max(channels) else None)
+    assert result.verdict == ("differs" if over else "same")
 
 
 def test_the_same_picture_is_the_same() -> None:
-    one = picture()
-    found = compare(one, one.copy())
-    assert found.ok
-    assert (found.verdict, found.most, found.over, found.place) == ("same", 0, 0, None)
+    item = picture()
+    result = compare(item, item.copy())
+    assert result.ok
+    assert (result.verdict, result.most, result.over, result.position) == ("same", 0, 0, None)
 
 
 @pytest.mark.parametrize("by", [-2, 2], ids=["darker", "brighter"])
 def test_two_levels_darker_or_brighter_fail(by: int) -> None:
     expected = picture(low=2, high=254)
     actual = (expected.astype(int) + by).astype(np.uint8)
-    found = compare(actual, expected)
-    assert not found.ok
-    assert (found.verdict, found.channels, found.over) == ("differs", (2, 2, 2, 2), 35)
+    result = compare(actual, expected)
+    assert not result.ok
+    assert (result.verdict, result.channels, result.over) == ("differs", (2, 2, 2, 2), 35)
 
 
 @pytest.mark.parametrize("by", [-1, 1])
 def test_one_level_passes_and_is_reported(by: int) -> None:
     expected = picture(low=2, high=254)
-    found = compare((expected.astype(int) + by).astype(np.uint8), expected)
-    assert found.ok
-    assert (found.most, found.over) == (1, 0)
-    assert "max difference 1" in str(found)
+    result = compare((expected.astype(int) + by).astype(np.uint8), expected)
+    assert result.ok
+    assert (result.most, result.over) == (1, 0)
+    assert "max difference 1" in str(result)
 
 
 @pytest.mark.parametrize(("actual", "expected"), [(0, 255), (255, 0), (0, 128), (128, 0), (1, 254), (255, 1)])
 def test_bytes_do_not_wrap_round(actual: int, expected: int) -> None:
     base = picture()
-    one, other = base.copy(), base.copy()
-    one[3, 2, 1], other[3, 2, 1] = actual, expected
-    found = compare(one, other)
-    assert found.verdict == "differs"
-    assert found.channels == (0, abs(actual - expected), 0, 0)
+    first, other = base.copy(), base.copy()
+    first[3, 2, 1], other[3, 2, 1] = actual, expected
+    result = compare(first, other)
+    assert result.verdict == "differs"
+    assert result.channels == (0, abs(actual - expected), 0, 0)
 
 
 @pytest.mark.parametrize("by", [-2, 2])
 def test_alpha_counts(by: int) -> None:
     expected = picture(low=2, high=254)
-    found = compare(changed(expected, 0, 0, 3, by), expected)
-    assert found.verdict == "differs"
-    assert found.channels == (0, 0, 0, 2)
+    result = compare(changed(expected, 0, 0, 3, by), expected)
+    assert result.verdict == "differs"
+    assert result.channels == (0, 0, 0, 2)
 
 
 def test_colours_under_full_transparency_count() -> None:
@@ -106,11 +106,11 @@ def test_colours_under_full_transparency_count() -> None:
 def test_one_pixel_is_found_at_its_place(x: int, y: int, channel: int) -> None:
     expected = picture(low=100, high=150)
     actual = changed(expected, x, y, channel, -9)
-    found = compare(actual, expected)
-    assert (found.verdict, found.over, found.place, found.most) == ("differs", 1, (x, y), 9)
-    assert found.actual == tuple(actual[y, x].tolist())
-    assert found.expected == tuple(expected[y, x].tolist())
-    assert f"x = {x}, y = {y}" in str(found)
+    result = compare(actual, expected)
+    assert (result.verdict, result.over, result.position, result.most) == ("differs", 1, (x, y), 9)
+    assert result.actual == tuple(actual[y, x].tolist())
+    assert result.expected == tuple(expected[y, x].tolist())
+    assert f"x = {x}, y = {y}" in str(result)
 
 
 def test_a_small_hole_in_a_large_picture_fails() -> None:
@@ -120,10 +120,10 @@ def test_a_small_hole_in_a_large_picture_fails() -> None:
 
 @pytest.mark.parametrize("size", [(7, 4), (5, 7), (8, 5), (35, 1)])
 def test_another_size_is_never_compared(size: tuple[int, int]) -> None:
-    found = compare(picture(*size), picture(7, 5))
-    assert not found.ok
-    assert (found.verdict, found.size, found.expected_size) == ("size", size, (7, 5))
-    assert "7 × 5" in str(found)
+    result = compare(picture(*size), picture(7, 5))
+    assert not result.ok
+    assert (result.verdict, result.size, result.expected_size) == ("size", size, (7, 5))
+    assert "7 × 5" in str(result)
 
 
 @pytest.mark.parametrize("colour", [(0, 0, 0, 0), (0, 0, 0, 255), (255, 0, 255, 255), (255, 255, 255, 255)])
@@ -131,11 +131,11 @@ def test_another_size_is_never_compared(size: tuple[int, int]) -> None:
 def test_a_picture_of_one_colour_never_passes(colour: tuple[int, ...], size: tuple[int, int]) -> None:
     blank = np.full((5, 7, 4), colour, np.uint8)
     for expected in (blank.copy(), picture(*size), None):
-        found = compare(blank, expected)
-        assert not found.ok
-        assert found.verdict == "blank"
-        assert found.actual == colour
-        assert str(colour) in str(found)
+        result = compare(blank, expected)
+        assert not result.ok
+        assert result.verdict == "blank"
+        assert result.actual == colour
+        assert str(colour) in str(result)
 
 
 @pytest.mark.parametrize("size", [(7, 5), (640, 360)])
@@ -149,9 +149,9 @@ def test_one_other_pixel_is_not_blank(size: tuple[int, int], channel: int) -> No
 @pytest.mark.parametrize("size", [(7, 5), (640, 360)])
 def test_noise_of_one_level_is_one_colour_still(size: tuple[int, int]) -> None:
     noisy = picture(*size, low=200, high=202)
-    found = compare(noisy, noisy.copy())
-    assert found.verdict == "blank"
-    assert "to within one level" in str(found)
+    result = compare(noisy, noisy.copy())
+    assert result.verdict == "blank"
+    assert "to within one level" in str(result)
 
 
 def test_a_blank_reference_does_not_let_a_picture_pass() -> None:
@@ -159,28 +159,28 @@ def test_a_blank_reference_does_not_let_a_picture_pass() -> None:
 
 
 def test_nothing_to_compare_with_is_missing() -> None:
-    found = compare(picture(), None)
-    assert not found.ok
-    assert (found.verdict, found.expected_size) == ("missing", None)
+    result = compare(picture(), None)
+    assert not result.ok
+    assert (result.verdict, result.expected_size) == ("missing", None)
 
 
 def test_the_order_in_memory_does_not_matter() -> None:
-    one = picture(9, 9)
-    turned = np.asfortranarray(one)
-    assert compare(turned, one).ok
-    assert compare(one[::-1], one[::-1].copy()).ok
-    assert compare(one[:, ::2], one[:, ::2].copy()).ok
-    assert not compare(one[::-1], one).ok
+    item = picture(9, 9)
+    turned = np.asfortranarray(item)
+    assert compare(turned, item).ok
+    assert compare(item[::-1], item[::-1].copy()).ok
+    assert compare(item[:, ::2], item[:, ::2].copy()).ok
+    assert not compare(item[::-1], item).ok
 
 
 def test_neither_picture_is_written_to() -> None:
-    one, other = picture(), picture()
-    before = one.copy(), other.copy()
-    for array in (one, other):
+    first, other = picture(), picture()
+    before = first.copy(), other.copy()
+    for array in (first, other):
         array.setflags(write=False)
-    compare(one, other)
-    difference_picture(one, other)
-    np.testing.assert_array_equal((one, other), before)
+    compare(first, other)
+    difference_picture(first, other)
+    np.testing.assert_array_equal((first, other), before)
 
 
 @pytest.mark.parametrize(
@@ -234,6 +234,6 @@ def test_a_comparison_is_one_line() -> None:
         compare(picture(), None),
         compare(np.zeros((5, 7, 4), np.uint8), None),
     ]
-    for found in comparisons:
-        assert str(found).startswith(f"{found.verdict}: ")
-        assert "\n" not in str(found)
+    for comparison in comparisons:
+        assert str(comparison).startswith(f"{comparison.verdict}: ")
+        assert "\n" not in str(comparison)

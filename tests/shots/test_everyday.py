@@ -36,6 +36,11 @@ def test_who_kills_nothing_more_is_not_needed_but_a_sketch_keeps_one() -> None:
     def case(sketch: str, shot: str) -> ShotCase:
         return ShotCase(Sketch(sketch, sketch, "", Graph(sketch, sketch, ())), Shot(shot))
 
-    one, other, alone, second = case("a", "one"), case("a", "other"), case("b", "alone"), case("b", "second")
-    killed = {other: [], one: defects, alone: [], second: []}
+    first, other, alone, second = (
+        case("a", "one"),
+        case("a", "other"),
+        case("b", "alone"),
+        case("b", "second"),
+    )
+    killed = {other: [], first: defects, alone: [], second: []}
     assert list(without_a_place(killed)) == [other, second]

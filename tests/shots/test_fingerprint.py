@@ -47,10 +47,15 @@ NVIDIA = ContextInfo(460, "NVIDIA H200/PCIe/SSE2", "NVIDIA Corporation", "4.6.0 
 def test_mesa_and_llvm_are_read_from_the_drivers_words(
     version: str, renderer: str, mesa: str, llvm: str
 ) -> None:
-    found = fingerprint_of(ContextInfo(450, renderer, "vendor", version, 4), (8, 4), "h")
-    assert (found.renderer, found.version, found.vendor) == (renderer, version, "vendor")
-    assert (found.mesa, found.llvm, found.size, found.drawn) == (mesa, llvm, "8x4", "h")
-    assert found.tool.endswith(__version__)
+    fingerprint = fingerprint_of(ContextInfo(450, renderer, "vendor", version, 4), (8, 4), "h")
+    assert (fingerprint.renderer, fingerprint.version, fingerprint.vendor) == (renderer, version, "vendor")
+    assert (fingerprint.mesa, fingerprint.llvm, fingerprint.size, fingerprint.drawn) == (
+        mesa,
+        llvm,
+        "8x4",
+        "h",
+    )
+    assert fingerprint.tool.endswith(__version__)
 
 
 @pytest.mark.parametrize(
@@ -288,23 +293,23 @@ def test_one_byte_of_an_image_changes_the_hash(drawing: Engine, folder: Path) ->
 
 def test_the_shots_own_settings_change_the_hash(drawing: Engine, folder: Path) -> None:
     edited(folder, "terrain.glsl", "TWICE(slope)", "TWICE(slope) * (1.0 + time)")
-    found = [drawn(drawing, folder), drawn(drawing, folder, (25, 16)), drawn(drawing, folder, time=1.0)]
-    found.append(drawn(drawing, folder, height=1))
+    result = [drawn(drawing, folder), drawn(drawing, folder, (25, 16)), drawn(drawing, folder, time=1.0)]
+    result.append(drawn(drawing, folder, height=1))
     sketch = load(folder / "hills.toml")
     drawing.render(replace(sketch, samples=1), size=(24, 16))
-    found.append(drawing.drawn())
-    assert len(set(found)) == 5
+    result.append(drawing.drawn())
+    assert len(set(result)) == 5
 
 
 def test_the_drivers_form_is_part_of_it(ctx: moderngl.Context, folder: Path) -> None:
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
-    with Engine(ctx, driver="fragment") as one, Engine(ctx, driver="compute") as other:
-        assert drawn(one, folder) != drawn(other, folder)
+    with Engine(ctx, driver="fragment") as first, Engine(ctx, driver="compute") as other:
+        assert drawn(first, folder) != drawn(other, folder)
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "same"),
+    ("first", "other", "same"),
     [
         ("a - -b;", "a--b;", False),
         ("a+b ;", "a + b;", True),
@@ -318,8 +323,8 @@ def test_the_drivers_form_is_part_of_it(ctx: moderngl.Context, folder: Path) -> 
         ("a <<= 1;", "a << = 1;", False),
     ],
 )
-def test_a_text_counts_by_its_tokens(one: str, other: str, same: bool) -> None:
-    assert (compiled_text(one) == compiled_text(other)) is same
+def test_a_text_counts_by_its_tokens(first: str, other: str, same: bool) -> None:
+    assert (compiled_text(first) == compiled_text(other)) is same
 
 
 def test_the_last_digits_of_a_matrix_say_nothing() -> None:

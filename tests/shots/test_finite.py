@@ -119,13 +119,13 @@ def test_agrees_with_looking_at_every_number(dtype: str, shape: tuple[int, ...],
             values = np.where(np.isfinite(values), values, np.dtype(dtype).type(1.0))
         values[4, 3] = [np.nan, np.inf, -np.inf][seed // 2]
     first, count = slow(values)
-    found = not_finite_in(values)
-    assert (found is None) == (count == 0)
-    if found is not None:
-        assert (found.texel, found.count, found.size) == (first, count, (shape[1], shape[0]))
-        assert found.value in ("NaN", "infinity", "-infinity")
-    if seed % 2 and found is not None:
-        assert found.value == ["NaN", "infinity", "-infinity"][seed // 2]
+    not_finite = not_finite_in(values)
+    assert (not_finite is None) == (count == 0)
+    if not_finite is not None:
+        assert (not_finite.texel, not_finite.count, not_finite.size) == (first, count, (shape[1], shape[0]))
+        assert not_finite.value in ("NaN", "infinity", "-infinity")
+    if seed % 2 and not_finite is not None:
+        assert not_finite.value == ["NaN", "infinity", "-infinity"][seed // 2]
 
 
 def test_the_largest_and_the_smallest_numbers_are_finite() -> None:
@@ -148,9 +148,9 @@ def test_the_first_pass_in_running_order_is_named(
     drawing: Engine, folder: Path, value: str, name: str
 ) -> None:
     write(folder, "middle:r32f", ILL, value)
-    found = found_in(drawing, folder)
-    assert found == NotFinite("middle", "middle", (5, 3), name, 1, (16, 16))
-    assert str(found) == (
+    result = found_in(drawing, folder)
+    assert result == NotFinite("middle", "middle", (5, 3), name, 1, (16, 16))
+    assert str(result) == (
         f"pass 'middle', output 'middle': {name} at texel (5, 3) from the south-west corner; "
         "1 of 256 texels are not finite"
     )
@@ -159,16 +159,16 @@ def test_the_first_pass_in_running_order_is_named(
 def test_the_second_output_is_named(drawing: Engine, folder: Path) -> None:
     write(folder, "even:r32f, odd:rgba32f", PAIR, NAN)
     (folder / "chain.toml").write_text(SKETCH.replace('shown = "middle"', 'shown = "middle:even"'))
-    found = found_in(drawing, folder)
-    assert found is not None
-    assert (found.path, found.output, found.texel) == ("middle", "odd", (5, 3))
+    result = found_in(drawing, folder)
+    assert result is not None
+    assert (result.path, result.output, result.texel) == ("middle", "odd", (5, 3))
 
 
 def test_half_floats_are_looked_at(drawing: Engine, folder: Path) -> None:
     write(folder, "middle:r16f", ILL, INFINITY)
-    found = found_in(drawing, folder)
-    assert found is not None
-    assert (found.path, found.value) == ("middle", "infinity")
+    result = found_in(drawing, folder)
+    assert result is not None
+    assert (result.path, result.value) == ("middle", "infinity")
 
 
 @pytest.mark.parametrize("form", ["r8", "r16"])
@@ -177,9 +177,9 @@ def test_what_a_texture_of_bytes_hides_is_found(
     drawing: Engine, folder: Path, form: str, value: str, name: str
 ) -> None:
     write(folder, f"middle:{form}", ILL, value)
-    found = found_in(drawing, folder)
-    assert found is not None
-    assert (found.path, found.texel, found.value) == ("middle", (5, 3), name)
+    result = found_in(drawing, folder)
+    assert result is not None
+    assert (result.path, result.texel, result.value) == ("middle", (5, 3), name)
 
 
 @pytest.mark.parametrize("form", ["r8", "r16"])
@@ -202,8 +202,8 @@ def test_what_the_view_hides_is_found(drawing: Engine, folder: Path) -> None:
     (folder / "bytes.glsl").write_text(BYTES.replace("VALUE", NAN))
     assert found_in(drawing, folder, {"view.broken": 0.0}) is None
     before = drawing.render(load(folder / "chain.toml"), size=(32, 16)).array
-    found = found_in(drawing, folder, {"view.broken": 1.0})
-    assert found == NotFinite("view", "frame", (2, 9), "NaN", 1, (32, 16))
+    result = found_in(drawing, folder, {"view.broken": 1.0})
+    assert result == NotFinite("view", "frame", (2, 9), "NaN", 1, (32, 16))
     np.testing.assert_array_equal(drawing.render(load(folder / "chain.toml"), size=(32, 16)).array, before)
 
 
@@ -215,9 +215,9 @@ def test_a_plain_shader_of_bytes_is_looked_beneath(ctx: moderngl.Context, tmp_pa
         engine.render(load(tmp_path / "plain.frag"), size=(8, 4), time=2.0)
         assert engine.not_finite() is None
         engine.render(load(tmp_path / "plain.frag"), size=(8, 4), time=1.0)
-        found = engine.not_finite()
-    assert found is not None
-    assert (found.path, found.value, found.count) == ("view", "-infinity", 16)
+        not_finite = engine.not_finite()
+    assert not_finite is not None
+    assert (not_finite.path, not_finite.value, not_finite.count) == ("view", "-infinity", 16)
 
 
 def test_only_what_ran_anew_is_looked_at_again(drawing: Engine, folder: Path) -> None:
@@ -233,9 +233,9 @@ def test_only_what_ran_anew_is_looked_at_again(drawing: Engine, folder: Path) ->
 def test_what_is_cached_is_still_reported(drawing: Engine, folder: Path) -> None:
     write(folder, "middle:r32f", ILL, NAN)
     for broken in (0.0, 0.25, 0.25):
-        found = found_in(drawing, folder, {"view.broken": broken})
-        assert found is not None
-        assert found.path == "middle"
+        result = found_in(drawing, folder, {"view.broken": broken})
+        assert result is not None
+        assert result.path == "middle"
     assert found_in(drawing, folder, {"middle.at": (99, 99)}) is None
 
 
@@ -254,9 +254,9 @@ def test_steps_that_continue_in_place_are_looked_at_again(ctx: moderngl.Context,
     with Engine(ctx) as engine:
         for steps, ill in ((1, False), (2, False), (3, True), (4, True), (2, False)):
             engine.render(load(tmp_path / "chain.toml"), size=(16, 16), steps={"height": steps})
-            found = engine.not_finite()
-            assert (found is not None) is ill, steps
-            assert found is None or (found.path, found.texel) == ("height", (2, 0))
+            not_finite = engine.not_finite()
+            assert (not_finite is not None) is ill, steps
+            assert not_finite is None or (not_finite.path, not_finite.texel) == ("height", (2, 0))
 
 
 def test_nothing_drawn_is_no_alarm(ctx: moderngl.Context) -> None:

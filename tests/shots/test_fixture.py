@@ -236,12 +236,12 @@ def test_a_test_that_checks_no_picture_fails(run: Run, pytester: pytest.Pytester
     result = run("--shots-update", "-rfE")
     # Failed: nothing, some[0], asked, wrong. An error: idle, whose fixture might have checked after the test.
     result.assert_outcomes(passed=6, failed=4, errors=1, skipped=1, xfailed=1)
-    found = sorted(
+    names = sorted(
         line.partition("::")[2].partition(" - ")[0]
         for line in result.outlines
         if line[:5] in ("FAILE", "ERROR") and "::" in line
     )
-    assert found == ["test_asked", "test_idle", "test_nothing", "test_some[0]", "test_wrong"]
+    assert names == ["test_asked", "test_idle", "test_nothing", "test_some[0]", "test_wrong"]
     assert result.stdout.str().count("takes `shot` and checks nothing: expected shot.check") >= 4
 
 

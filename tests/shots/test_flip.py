@@ -16,9 +16,9 @@ SCREENSHOTS = Path(__file__).resolve().parent.parent.parent / "screenshots"
 
 
 def seeded(width: int, height: int, seed: int = 5) -> np.ndarray:
-    found = np.random.default_rng(seed).integers(0, 256, (height, width, 4), dtype=np.uint8)
-    found[..., 3] = 255
-    return found
+    array = np.random.default_rng(seed).integers(0, 256, (height, width, 4), dtype=np.uint8)
+    array[..., 3] = 255
+    return array
 
 
 def plain(*colour: int, size: tuple[int, int] = (40, 40)) -> np.ndarray:
@@ -33,9 +33,9 @@ def shot(name: str) -> np.ndarray:
 
 
 def edge(at: int, low: int = 60, high: int = 190) -> np.ndarray:
-    found = plain(low, low, low, size=(64, 48))
-    found[:, at:, :3] = high
-    return found
+    array = plain(low, low, low, size=(64, 48))
+    array[:, at:, :3] = high
+    return array
 
 
 @pytest.fixture(scope="module")
@@ -48,9 +48,9 @@ def authors() -> ModuleType:
 def theirs(
     authors: ModuleType, actual: np.ndarray, expected: np.ndarray, *, coloured: bool = False
 ) -> np.ndarray:
-    one, other = (picture[..., :3].astype(np.float32) / 255 for picture in (expected, actual))
+    first, other = (picture[..., :3].astype(np.float32) / 255 for picture in (expected, actual))
     with np.errstate(all="ignore"):
-        return np.squeeze(authors.evaluate(one, other, "LDR", applyMagma=coloured)[0])
+        return np.squeeze(authors.evaluate(first, other, "LDR", applyMagma=coloured)[0])
 
 
 PAIRS = {
@@ -69,19 +69,19 @@ PAIRS = {
 
 
 def _with_point() -> np.ndarray:
-    found = plain(30, 60, 90)
-    found[20, 11, :3] = 255
-    return found
+    array = plain(30, 60, 90)
+    array[20, 11, :3] = 255
+    return array
 
 
 @pytest.mark.parametrize("pair", PAIRS)
 def test_it_gives_what_the_authors_program_gives(authors: ModuleType, pair: str) -> None:
     actual, expected = PAIRS[pair]()
-    found = flip(actual, expected)
-    truth = theirs(authors, actual, expected).reshape(found.difference.shape)
-    np.testing.assert_allclose(found.difference, truth, atol=3e-4)
-    assert found.mean == pytest.approx(float(truth.mean(dtype=np.float64)), abs=1e-4)
-    assert found.difference.dtype == np.float32
+    result = flip(actual, expected)
+    truth = theirs(authors, actual, expected).reshape(result.difference.shape)
+    np.testing.assert_allclose(result.difference, truth, atol=3e-4)
+    assert result.mean == pytest.approx(float(truth.mean(dtype=np.float64)), abs=1e-4)
+    assert result.difference.dtype == np.float32
 
 
 def test_its_colours_are_those_of_the_authors_program(authors: ModuleType) -> None:
@@ -97,8 +97,8 @@ def test_its_colours_are_those_of_the_authors_program(authors: ModuleType) -> No
 
 
 def test_the_same_picture_is_0_everywhere() -> None:
-    found = flip(seeded(50, 40), seeded(50, 40))
-    assert (found.mean, found.tile, float(found.difference.max())) == (0.0, 0.0, 0.0)
+    result = flip(seeded(50, 40), seeded(50, 40))
+    assert (result.mean, result.tile, float(result.difference.max())) == (0.0, 0.0, 0.0)
 
 
 def test_the_largest_difference_in_srgb_is_1() -> None:
@@ -106,12 +106,14 @@ def test_the_largest_difference_in_srgb_is_1() -> None:
 
 
 def test_it_is_the_same_both_ways_round_and_in_a_mirror() -> None:
-    one, other = seeded(60, 44), seeded(60, 44, 6)
-    found = flip(one, other).difference
-    np.testing.assert_allclose(flip(other, one).difference, found, atol=1e-5)
-    np.testing.assert_allclose(flip(one[:, ::-1], other[:, ::-1]).difference[:, ::-1], found, atol=1e-4)
-    turned = flip(one.swapaxes(0, 1), other.swapaxes(0, 1)).difference.T
-    np.testing.assert_allclose(turned, found, atol=1e-4)
+    first, other = seeded(60, 44), seeded(60, 44, 6)
+    difference = flip(first, other).difference
+    np.testing.assert_allclose(flip(other, first).difference, difference, atol=1e-5)
+    np.testing.assert_allclose(
+        flip(first[:, ::-1], other[:, ::-1]).difference[:, ::-1], difference, atol=1e-4
+    )
+    turned = flip(first.swapaxes(0, 1), other.swapaxes(0, 1)).difference.T
+    np.testing.assert_allclose(turned, difference, atol=1e-4)
 
 
 def test_what_moves_further_differs_more() -> None:
@@ -121,10 +123,10 @@ def test_what_moves_further_differs_more() -> None:
 
 
 def test_an_edge_that_comes_makes_a_difference_count_more() -> None:
-    found = flip(edge(20, 120, 130), plain(120, 120, 120, size=(64, 48))).difference[24]
+    difference = flip(edge(20, 120, 130), plain(120, 120, 120, size=(64, 48))).difference[24]
     # Outside the blur's radius the colours differ as much as next to the edge, or more.
-    assert found[20:26].max() > 1.2 * found[55]
-    assert found[55] > found[5]
+    assert difference[20:26].max() > 1.2 * difference[55]
+    assert difference[55] > difference[5]
 
 
 def test_the_worst_tile_is_the_worst_of_all_places() -> None:
@@ -135,10 +137,10 @@ def test_the_worst_tile_is_the_worst_of_all_places() -> None:
         for y in range(47 - 31)
         for x in range(70 - 31)
     }
-    place = max(slow, key=lambda where: slow[where])
+    position = max(slow, key=lambda where: slow[where])
     tile, where = Flip(values).worst_tile()
-    assert where == place
-    assert tile == pytest.approx(slow[place], abs=1e-9)
+    assert where == position
+    assert tile == pytest.approx(slow[position], abs=1e-9)
 
 
 @pytest.mark.parametrize("size", [(5, 3), (32, 32), (80, 7)])
@@ -151,15 +153,15 @@ def test_a_small_picture_is_one_tile_as_far_as_it_goes(size: tuple[int, int]) ->
 def test_missing_alpha_is_visible_over_any_colour(colour: tuple[int, int, int]) -> None:
     opaque, clear = plain(*colour), plain(*colour)
     clear[10:30, 10:30, 3] = 0
-    found = flip(clear, opaque).difference
-    assert found[20, 20] > 0.5
-    assert found[2, 2] < 0.01
+    difference = flip(clear, opaque).difference
+    assert difference[20, 20] > 0.5
+    assert difference[2, 2] < 0.01
 
 
 def test_invisible_colours_count_for_nothing() -> None:
-    one, other = seeded(30, 30), seeded(30, 30, 6)
-    one[..., 3] = other[..., 3] = 0
-    assert flip(one, other).mean == 0
+    first, other = seeded(30, 30), seeded(30, 30, 6)
+    first[..., 3] = other[..., 3] = 0
+    assert flip(first, other).mean == 0
 
 
 def test_half_a_cover_is_between_none_and_all() -> None:
@@ -170,7 +172,7 @@ def test_half_a_cover_is_between_none_and_all() -> None:
 
 
 @pytest.mark.parametrize(
-    ("one", "other"),
+    ("first", "other"),
     [
         (seeded(8, 8), seeded(8, 9)),
         (seeded(8, 8)[..., :3], seeded(8, 8)),
@@ -178,9 +180,9 @@ def test_half_a_cover_is_between_none_and_all() -> None:
         (seeded(8, 8)[:0], seeded(8, 8)[:0]),
     ],
 )
-def test_what_is_no_pair_of_pictures_is_refused_in_a_sentence(one: np.ndarray, other: np.ndarray) -> None:
+def test_what_is_no_pair_of_pictures_is_refused_in_a_sentence(first: np.ndarray, other: np.ndarray) -> None:
     with pytest.raises(DataError, match=r"picture"):
-        flip(one, other)
+        flip(first, other)
 
 
 def test_the_ramp_grows_lighter_all_the_way_from_black() -> None:

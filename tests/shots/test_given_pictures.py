@@ -16,7 +16,7 @@ from playground.engine.context import open_context
 from playground.errors import DataError
 from playground.shots.adapters import taken
 from playground.shots.levels import levels_of
-from playground.shots.names import LONGEST, name_of_test, one_spelling, why_no_name
+from playground.shots.names import MAX_NAME, name_of_test, one_spelling, why_no_name
 
 Run = Callable[..., pytest.RunResult]
 
@@ -145,16 +145,16 @@ def test_what_moderngl_drew_has_its_top_row_first(kind: str, samples: int) -> No
         framebuffer.clear(0.0, 0.0, 1.0, 1.0, viewport=(0, 2, 6, 2))
         other = open_context(software=True)  # is current now, and has a framebuffer of that number
         other.simple_framebuffer(size).clear(0.3, 0.3, 0.3)
-        found = taken(framebuffer)
-        assert found.context is context
-        pixels = levels_of(found.values)[0]
+        result = taken(framebuffer)
+        assert result.context is context
+        pixels = levels_of(result.values)[0]
         assert pixels[:2].tolist() == [[[0, 0, 255, 255]] * 6] * 2
         assert np.abs(pixels[2:].astype(int) - [255, 127.5, 0, 255]).max() <= 0.5
         window = made_in("moderngl_window", fbo=framebuffer, ctx=context)
         app = made_in("moderngl_window", wnd=window)
-        assert taken(window).values.tolist() == taken(app).values.tolist() == found.values.tolist()
+        assert taken(window).values.tolist() == taken(app).values.tolist() == result.values.tolist()
         if not samples:
-            assert taken(attachment).values.tolist() == found.values.tolist()
+            assert taken(attachment).values.tolist() == result.values.tolist()
 
 
 # ── names ────────────────────────────────────────────────────────────────────
@@ -194,11 +194,11 @@ def test_ids_that_differ_only_in_what_no_file_can_have_get_names_that_differ() -
     ]
     names = [name_of_test(f"test_sea.py::test_waves[{text}]") for text in ids]
     assert len({one_spelling(name) for name in names}) == len(ids)
-    assert all(not why_no_name(name) and name.isascii() and len(name) <= LONGEST for name in names)
+    assert all(not why_no_name(name) and name.isascii() and len(name) <= MAX_NAME for name in names)
     assert names[0].startswith("waves-1-0-") and names[2] == "waves-1-0"
 
 
-@pytest.mark.parametrize("name", ["con", "AUX", "Lpt1", "a b", "a.b", "a/b", "", "x" * (LONGEST + 1)])
+@pytest.mark.parametrize("name", ["con", "AUX", "Lpt1", "a b", "a.b", "a/b", "", "x" * (MAX_NAME + 1)])
 def test_what_no_system_has_as_a_file_is_no_name(name: str) -> None:
     assert why_no_name(name)
 
@@ -222,14 +222,14 @@ def test_twice(shot):
     result = run("--shots-update", "--tb=short")
     result.assert_outcomes(passed=2, failed=1)
     result.stdout.fnmatch_lines(["E   ValueError: a second picture without a name in this test: *"])
-    found = sorted(path.name for path in Path("screenshots/test_sea.py/numpy").iterdir())
-    assert len(found) == 3 and found[0] == "twice.png"
-    assert all(name.startswith(f"waves-{n}-0-") for n, name in enumerate(found[1:], 1))
+    names = sorted(path.name for path in Path("screenshots/test_sea.py/numpy").iterdir())
+    assert len(names) == 3 and names[0] == "twice.png"
+    assert all(name.startswith(f"waves-{n}-0-") for n, name in enumerate(names[1:], 1))
     assert not list(Path("shots-report").rglob(".names"))
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "sentence"),
+    ("first", "other", "sentence"),
     [
         ("'Dawn'", "'dawn'", "the same file as 'dawn' on macOS and Windows"),
         ("'dawn'", "", "test_sea.py::test_1 has a picture of that name, 'dawn'"),
@@ -239,7 +239,7 @@ def test_twice(shot):
 )
 @pytest.mark.parametrize("workers", ["0", pytest.param("2", marks=pytest.mark.slow)])
 def test_two_tests_may_not_have_one_name(
-    run: Run, pytester: pytest.Pytester, one: str, other: str, sentence: str, workers: str
+    run: Run, pytester: pytest.Pytester, first: str, other: str, sentence: str, workers: str
 ) -> None:
     """Also in processes of their own: the second waits for the first one's claim, and no longer."""
     name = "dawn" if not other else "2"
@@ -247,7 +247,7 @@ def test_two_tests_may_not_have_one_name(
         test_sea=f"""{NAMED}
 import pathlib, time
 def test_1(shot):
-    shot.check(RAMP, {one}, by="numpy")
+    shot.check(RAMP, {first}, by="numpy")
     pathlib.Path("first").touch()
 def test_{name}(shot):
     while not pathlib.Path("first").exists(): time.sleep(0.01)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from playground.shots.fallbacks import Fallback, fallback_for, fallbacks_of, read_fallbacks
-from playground.shots.step_summary import MOST_BYTES, summarise, text_of
+from playground.shots.step_summary import MAX_BYTES, summarise, text_of
 
 Run = Callable[..., pytest.RunResult]
 Edit = Callable[[str, str, str], None]
@@ -69,7 +69,7 @@ def test_the_progress_ends_at_a_hundred_percent(run: Run, workers: tuple[str, ..
     stale.write_bytes(b"")
     result = run("test_land.py", "--shots-update", *workers)
     result.assert_outcomes(passed=1, failed=1)
-    percents = [int(found) for found in re.findall(r"\[ *(\d+)%\]", result.stdout.str())]
+    percents = [int(result) for result in re.findall(r"\[ *(\d+)%\]", result.stdout.str())]
     assert percents and max(percents) == 100
 
 
@@ -135,19 +135,19 @@ def test_a_renderer_of_the_table_may_draw_in_place_of_the_expected_one(accepted:
 
 
 def properties(file: str, test: str) -> dict[str, str]:
-    [case] = [one for one in ElementTree.parse(file).iter("testcase") if one.get("name") == test]
-    return {str(one.get("name")): str(one.get("value")) for one in case.iter("property")}
+    [case] = [item for item in ElementTree.parse(file).iter("testcase") if item.get("name") == test]
+    return {str(item.get("name")): str(item.get("value")) for item in case.iter("property")}
 
 
 def test_a_test_says_its_renderer_scores_reference_and_pictures(accepted: Run, edit: Edit) -> None:
     edit("slope.toml", '"height.gain" = 1.0', '"height.gain" = 0.9')
     accepted("slope.toml", "--junitxml=found.xml").assert_outcomes(failed=1, passed=2)
     good, bad = properties("found.xml", "plain"), properties("found.xml", "bright")
-    for found, name, result in ((good, "plain", "same"), (bad, "bright", "differs")):
-        assert found["shot"] == f"slope/{name}"
-        assert found["shot.result"] == result
-        assert found["shot.renderer"] == "llvmpipe"
-        assert found["shot.reference"] == f"screenshots/slope/llvmpipe/{name}.png"
+    for actual, name, result in ((good, "plain", "same"), (bad, "bright", "differs")):
+        assert actual["shot"] == f"slope/{name}"
+        assert actual["shot.result"] == result
+        assert actual["shot.renderer"] == "llvmpipe"
+        assert actual["shot.reference"] == f"screenshots/slope/llvmpipe/{name}.png"
     assert good["shot.score.largest difference, levels of 255"] == "0"
     assert float(bad["shot.score.largest difference, levels of 255"]) == pytest.approx(25.5, abs=1)
     assert not any(name.startswith("shot.picture") for name in good)
@@ -203,12 +203,12 @@ def test_it_stays_below_what_github_shows(tmp_path: Path) -> None:
     file.write_text("before\n" * 1000)
     assert summarise(shots, Path("shots-report"), environment={"GITHUB_STEP_SUMMARY": str(file)}) == ""
     text = file.read_text()
-    assert MOST_BYTES - 1000 < len(text.encode()) <= MOST_BYTES
+    assert MAX_BYTES - 1000 < len(text.encode()) <= MAX_BYTES
     left = int(re.findall(r"^(\d+) failed shots more", text, re.MULTILINE)[0])
     assert text.count("hills/") == 30_000 - left
 
 
 def test_where_it_cannot_be_written_that_is_said(tmp_path: Path) -> None:
-    given = {"GITHUB_STEP_SUMMARY": str(tmp_path)}
-    said = summarise([{"shot": "a/b", "shot.result": "same"}], Path("r"), environment=given)
+    value = {"GITHUB_STEP_SUMMARY": str(tmp_path)}
+    said = summarise([{"shot": "a/b", "shot.result": "same"}], Path("r"), environment=value)
     assert said.startswith(f"no step summary: {tmp_path}: ")

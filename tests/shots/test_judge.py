@@ -39,10 +39,10 @@ def picture(seed: int = 7) -> np.ndarray:
 
 
 def changed(base: np.ndarray, places: object, by: int, channel: int = 1) -> np.ndarray:
-    found = base.copy()
+    array = base.copy()
     for x, y in places:  # type: ignore[attr-defined]
-        found[y, x, channel] = int(found[y, x, channel]) + by
-    return found
+        array[y, x, channel] = int(array[y, x, channel]) + by
+    return array
 
 
 def scattered(count: int) -> list[tuple[int, int]]:
@@ -59,11 +59,14 @@ def reference(pixels: np.ndarray, fingerprint: Fingerprint, name: str = "dawn.pn
 
 
 def by(actual: np.ndarray, expected: np.ndarray, drawn_by: Fingerprint, **wrong: str) -> Judgement:
-    found, _ = judge(actual, OURS, [reference(expected, drawn_by)], **wrong)
-    assert found.word in WORDS
-    assert found.sentence.startswith(found.word)
-    assert found.ok == (found.word == "same") == found.comparison.ok or found.word in ("nan", "gl-error")
-    return found
+    judgement, _ = judge(actual, OURS, [reference(expected, drawn_by)], **wrong)
+    assert judgement.word in WORDS
+    assert judgement.sentence.startswith(judgement.word)
+    assert judgement.ok == (judgement.word == "same") == judgement.comparison.ok or judgement.word in (
+        "nan",
+        "gl-error",
+    )
+    return judgement
 
 
 # ── the same build ───────────────────────────────────────────────────────────
@@ -74,16 +77,16 @@ def by(actual: np.ndarray, expected: np.ndarray, drawn_by: Fingerprint, **wrong:
 def test_of_the_same_build_one_level_passes_everywhere(channel: int, step: int) -> None:
     base = picture()
     everywhere = [(x, y) for y in range(SIZE[1]) for x in range(SIZE[0])]
-    found = by(changed(base, everywhere, step, channel), base, OURS)
-    assert (found.word, found.tier, found.differences) == ("same", SAME_BUILD, ())
+    judgement = by(changed(base, everywhere, step, channel), base, OURS)
+    assert (judgement.word, judgement.tier, judgement.differences) == ("same", SAME_BUILD, ())
 
 
 @pytest.mark.parametrize("channel", range(4))
 @pytest.mark.parametrize("step", [-2, 2])
 def test_of_the_same_build_two_levels_fail_at_one_pixel(channel: int, step: int) -> None:
     base = picture()
-    found = by(changed(base, [(199, 99)], step, channel), base, OURS)
-    assert (found.word, found.tier) == ("differs", SAME_BUILD)
+    judgement = by(changed(base, [(199, 99)], step, channel), base, OURS)
+    assert (judgement.word, judgement.tier) == ("differs", SAME_BUILD)
 
 
 @pytest.mark.parametrize(
@@ -100,9 +103,9 @@ def test_of_the_same_build_two_levels_fail_at_one_pixel(channel: int, step: int)
 def test_nothing_but_another_build_makes_it_less_strict(reference_says: Fingerprint) -> None:
     base = picture()
     assert by(base, base, reference_says).ok
-    found = by(changed(base, [(5, 5)], 2), base, reference_says)
-    assert (found.word, found.tier) == ("differs", SAME_BUILD)
-    assert found.differences
+    judgement = by(changed(base, [(5, 5)], 2), base, reference_says)
+    assert (judgement.word, judgement.tier) == ("differs", SAME_BUILD)
+    assert judgement.differences
 
 
 # ── another build ────────────────────────────────────────────────────────────
@@ -119,57 +122,57 @@ OTHERS = {
 @pytest.mark.parametrize("channel", range(4))
 def test_of_another_build_three_levels_pass_at_few_pixels(other: str, channel: int) -> None:
     base = picture()
-    found = by(changed(base, scattered(20), 3, channel), base, OTHERS[other])
-    assert (found.word, found.tier) == ("same", OTHER_BUILD)
-    assert found.differences
-    assert found.crowd is not None
-    assert "another build" in found.sentence
+    judgement = by(changed(base, scattered(20), 3, channel), base, OTHERS[other])
+    assert (judgement.word, judgement.tier) == ("same", OTHER_BUILD)
+    assert judgement.differences
+    assert judgement.crowd is not None
+    assert "another build" in judgement.sentence
 
 
 @pytest.mark.parametrize("channel", range(4))
 def test_of_another_build_four_levels_fail_at_one_pixel(channel: int) -> None:
     base = picture()
-    found = by(changed(base, [(17, 80)], -4, channel), base, NEWER)
-    assert (found.word, found.tier) == ("differs", OTHER_BUILD)
-    assert "of another build, 3 may" in found.sentence
+    judgement = by(changed(base, [(17, 80)], -4, channel), base, NEWER)
+    assert (judgement.word, judgement.tier) == ("differs", OTHER_BUILD)
+    assert "of another build, 3 may" in judgement.sentence
 
 
 @pytest.mark.parametrize(("count", "word"), [(100, "same"), (101, "differs")])
 def test_of_another_build_half_a_percent_of_the_pixels_may_differ(count: int, word: str) -> None:
     base = picture()
-    found = by(changed(base, scattered(count), 2), base, NEWER)
-    assert (found.word, found.comparison.over) == (word, count)
+    judgement = by(changed(base, scattered(count), 2), base, NEWER)
+    assert (judgement.word, judgement.comparison.over) == (word, count)
     if word == "differs":
-        assert "0.5 % may be" in found.sentence
+        assert "0.5 % may be" in judgement.sentence
 
 
 @pytest.mark.parametrize(("count", "word"), [(CROWD, "same"), (CROWD + 1, "crowded")])
 @pytest.mark.parametrize("channel", [0, 3])
 def test_of_another_build_pixels_may_not_crowd(count: int, word: str, channel: int) -> None:
     base = picture()
-    found = by(changed(base, block(count), 2, channel), base, NEWER)
-    assert (found.word, found.tier) == (word, OTHER_BUILD)
-    assert found.crowd is not None
-    assert found.crowd.count == count
+    judgement = by(changed(base, block(count), 2, channel), base, NEWER)
+    assert (judgement.word, judgement.tier) == (word, OTHER_BUILD)
+    assert judgement.crowd is not None
+    assert judgement.crowd.count == count
 
 
 @pytest.mark.parametrize(("x", "y"), [(0, 0), (28, 28), (60, 60), (192, 93), (92, 91)])
 def test_a_crowd_is_found_wherever_it_lies(x: int, y: int) -> None:
     base = picture()
-    found = by(changed(base, block(56, x, y), 2), base, NEWER)
-    assert found.word == "crowded"
-    assert found.crowd is not None
-    left, top = found.crowd.place
+    judgement = by(changed(base, block(56, x, y), 2), base, NEWER)
+    assert judgement.word == "crowded"
+    assert judgement.crowd is not None
+    left, top = judgement.crowd.place
     assert left <= x and x + 8 <= left + 32
     assert top <= y and y + 7 <= top + 32
-    assert f"x = {left}, y = {top}" in found.sentence
+    assert f"x = {left}, y = {top}" in judgement.sentence
 
 
 def test_levels_of_one_do_not_crowd() -> None:
     base = picture()
     everywhere = [(x, y) for y in range(SIZE[1]) for x in range(SIZE[0])]
-    found = by(changed(changed(base, everywhere, 1), scattered(10), 2), base, NEWER)
-    assert (found.word, found.comparison.over) == ("same", 10)
+    judgement = by(changed(changed(base, everywhere, 1), scattered(10), 2), base, NEWER)
+    assert (judgement.word, judgement.comparison.over) == ("same", 10)
 
 
 @pytest.mark.parametrize("size", [(40, 50), (33, 32), (32, 32), (9, 70), (5, 4), (1, 1)])
@@ -182,9 +185,9 @@ def test_the_worst_window_is_the_worst_of_all_places(size: tuple[int, int], shar
         for y in range(size[1] - height + 1)
         for x in range(size[0] - width + 1)
     }
-    found = most_crowded(over)
-    assert found.count == max(counts.values()) == counts[found.place]
-    assert found.size == (width, height)
+    crowd = most_crowded(over)
+    assert crowd.count == max(counts.values()) == counts[crowd.place]
+    assert crowd.size == (width, height)
 
 
 # ── several accepted ones ────────────────────────────────────────────────────
@@ -194,8 +197,8 @@ def test_one_of_this_very_build_is_not_loosened_by_another_builds() -> None:
     base = picture()
     actual = changed(base, [(5, 5)], 2)
     references = [reference(base, OURS), reference(base, NEWER, "dawn.2.png")]
-    found, nearest = judge(actual, OURS, references)
-    assert not found.ok
+    result, nearest = judge(actual, OURS, references)
+    assert not result.ok
     assert judge(actual, OURS, references[1:])[0].ok
     assert nearest is not None
 
@@ -205,8 +208,8 @@ def test_an_accepted_picture_passes_to_one_level_even_of_another_build() -> None
     actual = changed(base, block(64), 9)
     references = [reference(base, OURS), reference(actual, NEWER, "dawn.2.png")]
     for shift, ok in ((1, True), (2, False)):
-        found, nearest = judge(changed(actual, [(0, 0)], shift), OURS, references)
-        assert found.ok is ok
+        result, nearest = judge(changed(actual, [(0, 0)], shift), OURS, references)
+        assert result.ok is ok
         assert nearest is references[1]
 
 
@@ -214,10 +217,10 @@ def test_of_several_other_builds_any_may_match_and_else_the_nearest_is_reported(
     base = picture()
     far, near = changed(base, block(80), 9), changed(base, scattered(12), 3)
     references = [reference(far, NEWER), reference(near, OTHERS["processor"], "dawn.2.png")]
-    found, nearest = judge(base, OURS, references)
-    assert (found.ok, nearest) == (True, references[1])
-    found, nearest = judge(changed(base, [(1, 1)], 9), OURS, references)
-    assert (found.word, nearest) == ("differs", references[1])
+    result, nearest = judge(base, OURS, references)
+    assert (result.ok, nearest) == (True, references[1])
+    result, nearest = judge(changed(base, [(1, 1)], 9), OURS, references)
+    assert (result.word, nearest) == ("differs", references[1])
 
 
 # ── another renderer ─────────────────────────────────────────────────────────
@@ -229,10 +232,10 @@ def shot(name: str) -> np.ndarray:
 
 
 def by_eye(actual: np.ndarray, expected: np.ndarray) -> Judgement:
-    found, nearest = judge(actual, CARD, [], [reference(expected, OURS)])
+    judgement, nearest = judge(actual, CARD, [], [reference(expected, OURS)])
     assert nearest is not None
-    assert found.word in WORDS
-    return found
+    assert judgement.word in WORDS
+    return judgement
 
 
 def softened(base: np.ndarray) -> np.ndarray:
@@ -248,24 +251,24 @@ SHIPPED = ["jacksboro/morning", "splat/near", "contours/over-the-land"]
 @pytest.mark.parametrize("name", SHIPPED)
 def test_another_renderers_edges_pass_and_what_that_means_is_reported(name: str) -> None:
     base = shot(name)
-    found = by_eye(softened(base), base)
-    assert found.comparison.most > 20
-    assert (found.word, found.tier) == ("same", OTHER_RENDERER)
-    assert found.sentence.startswith("same in structure: ")
-    assert STRUCTURE_ONLY in found.sentence
-    assert any("renderer" in line for line in found.differences)
+    judgement = by_eye(softened(base), base)
+    assert judgement.comparison.most > 20
+    assert (judgement.word, judgement.tier) == ("same", OTHER_RENDERER)
+    assert judgement.sentence.startswith("same in structure: ")
+    assert STRUCTURE_ONLY in judgement.sentence
+    assert any("renderer" in line for line in judgement.differences)
 
 
 def squared(base: np.ndarray) -> np.ndarray:
-    found = base.copy()
-    found[200:232, 300:332] = (255, 0, 255, 255)
-    return found
+    array = base.copy()
+    array[200:232, 300:332] = (255, 0, 255, 255)
+    return array
 
 
 def unsealed(base: np.ndarray) -> np.ndarray:
-    found = base.copy()
-    found[..., 3] = 0
-    return found
+    array = base.copy()
+    array[..., 3] = 0
+    return array
 
 
 def half_as_bright(base: np.ndarray) -> np.ndarray:
@@ -285,22 +288,22 @@ DEFECTS = {
 @pytest.mark.parametrize("defect", DEFECTS)
 def test_structural_defects_fail_on_another_renderer(defect: str) -> None:
     base = shot("jacksboro/morning")
-    found = by_eye(np.ascontiguousarray(DEFECTS[defect](base)), base)
-    assert (found.word, found.tier) == ("structure", OTHER_RENDERER)
-    assert found.perceived is not None
-    assert found.sentence.startswith("structure: FLIP ")
+    judgement = by_eye(np.ascontiguousarray(DEFECTS[defect](base)), base)
+    assert (judgement.word, judgement.tier) == ("structure", OTHER_RENDERER)
+    assert judgement.perceived is not None
+    assert judgement.sentence.startswith("structure: FLIP ")
 
 
 def test_to_within_one_level_another_renderers_picture_is_simply_the_same() -> None:
     base = picture()
-    found = by_eye(changed(base, scattered(99), 1), base)
-    assert (found.word, found.tier, found.perceived) == ("same", OTHER_RENDERER, None)
+    judgement = by_eye(changed(base, scattered(99), 1), base)
+    assert (judgement.word, judgement.tier, judgement.perceived) == ("same", OTHER_RENDERER, None)
 
 
 def test_another_renderers_picture_counts_for_nothing_where_there_is_an_own_one() -> None:
     base, other = shot("jacksboro/morning"), shot("jacksboro/evening")
-    found, nearest = judge(base, CARD, [reference(other, CARD)], [reference(base, OURS)])
-    assert (found.word, found.tier) == ("differs", SAME_BUILD)
+    result, nearest = judge(base, CARD, [reference(other, CARD)], [reference(base, OURS)])
+    assert (result.word, result.tier) == ("differs", SAME_BUILD)
     assert nearest is not None and nearest.pixels is other
 
 
@@ -310,8 +313,11 @@ def test_another_renderers_picture_counts_for_nothing_where_there_is_an_own_one(
 @pytest.mark.parametrize("drawn_by", [OURS, NEWER])
 def test_an_opengl_error_and_a_number_that_is_none_fail_the_very_same_picture(drawn_by: Fingerprint) -> None:
     base = picture()
-    found = by(base, base, drawn_by, not_finite="pass 'light', output 'light': NaN at texel (1, 2)")
-    assert (found.word, found.sentence) == ("nan", "nan: pass 'light', output 'light': NaN at texel (1, 2)")
+    judgement = by(base, base, drawn_by, not_finite="pass 'light', output 'light': NaN at texel (1, 2)")
+    assert (judgement.word, judgement.sentence) == (
+        "nan",
+        "nan: pass 'light', output 'light': NaN at texel (1, 2)",
+    )
     both = by(base, base, drawn_by, not_finite="NaN", gl_error="GL_INVALID_OPERATION")
     assert both.word == "gl-error"
     assert "GL_INVALID_OPERATION" in both.sentence
@@ -325,27 +331,27 @@ def test_a_picture_of_one_colour_fails_in_every_tier(noise: int) -> None:
     blank += np.random.default_rng(1).integers(0, 1 + noise, blank.shape, dtype=np.uint8)
     same = reference(blank, OURS)
     for references, others in (([same], []), ([reference(blank, NEWER)], []), ([], [same]), ([], [])):
-        found, _ = judge(blank, OURS, references, others)
-        assert (found.word, found.tier) == ("blank", "")
+        result, _ = judge(blank, OURS, references, others)
+        assert (result.word, result.tier) == ("blank", "")
 
 
 def test_another_size_is_its_own_word_in_every_tier() -> None:
     base = picture()
     for references, others in (([base[:-1]], []), ([], [base[:, 1:]])):
-        found, _ = judge(
+        result, _ = judge(
             base, OURS, [reference(r, OURS) for r in references], [reference(o, OURS) for o in others]
         )
-        assert (found.word, found.tier) == ("size", "")
+        assert (result.word, result.tier) == ("size", "")
 
 
 def test_without_a_reference_it_is_missing() -> None:
-    found, nearest = judge(picture(), OURS, [])
-    assert (found.word, found.tier, nearest) == ("missing", "", None)
+    result, nearest = judge(picture(), OURS, [])
+    assert (result.word, result.tier, nearest) == ("missing", "", None)
 
 
 def test_a_reference_that_cannot_be_read_is_its_own_word() -> None:
-    found = unreadable(picture(), OURS, "dawn.png: the file is damaged")
-    assert (found.word, found.ok, found.sentence) == (
+    result = unreadable(picture(), OURS, "dawn.png: the file is damaged")
+    assert (result.word, result.ok, result.sentence) == (
         "unreadable",
         False,
         "unreadable: dawn.png: the file is damaged",

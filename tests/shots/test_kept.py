@@ -35,8 +35,8 @@ def headline() -> str:
 
 
 def sentence(name: str) -> str:
-    found: str = json.loads((REPORT / f"{name}.json").read_text())["sentence"]
-    return found
+    text: str = json.loads((REPORT / f"{name}.json").read_text())["sentence"]
+    return text
 
 
 @pytest.mark.slow
@@ -256,14 +256,14 @@ def test_from_a_subfolder_the_command_that_accepts_names_the_file_from_there(
         shutil.copy(file, "sub")
     whole = str(Path("slope.toml").absolute())
     monkeypatch.chdir("sub")
-    for given, named in (("slope.toml", "slope.toml"), ("../slope.toml", whole)):
-        if given != named:
+    for value, named in (("slope.toml", "slope.toml"), ("../slope.toml", whole)):
+        if value != named:
             edit("../terrain.glsl", "return gain *", "return 0.5 * gain *")
-        result = accepted(given, "-k", "plain")
+        result = accepted(value, "-k", "plain")
         result.assert_outcomes(failed=1, deselected=2)
         result.stdout.fnmatch_lines([f"    accept it   pytest --shots-update {named}::plain"])
         accepted("--shots-update", f"{named}::plain").assert_outcomes(passed=1)
-        accepted(given, "-k", "plain").assert_outcomes(passed=1, deselected=2)
+        accepted(value, "-k", "plain").assert_outcomes(passed=1, deselected=2)
 
 
 def test_of_sketches_of_one_name_that_come_at_once_one_has_the_plain_folder(tmp_path: Path) -> None:

@@ -27,8 +27,8 @@ from playground.shots.mutants.model import DoesNotApply, Edit, Finished, Picture
 from playground.shots.mutants.render_mutants import rendering_mutants
 from playground.shots.mutants.repeatability import Redrawn, commented, redraw
 from playground.shots.mutants.suite import (
-    Bench,
-    Result,
+    MutantResult,
+    MutantRunner,
     all_mutants,
     kill_rate,
     named,
@@ -60,13 +60,13 @@ MINE = (
 
 
 def mutant(name: str) -> Rendering:
-    (found,) = (m for m in rendering_mutants() if m.name == name)
-    return found
+    (rendering,) = (m for m in rendering_mutants() if m.name == name)
+    return rendering
 
 
 def finished(name: str) -> Callable[[Picture], Picture]:
-    (found,) = (m for m in FINISHED if m.name == name)
-    return found.change
+    (result,) = (m for m in FINISHED if m.name == name)
+    return result.change
 
 
 @pytest.fixture
@@ -84,13 +84,13 @@ def jacksboro() -> Sketch:
 
 
 @pytest.fixture(scope="module")
-def bench(shared_context: moderngl.Context, jacksboro: Sketch) -> Iterator[Bench]:
+def bench(shared_context: moderngl.Context, jacksboro: Sketch) -> Iterator[MutantRunner]:
     with Engine(shared_context) as engine:
-        yield Bench(engine, jacksboro, size=SIZE)
+        yield MutantRunner(engine, jacksboro, size=SIZE)
 
 
 @pytest.fixture(scope="module")
-def results(bench: Bench) -> list[Result]:
+def results(bench: MutantRunner) -> list[MutantResult]:
     return list(bench.run(all_mutants()))
 
 
@@ -104,14 +104,14 @@ def noise_like(shape: tuple[int, int] = (90, 160)) -> Picture:
 
 
 @pytest.mark.slow
-def test_the_same_build_catches_every_defect_of_jacksboro(results: list[Result]):
+def test_the_same_build_catches_every_defect_of_jacksboro(results: list[MutantResult]):
     assert survivors(results, 0) == []
     caught, of = kill_rate(results, 0)
     assert caught == of >= 60
     assert sum(r.counts and r.mutant.kind == "rendering" for r in results) >= 40
 
 
-def test_every_mutant_of_jacksboro_is_seen_or_says_why_not(results: list[Result]):
+def test_every_mutant_of_jacksboro_is_seen_or_says_why_not(results: list[MutantResult]):
     assert [r.mutant.name for r in results if r.unseen] == []
     assert {r.mutant.name: r.why_not for r in results if not r.applies} == {
         "one-turn-fewer": "nothing in the sketch repeats",
@@ -119,13 +119,13 @@ def test_every_mutant_of_jacksboro_is_seen_or_says_why_not(results: list[Result]
     }
 
 
-def test_noise_of_one_level_is_no_defect(results: list[Result]):
+def test_noise_of_one_level_is_no_defect(results: list[MutantResult]):
     (exempt,) = (r for r in results if r.mutant.exempt)
     assert exempt.comparison is not None and exempt.comparison.most == 1
     assert exempt.well and not exempt.caught()
 
 
-def test_looser_tiers_catch_less_but_all_that_is_large(results: list[Result]):
+def test_looser_tiers_catch_less_but_all_that_is_large(results: list[MutantResult]):
     passed = [set(survivors(results, number)) for number in range(len(TIERS))]
     assert "specks" in passed[1]  # what another build may do is as small as this
     assert "no-shadow" not in passed[1] and "no-shadow" in passed[2]
@@ -136,7 +136,7 @@ def test_looser_tiers_catch_less_but_all_that_is_large(results: list[Result]):
 
 @pytest.mark.parametrize("tolerance", [2, 8])
 def test_a_looser_comparison_is_seen(
-    tolerance: int, results: list[Result], bench: Bench, monkeypatch: pytest.MonkeyPatch
+    tolerance: int, results: list[MutantResult], bench: MutantRunner, monkeypatch: pytest.MonkeyPatch
 ):
     """The suite is sharp: with a tolerance above 1, mutants survive, by name."""
     monkeypatch.setattr(judge, "TOLERANCE", tolerance)
@@ -152,7 +152,7 @@ def test_a_looser_comparison_is_seen(
     assert len(of_all) >= (2 if tolerance == 2 else 7)
 
 
-def test_a_comparison_that_forgets_alpha_is_seen(bench: Bench, monkeypatch: pytest.MonkeyPatch):
+def test_a_comparison_that_forgets_alpha_is_seen(bench: MutantRunner, monkeypatch: pytest.MonkeyPatch):
     def forgetful(actual: Picture, expected: Picture | None, tolerance: int = 1, **rule: Any):
         opaque = [p if p is None else np.where([1, 1, 1, 0], p, np.uint8(255)) for p in (actual, expected)]
         return compare(*opaque, tolerance, **rule)
@@ -165,7 +165,7 @@ def test_a_comparison_that_forgets_alpha_is_seen(bench: Bench, monkeypatch: pyte
 
 
 @pytest.mark.slow
-def test_texts_read_again_with_comments_draw_the_same_bits(bench: Bench):
+def test_texts_read_again_with_comments_draw_the_same_bits(bench: MutantRunner):
     shot = shot_of(bench.sketch, size=SIZE)
     expected = bench.unbroken(shot)
     edited = commented(bench.sketch)
@@ -174,19 +174,19 @@ def test_texts_read_again_with_comments_draw_the_same_bits(bench: Bench):
         line.text for line in edited.graph.passes[2].technique.passes[-1].technique.source.lines
     )
     with Engine(bench.engine.ctx) as engine:
-        found = render_shot(engine, ShotCase(edited, shot))
-    np.testing.assert_array_equal(found.array, expected.array)
-    assert found.drawn == expected.drawn != ""
+        frame = render_shot(engine, ShotCase(edited, shot))
+    np.testing.assert_array_equal(frame.array, expected.array)
+    assert frame.drawn == expected.drawn != ""
 
 
-def test_the_hash_of_what_was_drawn_knows_every_defect_of_rendering(results: list[Result]):
+def test_the_hash_of_what_was_drawn_knows_every_defect_of_rendering(results: list[MutantResult]):
     for result in results:
         if result.applies:
-            reported = any("what is drawn has changed" in line for line in result.tiers[0].differences)
+            reported = any("the drawn content has changed" in line for line in result.tiers[0].differences)
             assert reported is (result.mutant.kind == "rendering"), result.mutant.name
 
 
-def test_values_that_are_no_numbers_have_their_own_word_in_every_tier(results: list[Result]):
+def test_values_that_are_no_numbers_have_their_own_word_in_every_tier(results: list[MutantResult]):
     (result,) = (r for r in results if r.mutant.name == "not-numbers")
     assert [judgement.word for judgement in result.tiers] == ["nan"] * len(TIERS)
 
@@ -224,20 +224,20 @@ def test_an_anchor_that_is_not_there_once_is_a_mistake_of_the_mutant(
 
 
 def test_a_sketch_of_ones_own_is_broken_as_far_as_it_can_be(mine: Path, any_engine: Engine):
-    bench = Bench(any_engine, load(mine))
-    found = {r.mutant.name: r for r in bench.run(all_mutants())}
-    assert found["no-shadow"].why_not == "the sketch does not use lighting/ray_cast/visibility.glsl"
-    assert found["sun-1-degree"].why_not == "there is no parameter 'light.sun'"
-    assert found["layers-swapped"].why_not == "there is no input 'colour.mix.grass'"
-    assert [m.name for m in FINISHED if not (found[m.name].applies and found[m.name].well)] == []
-    assert found["one-turn-fewer"].caught() and found["one-frame-late"].caught()
+    bench = MutantRunner(any_engine, load(mine))
+    result = {r.mutant.name: r for r in bench.run(all_mutants())}
+    assert result["no-shadow"].why_not == "the sketch does not use lighting/ray_cast/visibility.glsl"
+    assert result["sun-1-degree"].why_not == "there is no parameter 'light.sun'"
+    assert result["layers-swapped"].why_not == "there is no input 'colour.mix.grass'"
+    assert [m.name for m in FINISHED if not (result[m.name].applies and result[m.name].well)] == []
+    assert result["one-turn-fewer"].caught() and result["one-frame-late"].caught()
     # A third of the light is missing with one step of three.
-    assert found["one-turn-fewer"].picture.mean() < bench.expected["dark"].array.mean()
-    assert found["one-frame-late"].picture.mean() > bench.expected["dark"].array.mean()
+    assert result["one-turn-fewer"].picture.mean() < bench.expected["dark"].array.mean()
+    assert result["one-frame-late"].picture.mean() > bench.expected["dark"].array.mean()
 
 
-def test_a_shot_that_does_not_show_a_defect_says_so(bench: Bench):
-    def shown(by: int) -> Result:
+def test_a_shot_that_does_not_show_a_defect_says_so(bench: MutantRunner):
+    def shown(by: int) -> MutantResult:
         change = Finished("more", "More.", lambda picture: np.clip(picture, 0, 255 - by) + np.uint8(by))
         return next(bench.run([change]))
 
@@ -278,12 +278,12 @@ def test_a_mistake_in_the_table_is_reported(text: str, message: str, tmp_path: P
 def test_pictures_are_broken_as_they_say_and_the_original_is_left_alone():
     picture = noise_like()
     original = picture.copy()
-    for one in FINISHED:
-        changed = one.change(picture)
+    for item in FINISHED:
+        changed = item.change(picture)
         np.testing.assert_array_equal(picture, original)
         assert changed.dtype == np.uint8 and changed.shape[2] == 4
-        assert (changed.shape == picture.shape) is (one.name != "a-row-short")
-        np.testing.assert_array_equal(changed, one.change(picture))  # random numbers are seeded
+        assert (changed.shape == picture.shape) is (item.name != "a-row-short")
+        np.testing.assert_array_equal(changed, item.change(picture))  # random numbers are seeded
     for name in ("upside-down", "mirrored", "blue-for-red"):
         np.testing.assert_array_equal(finished(name)(finished(name)(picture)), picture)
     magenta = finished("magenta-square")(picture)
@@ -296,8 +296,8 @@ def test_pictures_are_broken_as_they_say_and_the_original_is_left_alone():
 
 def test_noise_is_as_strong_as_it_says():
     picture = noise_like()
-    one = finished("noise-of-one")(picture).astype(int) - picture
-    assert set(np.unique(one[..., :3])) == {-1, 0, 1} and not one[..., 3].any()
+    item = finished("noise-of-one")(picture).astype(int) - picture
+    assert set(np.unique(item[..., :3])) == {-1, 0, 1} and not item[..., 3].any()
     two = finished("noise-of-two")(picture).astype(int) - picture
     assert set(np.unique(two)) == {-2, 0, 2}
     assert 0.005 < (two != 0).any(axis=2).mean() < 0.02
@@ -306,7 +306,7 @@ def test_noise_is_as_strong_as_it_says():
 # ── drawn again ──────────────────────────────────────────────────────────────
 
 
-def redrawn(bench: Bench, sketch: Sketch, count: int) -> list[Redrawn]:
+def redrawn(bench: MutantRunner, sketch: Sketch, count: int) -> list[Redrawn]:
     shot = shot_of(sketch, size=SIZE)
     # A process loads the file, which says nothing of a smaller terrain; so the shot does.
     smaller = replace(shot, values=tuple(SMALLER.items()))
@@ -327,22 +327,22 @@ HARMLESS = Process(
 @pytest.mark.slow
 def test_what_must_not_matter_does_not(mine: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(repeatability_module, "processes", lambda count, drivers: [HARMLESS])
-    bench = Bench(any_engine, load(mine))
+    bench = MutantRunner(any_engine, load(mine))
     shot = shot_of(bench.sketch)
-    found = list(redraw(bench.sketch, shot, bench.unbroken(shot), any_engine.info, 2))
-    assert [(one.refused, one.identical) for one in found] == [("", True), ("", True)]
+    result = list(redraw(bench.sketch, shot, bench.unbroken(shot), any_engine.info, 2))
+    assert [(item.refused, item.identical) for item in result] == [("", True), ("", True)]
 
 
 @pytest.mark.slow
-def test_nor_does_it_to_jacksboro(bench: Bench, jacksboro: Sketch, monkeypatch: pytest.MonkeyPatch):
+def test_nor_does_it_to_jacksboro(bench: MutantRunner, jacksboro: Sketch, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(repeatability_module, "processes", lambda count, drivers: [HARMLESS])
-    found = redrawn(bench, jacksboro, 2)
-    assert [(one.refused, one.identical) for one in found] == [("", True), ("", True)]
+    result = redrawn(bench, jacksboro, 2)
+    assert [(item.refused, item.identical) for item in result] == [("", True), ("", True)]
 
 
 @pytest.mark.slow
 def test_a_process_that_fails_counts_as_refused(mine: Path, any_engine: Engine):
-    bench = Bench(any_engine, load(mine))
+    bench = MutantRunner(any_engine, load(mine))
     shot = shot_of(bench.sketch)
     arguments = (bench.sketch, shot, bench.unbroken(shot), any_engine.info, 1)
     (late,) = redraw(*arguments, limit=0.01)
@@ -353,12 +353,12 @@ def test_a_process_that_fails_counts_as_refused(mine: Path, any_engine: Engine):
 
 
 def test_a_picture_that_is_not_the_same_is_refused(mine: Path, any_engine: Engine):
-    bench = Bench(any_engine, load(mine))
+    bench = MutantRunner(any_engine, load(mine))
     shot = shot_of(bench.sketch)
     unbroken = bench.unbroken(shot)
     expected = replace(unbroken, array=finished("two-levels-brighter")(unbroken.array))
-    (found,) = redraw(bench.sketch, shot, expected, any_engine.info, 1)
-    assert found.refused.startswith("differs: max difference 2") and not found.identical
+    (result,) = redraw(bench.sketch, shot, expected, any_engine.info, 1)
+    assert result.refused.startswith("differs: max difference 2") and not result.identical
 
 
 DRAWINGS = 72
@@ -367,9 +367,9 @@ DRAWINGS = 72
 
 def test_the_drawings_have_every_condition():
     drivers = ("auto", "fragment", "compute")
-    found = processes(DRAWINGS, drivers)
-    assert found == processes(DRAWINGS, drivers)
-    drawings = [drawing for process in found for drawing in process.drawings]
+    result = processes(DRAWINGS, drivers)
+    assert result == processes(DRAWINGS, drivers)
+    drawings = [drawing for process in result for drawing in process.drawings]
     assert len(drawings) == DRAWINGS
     assert {drawing.driver for drawing in drawings} == set(drivers)
     assert {"", "a mutant", "all shots", "another camera", "a smaller picture"} <= {
@@ -378,15 +378,17 @@ def test_the_drawings_have_every_condition():
     for condition in ("fresh", "commented", "cache_bytes"):
         assert {bool(getattr(drawing, condition)) for drawing in drawings} == {True, False}
     for condition in ("elsewhere", "moved", "cold"):
-        assert {getattr(process, condition) for process in found} == {True, False}
-    environment = {pair for process in found for pair in process.environment}
+        assert {getattr(process, condition) for process in result} == {True, False}
+    environment = {pair for process in result for pair in process.environment}
     assert {("LP_NUM_THREADS", number) for number in "0124"} <= environment
     assert {("MESA_GL_VERSION_OVERRIDE", "4.1"), ("MESA_SHADER_CACHE_DISABLE", "true")} <= environment
 
 
 @pytest.mark.slow
-def test_no_false_alarm_in_many_drawings(bench: Bench, jacksboro: Sketch):
-    refused = [f"{one.words}: {one.refused}" for one in redrawn(bench, jacksboro, DRAWINGS) if one.refused]
+def test_no_false_alarm_in_many_drawings(bench: MutantRunner, jacksboro: Sketch):
+    refused = [
+        f"{item.words}: {item.refused}" for item in redrawn(bench, jacksboro, DRAWINGS) if item.refused
+    ]
     assert refused == []
 
 
@@ -419,9 +421,9 @@ def test_the_command_fails_where_a_defect_passes(
     monkeypatch.setattr(judge, "TOLERANCE", 2)
     chosen = ["--mutant", "noise-of-two", "--mutant", "half-blank"]
     assert cli.main(["shots", "mutants", str(mine), *chosen, "--json"]) == 1
-    found = json.loads(capsys.readouterr().out)
-    assert found["tiers"]["same build"] == {"caught": 1, "of": 2, "passed": ["noise-of-two"]}
-    assert [entry["tiers"]["same build"]["caught"] for entry in found["mutants"]] == [False, True]
+    result = json.loads(capsys.readouterr().out)
+    assert result["tiers"]["same build"] == {"caught": 1, "of": 2, "passed": ["noise-of-two"]}
+    assert [entry["tiers"]["same build"]["caught"] for entry in result["mutants"]] == [False, True]
 
 
 @pytest.mark.parametrize(
@@ -441,7 +443,7 @@ def test_a_mistake_is_one_sentence(arguments: list[str], message: str, capsys: p
 
 def test_every_mutant_can_be_chosen_by_name():
     assert named(()) == all_mutants()
-    (one,) = named(["seam"])
-    assert isinstance(one, Rendering) and isinstance(named(["grey"])[0], Finished)
+    (item,) = named(["seam"])
+    assert isinstance(item, Rendering) and isinstance(named(["grey"])[0], Finished)
     with pytest.raises(DoesNotApply):
         broken(Rendering(name="x", broke="X.", wires=(("colour.mix.grass", "nowhere"),)), load(PLAIN_SKETCH))

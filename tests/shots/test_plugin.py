@@ -31,15 +31,15 @@ def references() -> list[str]:
 
 
 def record(shot: str, folder: str = "shots-report/slope") -> dict[str, object]:
-    found: dict[str, object] = json.loads(Path(folder, f"{shot}.json").read_text())
-    return found
+    values: dict[str, object] = json.loads(Path(folder, f"{shot}.json").read_text())
+    return values
 
 
 def put_at(output: str, word: str) -> Path:
     """Return the file that a failure names."""
-    found = re.search(rf"^    {word} +(\S.*)$", output, re.MULTILINE)
-    assert found, output
-    return Path(found[1])
+    result = re.search(rf"^    {word} +(\S.*)$", output, re.MULTILINE)
+    assert result, output
+    return Path(result[1])
 
 
 def test_from_nothing_to_a_reference_and_back(run: Run) -> None:
@@ -102,7 +102,7 @@ def test_a_visible_change_of_the_kernel_fails_with_everything_to_see_it_by(
     assert f"; {over} of 1024 pixels ({100 * over / 1024:.3g} %) over 1" in output
     np.testing.assert_array_equal(shown[..., :3], 16 * np.abs(signed[..., :3]))
     np.testing.assert_array_equal(expected, read_png(FOLDER / "plain.png")[0])
-    assert "what is drawn has changed" in output
+    assert "the drawn content has changed" in output
     left = record("plain")
     assert (left["word"], left["tier"], left["node"]) == ("differs", "same build", "slope.toml::plain")
     assert left["command"] == "pytest --shots-update slope.toml::plain"

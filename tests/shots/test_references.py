@@ -101,10 +101,10 @@ def test_further_ones_are_accepted_in_the_order_of_their_numbers(tmp_path: Path)
     sketch = sketch_in(tmp_path)
     home = home_of(sketch) / "hills" / "llvmpipe"
     assert accepted(sketch, "dawn", "llvmpipe") == []
-    wanted = put(home, "dawn.png", "dawn.2.png", "dawn.3.png", "dawn.10.png")
+    expected = put(home, "dawn.png", "dawn.2.png", "dawn.3.png", "dawn.10.png")
     put(home, "dawn.1.png", "dawn.02.png", "dawn.x.png", "dawn-2.png", "dawn2.png", "my-dawn.png")
     put(home.parent / "nvidia-h200", "dawn.4.png")
-    assert accepted(sketch, "dawn", "llvmpipe") == wanted
+    assert accepted(sketch, "dawn", "llvmpipe") == expected
 
 
 def test_a_new_reference_removes_the_further_ones_of_its_shot_alone(tmp_path: Path) -> None:

@@ -236,7 +236,7 @@ ENDS = {
         r"drawing hills/crash crashed: the process was ended by SIGABRT\n"
         r"    \| first: to standard output\n    \| nir: validation failed after split_vars",
     ),
-    "no frame": (SandboxCrash, "drawing hills/no frame sent what is no answer: b'libEGL wa"),
+    "no frame": (SandboxCrash, "drawing hills/no frame sent an invalid answer: b'libEGL wa"),
     "memory": (SandboxCrash, "drawing hills/memory ran out of memory"),
 }
 

@@ -38,12 +38,12 @@ def case(tmp_path: Path) -> ShotCase:
 
 def smooth(by: int = 0) -> np.ndarray:
     """Return a gentle slope, of which ``by`` levels more at one pixel are no defect that anyone sees."""
-    found = np.zeros((60, 80, 4), np.uint8)
-    found[..., 0] = np.arange(80) * 2
-    found[..., 1] = (np.arange(60) * 3)[:, None]
-    found[..., 2], found[..., 3] = 60, 255
-    found[30, 40, :3] += by
-    return found
+    array = np.zeros((60, 80, 4), np.uint8)
+    array[..., 0] = np.arange(80) * 2
+    array[..., 1] = (np.arange(60) * 3)[:, None]
+    array[..., 2], array[..., 3] = 60, 255
+    array[30, 40, :3] += by
+    return array
 
 
 def taken(pixels: np.ndarray, **more: str) -> RenderedShot:
@@ -51,51 +51,51 @@ def taken(pixels: np.ndarray, **more: str) -> RenderedShot:
 
 
 def checked(case: ShotCase, pixels: np.ndarray, renderer: ContextInfo, **more: str) -> Outcome:
-    found = check(case, taken(pixels, **more), renderer)
-    assert found.word in WORDS
-    assert found.sentence.startswith(found.word)
-    assert found.ok is (found.word == "same")
-    return found
+    outcome = check(case, taken(pixels, **more), renderer)
+    assert outcome.word in WORDS
+    assert outcome.sentence.startswith(outcome.word)
+    assert outcome.ok is (outcome.word == "same")
+    return outcome
 
 
 def test_without_any_reference_it_is_missing_and_says_where_it_would_be(case: ShotCase) -> None:
     for renderer in (LLVMPIPE, CARD):
-        found = checked(case, smooth(), renderer)
-        assert (found.word, found.reference) == ("missing", None)
-        assert found.path == found.own_path == reference_path(case.sketch, "dawn", renderer.slug)
+        result = checked(case, smooth(), renderer)
+        assert (result.word, result.reference) == ("missing", None)
+        assert result.path == result.own_path == reference_path(case.sketch, "dawn", renderer.slug)
 
 
 def test_a_reference_says_what_it_comes_from_and_is_found_again(case: ShotCase) -> None:
     path, _ = write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
     assert read_reference(path).fingerprint == fingerprint_of(LLVMPIPE, (80, 60), "ab12")
-    found = checked(case, smooth(1), LLVMPIPE)
-    assert (found.word, found.tier, found.differences, found.path) == ("same", SAME_BUILD, (), path)
-    assert found.reference is not None and found.reference.fingerprint == found.fingerprint
+    result = checked(case, smooth(1), LLVMPIPE)
+    assert (result.word, result.tier, result.differences, result.path) == ("same", SAME_BUILD, (), path)
+    assert result.reference is not None and result.reference.fingerprint == result.fingerprint
     assert checked(case, smooth(2), LLVMPIPE).word == "differs"
 
 
 def test_another_build_is_less_strict_and_says_which(case: ShotCase) -> None:
     write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
-    found = checked(case, smooth(3), NEWER)
-    assert (found.word, found.tier) == ("same", OTHER_BUILD)
-    assert any("4.5 Mesa 25.0.7; the reference's: 4.5 Mesa 22.3.6" in line for line in found.differences)
+    result = checked(case, smooth(3), NEWER)
+    assert (result.word, result.tier) == ("same", OTHER_BUILD)
+    assert any("4.5 Mesa 25.0.7; the reference's: 4.5 Mesa 22.3.6" in line for line in result.differences)
     assert checked(case, smooth(4), NEWER).word == "differs"
 
 
 def test_what_was_drawn_is_reported_and_excuses_nothing(case: ShotCase) -> None:
     write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "cd34")
-    found = checked(case, smooth(2), LLVMPIPE)
-    assert (found.word, found.tier) == ("differs", SAME_BUILD)
-    assert found.differences == (
-        "what is drawn has changed: the sketch, its shot, a kernel, a value or a file",
+    result = checked(case, smooth(2), LLVMPIPE)
+    assert (result.word, result.tier) == ("differs", SAME_BUILD)
+    assert result.differences == (
+        "the drawn content has changed: the sketch, its shot, a kernel, a value or a file",
     )
 
 
 def test_another_renderer_is_judged_by_the_reference_renderers_picture(case: ShotCase) -> None:
     path, _ = write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
-    found = checked(case, smooth(40), CARD)
-    assert (found.word, found.tier, found.path) == ("same", OTHER_RENDERER, path)
-    assert found.own_path == reference_path(case.sketch, "dawn", "nvidia-h200")
+    result = checked(case, smooth(40), CARD)
+    assert (result.word, result.tier, result.path) == ("same", OTHER_RENDERER, path)
+    assert result.own_path == reference_path(case.sketch, "dawn", "nvidia-h200")
     upside_down = checked(case, np.ascontiguousarray(smooth()[::-1]), CARD)
     assert (upside_down.word, upside_down.tier) == ("structure", OTHER_RENDERER)
 
@@ -113,16 +113,16 @@ def test_on_the_reference_renderer_another_ones_picture_is_no_reference(case: Sh
     write_reference(case.sketch, "dawn", CARD, smooth(), "ab12")
     assert checked(case, smooth(), LLVMPIPE).word == "missing"
     assert checked(case, smooth(), OTHER_CARD).word == "missing"
-    found = check(case, taken(smooth()), LLVMPIPE, reference_renderer="nvidia-h200")
-    assert (found.word, found.tier) == ("same", OTHER_RENDERER)
+    result = check(case, taken(smooth()), LLVMPIPE, reference_renderer="nvidia-h200")
+    assert (result.word, result.tier) == ("same", OTHER_RENDERER)
 
 
 def test_any_accepted_one_may_match(case: ShotCase) -> None:
     path, _ = write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
     second = path.with_name("dawn.2.png")
     write_png(second, smooth(90))
-    found = checked(case, smooth(90), LLVMPIPE)
-    assert (found.ok, found.path) == (True, second)
+    result = checked(case, smooth(90), LLVMPIPE)
+    assert (result.ok, result.path) == (True, second)
     assert checked(case, smooth(45), LLVMPIPE).word == "differs"
 
 
@@ -133,9 +133,9 @@ def test_one_that_cannot_be_read_is_never_passed_over(
 ) -> None:
     path, _ = write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
     path.with_name(damaged).write_bytes(b"no picture")
-    found = checked(case, smooth(), renderer)
-    assert (found.word, found.path.name, found.reference) == ("unreadable", damaged, None)
-    assert damaged in found.sentence
+    result = checked(case, smooth(), renderer)
+    assert (result.word, result.path.name, result.reference) == ("unreadable", damaged, None)
+    assert damaged in result.sentence
 
 
 @pytest.mark.parametrize(("what", "word"), [("not_finite", "nan"), ("gl_error", "gl-error")])
@@ -143,15 +143,15 @@ def test_what_is_wrong_with_how_it_was_drawn_fails_the_very_same_picture(
     case: ShotCase, what: str, word: str
 ) -> None:
     write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
-    found = checked(case, smooth(), LLVMPIPE, **{what: "GL_INVALID_VALUE"})
-    assert found.word == word
-    assert found.reference is not None  # there is something to look at
+    result = checked(case, smooth(), LLVMPIPE, **{what: "GL_INVALID_VALUE"})
+    assert result.word == word
+    assert result.reference is not None  # there is something to look at
 
 
 def test_a_frame_from_elsewhere_is_judged_too(case: ShotCase) -> None:
     write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
-    found = check(case, Frame(smooth()), LLVMPIPE)
-    assert (found.ok, found.fingerprint.drawn, found.differences) == (True, "", ())
+    result = check(case, Frame(smooth()), LLVMPIPE)
+    assert (result.ok, result.fingerprint.drawn, result.differences) == (True, "", ())
 
 
 def test_images_to_look_at(case: ShotCase) -> None:
@@ -191,14 +191,14 @@ def slope(folder: Path) -> ShotCase:
 
 def test_a_shot_that_is_taken_knows_what_was_drawn(drawing: Engine, tmp_path: Path) -> None:
     case = slope(tmp_path)
-    one = render_shot(drawing, case)
-    assert (one.not_finite, one.gl_error, one.size) == ("", "", (16, 16))
-    assert one.drawn and one.drawn == render_shot(drawing, case).drawn
-    found = check(case, one, drawing.info)
-    assert found.word == "missing"
-    write_reference(case.sketch, "one", drawing.info, one.array, one.drawn)
-    found = check(case, render_shot(drawing, case), drawing.info)
-    assert (found.ok, found.differences) == (True, ())
+    frame = render_shot(drawing, case)
+    assert (frame.not_finite, frame.gl_error, frame.size) == ("", "", (16, 16))
+    assert frame.drawn and frame.drawn == render_shot(drawing, case).drawn
+    result = check(case, frame, drawing.info)
+    assert result.word == "missing"
+    write_reference(case.sketch, "one", drawing.info, frame.array, frame.drawn)
+    result = check(case, render_shot(drawing, case), drawing.info)
+    assert (result.ok, result.differences) == (True, ())
 
 
 def test_an_opengl_error_left_behind_is_reported(
@@ -214,9 +214,9 @@ def test_an_opengl_error_left_behind_is_reported(
         return frame
 
     monkeypatch.setattr(drawing, "render", careless)
-    one = render_shot(drawing, case)
-    assert one.gl_error == "GL_INVALID_ENUM"
-    assert check(case, one, drawing.info).word == "gl-error"
+    frame = render_shot(drawing, case)
+    assert frame.gl_error == "GL_INVALID_ENUM"
+    assert check(case, frame, drawing.info).word == "gl-error"
 
 
 def test_an_opengl_error_within_a_pass_has_its_own_kind(
@@ -225,9 +225,9 @@ def test_an_opengl_error_within_a_pass_has_its_own_kind(
     run = drawing.runner.run
 
     def careless(*arguments: object, **named: object) -> object:
-        found = run(*arguments, **named)  # type: ignore[arg-type]
+        value = run(*arguments, **named)  # type: ignore[arg-type]
         drawing.ctx.enable_direct(0xFFFF)
-        return found
+        return value
 
     monkeypatch.setattr(drawing.runner, "run", careless)
     with pytest.raises(OpenGLFault, match="OpenGL reports GL_INVALID_ENUM") as caught:

@@ -26,7 +26,7 @@ Run = Callable[..., pytest.RunResult]
 Edit = Callable[[str, str, str], None]
 
 SIZE = (96, 128)
-WIDEST = Tolerance(255, 1.0, "", "for the test")
+ANYTHING = Tolerance(255, 1.0, "", "for the test")
 
 
 def land(*, shadow: bool = True) -> Picture:
@@ -55,9 +55,9 @@ def noisy(picture: Picture, levels: int, seed: int = 1) -> Picture:
 @pytest.mark.parametrize("seed", range(5))
 def test_noise_passes_by_its_tier_and_fails_without(seed: int) -> None:
     actual, expected = noisy(land(), 4, seed), noisy(land(), 4, seed + 100)
-    found = judged(actual, because("noise"), expected)
-    assert found.ok and found.tolerated
-    assert found.sentence.startswith("same, by the tolerance: max difference 8 of 255")
+    result = judged(actual, because("noise"), expected)
+    assert result.ok and result.tolerated
+    assert result.sentence.startswith("same, by the tolerance: max difference 8 of 255")
     assert judged(actual, None, expected).word == "differs"
     assert judged(noisy(land(), 9, seed), because("noise")).sentence.endswith("the tolerance allows 8")
 
@@ -86,7 +86,7 @@ def stripes() -> Picture:
     return np.clip(land().astype(int) + bright[..., None] * [1, 1, 1, 0], 0, 255).astype(np.uint8)
 
 
-@pytest.mark.parametrize("tolerance", [*map(because, TIERS), WIDEST], ids=[*TIERS, "widest"])
+@pytest.mark.parametrize("tolerance", [*map(because, TIERS), ANYTHING], ids=[*TIERS, "widest"])
 @pytest.mark.parametrize(
     "broken",
     [
@@ -100,35 +100,35 @@ def stripes() -> Picture:
     ],
 )
 def test_no_tolerance_lets_a_change_of_what_is_shown_pass(broken: Picture, tolerance: Tolerance) -> None:
-    found = judged(broken, tolerance)
-    assert not found.ok and found.word in ("differs", "crowded", "blank")
+    result = judged(broken, tolerance)
+    assert not result.ok and result.word in ("differs", "crowded", "blank")
 
 
 def test_a_shadow_that_is_lost_under_noise_fails() -> None:
     """The sum of its differences over a window stays, where that of the noise does not."""
-    found = judged(noisy(land(shadow=False), 8), WIDEST)
-    assert found.word == "crowded" and "no tolerance lets pass" in found.sentence
+    result = judged(noisy(land(shadow=False), 8), ANYTHING)
+    assert result.word == "crowded" and "no tolerance lets pass" in result.sentence
 
 
 def test_a_tolerance_that_is_not_needed_is_named() -> None:
-    found = judged(land(), because("noise"))
-    assert found.ok and not found.tolerated and found.sentence.endswith("; the tolerance is not needed")
+    result = judged(land(), because("noise"))
+    assert result.ok and not result.tolerated and result.sentence.endswith("; the tolerance is not needed")
 
 
 @pytest.mark.parametrize(
-    ("given", "reason", "message"),
+    ("value", "reason", "message"),
     [
         ("noise", "", "it needs a reason"),
         ("nosie", "grain", "did you mean 'noise'"),
         (1, "grain", "levels = 1: expected a whole number from 2 to 255"),
-        ({"levels": 4, "share": 0}, "grain", "share = 0: expected a share of the pixels"),
+        ({"levels": 4, "share": 0}, "grain", "share = 0: expected a fraction of the pixels"),
         ({"level": 4}, "grain", "expected rounding, edges, noise, a number of levels"),
         (None, "grain", "there is no tolerance that it is a reason for"),
     ],
 )
-def test_a_mistake_in_a_tolerance_is_one_sentence(given: object, reason: str, message: str) -> None:
+def test_a_mistake_in_a_tolerance_is_one_sentence(value: object, reason: str, message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        tolerance_of(given, reason)  # type: ignore[arg-type]
+        tolerance_of(value, reason)  # type: ignore[arg-type]
 
 
 # ── masks ────────────────────────────────────────────────────────────────────
@@ -139,12 +139,12 @@ def test_what_is_masked_counts_as_equal_and_the_rest_in_full() -> None:
     actual[:10, :20, :3] = 255
     reference = Reference(Path(), land(), OURS.texts())
     mask = mask_of([(0, 0, 20, 10)], SIZE[::-1], Path())
-    found = judge(actual, OURS, [reference], rule=Rule(mask=mask))[0]
-    assert found.ok and found.sentence.endswith("200 pixels (1.63 %) are masked")
+    result = judge(actual, OURS, [reference], rule=Rule(mask=mask))[0]
+    assert result.ok and result.sentence.endswith("200 pixels (1.63 %) are masked")
     actual[50, 50, 0] += 9
-    found = judge(actual, OURS, [reference], rule=Rule(mask=mask))[0]
-    assert f"1 of {SIZE[0] * SIZE[1] - 200} pixels" in found.sentence
-    assert found.word == "differs" and found.comparison.place == (50, 50)
+    result = judge(actual, OURS, [reference], rule=Rule(mask=mask))[0]
+    assert f"1 of {SIZE[0] * SIZE[1] - 200} pixels" in result.sentence
+    assert result.word == "differs" and result.comparison.position == (50, 50)
 
 
 def test_a_picture_of_one_colour_but_for_what_is_masked_is_blank() -> None:

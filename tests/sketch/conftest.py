@@ -50,12 +50,12 @@ class Folder:
         """Load a sketch that is wrong; see that the error has these words and this line."""
         with pytest.raises(PlaygroundError) as caught:
             self.sketch(**parts)
-        found = caught.value.diagnostics[0]
-        assert words in found.message, found
-        assert "\n" not in found.message
-        assert Path(found.file).name == file
+        diagnostic = caught.value.diagnostics[0]
+        assert words in diagnostic.message, diagnostic
+        assert "\n" not in diagnostic.message
+        assert Path(diagnostic.file).name == file
         if line is not None:
-            assert found.line == line, found
+            assert diagnostic.line == line, diagnostic
         return caught.value
 
 

@@ -109,27 +109,27 @@ def test_outer_settings_win_and_targets_share_the_first_s_value(sketch):
 
 
 def test_what_is_set_last_wins(sketch):
-    one = sketch.with_values({"height.strength": 5, "height.one.fine.gain": 6})
-    values = values_of(one)
+    item = sketch.with_values({"height.strength": 5, "height.one.fine.gain": 6})
+    values = values_of(item)
     assert (values["height.one.coarse.gain"], values["height.one.fine.gain"]) == (5.0, 6.0)
-    assert value_of(one, "height.strength", values) == 5.0
-    two = one.with_values({"height.strength": 7})
+    assert value_of(item, "height.strength", values) == 5.0
+    two = item.with_values({"height.strength": 7})
     assert values_of(two)["height.one.fine.gain"] == 7.0
     assert [path for path, _ in two.overrides] == ["height.one.fine.gain", "height.strength"]
     assert values_of(sketch)["height.one.fine.gain"] == 4.0
 
 
 def test_values_come_in_any_form(sketch):
-    found = sketch.with_values(
+    result = sketch.with_values(
         {"more.sun": {"azimuth": 10, "elevation": 20}, "more.octaves": "7", "more.gain": np.float32(2)}
     )
-    values = values_of(found)
+    values = values_of(result)
     assert (values["more.sun"], values["more.octaves"], values["more.gain"]) == ((10.0, 20.0), 7, 2.0)
-    hash(found)
+    hash(result)
 
 
 @pytest.mark.parametrize(
-    ("given", "field", "value"),
+    ("arguments", "field", "value"),
     [
         ({"size": 513}, "size", (513, 513)),
         ({"size": "513x257"}, "size", (513, 257)),
@@ -142,14 +142,14 @@ def test_values_come_in_any_form(sketch):
         ({"base_elevation": -5}, "base_elevation", -5.0),
     ],
 )
-def test_the_terrain_is_set_like_a_parameter(sketch, given, field, value):
-    found = sketch.with_values(given)
-    assert getattr(found, field) == value and found.overrides == ()
-    hash(found)
+def test_the_terrain_is_set_like_a_parameter(sketch, arguments, field, value):
+    result = sketch.with_values(arguments)
+    assert getattr(result, field) == value and result.overrides == ()
+    hash(result)
 
 
 @pytest.mark.parametrize(
-    ("key", "given"),
+    ("key", "value"),
     [
         *[
             ("size", v)
@@ -176,16 +176,16 @@ def test_the_terrain_is_set_like_a_parameter(sketch, given, field, value):
     ],
     ids=[str(i) for i in range(29)],
 )
-def test_what_is_no_terrain_is_one_sentence(sketch, key, given):
+def test_what_is_no_terrain_is_one_sentence(sketch, key, value):
     assert key in TERRAIN_KEYS
     with pytest.raises(ParameterError, match=f"^{key} = .*: expected") as caught:
-        sketch.with_values({key: given})
+        sketch.with_values({key: value})
     assert len(str(caught.value)) < 200
 
 
 def test_a_preset_may_change_the_terrain(sketch):
-    found = sketch.with_preset("big")
-    assert found.relief == 9.0 and values_of(found)["height.one.fine.gain"] == 7.0
+    result = sketch.with_preset("big")
+    assert result.relief == 9.0 and values_of(result)["height.one.fine.gain"] == 7.0
     with pytest.raises(ParameterError, match="no preset 'bog'; did you mean 'big'"):
         sketch.with_preset("bog")
 
@@ -208,8 +208,8 @@ def test_exported_parameters_are_shown_first_and_once(sketch):
 
 
 def test_tables_join_into_paths_but_not_a_value_that_is_a_table(sketch):
-    given = {"height": {"one": {"coarse.sun": {"azimuth": 1, "elevation": 2}}, "strength": 3}, "size": [3, 4]}
-    assert flat_values(sketch.graph, given) == {
+    value = {"height": {"one": {"coarse.sun": {"azimuth": 1, "elevation": 2}}, "strength": 3}, "size": [3, 4]}
+    assert flat_values(sketch.graph, value) == {
         "height.one.coarse.sun": {"azimuth": 1, "elevation": 2},
         "height.strength": 3,
         "size": [3, 4],

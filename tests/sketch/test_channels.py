@@ -54,8 +54,8 @@ def pixel(engine: Engine, shown: Sketch) -> tuple[int, ...]:
 
 
 def test_a_shader_opened_alone_has_its_channels(folder: Path) -> None:
-    found = channels(load(folder / "two.frag"))
-    assert [(c.path, c.source) for c in found] == [
+    result = channels(load(folder / "two.frag"))
+    assert [(c.path, c.source) for c in result] == [
         ("view.iChannel0", "foreign/noise"),
         ("view.iChannel1", "foreign/noise"),
     ]
@@ -77,9 +77,9 @@ def test_a_stand_in_for_a_filter_s_image_stays_as_large_as_the_picture(
     folder: Path, any_engine: Engine
 ) -> None:
     (folder / "filter.fs").write_text(FILTER, "utf-8")
-    found = load(folder / "filter.fs")
+    result = load(folder / "filter.fs")
     for source in ("foreign/picture", "foreign/noise", "foreign/black"):
-        any_engine.render(with_source(found, "view.inputImage", source), size=(12, 7))
+        any_engine.render(with_source(result, "view.inputImage", source), size=(12, 7))
         assert any_engine.record.plan is not None
         assert any_engine.record.plan.step("inputImage").size == (12, 7)  # type: ignore[union-attr]
 
@@ -91,21 +91,21 @@ void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, vec3(1.0)); }
 
 def test_a_cube_is_fed_from_what_has_six_faces(folder: Path, any_engine: Engine) -> None:
     (folder / "cube.frag").write_text(CUBE, "utf-8")
-    found = load(folder / "cube.frag")
-    assert sources(found, "view.iChannel0") == ["foreign/black", "foreign/cube_faces", "foreign/sky_box"]
-    for source in sources(found, "view.iChannel0"):
-        any_engine.render(with_source(found, "view.iChannel0", source), size=(4, 4))
+    result = load(folder / "cube.frag")
+    assert sources(result, "view.iChannel0") == ["foreign/black", "foreign/cube_faces", "foreign/sky_box"]
+    for source in sources(result, "view.iChannel0"):
+        any_engine.render(with_source(result, "view.iChannel0", source), size=(4, 4))
         assert any_engine.record.plan is not None
         wide, high = any_engine.record.plan.step("iChannel0").size  # type: ignore[union-attr]
         assert high == 6 * wide
 
 
 def test_each_source_has_the_size_of_its_kind(folder: Path, any_engine: Engine) -> None:
-    found = load(folder / "two.frag")
+    result = load(folder / "two.frag")
     sizes = {"keys": (256, 3), "spectrum": (512, 2), "sound": (512, 2), "microphone": (512, 2)}
     sizes |= {"video": (160, 90), "camera": (640, 480), "noise": (256, 256)}
     for name, size in sizes.items():
-        any_engine.render(with_source(found, "view.iChannel0", f"foreign/{name}"), size=(4, 4))
+        any_engine.render(with_source(result, "view.iChannel0", f"foreign/{name}"), size=(4, 4))
         plan = any_engine.record.plan
         assert plan is not None and plan.step("iChannel0").size == size  # type: ignore[union-attr]
 
@@ -142,13 +142,13 @@ def test_what_may_feed_a_channel_is_every_stand_in_and_every_other_pass(folder: 
 def test_a_pass_that_reads_the_shader_may_not_feed_it(folder: Path) -> None:
     after = '[[pass]]\nname = "after"\nuse = "./part"\ninputs = { iChannel0 = "first" }\n'
     first = '[[pass]]\nname = "first"\nuse = "./two"\nsize = 8\n'
-    found = sketch(folder, 'use = "./part"\ninputs = { iChannel0 = "after" }', first, after)
-    assert "after" not in sources(found, "first.iChannel0") and "view" not in sources(
-        found, "first.iChannel0"
+    result = sketch(folder, 'use = "./part"\ninputs = { iChannel0 = "after" }', first, after)
+    assert "after" not in sources(result, "first.iChannel0") and "view" not in sources(
+        result, "first.iChannel0"
     )
-    assert "first" in sources(found, "view.iChannel0")
+    assert "first" in sources(result, "view.iChannel0")
     with pytest.raises(PlaygroundError, match="circle"):
-        with_source(found, "first.iChannel0", "after")
+        with_source(result, "first.iChannel0", "after")
 
 
 @pytest.mark.parametrize("alone", [True, False])
@@ -215,9 +215,9 @@ void main() { gl_FragColor = texelFetch(heard, ivec2(0), 0) + texelFetch(waves, 
 
 def test_a_sound_takes_the_place_of_a_made_up_one(folder: Path) -> None:
     (folder / "a.fs").write_text(SOUND, "utf-8")
-    found = load(folder / "a.fs")
+    result = load(folder / "a.fs")
     for name, content, size in (("heard", "spectrum", ("32", "1")), ("waves", "waves", ("256", "1"))):
-        fed = with_source(found, f"view.{name}", "foreign/sound").graph.find(name)
+        fed = with_source(result, f"view.{name}", "foreign/sound").graph.find(name)
         assert fed is not None and fed.size == size
         menu = fed.technique.parameter("content").widget.choices
         assert menu[dict(fed.values)["content"]] == content
@@ -228,10 +228,10 @@ def test_a_channel_of_several_passes_is_one(folder: Path) -> None:
     (folder / "b.fs").write_text(
         f"{head}void main() {{ gl_FragColor = IMG_THIS_PIXEL(inputImage); }}\n", "utf-8"
     )
-    found = load(folder / "b.fs")
-    (channel,) = channels(found)
+    result = load(folder / "b.fs")
+    (channel,) = channels(result)
     assert (channel.path, channel.source, channel.alone) == ("view.inputImage", "foreign/picture", True)
-    fed = with_source(found, channel.path, "foreign/image")
+    fed = with_source(result, channel.path, "foreign/image")
     assert [(spec.name, spec.use) for spec in fed.graph.passes][:-1] == [("inputImage", "foreign/image")]
 
 

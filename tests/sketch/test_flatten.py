@@ -69,9 +69,9 @@ def make(folder):
 
 def wires(sketch, *, variants=(), **options) -> dict[str, dict[str, str]]:
     """Return pass → input → what feeds it, as text, for every leaf."""
-    found = {}
+    names = {}
     for leaf in leaves_of(substitute_variants(flatten(sketch), variants, **options).nodes):
-        found[leaf.path] = {
+        names[leaf.path] = {
             name: str(s)
             if isinstance(s, Ref)
             else f"fed {s.loop}:{s.name}"
@@ -79,18 +79,18 @@ def wires(sketch, *, variants=(), **options) -> dict[str, dict[str, str]]:
             else "nothing"
             for name, s in leaf.inputs
         }
-    return found
+    return names
 
 
 # One rule for wiring
 
 
 def test_an_unwired_input_takes_the_latest_earlier_pass_of_its_name_then_output(make):
-    found = wires(make(passes("a h", "height h", "b h", "light light")))
-    assert found["light"] == {"height": "height:height", "water": "nothing"}
-    found = wires(make(passes("a h", "b h", "water water", "light light")))
-    assert found["light"] == {"height": "b:height", "water": "water:water"}
-    assert found["view"] == {"light": "light:light", "height": "b:height"}
+    result = wires(make(passes("a h", "height h", "b h", "light light")))
+    assert result["light"] == {"height": "height:height", "water": "nothing"}
+    result = wires(make(passes("a h", "b h", "water water", "light light")))
+    assert result["light"] == {"height": "b:height", "water": "water:water"}
+    assert result["view"] == {"light": "light:light", "height": "b:height"}
 
 
 def test_a_wire_names_a_pass_and_perhaps_an_output(make):
@@ -143,8 +143,11 @@ def test_any_order_of_the_file_runs_each_pass_after_what_it_reads(make):
         specs = [f"p{i} water; inputs = {{ height = 'p{reads[i]}' }}" if i else "p0 h" for i in order]
         sketch = make(passes(*specs))
         flat = flatten(sketch)
-        place = {node.path: k for k, node in enumerate(flat.nodes)}
-        assert all(place[f"p{a}"] > place[f"p{b}"] for a, b in reads.items()) and len(place) == count + 1
+        position = {node.path: k for k, node in enumerate(flat.nodes)}
+        assert (
+            all(position[f"p{a}"] > position[f"p{b}"] for a, b in reads.items())
+            and len(position) == count + 1
+        )
 
 
 # Nesting
@@ -184,7 +187,7 @@ def test_outputs_go_down_to_leaves_and_paths_go_inside(make):
         "water": "height.deep.core.low:height",
     }
     flat = flatten(sketch)
-    for text, wanted in (
+    for text, expected in (
         ("height", "height.deep.core.low:height"),
         ("height:water", "height.deep.core.high:water"),
         ("height.deep", "height.deep.top:water"),
@@ -193,7 +196,7 @@ def test_outputs_go_down_to_leaves_and_paths_go_inside(make):
         ("height.deep.core.high:water", "height.deep.core.high:water"),
         ("view", "view:frame"),
     ):
-        assert str(flat.ref(text, "s")) == wanted
+        assert str(flat.ref(text, "s")) == expected
     for text, words in (
         ("hieght", "did you mean 'height'"),
         ("height:dept", "no output 'dept'"),
@@ -219,21 +222,21 @@ def test_a_path_s_own_name_is_its_output_before_the_first(make):
 def test_what_is_wired_inside_wins_over_the_export_around_it(make):
     two = passes("x water; inputs = { }", "y water") + '[inputs]\nheight = ["x.height", "y.height"]\n'
     body = passes("a h", "b h", "t two; inputs = { height = 'a', 'y.height' = 'b' }")
-    found = wires(make(body, two=two))
-    assert (found["t.x"], found["t.y"]) == ({"height": "a:height"}, {"height": "b:height"})
+    result = wires(make(body, two=two))
+    assert (result["t.x"], result["t.y"]) == ({"height": "a:height"}, {"height": "b:height"})
     body = passes("a h", "b h", "t two; inputs = { 'y.height' = 'a' }")
-    found = wires(make(body, two=two))
-    assert (found["t.x"], found["t.y"]) == ({"height": "b:height"}, {"height": "a:height"})
+    result = wires(make(body, two=two))
+    assert (result["t.x"], result["t.y"]) == ({"height": "b:height"}, {"height": "a:height"})
     # Once all targets of an export are wired, the export itself needs nothing.
-    one = passes("x water") + '[inputs]\nheight = "x.height"\n'
+    item = passes("x water") + '[inputs]\nheight = "x.height"\n'
     body = passes("t one; inputs = { 'x.height' = 'late' }", "late h")
-    assert wires(make(body, one=one))["t.x"] == {"height": "late:height"}
+    assert wires(make(body, one=item))["t.x"] == {"height": "late:height"}
 
 
 def test_optional_inputs_stay_empty_and_are_optional_through_a_technique(make):
     shell = passes("inner light") + '[inputs]\nheight = "inner.height"\nwet = "inner.water"\n'
-    found = wires(make(passes("a h", "t shell"), shell=shell))
-    assert found["t.inner"] == {"height": "a:height", "water": "nothing"}
+    result = wires(make(passes("a h", "t shell"), shell=shell))
+    assert result["t.inner"] == {"height": "a:height", "water": "nothing"}
     make.folder.refused("needs its input 'height' wired", 2, body=passes("t shell"))
 
 
@@ -355,10 +358,12 @@ def test_a_fast_variant_replaces_its_technique_where_it_can_run(doubled):
 )
 def test_a_fast_variant_steps_back_where_something_is_wired_to_what_is_inside(doubled, body):
     sketch = doubled(body)
-    found = wires(sketch, variants=VARIANTS)
-    assert found == wires(sketch)
-    known = set(found)
-    assert all(s == "nothing" or s.partition(":")[0] in known for w in found.values() for s in w.values())
+    result = wires(sketch, variants=VARIANTS)
+    assert result == wires(sketch)
+    known_names = set(result)
+    assert all(
+        s == "nothing" or s.partition(":")[0] in known_names for w in result.values() for s in w.values()
+    )
 
 
 def test_a_fast_variant_steps_back_for_a_path_that_is_wanted(doubled):
@@ -366,11 +371,11 @@ def test_a_fast_variant_steps_back_for_a_path_that_is_wanted(doubled):
     assert "t.f" in wires(sketch, variants=VARIANTS) and "t.f.a" not in wires(sketch, variants=VARIANTS)
     assert wires(sketch, variants=VARIANTS, wanted="t.f.a") == wires(sketch)
     assert (
-        str(substitute_variants(flatten(sketch), VARIANTS, wanted="t.f.b:water").ref("t.f.b:water", "s"))
+        str(substitute_variants(flatten(sketch), VARIANTS, text="t.f.b:water").ref("t.f.b:water", "s"))
         == "t.f.b:water"
     )
-    for wanted in ("t.f", "h", "nothing.there"):
-        assert "t.f" in wires(sketch, variants=VARIANTS, wanted=wanted)
+    for expected in ("t.f", "h", "nothing.there"):
+        assert "t.f" in wires(sketch, variants=VARIANTS, wanted=expected)
 
 
 @pytest.mark.parametrize(
@@ -454,7 +459,7 @@ def test_a_nested_sketch_is_flattened_in_passing():
     sketch = load()
     substitute_variants(flatten(sketch), VARIANTS)
     made = module._shape, substitution._substituted
-    known = [GRAPHS.count_of(function) for function in made]
+    counts = [GRAPHS.count_of(function) for function in made]
     for i in range(20):
         substitute_variants(flatten(sketch.with_values({"relief": i})), VARIANTS)
-    assert [GRAPHS.count_of(function) for function in made] == known
+    assert [GRAPHS.count_of(function) for function in made] == counts

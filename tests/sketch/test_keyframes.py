@@ -84,12 +84,12 @@ def test_smooth_has_no_jump_and_no_kink_and_never_leaves_what_it_goes_between():
     random = np.random.default_rng(5)
     for _ in range(40):
         times = np.cumsum(random.uniform(0.05, 3.0, 7))
-        given = random.choice([0.0, 0.2, 1.0, 1.0001, 5.0, -3.0], 7)
-        track = Track(tuple(times), tuple(given), ("smooth",) * 7)
-        for (t0, t1), (v0, v1) in zip(itertools.pairwise(times), itertools.pairwise(given), strict=True):
-            found = curve(track, np.linspace(t0, t1, 40))
-            assert found.min() >= min(v0, v1) and found.max() <= max(v0, v1)
-            assert (np.diff(found) * np.sign(v1 - v0) >= -1e-12).all(), "it goes one way"
+        value = random.choice([0.0, 0.2, 1.0, 1.0001, 5.0, -3.0], 7)
+        track = Track(tuple(times), tuple(value), ("smooth",) * 7)
+        for (t0, t1), (v0, v1) in zip(itertools.pairwise(times), itertools.pairwise(value), strict=True):
+            array = curve(track, np.linspace(t0, t1, 40))
+            assert array.min() >= min(v0, v1) and array.max() <= max(v0, v1)
+            assert (np.diff(array) * np.sign(v1 - v0) >= -1e-12).all(), "it goes one way"
         for t in times[1:-1]:
             step = 1e-6
             before = (track.at(t) - track.at(t - step)) / step
@@ -114,10 +114,10 @@ def test_smooth_begins_and_ends_at_rest_and_passes_a_keyframe_on_its_way_without
 def test_monotone_slopes_are_those_of_scipy():
     """An independent implementation of the same authors' interpolant, but for the ends, which rest here."""
     scipy = pytest.importorskip("scipy.interpolate")
-    times, given = (0.0, 1.0, 2.5, 3.0, 7.0), (0.0, 1.0, 1.5, 4.0, 4.5)
-    track = Track(times, given, ("smooth",) * 5)
+    times, value = (0.0, 1.0, 2.5, 3.0, 7.0), (0.0, 1.0, 1.5, 4.0, 4.5)
+    track = Track(times, value, ("smooth",) * 5)
     many = np.linspace(1.0, 3.0, 101)  # the segments that touch no end
-    truth = scipy.PchipInterpolator(times, given)(many)
+    truth = scipy.PchipInterpolator(times, value)(many)
     np.testing.assert_allclose(curve(track, many), truth, atol=1e-12)
 
 
@@ -164,9 +164,9 @@ def test_the_camera_moves_in_what_keyframes_name_and_stays_in_the_rest(sketch: S
 def test_what_is_set_by_user_stays(sketch: Sketch):
     by_user = sketch.with_values({"light.sun": (45.0, 45.0)})
     for time in (0.0, 2.2, 9.0):
-        found = by_user.at(time)
-        assert found.overrides[-1] == ("light.sun", (45.0, 45.0))
-        assert found.camera == sketch.at(time).camera
+        result = by_user.at(time)
+        assert result.overrides[-1] == ("light.sun", (45.0, 45.0))
+        assert result.camera == sketch.at(time).camera
     turned = sketch.with_camera(Camera(azimuth=7.0))
     assert turned.at(2.0).camera == Camera(azimuth=7.0)
     assert dict(turned.at(2.0).overrides) == values(sketch, 2.0)

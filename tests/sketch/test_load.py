@@ -35,7 +35,7 @@ float kernel(ivec2 texel) { return texelFetch(picture, texel, 0).r; }
 
 
 def test_a_whole_sketch(folder):
-    found = folder.sketch(
+    sketch = folder.sketch(
         head="""\
 format = 1
 title = "A slope"
@@ -69,10 +69,15 @@ camera = { elevation = 80 }
 set = { height.rise = 1.5 }
 """,
     )
-    assert (found.name, found.title, found.size, found.extent) == ("s", "A slope", (65, 33), (1000.0, 1000.0))
-    assert (found.relief, found.base_elevation, found.samples) == (250.5, -10.0, 2)
-    assert found.camera == Camera(azimuth=10.0, target=(1.0, 2.0, 3.5))
-    height, view = found.graph.passes
+    assert (sketch.name, sketch.title, sketch.size, sketch.extent) == (
+        "s",
+        "A slope",
+        (65, 33),
+        (1000.0, 1000.0),
+    )
+    assert (sketch.relief, sketch.base_elevation, sketch.samples) == (250.5, -10.0, 2)
+    assert sketch.camera == Camera(azimuth=10.0, target=(1.0, 2.0, 3.5))
+    height, view = sketch.graph.passes
     assert (height.name, height.size, height.values, height.line) == (
         "height",
         ("size.x // 2", "size.y // 2"),
@@ -80,20 +85,20 @@ set = { height.rise = 1.5 }
         8,
     )
     assert (view.name, view.use) == ("view", "./look")
-    shot = found.shot("from-here")
+    shot = sketch.shot("from-here")
     assert (shot.size, shot.time, shot.preset, shot.samples) == ((64, 36), 2.0, "steep", 1)
     assert shot.camera == Camera(azimuth=10.0, elevation=80.0, target=(1.0, 2.0, 3.5))
-    seen = found.for_shot(shot)
+    seen = sketch.for_shot(shot)
     assert (seen.relief, seen.size, seen.samples) == (900.0, (17, 17), 1)
     assert dict(seen.overrides) == {"height.rise": 1.5}
-    assert [Path(p).name for p in found.files] == ["s.toml", "terrain.glsl", "look.glsl"]
+    assert [Path(p).name for p in sketch.files] == ["s.toml", "terrain.glsl", "look.glsl"]
 
 
 def test_what_is_absent_has_its_default(folder):
-    found = folder.sketch()
-    assert (found.size, found.extent, found.relief, found.base_elevation) == (None,) * 4
-    assert (found.camera, found.samples, found.shots, found.presets) == (Camera(), 4, (), ())
-    assert found.title == found.name == "s"
+    sketch = folder.sketch()
+    assert (sketch.size, sketch.extent, sketch.relief, sketch.base_elevation) == (None,) * 4
+    assert (sketch.camera, sketch.samples, sketch.shots, sketch.presets) == (Camera(), 4, (), ())
+    assert sketch.title == sketch.name == "s"
     plain = folder.sketch(tail="")
     assert plain.graph.passes[-1].use == "view/map"
     assert plain.graph.passes[-1].inputs == (("shown", "height"),)
@@ -120,12 +125,12 @@ def test_any_line_ends_and_mark(folder):
 def test_dotted_keys_and_tables_are_paths(folder):
     folder.write("inner.toml", "[[pass]]\nname = 'shape'\nuse = './terrain'\n")
     body = '[[pass]]\nname = "height"\nuse = "./inner"\n'
-    for given in (
+    for name in (
         'set = { "shape.rise" = 0.5 }',
         "set = { shape.rise = 0.5 }",
         "[pass.set.shape]\nrise = 0.5",
     ):
-        assert folder.sketch(body + given + "\n").graph.passes[0].values == (("shape.rise", 0.5),)
+        assert folder.sketch(body + name + "\n").graph.passes[0].values == (("shape.rise", 0.5),)
     folder.refused(
         "'shape.rise' is set twice", 5, body=body + 'set = { "shape.rise" = 0.5, shape = { rise = 1 } }\n'
     )
@@ -135,11 +140,11 @@ def test_dotted_keys_and_tables_are_paths(folder):
 
 
 def test_a_sketch_is_hashable_and_crosses_to_a_child_process(folder):
-    found = folder.sketch(tail=TAIL + '[[shot]]\nname = "one"\nset = { height.rise = 1 }\n')
+    sketch = folder.sketch(tail=TAIL + '[[shot]]\nname = "one"\nset = { height.rise = 1 }\n')
     again = load(folder.path / "s.toml")
-    assert found == again and hash(found) == hash(again) and {found: 1}[again] == 1
-    other = found.with_values({"height.rise": 1.0})
-    assert other != found and len({found, again, other}) == 2
+    assert sketch == again and hash(sketch) == hash(again) and {sketch: 1}[again] == 1
+    other = sketch.with_values({"height.rise": 1.0})
+    assert other != sketch and len({sketch, again, other}) == 2
     back = pickle.loads(pickle.dumps(other))
     assert back == other and hash(back) == hash(other)
     code = (
@@ -148,25 +153,25 @@ def test_a_sketch_is_hashable_and_crosses_to_a_child_process(folder):
         "sys.stdout.buffer.write(pickle.dumps((s, hash(s) is not None)))"
     )
     done = subprocess.run(
-        [sys.executable, "-c", code], input=pickle.dumps(found), capture_output=True, check=True
+        [sys.executable, "-c", code], input=pickle.dumps(sketch), capture_output=True, check=True
     )
     child, _ = pickle.loads(done.stdout)
-    assert child == found.with_values({"height.rise": 1.0})
+    assert child == sketch.with_values({"height.rise": 1.0})
 
 
 def test_every_shipped_sketch_loads_and_is_a_value():
     other = WithLibrary(Techniques())  # it reads the library for itself
-    found = {}
+    result = {}
 
     @each("name", shipped_sketches())
     def check(name):
-        found[name] = sketch = load_once(name)
+        result[name] = sketch = load_once(name)
         assert sketch.title and hash(sketch) == hash(load_with(other, name))
         for shot in sketch.shots:
             sketch.for_shot(shot)
 
     check()
-    assert pickle.loads(pickle.dumps(found)) == found
+    assert pickle.loads(pickle.dumps(result)) == result
 
 
 # Names
@@ -220,26 +225,26 @@ def test_a_file_of_another_kind_or_an_empty_folder_is_refused(tmp_path):
 
 
 def test_a_kernel_alone_takes_its_place_in_jacksboro(folder):
-    found = load(folder.path / "terrain.glsl")
+    result = load(folder.path / "terrain.glsl")
     stage = load("jacksboro")
-    assert [p.name for p in found.graph.passes] == [p.name for p in stage.graph.passes]
-    height = found.graph.find("height")
+    assert [p.name for p in result.graph.passes] == [p.name for p in stage.graph.passes]
+    height = result.graph.find("height")
     assert height is not None and isinstance(height.technique, Kernel) and height.technique.title == "A slope"
-    assert (found.name, found.title, found.camera) == ("terrain", "A slope", stage.camera)
+    assert (result.name, result.title, result.camera) == ("terrain", "A slope", stage.camera)
 
 
 def test_what_stays_of_jacksboro_keeps_its_files(folder):
     folder.write("light.glsl", TERRAIN.replace("height:r32f", "light:r16f"))
-    found = load(folder.path / "light.glsl")
-    paths = [str(v) for _, v in found.overrides]
+    result = load(folder.path / "light.glsl")
+    paths = [str(v) for _, v in result.overrides]
     assert paths and all(Path(p).is_absolute() and Path(p).is_file() for p in paths)
 
 
 def test_other_outputs_are_shown_from_above(folder):
     folder.write("odd.glsl", TERRAIN.replace("height:r32f", "oddity:r32f"))
-    found = load(folder.path / "odd.glsl")
-    assert [p.name for p in found.graph.passes[-2:]] == ["oddity", "view"]
-    assert found.graph.passes[-1].inputs == (("shown", "oddity"),)
+    result = load(folder.path / "odd.glsl")
+    assert [p.name for p in result.graph.passes[-2:]] == ["oddity", "view"]
+    assert result.graph.passes[-1].inputs == (("shown", "oddity"),)
     assert load(folder.path / "look.glsl").graph.passes[-1].technique.title == ""
 
 
@@ -247,14 +252,14 @@ def test_a_technique_alone(folder):
     path = folder.write("t.toml", "[[pass]]\nname='a'\nuse='./terrain'\n[parameters]\nsteep='a.rise'\n")
     assert is_technique(path) and not is_technique(folder.write("s.toml", "format = 1\n" + PASS + TAIL))
     assert not is_technique(folder.write("bad.toml", "= 1"))
-    found = load(path).with_values({"height.steep": 1.0})
-    assert found.name == "t" and len(load("generation/layered_noise").graph.passes) > 2
+    result = load(path).with_values({"height.steep": 1.0})
+    assert result.name == "t" and len(load("generation/layered_noise").graph.passes) > 2
 
 
 def test_a_plain_shader_is_the_whole_picture(folder):
     path = folder.write("p.frag", "#version 330\n// Plain\nout vec4 c;\nvoid main() { c = vec4(1); }\n")
-    found = load(path)
-    assert [p.name for p in found.graph.passes] == ["view"] and found.samples == 1
+    result = load(path)
+    assert [p.name for p in result.graph.passes] == ["view"] and result.samples == 1
 
 
 def test_a_library_file_and_a_lonely_variant_are_sentences(folder):
@@ -276,8 +281,8 @@ void main() { imageStore(picture, ivec2(gl_GlobalInvocationID.xy), vec4(1.0)); }
 @pytest.mark.parametrize("name", ["terrain.comp", "sketch.comp"])
 def test_a_plain_shader_of_any_name_opens_itself(folder, name):
     folder.sketch('[[pass]]\nname = "height"\nuse = "generation/fbm"\n')
-    found = load(folder.write(name, PLAIN_COMPUTE))
-    assert found.file.endswith(name) and found.graph.passes[0].technique.kind == "plain_compute"
+    result = load(folder.write(name, PLAIN_COMPUTE))
+    assert result.file.endswith(name) and result.graph.passes[0].technique.kind == "plain_compute"
 
 
 # Mistakes
@@ -543,8 +548,8 @@ def test_a_few_lines_cannot_nest_millions(folder):
 
 
 def test_one_technique_in_two_passes_is_read_once(folder):
-    found = folder.sketch(PASS + PASS.replace('"height"', '"again"'))
-    assert found.graph.passes[0].technique is found.graph.passes[1].technique
+    sketch = folder.sketch(PASS + PASS.replace('"height"', '"again"'))
+    assert sketch.graph.passes[0].technique is sketch.graph.passes[1].technique
 
 
 # Nothing from outside
@@ -585,8 +590,8 @@ def test_a_fast_variant_stays_there_too(folder, tmp_path: Path):
 def test_a_technique_in_a_folder_below_uses_the_files_there(folder):
     folder.write("below/t.toml", "[[pass]]\nname = 'a'\nuse = './terrain'\n")
     folder.write("below/terrain.glsl", TERRAIN.replace("a slope", "below"))
-    found = folder.sketch(PASS.replace("terrain", "below/t"))
-    assert found.graph.passes[0].technique.passes[0].technique.title == "Below"
+    sketch = folder.sketch(PASS.replace("terrain", "below/t"))
+    assert sketch.graph.passes[0].technique.passes[0].technique.title == "Below"
     folder.write("below/t.toml", "[[pass]]\nname = 'a'\nuse = './../terrain'\n")
     assert folder.sketch(PASS.replace("terrain", "below/t"))
 
@@ -638,9 +643,9 @@ def test_files_inside_may_be_named_whether_or_not_they_are_there(folder, path):
 
 def test_what_the_user_types_may_lie_anywhere(folder, tmp_path: Path):
     folder.write("terrain.glsl", IMAGE)
-    found = folder.sketch()
+    sketch = folder.sketch()
     for path in (str(tmp_path / "secret.png"), tmp_path / "secret.png"):
-        assert dict(found.with_values({"height.picture": path}).overrides) == {"height.picture": str(path)}
+        assert dict(sketch.with_values({"height.picture": path}).overrides) == {"height.picture": str(path)}
 
 
 # Anything at all

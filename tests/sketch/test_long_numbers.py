@@ -1,4 +1,4 @@
-"""A number of thousands of digits, wherever a file may have one, is one sentence and no traceback."""
+"""A number of thousands of digits, wherever a file may have one, is one message and no traceback."""
 
 from __future__ import annotations
 
@@ -55,9 +55,9 @@ def test_a_long_number_is_one_sentence_at_its_line(folder, name):
     folder.write("t.frag", TOY)
     with pytest.raises(PlaygroundError) as caught:
         load(folder.write(name, text))
-    (found,) = caught.value.diagnostics
-    assert words in found.message and "\n" not in found.message
-    assert (found.file.endswith(name), found.line) == (True, line)
+    (result,) = caught.value.diagnostics
+    assert words in result.message and "\n" not in result.message
+    assert (result.file.endswith(name), result.line) == (True, line)
 
 
 @pytest.mark.parametrize("name", READ)

@@ -8,7 +8,7 @@ import pytest
 from playground.errors import ParameterError, SketchError
 from playground.paths import GLSL
 from playground.sketch.assign import shown_parameters
-from playground.sketch.catalogue import one
+from playground.sketch.catalogue import entries_named
 from playground.sketch.flatten import flatten
 from playground.sketch.presence import as_wired, deciding_inputs, form_of, missing_input
 from playground.sketch.techniques import read_technique
@@ -107,8 +107,8 @@ def test_a_pass_is_there_only_where_its_input_is_wired(engine, make, use):
     bare = make(f"it {use}")
     wired = make(f"it {use} inputs = {{ density = 'late' }}", "late density")
     by_name = make("density density", f"it {use}")
-    for sketch, wanted in ((bare, 10 * 3 + 0.5), (wired, 10 * 7 + 14), (by_name, 10 * 7 + 14)):
-        np.testing.assert_array_equal(engine.read(sketch, "it"), np.float32(wanted))
+    for sketch, expected in ((bare, 10 * 3 + 0.5), (wired, 10 * 7 + 14), (by_name, 10 * 7 + 14)):
+        np.testing.assert_array_equal(engine.read(sketch, "it"), np.float32(expected))
     ran = {step.path for step in engine.record.plan.walk()}
     assert not any("plain" in path for path in ran) and any("added" in path for path in ran)
 
@@ -147,9 +147,9 @@ def test_setting_what_is_not_there_says_why(make):
 def test_a_file_that_sets_what_is_not_there_is_warned_once(make):
     rest = '[[preset]]\nname = "p"\nset = { "it.by" = 3.0 }\n[[shot]]\nname = "s"\nset = { "it.by" = 2.0 }\n'
     sketch = make("it inner set = { by = 4.0, common_share = 2.0 }", tail=VIEW + rest)
-    found = [(one.message, one.line) for one in sketch.warnings]
+    warnings = [(warning.message, warning.line) for warning in sketch.warnings]
     why = "by: has an effect only where 'density' is wired"
-    assert found == [
+    assert warnings == [
         (f"pass 'it': {why}", 6),
         (f"preset 'p': it.{why}", 12),
         (f"shot 's': it.{why}", 15),
@@ -273,7 +273,7 @@ def test_all_parameters_are_exported_by_name_unless_passes_disagree(make):
 
 
 def test_the_catalogue_lists_what_any_form_has():
-    listed = {choice.path for choice in one("scene/terrain")[0].parameters}
+    listed = {choice.path for choice in entries_named("scene/terrain")[0].parameters}
     assert {"trees", "mist", "zenith", "exposure"} <= listed
 
 

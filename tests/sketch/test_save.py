@@ -23,34 +23,34 @@ from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch
 from playground.sketch.replace_technique import with_technique
 from playground.sketch.save import ReadOnlySketch, save, save_copy, save_preset, saved_text
-from playground.sketch.toml_text import Place, TomlPlaces, append, drop, put
+from playground.sketch.toml_text import KeyPath, TomlPlaces, append, drop, put
 
 from ..cases import each
 
 SHIPPED = sorted(GLSL.rglob("*.toml"))
 each_shipped = each("path", SHIPPED, ids=lambda p: p.relative_to(GLSL).as_posix())
-FEW, MANY = 2, 12  # places of a file that are tried
+SAMPLED, MANY = 2, 12  # places of a file that are tried
 few_or_many = pytest.mark.parametrize(
-    "count", [pytest.param(FEW, id="few"), pytest.param(MANY, id="many", marks=pytest.mark.slow)]
+    "count", [pytest.param(SAMPLED, id="few"), pytest.param(MANY, id="many", marks=pytest.mark.slow)]
 )
 
 
-def leaves(value: Any, place: Place = ()) -> Iterator[tuple[Place, Any]]:
+def leaves(value: Any, key_path: KeyPath = ()) -> Iterator[tuple[KeyPath, Any]]:
     """Yield every value of a table that is no table, with its place."""
     if isinstance(value, dict):
         for key, inner in value.items():
-            yield from leaves(inner, (*place, key))
+            yield from leaves(inner, (*key_path, key))
     elif isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
         for index, inner in enumerate(value):
-            yield from leaves(inner, (*place, index))
+            yield from leaves(inner, (*key_path, index))
     else:
-        yield place, value
+        yield key_path, value
 
 
-def some(places: Iterable[Place], count: int) -> list[Place]:
+def some(places: Iterable[KeyPath], count: int) -> list[KeyPath]:
     """Return so many of them, which differ from file to file."""
-    found = sorted(places, key=str)
-    return random.Random(len(found)).sample(found, min(len(found), count))
+    result = sorted(places, key=str)
+    return random.Random(len(result)).sample(result, min(len(result), count))
 
 
 @pytest.mark.slow
@@ -60,20 +60,22 @@ def test_every_value_of_every_shipped_file_is_found_and_can_be_written_over_alon
     path: Path, count: int
 ) -> None:
     text = path.read_bytes().decode()
-    spans, found = TomlPlaces(text), dict(leaves(tomllib.loads(text)))
-    assert {place for place in spans.pairs if place in found} == set(found), "tomllib sees the same values"
-    for place, value in found.items():
-        pair = spans.pairs[place]
+    spans, result = TomlPlaces(text), dict(leaves(tomllib.loads(text)))
+    assert {position for position in spans.pairs if position in result} == set(result), (
+        "tomllib sees the same values"
+    )
+    for position, value in result.items():
+        pair = spans.pairs[position]
         written = text[pair.value : pair.end]
         assert tomllib.loads(f"x = {written}")["x"] == value
-    for place in some(found, count):
-        pair = spans.pairs[place]
+    for position in some(result, count):
+        pair = spans.pairs[position]
         written = text[pair.value : pair.end]
-        table, key = place[:-1], str(place[-1])
+        table, key = position[:-1], str(position[-1])
         assert put(text, table, key, written) == text
         changed = put(text, table, key, "[7, 8]")
         assert changed == text[: pair.value] + "[7, 8]" + text[pair.end :]
-        assert dict(leaves(tomllib.loads(changed))) == {**found, place: [7, 8]}
+        assert dict(leaves(tomllib.loads(changed))) == {**result, position: [7, 8]}
 
 
 @pytest.mark.slow
@@ -81,15 +83,15 @@ def test_every_value_of_every_shipped_file_is_found_and_can_be_written_over_alon
 @each_shipped
 def test_any_value_of_any_shipped_file_can_be_added_and_taken_out(path: Path, count: int) -> None:
     text = path.read_bytes().decode()
-    found = dict(leaves(tomllib.loads(text)))
-    for table in some({place[:-1] for place in found}, count):
+    result = dict(leaves(tomllib.loads(text)))
+    for table in some({position[:-1] for position in result}, count):
         more = put(text, table, "new-one", "3")
-        assert dict(leaves(tomllib.loads(more))) == {**found, (*table, "new-one"): 3}
+        assert dict(leaves(tomllib.loads(more))) == {**result, (*table, "new-one"): 3}
         left = drop(more, table, "new-one")
         assert left == text, "and then every byte is as it was"
-    for place in some(found, count):
-        less = dict(leaves(tomllib.loads(drop(text, place[:-1], str(place[-1])))))
-        others = {p: v for p, v in found.items() if p != place}
+    for position in some(result, count):
+        less = dict(leaves(tomllib.loads(drop(text, position[:-1], str(position[-1])))))
+        others = {p: v for p, v in result.items() if p != position}
         assert {p: v for p, v in less.items() if v != {}} == others
 
 
@@ -135,10 +137,10 @@ def rewritten(folder: Path, text: str) -> Sketch:
     return load(folder)
 
 
-def saved(folder: Path, wanted: Sketch) -> str:
-    save(load(folder), wanted)
+def saved(folder: Path, expected: Sketch) -> str:
+    save(load(folder), expected)
     again = load(folder)
-    assert values_of(again) == values_of(wanted) and again.camera == wanted.camera
+    assert values_of(again) == values_of(expected) and again.camera == expected.camera
     return (folder / "sketch.toml").read_bytes().decode()
 
 
@@ -175,8 +177,8 @@ def test_values_are_saved_however_the_file_is_written(
 ) -> None:
     text = mark + SKETCH.replace(old, new).replace("\n", newline)
     sketch = rewritten(folder, text)
-    wanted = sketch.with_values({path: value for path, (value, _) in VALUES.items()})
-    after = saved(folder, wanted)
+    expected = sketch.with_values({path: value for path, (value, _) in VALUES.items()})
+    after = saved(folder, expected)
     for path, (_, written) in VALUES.items():
         assert f"{path.removeprefix('height.')} = {written}" in after.replace("count=", "count = ")
     assert after.startswith(mark) and after.count("\n") == after.count(newline)
@@ -187,7 +189,7 @@ def test_values_are_saved_however_the_file_is_written(
         for line in text.splitlines()
         if not any(word in line for word in ("level", "count", "set"))
     )
-    assert saved(folder, wanted) == after, "saved once more, nothing changes"
+    assert saved(folder, expected) == after, "saved once more, nothing changes"
 
 
 def test_one_value_changes_its_own_bytes_only(folder: Path) -> None:
@@ -200,8 +202,8 @@ def test_one_value_changes_its_own_bytes_only(folder: Path) -> None:
 def test_a_direction_stays_in_its_braces_and_a_whole_number_without_a_point(folder: Path) -> None:
     old = "level = 0.25"
     text = SKETCH.replace(old, "level = 1, sun = { azimuth = 1, elevation = 2 }")
-    wanted = rewritten(folder, text).with_values({"height.sun": (3.5, 40.0), "height.level": 0.0})
-    assert saved(folder, wanted) == text.replace("level = 1", "level = 0").replace(
+    expected = rewritten(folder, text).with_values({"height.sun": (3.5, 40.0), "height.level": 0.0})
+    assert saved(folder, expected) == text.replace("level = 1", "level = 0").replace(
         "{ azimuth = 1, elevation = 2 }", "{ azimuth = 3.5, elevation = 40 }"
     )
 
@@ -218,15 +220,15 @@ def test_the_camera_is_saved(folder: Path) -> None:
 
 def test_a_sketch_without_a_view_gets_the_one_it_has(folder: Path) -> None:
     text = SKETCH[: SKETCH.index("\n[view]")]
-    wanted = rewritten(folder, text).with_camera(Camera(azimuth=7.0)).with_values({"view.channel": "red"})
-    after = saved(folder, wanted)
+    expected = rewritten(folder, text).with_camera(Camera(azimuth=7.0)).with_values({"view.channel": "red"})
+    after = saved(folder, expected)
     assert after.startswith(text) and after.endswith("camera = { azimuth = 7 }\n")
 
 
 def test_a_technique_is_saved_without_what_it_has_no_place_for(folder: Path) -> None:
     sketch = load(folder)
-    wanted = with_technique(sketch, "height", "./bare")
-    assert saved(folder, wanted) == SKETCH.replace("./terrain", "./bare").replace(", count=4", "")
+    expected = with_technique(sketch, "height", "./bare")
+    assert saved(folder, expected) == SKETCH.replace("./terrain", "./bare").replace(", count=4", "")
 
 
 def test_a_value_set_inside_is_written_over_where_the_file_has_another_name_for_it(folder: Path) -> None:
@@ -234,8 +236,8 @@ def test_a_value_set_inside_is_written_over_where_the_file_has_another_name_for_
         '[[pass]]\nname = "inner"\nuse = "./terrain"\n[parameters]\nhigh = "inner.level"\n', encoding="utf-8"
     )
     text = SKETCH.replace("./terrain", "./both").replace("level = 0.25, count=4", "high = 0.25")
-    wanted = rewritten(folder, text).with_values({"height.inner.level": 0.75, "height.inner.count": 8})
-    assert saved(folder, wanted) == text.replace("high = 0.25", 'high = 0.75, "inner.count" = 8')
+    expected = rewritten(folder, text).with_values({"height.inner.level": 0.75, "height.inner.count": 8})
+    assert saved(folder, expected) == text.replace("high = 0.25", 'high = 0.75, "inner.count" = 8')
 
 
 def test_a_file_from_elsewhere_is_copied_into_the_folder(folder: Path, tmp_path: Path) -> None:
@@ -277,7 +279,7 @@ def test_presets_are_saved_and_saved_over(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "written"),
+    ("value", "written"),
     [
         (float(np.float32(0.1)), "0.1"),
         (1 / 3, "0.33333334"),
@@ -286,12 +288,12 @@ def test_presets_are_saved_and_saved_over(folder: Path) -> None:
     ],
 )
 def test_a_number_has_the_fewest_digits_that_read_back_as_the_same_float(
-    folder: Path, given: float, written: str
+    folder: Path, value: float, written: str
 ) -> None:
-    save(load(folder), load(folder).with_values({"height.level": given}))
+    save(load(folder), load(folder).with_values({"height.level": value}))
     assert f"level = {written}" in (folder / "sketch.toml").read_text(encoding="utf-8")
-    assert np.float32(values_of(load(folder))["height.level"]) == np.float32(given)
-    save_preset(load(folder), "one", {"height.level": given})
+    assert np.float32(values_of(load(folder))["height.level"]) == np.float32(value)
+    save_preset(load(folder), "one", {"height.level": value})
     assert f'"height.level" = {written}\n' in (folder / "sketch.toml").read_text(encoding="utf-8")
 
 
@@ -333,17 +335,17 @@ def test_a_shipped_sketch_is_not_written_to_but_copied(tmp_path: Path) -> None:
     path = SKETCHES / "drape.toml"
     before = path.read_bytes()
     sketch = load(path)
-    wanted = sketch.with_camera(Camera(azimuth=5.0)).with_values({"relief": 777.0})
+    expected = sketch.with_camera(Camera(azimuth=5.0)).with_values({"relief": 777.0})
     with pytest.raises(ReadOnlySketch, match="belongs to the playground"):
-        save(sketch, wanted)
+        save(sketch, expected)
     assert path.read_bytes() == before
     for name in ("drape", "drape-2"):
-        copy = save_copy(sketch, wanted, tmp_path)
+        copy = save_copy(sketch, expected, tmp_path)
         assert copy == tmp_path / name / "sketch.toml"
-        found = load(copy)
-        assert values_of(found) == values_of(wanted)
-        assert (found.camera.azimuth, found.relief) == (5.0, 777.0)
-        images = {v for v in values_of(found).values() if isinstance(v, str) and v}
+        result = load(copy)
+        assert values_of(result) == values_of(expected)
+        assert (result.camera.azimuth, result.relief) == (5.0, 777.0)
+        images = {v for v in values_of(result).values() if isinstance(v, str) and v}
         assert images and all((copy.parent / image).is_file() for image in images)
 
 

@@ -54,14 +54,14 @@ def saved(folder: Path, text: str, *changes: tuple[str, str], **values: str) -> 
     """Save a sketch of a text with other sources; return the new text, which says what was wanted."""
     file = folder / "sketch.toml"
     file.write_text(text, "utf-8")
-    loaded = wanted = load(file)
+    loaded = expected = load(file)
     for channel, source in changes:
-        wanted = with_source(wanted, f"view.{channel}", source)
-    wanted = wanted.with_values({name.replace("__", "."): value for name, value in values.items()})
-    save(loaded, wanted)
+        expected = with_source(expected, f"view.{channel}", source)
+    expected = expected.with_values({name.replace("__", "."): value for name, value in values.items()})
+    save(loaded, expected)
     again = load(file)
-    assert sources(again) == sources(wanted)
-    assert parts(again) == parts(wanted) and values_of(again) == values_of(wanted)
+    assert sources(again) == sources(expected)
+    assert parts(again) == parts(expected) and values_of(again) == values_of(expected)
     return file.read_text("utf-8")
 
 

@@ -57,9 +57,9 @@ def file(tmp_path: Path) -> Path:
     return path
 
 
-def saved(path: Path, *wanted: Keyframe) -> str:
-    save_keyframes(load(path), wanted)
-    assert _plain(load(path).keyframes) == _plain(sorted(wanted, key=lambda k: k.time))
+def saved(path: Path, *expected: Keyframe) -> str:
+    save_keyframes(load(path), expected)
+    assert _plain(load(path).keyframes) == _plain(sorted(expected, key=lambda k: k.time))
     return path.read_text(encoding="utf-8")
 
 
@@ -119,20 +119,24 @@ def test_any_change_is_what_it_says_and_leaves_the_rest_alone(file: Path, seed: 
         if line.startswith(("format", "size", "name", "use", "[[pass", "[[shot"))
     ]
     for _ in range(6):
-        known = list(load(file).keyframes)
-        for keyframe in known[:]:
+        keyframes = list(load(file).keyframes)
+        for keyframe in keyframes[:]:
             share = rng.random()
             if share < 0.2:
-                known.remove(keyframe)
+                keyframes.remove(keyframe)
             elif share < 0.5:
-                known[known.index(keyframe)] = replace(keyframe, time=round(rng.random() * 20, 2))
+                keyframes[keyframes.index(keyframe)] = replace(keyframe, time=round(rng.random() * 20, 2))
             elif share < 0.7:
-                known[known.index(keyframe)] = replace(keyframe, ease=rng.choice(["hold", "linear"]))
+                keyframes[keyframes.index(keyframe)] = replace(keyframe, ease=rng.choice(["hold", "linear"]))
             elif share < 0.8 and keyframe.values:
-                known[known.index(keyframe)] = replace(keyframe, values=(("light.gain", rng.random()),))
+                keyframes[keyframes.index(keyframe)] = replace(
+                    keyframe, values=(("light.gain", rng.random()),)
+                )
         if rng.random() < 0.6:
-            known.append(Keyframe(30 + round(rng.random() * 20, 2), (("elevation", 20.0 + rng.random()),)))
-        text = saved(file, *known)
+            keyframes.append(
+                Keyframe(30 + round(rng.random() * 20, 2), (("elevation", 20.0 + rng.random()),))
+            )
+        text = saved(file, *keyframes)
         lines = iter(text.split("\n"))
         assert all(line in lines for line in rest), text
 
@@ -146,14 +150,14 @@ def test_what_cannot_be_written_leaves_the_file(file: Path) -> None:
     assert file.read_text(encoding="utf-8") == SKETCH
     listed = "format = 1\nkeyframe = [ { time = 1.0, camera = { azimuth = 1.0 } } ]\n"
     file.write_text(listed + SKETCH.partition("\n\n")[2].partition("# Noon")[0], encoding="utf-8")
-    found: Sketch = load(file)
-    assert len(found.keyframes) == 1
+    sketch: Sketch = load(file)
+    assert len(sketch.keyframes) == 1
     with pytest.raises(SketchError, match=r"written as one list"):
-        save_keyframes(found, [])
+        save_keyframes(sketch, [])
 
 
 def test_a_header_in_a_text_is_none(file: Path) -> None:
     text = SKETCH.replace("size = 33\n", 'size = 33\ntitle = """\n[[keyframe]]\n"""\n')
     file.write_text(text, encoding="utf-8")
-    found = load(file)
-    assert with_keyframes(text, found, found.keyframes) == text
+    result = load(file)
+    assert with_keyframes(text, result, result.keyframes) == text

@@ -55,8 +55,8 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def listed(found) -> list[str]:
-    return [f"{one.path} {one.by.rpartition('/')[2]} {str(one).partition(': ')[2]}" for one in found]
+def listed(result) -> list[str]:
+    return [f"{item.path} {item.by.rpartition('/')[2]} {str(item).partition(': ')[2]}" for item in result]
 
 
 def edited(folder: Path, before: str, after: str):
@@ -68,12 +68,12 @@ def edited(folder: Path, before: str, after: str):
 
 def test_each_default_that_a_file_sets_over_names_its_line(folder):
     sketch = load(folder)
-    place = folder.as_posix()
+    path = folder.as_posix()
     assert listed(shadowed_by_files(sketch)) == [
-        f"height.rise sketch.toml:11 the default is 2; {place}/sketch.toml:11 sets 5",
-        f"height.kind sketch.toml:11 the default is round; {place}/sketch.toml:11 sets sharp",
-        f"nested.two.rise both.toml:8 the default is 2; {place}/both.toml:8 sets 3",
-        f"nested.two.free sketch.toml:18 the default is 1; {place}/sketch.toml:18 sets 7",
+        f"height.rise sketch.toml:11 the default is 2; {path}/sketch.toml:11 sets 5",
+        f"height.kind sketch.toml:11 the default is round; {path}/sketch.toml:11 sets sharp",
+        f"nested.two.rise both.toml:8 the default is 2; {path}/both.toml:8 sets 3",
+        f"nested.two.free sketch.toml:18 the default is 1; {path}/sketch.toml:18 sets 7",
     ]
     warning = shadowed_by_files(sketch)[0].warning
     assert (Path(warning.file).name, warning.line, warning.severity) == ("terrain.glsl", 2, "warning")
@@ -81,19 +81,19 @@ def test_each_default_that_a_file_sets_over_names_its_line(folder):
 
 def test_what_is_set_by_users_or_ships_or_sets_the_very_default_needs_no_word(folder):
     sketch = load(folder).with_values({"height.rise": 1.0, "nested.two.free": 2.0})
-    assert [one.path for one in shadowed_by_files(sketch)] == ["height.kind", "nested.two.rise"]
+    assert [item.path for item in shadowed_by_files(sketch)] == ["height.kind", "nested.two.rise"]
     assert shadowed_by_files(load("jacksboro")) == []
     _, now = edited(folder, "rise = 2.0", "rise = 5.0")
-    assert "height.rise" not in [one.path for one in shadowed_by_files(now)]
+    assert "height.rise" not in [item.path for item in shadowed_by_files(now)]
 
 
 def test_an_edit_of_a_default_is_reported_where_it_has_no_effect(folder):
     old, now = edited(folder, "rise = 2.0", "rise = 9.0")
-    assert [one.path for one in newly_shadowed(old, now)] == ["height.rise", "nested.two.rise"]
+    assert [item.path for item in newly_shadowed(old, now)] == ["height.rise", "nested.two.rise"]
     assert str(newly_shadowed(old, now)[0]).endswith("the default is 9; " + f"{folder}/sketch.toml:11 sets 5")
     assert newly_shadowed(now, now) == []
     by_user = now.with_values({"first.rise": 4.0, "height.rise": 1.0})
-    assert [(one.path, one.by.rpartition("/")[2], one.value) for one in newly_shadowed(old, by_user)] == [
+    assert [(item.path, item.by.rpartition("/")[2], item.value) for item in newly_shadowed(old, by_user)] == [
         ("first.rise", "the panel", 4.0),
         ("height.rise", "the panel", 1.0),
         ("nested.two.rise", "both.toml:8", 3.0),
@@ -104,4 +104,4 @@ def test_an_edit_of_a_default_is_reported_where_it_has_no_effect(folder):
 
 def test_where_the_new_default_is_the_value_set_nothing_is_hidden(folder):
     old, now = edited(folder, "rise = 2.0", "rise = 5.0")
-    assert [one.path for one in newly_shadowed(old, now)] == ["nested.two.rise"]
+    assert [item.path for item in newly_shadowed(old, now)] == ["nested.two.rise"]

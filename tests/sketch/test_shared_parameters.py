@@ -34,16 +34,16 @@ class Folder:
 
     def kernel(self, text: str) -> Kernel:
         self.write(kernel=text)
-        found = parse_kernel("kernel", read_source(self.path / "kernel.glsl", (self.path,)))
-        assert found is not None
-        return found
+        kernel = parse_kernel("kernel", read_source(self.path / "kernel.glsl", (self.path,)))
+        assert kernel is not None
+        return kernel
 
     def refused(self, text: str) -> tuple[str, str, int, tuple[str, ...]]:
         with pytest.raises(ShaderError) as caught:
             self.kernel(text)
-        found = caught.value.diagnostics[0]
-        chain = tuple(Path(place).name for place in found.chain)
-        return found.message, Path(found.file).name, found.line, chain
+        diagnostic = caught.value.diagnostics[0]
+        chain = tuple(Path(position).name for position in diagnostic.chain)
+        return diagnostic.message, Path(diagnostic.file).name, diagnostic.line, chain
 
 
 @pytest.fixture
@@ -76,23 +76,23 @@ def test_an_expression_of_the_pragma_may_name_one(folder: Folder) -> None:
 
 def test_a_file_that_comes_twice_gives_its_parameters_once(folder: Folder) -> None:
     folder.write(light='#include "sun.glsl"\nuniform float ambient;\n')
-    found = folder.kernel(PRAGMA + '#include "sun.glsl"\n#include "light.glsl"\n#include "sun.glsl"\n')
-    assert [p.name for p in found.parameters] == ["gain", "steps", "ambient"]
+    kernel = folder.kernel(PRAGMA + '#include "sun.glsl"\n#include "light.glsl"\n#include "sun.glsl"\n')
+    assert [p.name for p in kernel.parameters] == ["gain", "steps", "ambient"]
 
 
 @pytest.mark.parametrize(
-    ("own", "place"),
+    ("own", "position"),
     [
         ('uniform float gain = 1.0;\n#include "sun.glsl"\n', ("sun.glsl", 3, ("kernel.glsl:3",))),
         ('#include "sun.glsl"\nuniform float gain = 1.0;\n', ("kernel.glsl", 3, ())),
     ],
 )
 def test_a_kernel_that_declares_it_again_is_reported_with_both_places(
-    folder: Folder, own: str, place: tuple[str, int, tuple[str, ...]]
+    folder: Folder, own: str, position: tuple[str, int, tuple[str, ...]]
 ) -> None:
-    message, *found = folder.refused(PRAGMA + own)
-    assert tuple(found) == place
-    first = "kernel.glsl:2" if place[0] == "sun.glsl" else "sun.glsl:3"
+    message, *result = folder.refused(PRAGMA + own)
+    assert tuple(result) == position
+    first = "kernel.glsl:2" if position[0] == "sun.glsl" else "sun.glsl:3"
     assert message.startswith("'gain' is declared twice: first at ") and message.endswith(first)
 
 
@@ -117,17 +117,19 @@ def test_a_mistake_in_an_included_annotation_is_reported_at_its_line(
     folder: Folder, text: str, line: int, words: str
 ) -> None:
     folder.write(shared=text)
-    message, *place = folder.refused(f'{PRAGMA}\n#include "shared.glsl"\n')
+    message, *position = folder.refused(f'{PRAGMA}\n#include "shared.glsl"\n')
     assert words in message
-    assert place == ["shared.glsl", line, ("kernel.glsl:3",)]
+    assert position == ["shared.glsl", line, ("kernel.glsl:3",)]
 
 
 def test_what_no_code_reads_is_reported_at_its_declaration(folder: Folder) -> None:
-    found = unread(folder.kernel(f'{PRAGMA}#include "sun.glsl"\nfloat kernel(ivec2 t) {{ return gain; }}\n'))
-    assert [(Path(d.file).name, d.line, d.message) for d in found] == [
+    diagnostics = unread(
+        folder.kernel(f'{PRAGMA}#include "sun.glsl"\nfloat kernel(ivec2 t) {{ return gain; }}\n')
+    )
+    assert [(Path(d.file).name, d.line, d.message) for d in diagnostics] == [
         ("sun.glsl", 5, "nothing reads 'steps', so it has no effect")
     ]
-    assert [Path(place).name for place in found[0].chain] == ["kernel.glsl:2"]
+    assert [Path(position).name for position in diagnostics[0].chain] == ["kernel.glsl:2"]
 
 
 # Annotations of several lines
@@ -143,35 +145,35 @@ def test_what_no_code_reads_is_reported_at_its_declaration(folder: Folder) -> No
     ],
 )
 def test_an_annotation_goes_on_in_lines_of_its_own(folder: Folder, text: str) -> None:
-    found = folder.kernel(f"{PRAGMA}{text}// no part of it\nuniform float b;  //! Another\n").parameters
-    assert (found[0].widget.high, found[0].unit, found[0].tooltip) == (1.0, "m", "How far")
-    assert [(p.name, p.line) for p in found] == [("a", 2), ("b", text.count("\n") + 3)]
-    assert found[1].tooltip == "Another"
+    parameters = folder.kernel(f"{PRAGMA}{text}// no part of it\nuniform float b;  //! Another\n").parameters
+    assert (parameters[0].widget.high, parameters[0].unit, parameters[0].tooltip) == (1.0, "m", "How far")
+    assert [(p.name, p.line) for p in parameters] == [("a", 2), ("b", text.count("\n") + 3)]
+    assert parameters[1].tooltip == "Another"
 
 
 def test_a_line_without_an_annotation_takes_none_from_the_next(folder: Folder) -> None:
-    found = folder.kernel(f"{PRAGMA}uniform float a;\n//! Words\n").parameters
-    assert found[0].tooltip == ""
+    parameters = folder.kernel(f"{PRAGMA}uniform float a;\n//! Words\n").parameters
+    assert parameters[0].tooltip == ""
 
 
 # Named expressions of a pragma
 
 
 def test_where_names_expressions_of_the_pragma(folder: Folder) -> None:
-    found = folder.kernel(
+    kernel = folder.kernel(
         '#pragma kernel(output = "height:r32f", where = "half = size.x // 2; both = half + steps", \\\n'
         '               repeat = "2 * both")\nuniform int steps = 3;\n'
     )
-    assert found.repeat == "2 * ((size.x // 2) + steps)"
+    assert kernel.repeat == "2 * ((size.x // 2) + steps)"
 
 
 def test_where_applies_to_groups_and_the_counts_of_buffers_not_their_names(folder: Folder) -> None:
-    found = folder.kernel(
+    kernel = folder.kernel(
         '#pragma compute(where = "row = size.x + 1; float = 2", groups = "row, 1", \\\n'
         '                buffers = "row:float:row * size.y * float")\n'
     )
-    assert found.groups == "(size.x + 1), 1"
-    assert [(b.name, b.type, b.count) for b in found.storage.buffers] == [
+    assert kernel.groups == "(size.x + 1), 1"
+    assert [(b.name, b.type, b.count) for b in kernel.storage.buffers] == [
         ("row", "float", "(size.x + 1) * size.y * (2)")
     ]
 
@@ -192,6 +194,6 @@ def test_mistakes_in_where(folder: Folder, where: str, words: str) -> None:
     text = (
         f'#pragma kernel(output = "height:r32f", where = "{where}", repeat = "2")\nuniform int steps = 3;\n'
     )
-    message, *place = folder.refused(text)
+    message, *position = folder.refused(text)
     assert words in message
-    assert place == ["kernel.glsl", 1, ()]
+    assert position == ["kernel.glsl", 1, ()]

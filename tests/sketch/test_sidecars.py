@@ -46,7 +46,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("ending", "found"),
+    ("ending", "names"),
     [
         (".bil", [".hdr", ".prj"]),
         (".flt", [".hdr", ".prj"]),
@@ -56,9 +56,9 @@ def folder(tmp_path: Path) -> Path:
         (".png", []),
     ],
 )
-def test_each_format_has_its_own(tmp_path: Path, ending: str, found: list[str]) -> None:
+def test_each_format_has_its_own(tmp_path: Path, ending: str, names: list[str]) -> None:
     path = grid(tmp_path / f"a{ending}", ".hdr", ".prj", ".shx", ".dbf", ".cpg", ".txt")
-    assert [p.suffix for p in sidecars(path)] == found
+    assert [p.suffix for p in sidecars(path)] == names
     assert set(sidecars(path)) <= set(sidecar_places(path))
 
 
@@ -97,9 +97,9 @@ def test_the_contents_change_with_them(tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_they_are_watched_there_or_not(folder: Path) -> None:
     (folder / "data/a.prj").unlink()
-    found = data_files(load(folder))
-    assert {folder / "data" / name for name in ("a.bil", "a.hdr", "a.prj")} <= found
-    assert folder / "data/a.txt" not in found
+    paths = data_files(load(folder))
+    assert {folder / "data" / name for name in ("a.bil", "a.hdr", "a.prj")} <= paths
+    assert folder / "data/a.txt" not in paths
 
 
 def test_they_are_packed(folder: Path) -> None:

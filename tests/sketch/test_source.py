@@ -34,9 +34,9 @@ def read(path: Path, *roots: Path) -> SourceText:
 def refused(path: Path, words: str, file: str, line: int, *roots: Path) -> ShaderError:
     with pytest.raises(ShaderError) as caught:
         read(path, *roots)
-    found = caught.value.diagnostics[0]
-    assert words in found.message and "\n" not in found.message, found
-    assert (Path(found.file).name, found.line) == (file, line)
+    diagnostic = caught.value.diagnostics[0]
+    assert words in diagnostic.message and "\n" not in diagnostic.message, diagnostic
+    assert (Path(diagnostic.file).name, diagnostic.line) == (file, line)
     return caught.value
 
 
@@ -47,8 +47,8 @@ def test_each_line_knows_where_it_comes_from(write):
     write("lib/b.glsl", "float b;\nfloat bb;\n")
     write("lib/a.glsl", '#include "b.glsl"\nfloat a;\n')
     path = write("main.glsl", 'one\n#include "lib/a.glsl"\nthree\n')
-    found = read(path)
-    places = [(Path(line.file).name, line.number, line.code) for line in found.lines if line.code]
+    result = read(path)
+    places = [(Path(line.file).name, line.number, line.code) for line in result.lines if line.code]
     assert places == [
         ("main.glsl", 1, "one"),
         ("b.glsl", 1, "float b;"),
@@ -56,10 +56,10 @@ def test_each_line_knows_where_it_comes_from(write):
         ("a.glsl", 2, "float a;"),
         ("main.glsl", 3, "three"),
     ]
-    inner = next(line for line in found.lines if line.code == "float b;")
-    assert [Path(place).name for place in inner.chain] == ["main.glsl:2", "a.glsl:1"]
-    assert [Path(p).name for p in found.files] == ["main.glsl", "a.glsl", "b.glsl"]
-    assert found.code.split("\n")[:-1] == [line.code for line in found.lines]
+    inner = next(line for line in result.lines if line.code == "float b;")
+    assert [Path(position).name for position in inner.chain] == ["main.glsl:2", "a.glsl:1"]
+    assert [Path(p).name for p in result.files] == ["main.glsl", "a.glsl", "b.glsl"]
+    assert result.code.split("\n")[:-1] == [line.code for line in result.lines]
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
@@ -68,10 +68,10 @@ def test_each_line_knows_where_it_comes_from(write):
 def test_line_ends_marks_and_a_missing_last_end_change_nothing(write, end, mark, last):
     write("lib.glsl", mark + ("float x;" + end if last else "float x;").encode())
     text = end.join(["first", '#include "lib.glsl"', "third"]) + (end if last else "")
-    found = read(write("main.glsl", mark + text.encode()))
-    assert [line.code for line in found.lines if line.code] == ["first", "float x;", "third"]
-    assert next(line.number for line in found.lines if line.code == "third") == 3
-    assert found.canonical == "first\nfloat x;\nthird"
+    result = read(write("main.glsl", mark + text.encode()))
+    assert [line.code for line in result.lines if line.code] == ["first", "float x;", "third"]
+    assert next(line.number for line in result.lines if line.code == "third") == 3
+    assert result.canonical == "first\nfloat x;\nthird"
 
 
 def test_the_driver_sees_neither_comments_nor_quotes_nor_more_than_ascii(write):
@@ -79,20 +79,20 @@ def test_the_driver_sees_neither_comments_nor_quotes_nor_more_than_ascii(write):
     text = 'float a; // größe "quoted"\n/* ü " */ float b; /* // */ float c;\n'
     text += '#pragma kernel(output = "h:r32f") // x\n'
     text += '  #  include   "lib.glsl"   // why\nfloat d = é;\n\tfloat\ve;\f\n'
-    found = read(write("main.glsl", text))
-    assert '"' not in found.code and found.code.isascii()
-    assert found.lines[0].code == "float a;" and found.lines[0].comment == ' größe "quoted"'
-    assert found.lines[1].code.split() == ["float", "b;", "float", "c;"]
-    assert (found.lines[2].code, found.lines[2].comment) == ("", " x")
-    assert found.lines[2].pragma == '#pragma kernel(output = "h:r32f")'
-    assert found.lines[-3].code == "float d = ?;"
-    assert found.lines[-2].code == "\tfloat e;"
+    result = read(write("main.glsl", text))
+    assert '"' not in result.code and result.code.isascii()
+    assert result.lines[0].code == "float a;" and result.lines[0].comment == ' größe "quoted"'
+    assert result.lines[1].code.split() == ["float", "b;", "float", "c;"]
+    assert (result.lines[2].code, result.lines[2].comment) == ("", " x")
+    assert result.lines[2].pragma == '#pragma kernel(output = "h:r32f")'
+    assert result.lines[-3].code == "float d = ?;"
+    assert result.lines[-2].code == "\tfloat e;"
 
 
 def test_columns_stay_where_they_were(write):
     text = "a /* b */ c /* d\n   e */ f // g\n"
-    found = read(write("main.glsl", text))
-    for line in found.lines:
+    result = read(write("main.glsl", text))
+    for line in result.lines:
         for index, letter in enumerate(line.code):
             assert letter in (" ", line.text[index])
 
@@ -113,9 +113,9 @@ def test_comments_are_blanked_as_by_a_pattern_over_the_whole_text(write):
     for _ in range(500):
         pieces = ["//", "/*", "*/", "\n", "a", " ", "x y", '"q//"', "//!", "/", "*", "\t"]
         text = "".join(rng.choice(pieces) for _ in range(30))
-        found = read(write("main.glsl", text))
-        wanted = [line.replace("\t", " ").rstrip() for line in stripped(text).split("\n")]
-        assert [line.code.replace("\t", " ") for line in found.lines] == wanted, repr(text)
+        result = read(write("main.glsl", text))
+        expected = [line.replace("\t", " ").rstrip() for line in stripped(text).split("\n")]
+        assert [line.code.replace("\t", " ") for line in result.lines] == expected, repr(text)
 
 
 def test_what_is_in_a_comment_is_not_read(write):
@@ -128,18 +128,18 @@ def test_what_is_in_a_comment_is_not_read(write):
     */
     float y; //! yes
     """
-    found = read(write("main.glsl", text))
-    assert not any(line.pragma for line in found.lines)
-    assert [line.comment for line in found.lines if line.comment.startswith("!")] == ["! yes"]
+    result = read(write("main.glsl", text))
+    assert not any(line.pragma for line in result.lines)
+    assert [line.comment for line in result.lines if line.comment.startswith("!")] == ["! yes"]
 
 
 def test_a_backslash_joins_lines_and_numbers_stay(write):
     text = 'a \\\n b\\\nc\nd\n// e \\\nf\n#pragma kernel(output = \\\n  "h:r32f")\ng\n'
-    found = read(write("main.glsl", text))
-    assert [line.code for line in found.lines] == ["a  bc", "", "", "d", "", "", "", "", "g", ""]
-    assert [line.number for line in found.lines] == list(range(1, 11))
-    assert found.lines[4].comment == " e f"
-    assert found.lines[6].pragma == '#pragma kernel(output =   "h:r32f")'
+    result = read(write("main.glsl", text))
+    assert [line.code for line in result.lines] == ["a  bc", "", "", "d", "", "", "", "", "g", ""]
+    assert [line.number for line in result.lines] == list(range(1, 11))
+    assert result.lines[4].comment == " e f"
+    assert result.lines[6].pragma == '#pragma kernel(output =   "h:r32f")'
     assert read(write("main.glsl", "last \\")).lines[0].code == "last \\"
     assert read(write("main.glsl", "last \\\n")).lines[0].code == "last"
 
@@ -150,10 +150,10 @@ def test_an_include_may_be_joined_too(write):
 
 
 def test_a_changed_comment_or_indentation_is_no_change(write):
-    one = read(write("main.glsl", "float a;\n\n  float b; // x\n"))
+    item = read(write("main.glsl", "float a;\n\n  float b; // x\n"))
     two = read(write("main.glsl", "// new\nfloat a;\n\tfloat   b;\n"))
-    assert one.canonical == two.canonical and one.code != two.code
-    assert read(write("main.glsl", "float a; float b;")).canonical != one.canonical
+    assert item.canonical == two.canonical and item.code != two.code
+    assert read(write("main.glsl", "float a; float b;")).canonical != item.canonical
 
 
 # Includes
@@ -163,10 +163,10 @@ def test_a_diamond_is_read_twice_and_listed_once(write):
     write("base.glsl", "#ifndef B\n#define B\nfloat base;\n#endif\n")
     write("a.glsl", '#include "base.glsl"\n')
     write("b.glsl", '#include "base.glsl"\n')
-    found = read(write("main.glsl", '#include "a.glsl"\n#include "b.glsl"\n'))
-    assert found.code.count("float base;") == 2
-    assert len(found.files) == 4
-    chains = [line.chain for line in found.lines if line.code == "float base;"]
+    result = read(write("main.glsl", '#include "a.glsl"\n#include "b.glsl"\n'))
+    assert result.code.count("float base;") == 2
+    assert len(result.files) == 4
+    chains = [line.chain for line in result.lines if line.code == "float base;"]
     assert chains[0] != chains[1]
 
 
@@ -207,8 +207,8 @@ def test_a_missing_include_names_the_nearest(write):
 )
 def test_an_include_as_other_tools_write_it(write, line):
     write("a.glsl", "float a;")
-    found = read(write("main.glsl", f"{line}\nfloat b;\n"))
-    assert found.code.split() == ["float", "a;", "float", "b;"]
+    result = read(write("main.glsl", f"{line}\nfloat b;\n"))
+    assert result.code.split() == ["float", "a;", "float", "b;"]
 
 
 @pytest.mark.parametrize(
@@ -293,7 +293,7 @@ def test_files_that_cannot_be_read_are_sentences(write, tmp_path):
             read(path)
     refused(write("main.glsl", 'x\n#include "large.glsl"\n'), "'large.glsl': larger than", "main.glsl", 2)
     error = refused(write("main.glsl", 'x\n#include "latin.glsl"\n'), "not UTF-8", "latin.glsl", 1)
-    assert [Path(place).name for place in error.diagnostics[0].chain] == ["main.glsl:2"]
+    assert [Path(position).name for position in error.diagnostics[0].chain] == ["main.glsl:2"]
 
 
 # Values
@@ -301,13 +301,13 @@ def test_files_that_cannot_be_read_are_sentences(write, tmp_path):
 
 def test_a_text_is_a_value_and_travels_without_what_was_worked_out(write):
     path = write("main.glsl", "float a;\n")
-    one, two = read(path), read(path)
-    assert one == two and hash(one) == hash(two) and one.canonical
+    item, two = read(path), read(path)
+    assert item == two and hash(item) == hash(two) and item.canonical
     plain = len(pickle.dumps(two))
-    assert one.code and one.names and len(pickle.dumps(one)) == plain
-    back = pickle.loads(pickle.dumps(one))
-    assert back == one and hash(back) == hash(one) and back.code == one.code
-    assert read(write("main.glsl", "float b;\n")) != one
+    assert item.code and item.names and len(pickle.dumps(item)) == plain
+    back = pickle.loads(pickle.dumps(item))
+    assert back == item and hash(back) == hash(item) and back.code == item.code
+    assert read(write("main.glsl", "float b;\n")) != item
 
 
 def test_reading_imports_no_opengl():
@@ -337,8 +337,8 @@ def test_any_bytes_are_read_or_refused(write):
         ]
         text = b"".join(rng.choice(pieces) for _ in range(rng.randint(0, 25)))
         try:
-            found = read(write("main.glsl", text))
+            result = read(write("main.glsl", text))
         except PlaygroundError as error:
             assert error.diagnostics[0].file
         else:
-            assert found.code.isascii() and len(found.lines) >= text.count(b"\n") + 1
+            assert result.code.isascii() and len(result.lines) >= text.count(b"\n") + 1

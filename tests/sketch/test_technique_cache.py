@@ -183,9 +183,9 @@ def test_after_any_saves_it_gives_what_a_reading_anew_gives(files: Files, seed: 
             files.save(name, rng.choice(texts[name]))
         with noting_places() as places:
             seen = result_of(lambda: load_with(techniques.begin(), files.folder))
-        with noting_places() as wanted:
+        with noting_places() as expected:
             assert seen == result_of(lambda: load(files.folder))
-        assert wanted.keys() <= places.keys()
+        assert expected.keys() <= places.keys()
 
 
 def result_of(loading):

@@ -40,8 +40,8 @@ def test_a_main_parameter_that_a_text_lacks_is_one_no_more(folder):
 def test_a_text_is_read_in_place_of_its_file_and_declares_what_it_declares(folder):
     sketch = folder.sketch()
     steep = TERRAIN.replace("rise", "climb").replace("0.5", "0.75")
-    found = with_texts(sketch, {str(folder.path / "terrain.glsl"): steep})
-    before, after = kernels(sketch), kernels(found)
+    result = with_texts(sketch, {str(folder.path / "terrain.glsl"): steep})
+    before, after = kernels(sketch), kernels(result)
     assert [(p.name, p.default) for p in before["terrain"].parameters] == [("rise", 0.5)]
     assert [(p.name, p.default) for p in after["terrain"].parameters] == [("climb", 0.75)]
     assert "climb * float" in after["terrain"].source.code
@@ -53,15 +53,15 @@ def test_an_included_text_changes_every_kernel_that_includes_it(folder):
     file = folder.write("share.glsl", "const float SHARE = 0.5;\n")
     folder.write("terrain.glsl", '#include "share.glsl"\n' + TERRAIN)
     folder.write("look.glsl", '#include "share.glsl"\n' + VIEW)
-    found = with_texts(folder.sketch(), {str(file): "const float SHARE = 0.25;\n"})
-    assert ["SHARE = 0.25;" in kernel.source.code for kernel in kernels(found).values()] == [True, True]
+    result = with_texts(folder.sketch(), {str(file): "const float SHARE = 0.25;\n"})
+    assert ["SHARE = 0.25;" in kernel.source.code for kernel in kernels(result).values()] == [True, True]
 
 
 def test_a_text_is_found_inside_a_technique_of_several_passes(folder):
     folder.write("hill.toml", HILL)
     sketch = folder.sketch(NESTED)
-    found = with_texts(sketch, {str(folder.path / "terrain.glsl"): TERRAIN.replace("0.5", "0.75")})
-    assert kernels(found)["terrain"].parameters[0].default == 0.75
+    result = with_texts(sketch, {str(folder.path / "terrain.glsl"): TERRAIN.replace("0.5", "0.75")})
+    assert kernels(result)["terrain"].parameters[0].default == 0.75
     assert kernels(sketch)["terrain"].parameters[0].default == 0.5
 
 

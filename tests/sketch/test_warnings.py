@@ -131,9 +131,9 @@ HEAD += "struct Part { int count; float share; };\nfloat at(int k) { return floa
 def test_a_quotient_of_whole_literals_is_warned_of(
     tmp_path: Path, code: str, written: str, value: int
 ) -> None:
-    (found,) = divisions_in(tmp_path, code)
-    assert found.message.startswith(f"{written} divides whole numbers, which gives {value}; write ")
-    assert (found.line, found.column) == (8, 5 + code.index(written))
+    (result,) = divisions_in(tmp_path, code)
+    assert result.message.startswith(f"{written} divides whole numbers, which gives {value}; write ")
+    assert (result.line, result.column) == (8, 5 + code.index(written))
 
 
 @pytest.mark.parametrize(
@@ -175,7 +175,7 @@ def test_whole_quotients_that_are_meant_are_left_alone(tmp_path: Path, code: str
 
 def test_no_shipped_text_divides_whole_literals() -> None:
     texts = (read_source(path, [GLSL]) for path in GLSL.rglob("*.glsl"))
-    assert [found for text in texts for found in whole_divisions(text)] == []
+    assert [whole_division for text in texts for whole_division in whole_divisions(text)] == []
 
 
 # ── variables that are read before they are written ──────────────────────────

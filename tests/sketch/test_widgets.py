@@ -44,12 +44,12 @@ def parameters(sketch):
 
 
 def test_what_an_annotation_says(sketch):
-    found = parameters(sketch())
-    assert (found["mode"].default, found["mode"].widget.values) == (1, (-3, 9, 40))
-    assert found["place"].widget.axes == ((-1.0, 1.0), (2.0, 4.0))
-    assert (found["place"].widget.low, found["place"].widget.high) == (-1.0, 4.0)
-    assert (found["even"].widget.axes, found["even"].widget.low) == ((), -2.0)
-    assert (found["go"].widget.kind, found["go"].default, found["go"].title) == ("button", False, "Go!")
+    result = parameters(sketch())
+    assert (result["mode"].default, result["mode"].widget.values) == (1, (-3, 9, 40))
+    assert result["place"].widget.axes == ((-1.0, 1.0), (2.0, 4.0))
+    assert (result["place"].widget.low, result["place"].widget.high) == (-1.0, 4.0)
+    assert (result["even"].widget.axes, result["even"].widget.low) == ((), -2.0)
+    assert (result["go"].widget.kind, result["go"].default, result["go"].title) == ("button", False, "Go!")
 
 
 @pytest.mark.parametrize(
@@ -78,23 +78,23 @@ def test_what_is_refused_at_its_line(folder, line, words):
 
 
 def test_values_are_taken_and_written(sketch):
-    found = parameters(sketch())
-    assert [coerce(found["mode"], given) for given in ("none", 0)] == [2, 0]
-    assert write(found["mode"], 2) == "none"
-    assert coerce(found["place"], "0.5,4") == (0.5, 4.0)
-    assert (coerce(found["go"], "on"), write(found["go"], True)) == (True, "true")
-    for name, given, words in (
+    result = parameters(sketch())
+    assert [coerce(result["mode"], name) for name in ("none", 0)] == [2, 0]
+    assert write(result["mode"], 2) == "none"
+    assert coerce(result["place"], "0.5,4") == (0.5, 4.0)
+    assert (coerce(result["go"], "on"), write(result["go"], True)) == (True, "true")
+    for name, value, words in (
         ("mode", "nine", "expected one of soft, hard, none; did you mean 'none'"),
         ("mode", "9", "expected one of"),
         ("place", "1,1", "1 is outside its range 2 to 4"),
         ("even", "a", "expected two numbers from -2 to 2, as 0,0"),
     ):
         with pytest.raises(ParameterError, match=words):
-            coerce(found[name], given)
-    assert expected(found["place"]) == "two numbers from -1 to 1 and from 2 to 4, as 0,3"
-    assert Choice("a.place", found["place"], (0.0, 3.0), True).range == "-1 to 1, 2 to 4"
-    assert Choice("a.go", found["go"], False, True).range == "true while pressed"
-    assert Choice("a.mode", found["mode"], 1, True).as_json()["choices"] == ["soft", "hard", "none"]
+            coerce(result[name], value)
+    assert expected(result["place"]) == "two numbers from -1 to 1 and from 2 to 4, as 0,3"
+    assert Choice("a.place", result["place"], (0.0, 3.0), True).range == "-1 to 1, 2 to 4"
+    assert Choice("a.go", result["go"], False, True).range == "true while pressed"
+    assert Choice("a.mode", result["mode"], 1, True).as_json()["choices"] == ["soft", "hard", "none"]
 
 
 def test_the_uniform_gets_the_value_and_a_repeat_names_it(any_engine, sketch):
@@ -125,16 +125,16 @@ def test_it_is_reduced_to_the_same_values(sketch):
 
 
 def test_random_values_keep_to_each_range_and_press_nothing(sketch):
-    found = [(name, p) for name, p in parameters(sketch()).items()]
-    now = {name: p.default for name, p in found}
+    result = [(name, p) for name, p in parameters(sketch()).items()]
+    now = {name: p.default for name, p in result}
     for seed in range(40):
-        for made in (at_random(found, seed), mutated(found, now, seed, 0.9)):
+        for made in (at_random(result, seed), mutated(result, now, seed, 0.9)):
             assert "go" not in made and made["mode"] in (0, 1, 2)
             assert -1 <= made["place"][0] <= 1 and 2 <= made["place"][1] <= 4
 
 
 def test_a_sweep_goes_through_labels_and_ranges(sketch):
-    found = parameters(sketch())
-    assert sweep_text("a.mode", found["mode"]) == "a.mode=soft,hard,none"
-    assert parts_of(found["place"]) == ("x", "y")
-    assert sweep_text("a.place", found["place"], "y") == "a.place.y=2..4,9"
+    result = parameters(sketch())
+    assert sweep_text("a.mode", result["mode"]) == "a.mode=soft,hard,none"
+    assert parts_of(result["place"]) == ("x", "y")
+    assert sweep_text("a.place", result["place"], "y") == "a.place.y=2..4,9"

@@ -27,7 +27,7 @@ def exchange(terrain: Land, *, count: int = 64) -> Array:
         a = np.radians(azimuth)
         across, up = normal[..., 0] * np.sin(a) + normal[..., 1] * np.cos(a), normal[..., 2]
         highest = np.arctan2(-across, up)  # nothing is received from behind the surface
-        for _, place, shown, tangent in profile(terrain, azimuth):
+        for _, position, shown, tangent in profile(terrain, azimuth):
             angle = np.arctan(tangent)
             low = highest[shown]
             high = np.maximum(angle, low)
@@ -35,8 +35,8 @@ def exchange(terrain: Land, *, count: int = 64) -> Array:
             share = np.maximum(share, 0) * 2 / count
             highest[shown] = high
             rows = number[shown].ravel()
-            x, y = int(np.floor(place[0])), int(np.floor(place[1]))
-            px, py = place[0] - x, place[1] - y
+            x, y = int(np.floor(position[0])), int(np.floor(position[1]))
+            px, py = position[0] - x, position[1] - y
             for dy, wy in ((0, 1 - py), (1, py)):
                 for dx, wx in ((0, 1 - px), (1, px)):
                     if wx * wy:

@@ -26,14 +26,14 @@ def drained_areas(heights: np.ndarray) -> np.ndarray:
     order = []
     near = [(dy, dx) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx]
     while waiting:
-        low, place = heapq.heappop(waiting)
-        order.append(place)
-        y, x = divmod(place, nx)
+        low, position = heapq.heappop(waiting)
+        order.append(position)
+        y, x = divmod(position, nx)
         for dy, dx in near:
             b, a = y + dy, x + dx
             if 0 <= b < ny and 0 <= a < nx and level[b, a] == np.inf:
                 level[b, a] = max(float(heights[b, a]), low)
-                receiver[b, a] = place
+                receiver[b, a] = position
                 heapq.heappush(waiting, (level[b, a], b * nx + a))
     steepest = np.zeros((ny - 2, nx - 2))
     inner = receiver[1:-1, 1:-1]
@@ -44,9 +44,9 @@ def drained_areas(heights: np.ndarray) -> np.ndarray:
         inner[:] = np.where(slope > steepest, numbers[there], inner)
         steepest = np.maximum(steepest, slope)
     areas = np.ones(ny * nx)
-    for place in reversed(order):
-        if receiver.flat[place] >= 0:
-            areas[receiver.flat[place]] += areas[place]
+    for position in reversed(order):
+        if receiver.flat[position] >= 0:
+            areas[receiver.flat[position]] += areas[position]
     return areas.reshape(ny, nx)
 
 

@@ -84,16 +84,16 @@ def measure(engine: Engine, folder: Path, method: Method, truth: Truth) -> Itera
     """Yield a method's errors on one terrain."""
     head = (method.name, truth.land.name, method.gives)
     if method.gives in (SKY, BOUNCED):
-        land, wanted = (truth.land, truth.sky) if method.gives == SKY else (truth.small, truth.bounced)
-        found = lit(engine, folder, method, land, None)
-        yield Errors(*head, None, None, None, None, *_spread(found[..., 0] - wanted))
+        land, expected = (truth.land, truth.sky) if method.gives == SKY else (truth.small, truth.bounced)
+        result = lit(engine, folder, method, land, None)
+        yield Errors(*head, None, None, None, None, *_spread(result[..., 0] - expected))
         return
     for sun, (share, light) in zip(SUNS, truth.suns, strict=True):
-        found = lit(engine, folder, method, truth.land, sun)
-        away, partly = found[..., 3] - share, (share > 0) & (share < 1)
+        result = lit(engine, folder, method, truth.land, sun)
+        away, partly = result[..., 3] - share, (share > 0) & (share < 1)
         inside = float(np.abs(away[partly]).mean()) if partly.any() else None
-        wanted = light + AMBIENT * truth.sky if method.gives == BOTH else light
-        yield Errors(*head, sun[1], *_spread(away), inside, *_spread(found[..., 0] - wanted))
+        expected = light + AMBIENT * truth.sky if method.gives == BOTH else light
+        yield Errors(*head, sun[1], *_spread(away), inside, *_spread(result[..., 0] - expected))
 
 
 def _spread(error: Array) -> tuple[float, float]:
@@ -116,17 +116,17 @@ def main(arguments: list[str] | None = None) -> None:
     methods = [m for m in METHODS if m.name in (options.methods or names)]
     with headless() as engine, tempfile.TemporaryDirectory(prefix="playground-truth-") as folder:
         truths = [truth_of(engine, Path(folder), name, options.size) for name in LANDS]
-        found = [e for m in methods for t in truths for e in measure(engine, Path(folder), m, t)]
+        result = [e for m in methods for t in truths for e in measure(engine, Path(folder), m, t)]
         renderer = engine.info.renderer
     if options.json:
-        for row in found:
+        for row in result:
             print(json.dumps(asdict(row)))
         return
     console = Console(width=None if sys.stdout.isatty() else 110)
-    console.print(table_of(found, f"error against the truth, {options.size} x {options.size}, {renderer}"))
+    console.print(table_of(result, f"error against the truth, {options.size} x {options.size}, {renderer}"))
 
 
-def table_of(found: Iterable[Errors], title: str) -> Table:
+def table_of(errors: Iterable[Errors], title: str) -> Table:
     """Return the errors as a table, a row for each method, terrain and sun."""
     table = Table(title=title)
     for heading in ("method", "land"):
@@ -134,7 +134,7 @@ def table_of(found: Iterable[Errors], title: str) -> Table:
     for heading in ("sun", "visibility: mean", "p99", "in penumbra", "light: mean", "p99"):
         table.add_column(heading, justify="right")
     last, land = ("", ""), ""
-    for row in found:
+    for row in errors:
         head = (row.method, row.gives)
         if last[0] and head != last:
             table.add_section()

@@ -17,8 +17,8 @@ import numpy as np
 
 from .land import Array, Land
 
-Place = tuple[float, float]
-NODE: Place = (0.0, 0.0)
+Position = tuple[float, float]
+NODE: Position = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Crossing:
     """A ray's place where it meets a line of the grid."""
 
     distance: float  # [m] along the level
-    place: Place  # from the start, in texels; whole along the axis that it crosses
+    place: Position  # from the start, in texels; whole along the axis that it crosses
 
 
 def _ahead(azimuth: float) -> Array:
@@ -34,7 +34,7 @@ def _ahead(azimuth: float) -> Array:
     return np.where(np.abs(ahead) < 1e-12, 0, ahead)  # along an axis, whatever the rounding of pi
 
 
-def crossings(terrain: Land, azimuth: float, part: Place = NODE) -> list[Crossing]:
+def crossings(terrain: Land, azimuth: float, part: Position = NODE) -> list[Crossing]:
     """Return where rays towards an azimuth meet the grid's lines, from ``part`` [texels] of any cell."""
     way = _ahead(azimuth) / terrain.spacing  # texels a metre
     met = []
@@ -47,17 +47,17 @@ def crossings(terrain: Land, azimuth: float, part: Place = NODE) -> list[Crossin
     for s, axis, line in sorted(met):
         # Through a node, a ray meets two lines at once.
         twice = bool(result) and s - result[-1].distance <= 1e-9 * s
-        place = list(result[-1].place if twice else part + s * way)
-        place[axis] = line
-        result[len(result) - twice :] = [Crossing(s, (float(place[0]), float(place[1])))]
+        position = list(result[-1].place if twice else part + s * way)
+        position[axis] = line
+        result[len(result) - twice :] = [Crossing(s, (float(position[0]), float(position[1])))]
     return result
 
 
-def _sampled(terrain: Land, place: Place) -> tuple[Array, tuple[slice, slice]]:
+def _sampled(terrain: Land, position: Position) -> tuple[Array, tuple[slice, slice]]:
     """Return the heights at a place as seen from each texel, and for which of them it is on the terrain."""
     ny, nx = terrain.heights.shape
-    rows, row_part, row_from = _shift(place[1], ny)
-    columns, column_part, column_from = _shift(place[0], nx)
+    rows, row_part, row_from = _shift(position[1], ny)
+    columns, column_part, column_from = _shift(position[0], nx)
     shown = (slice(rows[0], rows[1]), slice(columns[0], columns[1]))
     total = np.zeros((max(rows[1] - rows[0], 0), max(columns[1] - columns[0], 0)))
     for y, wy in ((0, 1 - row_part), (1, row_part)):
@@ -84,7 +84,9 @@ def _shift(offset: float, n: int) -> tuple[tuple[int, int], float, int]:
     return (first, max(end, first)), part, whole
 
 
-def profile(terrain: Land, azimuth: float, part: Place = NODE) -> Iterator[tuple[float, Place, tuple, Array]]:
+def profile(
+    terrain: Land, azimuth: float, part: Position = NODE
+) -> Iterator[tuple[float, Position, tuple, Array]]:
     """Yield the greatest tangent within each cell that rays cross, cell by cell outwards.
 
     (distance [m] of the cell's middle, its place, the texels whose rays are still on the
@@ -98,16 +100,16 @@ def profile(terrain: Land, azimuth: float, part: Place = NODE) -> Iterator[tuple
     for crossing in crossings(terrain, azimuth, part):
         half = (crossing.distance - last.distance) / 2
         middle = (last.distance + crossing.distance) / 2
-        place = ((last.place[0] + crossing.place[0]) / 2, (last.place[1] + crossing.place[1]) / 2)
+        position = ((last.place[0] + crossing.place[0]) / 2, (last.place[1] + crossing.place[1]) / 2)
         after, shown = _sampled(terrain, crossing.place)
         inner = _overlap(seen, shown)
         if after.size and inner[0].stop > inner[0].start and inner[1].stop > inner[1].start:
             origin = base[inner]
             h1 = before[_within(inner, seen)] - origin
             h2 = after[_within(inner, shown)] - origin
-            between, around = _sampled(terrain, place)
+            between, around = _sampled(terrain, position)
             hm = between[_within(inner, around)] - origin
-            yield middle, place, inner, _steepest(h1, hm, h2, last.distance, half)
+            yield middle, position, inner, _steepest(h1, hm, h2, last.distance, half)
         last, before, seen = crossing, after, shown
 
 
@@ -128,19 +130,19 @@ def _steepest(h1: Array, hm: Array, h2: Array, start: float, half: float) -> Arr
 
 
 def _overlap(a: tuple[slice, slice], b: tuple[slice, slice]) -> tuple[slice, slice]:
-    found = [
+    slices = [
         slice(max(p.start, q.start), max(min(p.stop, q.stop), max(p.start, q.start)))
         for p, q in zip(a, b, strict=True)
     ]
-    return found[0], found[1]
+    return slices[0], slices[1]
 
 
 def _within(inner: tuple[slice, slice], outer: tuple[slice, slice]) -> tuple[slice, slice]:
-    found = [slice(p.start - q.start, p.stop - q.start) for p, q in zip(inner, outer, strict=True)]
-    return found[0], found[1]
+    slices = [slice(p.start - q.start, p.stop - q.start) for p, q in zip(inner, outer, strict=True)]
+    return slices[0], slices[1]
 
 
-def horizon(terrain: Land, azimuth: float, part: Place = NODE) -> Array:
+def horizon(terrain: Land, azimuth: float, part: Position = NODE) -> Array:
     """Return the tangent of the horizon's elevation towards an azimuth [degrees], for every texel.
 
     -inf where no terrain lies that way, NaN where ``part`` of the texel's cell is off the terrain.

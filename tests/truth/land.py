@@ -70,7 +70,7 @@ def towards(azimuth: object, elevation: object) -> Array:
 
 
 def _grid(size: int, extent: float, middle: tuple[float, float] = (0.5, 0.5)) -> tuple[Array, Array]:
-    """Return east and north [m] of a square terrain's nodes, from a place that is a share of its sides."""
+    """Return east and north [m] of a square terrain's nodes, from a place that is a fraction of its sides."""
     along = np.linspace(0, extent, size)
     return tuple(np.meshgrid(along - middle[0] * extent, along - middle[1] * extent))  # type: ignore[return-value]
 

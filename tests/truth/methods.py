@@ -167,5 +167,5 @@ def lit(
 ) -> Array:
     """Return a method's light (ny, nx, components); in alpha is the visible part of the sun."""
     sketch = sketch_of(folder, terrain, passes_of(method, sun), base=base)
-    found = engine.read(sketch, f"light:{method.output}" if method.output else "light").astype(np.float64)
-    return found.reshape(*terrain.heights.shape, -1)
+    result = engine.read(sketch, f"light:{method.output}" if method.output else "light").astype(np.float64)
+    return result.reshape(*terrain.heights.shape, -1)

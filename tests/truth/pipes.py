@@ -93,7 +93,7 @@ class Pipes:
             (surface[1:-1, 2:] - surface[1:-1, :-2]) / (2 * self.spacing[0]),
             (surface[2:, 1:-1] - surface[:-2, 1:-1]) / (2 * self.spacing[1]),
         )
-        # What it can carry goes by the amounts themselves, whichever way they go.
+        # What it can carry depends on the amounts themselves, whichever way they go.
         can = self.capacity * both.sum(3).mean(0) * np.maximum(np.sin(np.arctan(fall)), 0.01)
         bed = np.pad(self.bed, 1, mode="edge")
         lowest = np.min([bed[1 + dy : 1 + dy + ny, 1 + dx : 1 + dx + nx] for dy, dx in SIDES], 0)

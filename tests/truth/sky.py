@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from .horizon import NODE, Place, horizon
+from .horizon import NODE, Position, horizon
 from .land import Array, Land
 
 Radiance = Callable[[Array, Array], Array]
@@ -24,7 +24,7 @@ def azimuths(count: int) -> Array:
 
 
 def _slices(
-    terrain: Land, count: int, part: Place, normals: Array
+    terrain: Land, count: int, part: Position, normals: Array
 ) -> Iterator[tuple[float, Array, Array, Array]]:
     """Yield each azimuth [degrees], N's components that way and up, the lowest elevation seen [radians]."""
     for azimuth in azimuths(count):
@@ -36,7 +36,7 @@ def _slices(
 
 
 def sky_visibility(
-    terrain: Land, *, count: int = 64, part: Place = NODE, normals: Array | None = None
+    terrain: Land, *, count: int = 64, part: Position = NODE, normals: Array | None = None
 ) -> Array:
     """Return K (eq. 3.12): the light of an even sky of radiance 1, per texel; 1 on flat terrain."""
     normals = terrain.normals() if normals is None else normals
@@ -52,7 +52,7 @@ def sky_light(
     *,
     count: int = 64,
     heights: int = 24,
-    part: Place = NODE,
+    part: Position = NODE,
     normals: Array | None = None,
 ) -> Array:
     """Return eq. 3.4 for a sky whose radiance is a function of azimuth and elevation [radians]."""
@@ -61,8 +61,8 @@ def sky_light(
     total = np.zeros(terrain.heights.shape)
     for azimuth, across, up, low in _slices(terrain, count, part, normals):
         half = (np.pi / 2 - low) / 2
-        for place, weight in zip(places, weights, strict=True):
-            e = low + half * (1 + place)
+        for position, weight in zip(places, weights, strict=True):
+            e = low + half * (1 + position)
             received = (across * np.cos(e) + up * np.sin(e)) * np.cos(e)
             total += weight * half * radiance(np.full_like(e, np.radians(azimuth)), e) * received
     return total * 2 / count

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from .horizon import NODE, Place, horizon
+from .horizon import NODE, Position, horizon
 from .land import Array, Land, towards
 
 SUN = 0.53  # [degrees] the sun's mean angular diameter
@@ -47,7 +47,7 @@ def sunlight(
     *,
     diameter: float = SUN,
     count: int = 16,
-    part: Place = NODE,
+    part: Position = NODE,
     normals: Array | None = None,
 ) -> tuple[Array, Array]:
     """Return the sun's visible share and its light, mean of visibility · max(0, N·v) over the disc.
@@ -78,7 +78,7 @@ def sunlight(
 
 
 def _point(
-    terrain: Land, azimuth: float, elevation: float, part: Place, normal: Array
+    terrain: Land, azimuth: float, elevation: float, part: Position, normal: Array
 ) -> tuple[Array, Array]:
     received = normal @ towards(azimuth, elevation)
     high = np.tan(np.radians(elevation)) if elevation < 90 else np.inf

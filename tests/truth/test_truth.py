@@ -80,14 +80,14 @@ def test_the_exact_horizon_is_what_small_steps_tend_to(azimuth, part):
     terrain = rough()
     exact = horizon(terrain, azimuth, part)
     y, x = np.mgrid[0 : 13 - (part[1] > 0), 0 : 17 - (part[0] > 0)].astype(float)
-    found = marched(terrain, azimuth, x + part[0], y + part[1], 1 / 128)
+    array = marched(terrain, azimuth, x + part[0], y + part[1], 1 / 128)
     exact = exact[: len(x), : x.shape[1]]
     assert not np.isnan(exact).any()
-    seen = np.isfinite(found)
+    seen = np.isfinite(array)
     assert seen.mean() > 0.7
-    assert (found[seen] <= exact[seen] + 1e-9).all(), "no step sees above the exact horizon"
-    np.testing.assert_allclose(np.arctan(found[seen]), np.arctan(exact[seen]), atol=0.02)
-    assert np.median(np.abs(np.arctan(found[seen]) - np.arctan(exact[seen]))) < 1e-3
+    assert (array[seen] <= exact[seen] + 1e-9).all(), "no step sees above the exact horizon"
+    np.testing.assert_allclose(np.arctan(array[seen]), np.arctan(exact[seen]), atol=0.02)
+    assert np.median(np.abs(np.arctan(array[seen]) - np.arctan(exact[seen]))) < 1e-3
 
 
 def test_smaller_steps_come_nearer():
@@ -96,9 +96,9 @@ def test_smaller_steps_come_nearer():
     y, x = np.mgrid[0:13, 0:17].astype(float)
     errors = []
     for step in (1.0, 1 / 4, 1 / 16, 1 / 64):
-        found = marched(terrain, 250.0, x, y, step)
-        seen = np.isfinite(found)
-        errors.append(np.abs(np.arctan(found[seen]) - np.arctan(exact[seen])).mean())
+        array = marched(terrain, 250.0, x, y, step)
+        seen = np.isfinite(array)
+        errors.append(np.abs(np.arctan(array[seen]) - np.arctan(exact[seen])).mean())
     assert all(b < a / 2 for a, b in pairwise(errors)), errors
 
 
@@ -115,15 +115,15 @@ def test_a_planes_horizon_is_its_slope():
     terrain = plane(0.3, -0.7)
     for azimuth in (12.0, 90.0, 211.0):
         rise = 0.3 * np.sin(np.radians(azimuth)) - 0.7 * np.cos(np.radians(azimuth))
-        found = horizon(terrain, azimuth)
-        np.testing.assert_allclose(found[np.isfinite(found)], rise, atol=1e-12)
+        array = horizon(terrain, azimuth)
+        np.testing.assert_allclose(array[np.isfinite(array)], rise, atol=1e-12)
 
 
 def test_beyond_the_border_there_is_no_terrain():
-    found = horizon(rough(), 90.0)
-    assert np.isneginf(found[:, -1]).all() and np.isfinite(found[:, :-1]).all()
-    found = horizon(rough(), 225.0)
-    assert np.isneginf(found[0]).all() and np.isneginf(found[:, 0]).all() and np.isfinite(found[1:, 1:]).all()
+    array = horizon(rough(), 90.0)
+    assert np.isneginf(array[:, -1]).all() and np.isfinite(array[:, :-1]).all()
+    array = horizon(rough(), 225.0)
+    assert np.isneginf(array[0]).all() and np.isneginf(array[:, 0]).all() and np.isfinite(array[1:, 1:]).all()
 
 
 def test_turning_and_mirroring_turn_and_mirror():
@@ -239,22 +239,22 @@ def test_a_valleys_walls_see_what_lies_between_the_rims():
     a = np.radians(35)
     across = np.abs(np.arange(-20, 21)) * 10.0
     terrain = Land(np.tile(across * np.tan(a), (9, 1)), (10.0, 1e6))
-    found = sky_visibility(terrain, count=128)[4]
+    result = sky_visibility(terrain, count=128)[4]
     x = np.arange(1, 20)  # on the eastern wall, from the bed up
     rim = np.arctan((200 - x * 10) * np.tan(a) / (200 + x * 10))
-    np.testing.assert_allclose(found[21:40], (1 + np.cos(a + rim)) / 2, atol=2e-3)
-    np.testing.assert_allclose(found[19:0:-1], found[21:40], atol=1e-9)
-    assert found[21] == pytest.approx(np.cos(a) ** 2, abs=0.03)
+    np.testing.assert_allclose(result[21:40], (1 + np.cos(a + rim)) / 2, atol=2e-3)
+    np.testing.assert_allclose(result[19:0:-1], result[21:40], atol=1e-9)
+    assert result[21] == pytest.approx(np.cos(a) ** 2, abs=0.03)
 
 
 @pytest.mark.slow
 def test_every_place_in_a_bowl_sees_as_much_sky():
     """Inside a sphere every piece counts alike: K is the missing cap's share, (1 + cos rim) / 2."""
     terrain = bowl(65, rim=45.0)
-    found = sky_visibility(terrain, count=32)
+    array = sky_visibility(terrain, count=32)
     y, x = np.mgrid[-32:33, -32:33] / 32
     inner = np.hypot(x, y) < 0.85
-    np.testing.assert_allclose(found[inner], (1 + np.cos(np.radians(45))) / 2, atol=6e-3)
+    np.testing.assert_allclose(array[inner], (1 + np.cos(np.radians(45))) / 2, atol=6e-3)
 
 
 def test_an_even_sky_is_what_the_closed_form_says():
@@ -311,10 +311,10 @@ def test_views_are_mutual():
 def test_in_a_bowl_all_bounces_add_up_to_the_closed_form(colour):
     """Stewart and Langer's K / (1 - C (1 - K)) is exact inside a sphere: all its places are alike."""
     terrain = bowl(33, rim=50.0)
-    found = bounced(terrain, sky_visibility(terrain), colour)
+    array = bounced(terrain, sky_visibility(terrain), colour)
     k = (1 + np.cos(np.radians(50))) / 2
     y, x = np.mgrid[-16:17, -16:17] / 16
-    np.testing.assert_allclose(found[np.hypot(x, y) < 0.8], k / (1 - colour * (1 - k)), atol=0.012)
+    np.testing.assert_allclose(array[np.hypot(x, y) < 0.8], k / (1 - colour * (1 - k)), atol=0.012)
 
 
 @pytest.mark.slow
@@ -323,20 +323,20 @@ def test_a_valleys_walls_light_each_other():
     a, n, colour = np.radians(40), 25, 0.6
     across = np.abs(np.arange(-n, n + 1)) * 10.0
     terrain = Land(np.tile(across * np.tan(a), (5, 1)), (10.0, 1e6))
-    found = bounced(terrain, sky_visibility(terrain, count=64), colour, count=64)[2]
+    result = bounced(terrain, sky_visibility(terrain, count=64), colour, count=64)[2]
 
     edges = np.linspace(0, n * 10.0, 8 * n + 1)  # pieces of the western wall, met from the eastern one
     middles = (edges[1:] + edges[:-1]) / 2
-    place = np.stack([middles, middles * np.tan(a)], axis=1)
+    position = np.stack([middles, middles * np.tan(a)], axis=1)
     far = np.stack([-edges, edges * np.tan(a)], axis=1)
-    way = far[None] - place[:, None]
+    way = far[None] - position[:, None]
     along = way @ [np.cos(a), np.sin(a)] / np.linalg.norm(way, axis=2)  # sine of the angle with the normal
     share = np.diff(along, axis=1) / 2
     k = 1 - np.abs(share).sum(axis=1)
     truth = np.linalg.solve(np.eye(8 * n) - colour * np.abs(share), k)
     assert truth[0] == pytest.approx(np.cos(a) ** 2 / (1 - colour * np.sin(a) ** 2), abs=0.02)
     np.testing.assert_allclose(
-        found[n + 2 : 2 * n], np.interp(across[n + 2 : 2 * n], middles, truth), atol=6e-3
+        result[n + 2 : 2 * n], np.interp(across[n + 2 : 2 * n], middles, truth), atol=6e-3
     )
 
 

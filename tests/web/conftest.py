@@ -18,8 +18,8 @@ def node() -> Iterator[processes.Node]:
     """Give a Node process that calls the runtime's modules."""
     if processes.MISSING:
         pytest.skip(processes.MISSING)
-    with processes.Node() as found:
-        yield found
+    with processes.Node() as result:
+        yield result
 
 
 @pytest.fixture(scope="module")
@@ -27,8 +27,8 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Pages]:
     """Give a page with the runtime in it, in a browser on the engine's own renderer."""
     if MISSING:
         pytest.skip(MISSING)
-    with Pages(tmp_path_factory.mktemp("page")) as found:
-        yield found
+    with Pages(tmp_path_factory.mktemp("page")) as result:
+        yield result
 
 
 @pytest.fixture(scope="session")

@@ -22,10 +22,10 @@ HOSTILE = '</script><img src=x onerror="document.title=1"><b>'
 def row(path: str, type: str, widget: str, value: object, **more: Any) -> dict[str, Any]:
     """Return a row of the panel: schema.js ``Shown``."""
     pass_, _, name = path.rpartition(".")
-    found = {"path": path, "pass": pass_.split(".")[0], "label": name.replace("_", " ").capitalize()}
-    found |= {"type": type, "widget": widget, "unit": "", "group": "", "description": "", "parts": []}
-    found |= {"ranges": [], "step": None, "choices": [], "exported": pass_.count(".") == 0, "main": 0}
-    return found | {"locked": "", "value": value, "targets": [path]} | more
+    result = {"path": path, "pass": pass_.split(".")[0], "label": name.replace("_", " ").capitalize()}
+    result |= {"type": type, "widget": widget, "unit": "", "group": "", "description": "", "parts": []}
+    result |= {"ranges": [], "step": None, "choices": [], "exported": pass_.count(".") == 0, "main": 0}
+    return result | {"locked": "", "value": value, "targets": [path]} | more
 
 
 def rows() -> list[dict[str, Any]]:
@@ -61,7 +61,7 @@ def page(**more: Any) -> dict[str, Any]:
         row("map.lowest", "float", "number", 0.0, group="Range"),
         row("map.highest", "float", "number", 1.0, group="Range"),
     ]
-    one = {
+    first = {
         "format": 1,
         "name": "hills",
         "title": "Hills at noon",
@@ -91,7 +91,7 @@ def page(**more: Any) -> dict[str, Any]:
             "height": {"base": "#terrain", "where": ""},
             "picture": {"base": "#frame", "where": ""},
         },
-        "values": {leaf: one["value"] for one in shown for leaf in one["targets"]},
+        "values": {leaf: item["value"] for item in shown for leaf in item["targets"]},
         "shown": shown,
         "presets": [{"name": "high", "values": {"height.level": 0.75, "relief": 1200}}],
         "tracks": [],
@@ -113,8 +113,8 @@ def page(**more: Any) -> dict[str, Any]:
         ],
         "notes": ["Elevation is part of the page: its size cannot be changed."],
     } | more
-    other = {**one, "name": "ridges", "title": "Ridges", "choices": [], "shown": shown[:5]}
-    return {"format": 1, "sketches": [one, other], "shared": {}}
+    other = {**first, "name": "ridges", "title": "Ridges", "choices": [], "shown": shown[:5]}
+    return {"format": 1, "sketches": [first, other], "shared": {}}
 
 
 def build(folder: Path) -> Path:

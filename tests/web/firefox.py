@@ -108,10 +108,10 @@ class Firefox:
     def wait(self, condition: str, *arguments: object) -> Any:
         """Return what an expression gives as soon as that is true."""
         end = time.monotonic() + GENEROUS
-        while not (found := self.run(f"return {condition}", *arguments)):
+        while not (value := self.run(f"return {condition}", *arguments)):
             assert time.monotonic() < end, f"never: {condition}; log: {self.log()}"
             time.sleep(0.05)
-        return found
+        return value
 
     def click(self, selector: str) -> None:
         """Click on the middle of an element, or on what covers it."""
@@ -129,8 +129,8 @@ class Firefox:
     def log(self) -> list[str]:
         """Return the errors on the console since the last call."""
         self.run("return 0")  # what was said before its answer has come by then
-        found, self._errors = self._errors, []
-        return found
+        errors, self._errors = self._errors, []
+        return errors
 
     def _point(self, selector: str, *places: tuple[int, int]) -> None:
         x, y = self.run(_MIDDLE, selector)
@@ -166,8 +166,8 @@ class Firefox:
         """Return where the browser listens, as it says on its standard error."""
         assert self._program.stderr
         for line in self._program.stderr:
-            if found := _LISTENING.search(line):
-                return found[1]
+            if result := _LISTENING.search(line):
+                return result[1]
         raise AssertionError("Firefox ended")
 
     async def _connect(self, address: str) -> None:
@@ -188,12 +188,12 @@ class Firefox:
         await self._socket.send_json({"id": number, "method": method, "params": parameters})
         async with asyncio.timeout(seconds):
             while True:
-                told = await self._socket.receive_json()
-                if told.get("method") == "log.entryAdded" and told["params"]["level"] == "error":
-                    self._errors.append(str(told["params"]["text"]))
-                if told.get("id") == number:
-                    assert told["type"] == "success", told
-                    return told["result"]
+                message = await self._socket.receive_json()
+                if message.get("method") == "log.entryAdded" and message["params"]["level"] == "error":
+                    self._errors.append(str(message["params"]["text"]))
+                if message.get("id") == number:
+                    assert message["type"] == "success", message
+                    return message["result"]
 
     def _end(self) -> None:
         if hasattr(self, "_session"):

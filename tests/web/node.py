@@ -66,9 +66,9 @@ class Node:
         """Return what a function of a module returns for each case, a list of its values."""
         script = "async (cases, [module, name], load) => {"
         script += " const found = (await load(module))[name]; return cases.map((case_) => found(...case_)); }"
-        found = self.run(script, list(cases), [module, name])
-        assert isinstance(found, list)
-        return found
+        values = self.run(script, list(cases), [module, name])
+        assert isinstance(values, list)
+        return values
 
     def run(self, script: str, *values: object) -> Any:
         """Return what a function returns, written as text: of the values, and of what imports a module.
@@ -140,5 +140,5 @@ def _decoded(value: Any) -> Any:
 
 
 def _hashable(value: Any) -> Any:
-    found = _decoded(value)
-    return tuple(found) if isinstance(found, list) else found
+    result = _decoded(value)
+    return tuple(result) if isinstance(result, list) else result

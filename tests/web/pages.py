@@ -86,10 +86,10 @@ window.pages = {
 class PageError(Exception):
     """What the runtime threw."""
 
-    def __init__(self, told: Mapping[str, Any]) -> None:
-        super().__init__(str(told.get("message")))
-        self.told = dict(told)
-        self.add_note(str(told.get("stack")))
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        super().__init__(str(values.get("message")))
+        self.message = dict(values)
+        self.add_note(str(values.get("stack")))
 
 
 def script_of(folder: Path) -> Path:
@@ -123,16 +123,16 @@ class Pages:
 
     def picture(self, name: str, soon: float = 0, **state: Any) -> Picture:
         """Return the picture of an open sketch with ``state`` set; with ``soon`` in slices of so many ms."""
-        told = self._asked("pages.picture", name, state, soon)
-        width, height = told["size"]
-        texels = np.frombuffer(base64.b64decode(told["texels"]), np.uint8).reshape(height, width, 4)
-        return Picture(texels[::-1], told["ran"], told["milliseconds"])
+        message = self._asked("pages.picture", name, state, soon)
+        width, height = message["size"]
+        texels = np.frombuffer(base64.b64decode(message["texels"]), np.uint8).reshape(height, width, 4)
+        return Picture(texels[::-1], message["ran"], message["milliseconds"])
 
     def read(self, name: str, path: str, output: str) -> NDArray[np.float32]:
         """Return the texels of an open sketch's texture, (ny, nx, channels), row 0 south."""
-        told = self._asked("pages.read", name, path, output)
-        (width, height), channels = told["size"], told["channels"]
-        return np.frombuffer(base64.b64decode(told["texels"]), "<f4").reshape(height, width, channels)
+        message = self._asked("pages.read", name, path, output)
+        (width, height), channels = message["size"], message["channels"]
+        return np.frombuffer(base64.b64decode(message["texels"]), "<f4").reshape(height, width, channels)
 
     def renderer(self) -> str:
         """Return what WebGL says it draws on."""
@@ -149,10 +149,10 @@ class Pages:
 
     def _asked(self, function: str, *values: object) -> dict[str, Any]:
         text = json.dumps(values)  # as text: a driver copies values slowly
-        told = self.browser.run(f"return {function}(...JSON.parse(arguments[0]))", text)
-        if "error" in told:
-            raise PageError(told["error"])
-        return dict(told)
+        message = self.browser.run(f"return {function}(...JSON.parse(arguments[0]))", text)
+        if "error" in message:
+            raise PageError(message["error"])
+        return dict(message)
 
     def __enter__(self) -> Pages:
         return self

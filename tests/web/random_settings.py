@@ -29,8 +29,8 @@ class Settings:
         terrain = dict(self.terrain)
         if size := terrain.get("size"):
             terrain["size"] = f"{size[0]}x{size[1]}"
-        found = sketch.with_values({**terrain, **self.values})
-        return found.with_camera(self.camera) if self.camera else found
+        result = sketch.with_values({**terrain, **self.values})
+        return result.with_camera(self.camera) if self.camera else result
 
     def state(self, data: dict[str, Any]) -> dict[str, Any]:
         """Return them as the page's planner takes them."""
@@ -56,23 +56,23 @@ def vars_of(camera: Camera | None) -> dict[str, Any] | None:
 
 def random_settings(chance: random.Random, data: dict[str, Any], plan: Plan) -> Settings:
     """Return settings of an exported sketch, values inside their ranges; ``plan`` says what repeats."""
-    found = Settings(
+    settings = Settings(
         frame=(chance.randint(1, 301), chance.randint(1, 299)),
         time=chance.choice([0.0, 0.5, chance.uniform(0.0, 4.0), chance.randint(0, 99) / 60]),
     )
     rows = [row for row in data["shown"] if not row["locked"] and row["widget"] not in ("file", "button")]
     for row in chance.sample(rows, min(len(rows), 8)):
-        found.values[row["path"]] = _value(chance, row)
+        settings.values[row["path"]] = _value(chance, row)
     terrain = data["terrain"]
     if not terrain["locked"] and chance.random() < 0.8:
-        found.terrain["size"] = TOO_LARGE if chance.random() < 0.05 else chance.choice(TERRAINS)
+        settings.terrain["size"] = TOO_LARGE if chance.random() < 0.05 else chance.choice(TERRAINS)
     locked = terrain["lockedMetres"]
     if chance.random() < 0.5 and "relief" not in locked:
-        found.terrain["relief"] = chance.uniform(0.0, 3000.0)
+        settings.terrain["relief"] = chance.uniform(0.0, 3000.0)
     if chance.random() < 0.2 and "extent" not in locked:
-        found.terrain["extent"] = (chance.uniform(10.0, 2e4), chance.uniform(10.0, 2e4))
+        settings.terrain["extent"] = (chance.uniform(10.0, 2e4), chance.uniform(10.0, 2e4))
     if chance.random() < 0.6:
-        found.camera = Camera(
+        settings.camera = Camera(
             chance.uniform(-360, 720), chance.uniform(-89, 89), chance.choice([0.0, 5000.0])
         )
     repeats = {
@@ -82,8 +82,8 @@ def random_settings(chance: random.Random, data: dict[str, Any], plan: Plan) -> 
     }
     if repeats and chance.random() < 0.7:
         path, whole = chance.choice(sorted(repeats.items()))
-        found.steps[path] = chance.randint(0, min(whole + 2, 200))
-    return found
+        settings.steps[path] = chance.randint(0, min(whole + 2, 200))
+    return settings
 
 
 def _value(chance: random.Random, row: dict[str, Any]) -> Any:

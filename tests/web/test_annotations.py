@@ -21,9 +21,9 @@ def written(node: Node, *raw: str) -> list[dict[str, Any]]:
         {"code": text.partition("//")[0].rstrip(), "raw": text, "file": FILE, "line": number}
         for number, text in enumerate(raw, 1)
     ]
-    found = node.call("annotations.js", "writtenParameters", lines, FILE)
-    assert isinstance(found, list)
-    return found
+    values = node.call("annotations.js", "writtenParameters", lines, FILE)
+    assert isinstance(values, list)
+    return values
 
 
 @pytest.mark.slow
@@ -31,20 +31,20 @@ def test_every_parameter_of_the_library(node: Node):
     compared = 0
     for kernel in kernels().values():
         own = [line for line in kernel.source.lines if line.file == str(kernel.path)]
-        found = {each["uniform"]["name"]: each for each in written(node, *(line.text for line in own))}
+        result = {each["uniform"]["name"]: each for each in written(node, *(line.text for line in own))}
         here = {line.number: line for line in own}
         for parameter in kernel.parameters:
             if parameter.type == "sampler2D" or parameter.file != str(kernel.path):
                 continue
             assert parameter.line in here
-            one = found.pop(parameter.name)
+            item = result.pop(parameter.name)
             value = list(parameter.default) if isinstance(parameter.default, tuple) else parameter.default
-            wanted = row(Shown(f"a.{parameter.name}", parameter, exported=True), value, ())
-            for key, fact in one["facts"].items():
-                assert fact == wanted[key], (kernel.name, parameter.name, key)
-            assert one["uniform"].get("values", []) == list(parameter.widget.values)
+            expected = row(Shown(f"a.{parameter.name}", parameter, exported=True), value, ())
+            for key, fact in item["facts"].items():
+                assert fact == expected[key], (kernel.name, parameter.name, key)
+            assert item["uniform"].get("values", []) == list(parameter.widget.values)
             compared += 1
-        assert not found, kernel.name
+        assert not result, kernel.name
     assert compared > 300
 
 
@@ -61,9 +61,9 @@ def test_every_parameter_of_the_library(node: Node):
     ],
 )
 def test_what_cannot_be_read_is_said_at_its_line(node: Node, line: str, message: str):
-    with pytest.raises(NodeError) as found:
+    with pytest.raises(NodeError) as result:
         written(node, "// above", line)
-    assert message in found.value.message and found.value.details["line"] == 2
+    assert message in result.value.message and result.value.details["line"] == 2
 
 
 def test_an_annotation_goes_on_over_lines_and_a_plain_uniform_is_a_number(node: Node):

@@ -38,12 +38,12 @@ def test_the_hash_changes_with_a_source(tmp_path: Path, monkeypatch: pytest.Monk
         (tmp_path / name).write_bytes(b"")
     (tmp_path / "runtime").mkdir()
     monkeypatch.setattr(bundle, "_HERE", tmp_path)
-    found = [bundle.hash_of_sources()]
+    result = [bundle.hash_of_sources()]
     for name, text in (("b.js", "1"), ("b.js", "2"), ("a.js", ""), ("a.css", ""), ("README", "")):
         (tmp_path / "runtime" / name).write_text(text)
-        found.append(bundle.hash_of_sources())
-    assert found[-1] == found[-2]
-    assert len(set(found)) == len(found) - 1
+        result.append(bundle.hash_of_sources())
+    assert result[-1] == result[-2]
+    assert len(set(result)) == len(result) - 1
 
 
 def test_a_bundle_that_is_not_there_is_a_sentence():

@@ -44,8 +44,8 @@ def bits(array: np.ndarray) -> list[int]:
 def test_matrices_are_the_same_to_the_last_bit(node: Node):
     rng = np.random.default_rng(0)
     scenes = [random_scene(rng) for _ in range(2_000)]
-    found = node.each("camera.js", "look", [(given(camera), *rest) for camera, *rest in scenes])
-    for scene, eye in zip(scenes, found, strict=True):
+    result = node.each("camera.js", "look", [(given(camera), *rest) for camera, *rest in scenes])
+    for scene, eye in zip(scenes, result, strict=True):
         expected = cameras.look(*scene)
         assert bits(eye["clipFromWorld"]) == bits(expected.clip_from_world.T), scene
         assert bits(eye["worldFromClip"]) == bits(expected.world_from_clip.T), scene
@@ -62,31 +62,31 @@ def test_a_camera_is_moved_as_the_windows_is(node: Node):
     }"""
     cases = [(random_scene(rng), *rng.uniform(-800, 800, 2)) for _ in range(200)]
     cases += [(random_scene(rng), *pair) for pair in ((0.0, 0.0), (360.0, 1.0), (-720.0, 1e9), (1e-9, 0.0))]
-    found = node.run(script, [((given(scene[0]), *scene[1:]), a, b) for scene, a, b in cases])
-    for (scene, a, b), moved in zip(cases, found, strict=True):
+    result = node.run(script, [((given(scene[0]), *scene[1:]), a, b) for scene, a, b in cases])
+    for (scene, a, b), moved in zip(cases, result, strict=True):
         camera, eye = scene[0], cameras.look(*scene)
         expected = cameras.orbit(camera, a, b), cameras.zoom(camera, a, b), cameras.pan(camera, eye, a, b)
-        for one, other in zip(moved, expected, strict=True):
-            wanted = given(other)
-            wanted["target"] = wanted["target"] and list(wanted["target"])
-            assert one == wanted
+        for first, other in zip(moved, expected, strict=True):
+            target = given(other)
+            target["target"] = target["target"] and list(target["target"])
+            assert first == target
 
 
 def test_directions_are_the_same_to_the_last_bit(node: Node):
     rng = np.random.default_rng(2)
     directions = [*rng.uniform(-1000, 1000, (1000, 2)).tolist()]
     directions += [[a, e] for a in range(-720, 721, 45) for e in range(-90, 91, 45)]
-    found = node.each("directions.js", "unitVector", [[each] for each in directions])
-    assert found == [list(unit_vector(each)) for each in directions]
+    result = node.each("directions.js", "unitVector", [[each] for each in directions])
+    assert result == [list(unit_vector(each)) for each in directions]
 
 
 def test_sines_and_cosines_are_those_of_the_mathematics_library_to_the_bit_before_the_last():
     rng = np.random.default_rng(3)
     for degrees in [*rng.uniform(-400, 400, 20_000), *np.arange(-720, 721, 15.0), 1e300, -1e300, 1e-300]:
         radians = math.radians(math.fmod(degrees, 360.0))
-        for found, expected in zip(cos_sin(degrees), (math.cos(radians), math.sin(radians)), strict=True):
+        for result, expected in zip(cos_sin(degrees), (math.cos(radians), math.sin(radians)), strict=True):
             # Radians are rounded to half an ulp of their own, which moves a small sine further.
-            assert abs(found - expected) <= 2 * math.ulp(expected) + math.ulp(radians)
+            assert abs(result - expected) <= 2 * math.ulp(expected) + math.ulp(radians)
 
 
 def test_quarter_turns_are_exact():

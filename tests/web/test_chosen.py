@@ -13,7 +13,7 @@ from playground.web.page_data import page_data
 
 from ..cases import each
 from ..loading import load
-from ..shipped import FEW
+from ..shipped import FEW_SKETCHES
 from ..sketch_texts import map_of, passes
 from .node import Node
 from .pages import Pages
@@ -79,8 +79,8 @@ def test_choices_are_written_as_the_engine_writes_them(node: Node):
         for name, wrapped, choices in cases
         for kind, stage in wrapped.stages.items()
     ]
-    found = node.run(script, [(text, choices) for _, text, _, choices in stages])
-    for (name, _, expected, _), text in zip(stages, found, strict=True):
+    result = node.run(script, [(text, choices) for _, text, _, choices in stages])
+    for (name, _, expected, _), text in zip(stages, result, strict=True):
         assert text == expected, name
     assert sum(expected != text for _, text, expected, _ in stages) > 20
 
@@ -124,7 +124,7 @@ def test_what_is_drawn_often_has_a_program_for_what_is_chosen(pages: Pages, draw
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", (*FEW, "eroded_mountains", "hydraulic", "soft_cone", "triplanar"))
+@pytest.mark.parametrize("name", (*FEW_SKETCHES, "eroded_mountains", "hydraulic", "soft_cone", "triplanar"))
 def test_a_sketch_has_its_bits_with_its_choices_written_in(name: str, pages: Pages, drawn: Engine):
     sketch = small(name)
     pages.begin(data := page_data([sketch], frame=SIZE), often=1)

@@ -15,9 +15,9 @@ from playground.shader.driver_log import hint, library, parse_log
 from playground.shader.wrap import ShaderStage, Wrapped
 from playground.web import complaint_words
 
+from ..report.browser import MISSING, SWIFTSHADER, Browser
 from ..shader.test_logs import EXPECTED
 from ..shader.test_logs import LOGS as OTHERS
-from ..report.browser import MISSING, SWIFTSHADER, Browser
 from .node import Node
 from .planted_errors import PLANTED, in_es
 
@@ -36,7 +36,7 @@ return gl.getShaderInfoLog(shader);
 
 
 def given(stage: ShaderStage, wrapped: Wrapped) -> dict[str, object]:
-    """Return what JavaScript is told of a stage's text."""
+    """Return what JavaScript is notified of a stage's text."""
     lines = [
         {"code": line.code, "file": shown(line.file), "line": line.number} for line in stage.source.lines
     ]
@@ -62,12 +62,12 @@ def test_a_recorded_complaint_is_at_its_line_in_plain_words(node: Node, tmp_path
     planted, log = PLANTED[name], logs()[name]
     wrapped = planted.wrapped(tmp_path)
     texts = {shown(f): Path(f).read_text(encoding="utf-8") for f in wrapped.kernel.source.files}
-    found = node.run(WITH_TEXTS, log, given(wrapped.stages["fragment"], wrapped), texts)
-    assert (Path(found[0]["file"]).name, found[0]["line"]) == (planted.file, planted.line), log
-    assert planted.part in found[0]["message"]
-    assert found[0]["kernel"] == wrapped.kernel.name
+    result = node.run(WITH_TEXTS, log, given(wrapped.stages["fragment"], wrapped), texts)
+    assert (Path(result[0]["file"]).name, result[0]["line"]) == (planted.file, planted.line), log
+    assert planted.part in result[0]["message"]
+    assert result[0]["kernel"] == wrapped.kernel.name
     theirs = in_terminal(log, wrapped)
-    assert [(c["file"], c["line"], c["message"], c["severity"]) for c in found] == [
+    assert [(c["file"], c["line"], c["message"], c["severity"]) for c in result] == [
         (d.file, d.line, d.message, d.severity) for d in theirs
     ]
 
@@ -79,11 +79,11 @@ def test_no_line_of_the_wrapper_is_named(node: Node, tmp_path: Path):
     own = {(shown(line.file), line.number) for line in stage.source.lines}
     about = given(stage, wrapped)
     for number in range(count + 3):
-        (found,) = node.call("complaints.js", "complaints", f"ERROR: 0:{number}: 'x' : odd", about)
-        assert found["line"] == 0 or (found["file"], found["line"]) in own
+        (result,) = node.call("complaints.js", "complaints", f"ERROR: 0:{number}: 'x' : odd", about)
+        assert result["line"] == 0 or (result["file"], result["line"]) in own
         line = stage.locate(number) if number else None
         if line is not None:
-            assert (found["file"], found["line"]) == (shown(line.file), line.number)
+            assert (result["file"], result["line"]) == (shown(line.file), line.number)
 
 
 @pytest.mark.parametrize("name", [n for n in EXPECTED if n.startswith(("angle", "mesa", "apple"))])
@@ -102,12 +102,12 @@ def test_hints_are_python_s(node: Node):
         line for path in OTHERS.glob("*.txt") for line in path.read_text(encoding="utf-8").splitlines()
     }
     messages |= {line for log in logs().values() for line in log.splitlines()}
-    found = node.run(
+    result = node.run(
         "async (all, load) => { const { hint } = await load('complaints.js'); return all.map(hint); }",
         sorted(messages),
     )
-    assert found == [hint(message) for message in sorted(messages)]
-    assert len({sentence for sentence in found if sentence}) > 12
+    assert result == [hint(message) for message in sorted(messages)]
+    assert len({sentence for sentence in result if sentence}) > 12
 
 
 def test_likeness_is_difflib_s(node: Node):
@@ -116,12 +116,12 @@ def test_likeness_is_difflib_s(node: Node):
     pick = random.Random(3)
     words = ["".join(pick.choices("abcd_", k=pick.randrange(1, 14))) for _ in range(600)]
     pairs = list(zip(words[::2], words[1::2], strict=True))
-    found = node.run(
+    result = node.run(
         "async (all, load) => { const { likeness } = await load('name_suggestions.js');"
         " return all.map(([a, b]) => likeness(a, b)); }",
         pairs,
     )
-    assert found == [SequenceMatcher(None, a, b).ratio() for a, b in pairs]
+    assert result == [SequenceMatcher(None, a, b).ratio() for a, b in pairs]
 
 
 def test_a_page_knows_what_its_library_defines(node: Node):
@@ -129,19 +129,19 @@ def test_a_page_knows_what_its_library_defines(node: Node):
         "noise/a.glsl": "float fall(vec2 p) {}\nvec3 rise(\n",
         "b.glsl": '#pragma kernel(output = "x:r32f")\nfloat kernel(ivec2 t) {}',
     }
-    found = node.call("name_suggestions.js", "libraryOf", {**files, "./own.glsl": "float mine() {}"})
-    assert found == {"fall": '`#include "noise/a.glsl"`', "rise": '`#include "noise/a.glsl"`'}
+    result = node.call("name_suggestions.js", "libraryOf", {**files, "./own.glsl": "float mine() {}"})
+    assert result == {"fall": '`#include "noise/a.glsl"`', "rise": '`#include "noise/a.glsl"`'}
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(bool(MISSING), reason=MISSING)
 def test_this_machine_s_browser_complains_as_recorded(tmp_path: Path):
-    found = {}
+    result = {}
     with Browser(tmp_path / "profile", flags=SWIFTSHADER) as browser:
         for name, planted in PLANTED.items():
             folder = tmp_path / name
             folder.mkdir()
-            found[name] = browser.run(COMPILE, in_es(planted.wrapped(folder).stages["fragment"].text)).strip(
+            result[name] = browser.run(COMPILE, in_es(planted.wrapped(folder).stages["fragment"].text)).strip(
                 "\0\n"
             )
-    assert found == logs()
+    assert result == logs()

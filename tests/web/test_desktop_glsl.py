@@ -54,18 +54,18 @@ void main() {{
 def test_a_call_by_a_name_that_javascript_gives_every_object_is_not_known(node: Node, name: str):
     macro = f"#define {name}2(a) {name}(a)\n"
     text = f"{macro}void main() {{ int a = {name}(1) * 2; float b = 2 * 1.0; }}\n"
-    found = node.call("conversions.js", "withConversions", text)
-    assert found == text.replace("2 * 1.0", "2.0 * 1.0")
+    result = node.call("conversions.js", "withConversions", text)
+    assert result == text.replace("2 * 1.0", "2.0 * 1.0")
 
 
 @pytest.mark.parametrize("written", CONVERSIONS)
 def test_a_conversion_is_written_out(node: Node, written: str):
-    found = node.call("conversions.js", "withConversions", FUNCTION.format(written))
-    lines = found.split("\n")
+    result = node.call("conversions.js", "withConversions", FUNCTION.format(written))
+    lines = result.split("\n")
     assert lines[10].strip() == CONVERSIONS[written]
     assert lines[6].strip() == "return 1.0;"
     expected = FUNCTION.format(CONVERSIONS[written]).replace("return 1;", "return 1.0;")
-    assert found == expected, "all else stays"
+    assert result == expected, "all else stays"
 
 
 def test_what_is_not_understood_stays(node: Node):
@@ -97,13 +97,13 @@ FORMS = {
 
 @pytest.mark.parametrize("written", FORMS)
 def test_a_form_of_desktops_has_another(node: Node, written: str):
-    found = node.call("desktop_glsl.js", "withoutDesktopForms", written)
-    assert found.split() == FORMS[written].split()
-    assert found.count("\n") == written.count("\n")
+    result = node.call("desktop_glsl.js", "withoutDesktopForms", written)
+    assert result.split() == FORMS[written].split()
+    assert result.count("\n") == written.count("\n")
 
 
 def test_a_texture_of_one_dimension_is_a_row(node: Node):
     text = "uniform sampler1D tones;\nvec4 a = texture(tones, 0.5) + texelFetch(tones, 3, 0);\n"
-    found = node.call("desktop_glsl.js", "withoutDesktopForms", text)
-    assert "sampler1D" not in found and found.count("\n") == 2
-    assert "k_line(tones, 0.5) + k_lineFetch(tones, 3, 0)" in found
+    result = node.call("desktop_glsl.js", "withoutDesktopForms", text)
+    assert "sampler1D" not in result and result.count("\n") == 2
+    assert "k_line(tones, 0.5) + k_lineFetch(tones, 3, 0)" in result

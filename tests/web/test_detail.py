@@ -41,7 +41,7 @@ class Case:
         return lod.View(matrix, eye.position, self.extent, self.relief, self.size)
 
     @property
-    def given(self) -> dict[str, Any]:
+    def arguments(self) -> dict[str, Any]:
         view = {"eye": self.view.eye, "extent": self.extent, "relief": self.relief, "size": self.size}
         view["clipFromWorld"] = self.view.clip_from_world.T.astype(np.float32)
         size = self.spans.shape[1::-1]
@@ -102,10 +102,10 @@ def test_random_terrain_from_random_eyes(node: Node, detail: int):
     rng = np.random.default_rng(detail)
     cases = [random_case(rng, detail) for _ in range(200)]
     pieces, some, all_ = set(), 0, 0
-    for case, found in zip(cases, node.run(CHOOSE, [case.given for case in cases]), strict=True):
+    for case, result in zip(cases, node.run(CHOOSE, [case.arguments for case in cases]), strict=True):
         expected = case.expected
-        assert found["runs"] == [[" ".join(map(str, piece)), count] for piece, count in expected.runs], case
-        assert found["places"].tobytes() == expected.places.tobytes(), case
+        assert result["runs"] == [[" ".join(map(str, piece)), count] for piece, count in expected.runs], case
+        assert result["places"].tobytes() == expected.places.tobytes(), case
         pieces |= {piece for piece, count in expected.runs if count}
         some += 0 < len(expected.places)
         all_ += len(expected.places) >= case.spans[..., 0].size
@@ -115,8 +115,8 @@ def test_random_terrain_from_random_eyes(node: Node, detail: int):
 
 def test_a_full_grid_is_drawn_whole_and_reads_nothing_back(node: Node):
     script = "async (load) => (await load('detail.js')).choose('land', { detail: 0 }, () => { throw 'read' })"
-    found = node.run(script)
-    assert found["runs"] == [["whole 0 0", 1]] and found["places"].tolist() == [0, 0, 0, 0]
+    result = node.run(script)
+    assert result["runs"] == [["whole 0 0", 1]] and result["places"].tolist() == [0, 0, 0, 0]
 
 
 def test_nothing_is_chosen_of_a_mesh_that_is_drawn_whole(node: Node):

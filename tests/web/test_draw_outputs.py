@@ -62,8 +62,8 @@ def test_outputs_instances_and_what_goes_on_are_the_engines(
     drawn.cache.clear()
     data = page_data(sketches, frame=SIZE)
     pages.begin(data)
-    for one in data["sketches"]:
-        pages.open(one)
+    for item in data["sketches"]:
+        pages.open(item)
     for sketch in sketches:
         for many in (5.0, 2.0, 0.0, 7.0):
             changes = {"list.many": many}
@@ -101,8 +101,8 @@ def test_a_draw_has_as_many_triangles_as_an_input_s_size_says(pages: Pages, draw
     data = page_data(sketches, frame=SIZE)
     pages.begin(data)
     lit = []
-    for one, sketch in zip(data["sketches"], sketches, strict=True):
-        pages.open(one)
+    for item, sketch in zip(data["sketches"], sketches, strict=True):
+        pages.open(item)
         frame = drawn.render(sketch, size=SIZE)
         assert pages.picture(sketch.name).levels_off(frame.array) == 0
         lit.append((drawn.read(sketch, "row", size=SIZE)[..., 0] > 0).any(0).sum())

@@ -28,6 +28,6 @@ pytestmark = [
 
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Firefox]:
-    with Firefox(tmp_path_factory.mktemp("profile")) as found:
-        found.size(1100, 900)
-        yield found
+    with Firefox(tmp_path_factory.mktemp("profile")) as firefox:
+        firefox.size(1100, 900)
+        yield firefox

@@ -43,24 +43,24 @@ pytestmark = [
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with the page, its script in one file."""
-    found = tmp_path_factory.mktemp("page")
+    path = tmp_path_factory.mktemp("page")
     assert NODE
-    script = [NODE, str(WEB / "build.mjs"), str(HERE / "one_kernel.js"), str(found / "one_kernel.js")]
+    script = [NODE, str(WEB / "build.mjs"), str(HERE / "one_kernel.js"), str(path / "one_kernel.js")]
     subprocess.run(script, check=True, cwd=WEB)
-    shutil.copyfile(HERE / "editor_page.html", found / "page.html")
-    shutil.copyfile(WEB / "runtime" / "editor.css", found / "editor.css")
+    shutil.copyfile(HERE / "editor_page.html", path / "page.html")
+    shutil.copyfile(WEB / "runtime" / "editor.css", path / "editor.css")
     long = WAVES + "".join(
         f"float many_{n}(float x) {{ return x * {n}.0; }} // line {n}\n" for n in range(3000)
     )
     files = {"./k.glsl": KERNEL, "./waves.glsl": WAVES, "./long.glsl": long}
-    (found / "files.js").write_text(f"const FILES = {json.dumps(files)};", encoding="utf-8")
-    return found
+    (path / "files.js").write_text(f"const FILES = {json.dumps(files)};", encoding="utf-8")
+    return path
 
 
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    with Browser(tmp_path_factory.mktemp("profile"), 1100, 900, MESA) as found:
-        yield found
+    with Browser(tmp_path_factory.mktemp("profile"), 1100, 900, MESA) as result:
+        yield result
 
 
 @pytest.fixture

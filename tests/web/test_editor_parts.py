@@ -65,7 +65,7 @@ float kernel(ivec2 texel) { return level; }
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "found"),
+    ("old", "new", "result"),
     [
         ("return level", "return 2.0 * level", []),
         ('repeat = "4"', 'repeat = "5"', [("header", [])]),
@@ -82,10 +82,10 @@ float kernel(ivec2 texel) { return level; }
         ("uniform sampler2D height", "uniform sampler2D other", []),
     ],
 )
-def test_what_python_reads_is_noticed(node: Node, old: str, new: str, found: list[tuple[str, list[str]]]):
+def test_what_python_reads_is_noticed(node: Node, old: str, new: str, result: list[tuple[str, list[str]]]):
     assert old in HEADER
     said = node.call("notices.js", "notices", HEADER, HEADER.replace(old, new))
-    assert [(one["key"], one["names"]) for one in said] == found
+    assert [(item["key"], item["names"]) for item in said] == result
 
 
 def test_files_are_in_groups_own_ones_first(node: Node):
@@ -105,8 +105,8 @@ def test_files_are_in_groups_own_ones_first(node: Node):
         {"path": "a", "kernel": 0},
         {"loop": True, "body": [{"path": "l", "kernel": 1}, {"path": "s", "kernel": 3}]},
     ]
-    found = node.call("sketch_files.js", "fileGroups", {"kernels": kernels, "nodes": nodes}, shared)
-    assert found == [
+    result = node.call("sketch_files.js", "fileGroups", {"kernels": kernels, "nodes": nodes}, shared)
+    assert result == [
         {"key": "ownFiles", "files": ["./a.glsl"]},
         {"key": "kernelFiles", "files": ["g/k.glsl"]},
         {"key": "libraryFiles", "files": ["n/b.glsl", "n/h.glsl"]},
@@ -142,12 +142,12 @@ def test_what_was_tried_is_known_after_a_reload(node: Node, refuse: str):
         refuse == "writing"
     ):  # the first write tells that there is no room: from then on the tab's name is used
         steps[-1] = ["trying", "a", "endless", {"a": "1"}]
-        found = node.run(GUARD, steps, refuse)
-        assert found["place"] == "name" and "endless" in found["name"]
+        result = node.run(GUARD, steps, refuse)
+        assert result["place"] == "name" and "endless" in result["name"]
         return
-    found = node.run(GUARD, steps, refuse)
-    assert found["left"] == {"file": "a", "text": "endless"} and found["good"] == {"a": "1"}
-    assert found["place"] == ("name" if refuse else "storage")
+    result = node.run(GUARD, steps, refuse)
+    assert result["left"] == {"file": "a", "text": "endless"} and result["good"] == {"a": "1"}
+    assert result["place"] == ("name" if refuse else "storage")
     after = node.run(GUARD, [*steps, ["forget"], ["reload"]], refuse)
     assert after["left"] is None and after["good"] == {"a": "1"}
     clean = node.run(GUARD, [*steps, ["worked", {}], ["reload"]], refuse)
@@ -155,8 +155,8 @@ def test_what_was_tried_is_known_after_a_reload(node: Node, refuse: str):
 
 
 def test_another_page_s_texts_are_left_alone(node: Node):
-    found = node.run(GUARD, [["trying", "a", "1", {}], ["reload", "another"]], "storage")
-    assert found["left"] is None and found["name"].startswith("playground k ")
+    result = node.run(GUARD, [["trying", "a", "1", {}], ["reload", "another"]], "storage")
+    assert result["left"] is None and result["name"].startswith("playground k ")
     assert node.run(GUARD, [["worked", {"a": "1"}], ["reload"]], "both") == {
         "place": "", "good": {}, "left": None, "size": 0, "name": ""
     }  # fmt: skip
@@ -170,7 +170,7 @@ def test_a_key_follows_the_texts(node: Node):
     )
 
 
-# A clock and a player whose pictures take a constant and a share of their pixels, the first 30 s besides.
+# A clock and a player whose pictures take a constant and a fraction of their pixels, the first 30 s besides.
 PACED = """async (constant, perPixel, limit, load) => {
     const { estimate, smallerFrame } = await load("pace.js");
     let clock = 0;
@@ -187,11 +187,11 @@ PACED = """async (constant, perPixel, limit, load) => {
 
 def test_a_time_is_told_from_smaller_pictures(node: Node):
     per_pixel = 20 / (640 * 360)
-    found = node.run(PACED, 0.25, per_pixel, 4)
-    assert found["seconds"] == pytest.approx(20.25, rel=0.02)
-    assert found["drawn"] == [[40, 23], [80, 45], [160, 90]]
-    assert found["state"] == {"frame": [640, 360]}
-    width, height = found["smaller"]
+    result = node.run(PACED, 0.25, per_pixel, 4)
+    assert result["seconds"] == pytest.approx(20.25, rel=0.02)
+    assert result["drawn"] == [[40, 23], [80, 45], [160, 90]]
+    assert result["state"] == {"frame": [640, 360]}
+    width, height = result["smaller"]
     assert width / height == pytest.approx(640 / 360, rel=0.01)
     assert 0.25 + per_pixel * width * height == pytest.approx(2, rel=0.15)
 

@@ -89,8 +89,8 @@ def begun(
 ) -> list[dict[str, Any]]:
     data = page_data(sketches, frame=size)
     pages.begin(data, **options)
-    for one in data["sketches"]:
-        pages.open(one)
+    for item in data["sketches"]:
+        pages.open(item)
     return list(data["sketches"])
 
 
@@ -99,9 +99,9 @@ def test_sketches_of_each_kind_are_drawn_with_the_engines_bits(pages: Pages, dra
     names = ("geomipmap", "height_blend_image", "diamond_square_steps")
     sketches = [load(name).with_values({"size": "65"} if name == "geomipmap" else {}) for name in names]
     begun(pages, *sketches, size=(160, 90))
-    for one in sketches:
-        picture = pages.picture(one.name)
-        assert picture.levels_off(drawn.render(one, size=(160, 90)).array) == 0
+    for item in sketches:
+        picture = pages.picture(item.name)
+        assert picture.levels_off(drawn.render(item, size=(160, 90)).array) == 0
         assert len(np.unique(picture.pixels)) > 16
 
 
@@ -280,7 +280,7 @@ def test_an_edited_text_is_drawn_and_a_wrong_one_told_by_line(pages: Pages, draw
     before = pages.picture(whole.name)
     wrong = pages.run(edit, file, SLOPED.replace("float here =", "float her ="))
     assert wrong["programs"] == 1
-    assert [(one["file"], one["line"]) for one in wrong["errors"]] == [(file, 7)]
+    assert [(item["file"], item["line"]) for item in wrong["errors"]] == [(file, 7)]
     assert "here" in wrong["errors"][0]["message"]
     again = pages.picture(whole.name)
     assert again.ran == []
@@ -295,8 +295,8 @@ def test_an_edited_text_is_drawn_and_a_wrong_one_told_by_line(pages: Pages, draw
 
 @pytest.mark.slow
 def test_a_context_that_was_lost_comes_back(pages: Pages):
-    one = load("geomipmap").with_values({"size": "65"})
-    begun(pages, one, size=(160, 90))
+    item = load("geomipmap").with_values({"size": "65"})
+    begun(pages, item, size=(160, 90))
     before = pages.picture("geomipmap")
     lost = """const gl = engine.parts.context.gl, losing = gl.getExtension("WEBGL_lose_context");
     losing.loseContext();
@@ -384,8 +384,8 @@ def test_a_device_that_cannot_draw_floats_is_told(pages: Pages, sketch: Made):
     data = page_data([sketch(CHAIN)], frame=SIZE)
     with pytest.raises(PageError) as caught:
         pages.begin(data, without=["EXT_color_buffer_float"])
-    assert caught.value.told["code"] == "no-float-targets"
-    assert caught.value.told["sentence"].endswith(".")
+    assert caught.value.message["code"] == "no-float-targets"
+    assert caught.value.message["sentence"].endswith(".")
 
 
 @pytest.mark.slow

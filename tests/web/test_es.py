@@ -31,18 +31,18 @@ def stages_of(kernel: Kernel) -> list[str]:
 
 
 def es(node: Node, text: str, **options: object) -> str:
-    found = node.call("es.js", "toES", text, options)
-    assert isinstance(found, str)
-    assert found.count("\n") == text.count("\n"), "a line moved"
-    return found
+    result = node.call("es.js", "toES", text, options)
+    assert isinstance(result, str)
+    assert result.count("\n") == text.count("\n"), "a line moved"
+    return result
 
 
 def test_every_program_of_the_library_compiles_as_es(node: Node, ctx: moderngl.Context):
     if "GL_ARB_ES3_compatibility" not in ctx.extensions:
         pytest.skip("this driver compiles no GLSL ES")
     texts = [text for kernel in kernels().values() for text in stages_of(kernel)]
-    found = node.each("es.js", "toES", [[text] for text in texts])
-    for name, vertex, fragment in zip(kernels(), found[::2], found[1::2], strict=True):
+    result = node.each("es.js", "toES", [[text] for text in texts])
+    for name, vertex, fragment in zip(kernels(), result[::2], result[1::2], strict=True):
         try:
             ctx.program(vertex_shader=vertex, fragment_shader=fragment).release()
         except moderngl.Error as error:
@@ -53,9 +53,13 @@ def test_every_program_of_another_tool_that_ships_compiles_as_es(node: Node, ctx
     if "GL_ARB_ES3_compatibility" not in ctx.extensions:
         pytest.skip("this driver compiles no GLSL ES")
     leaves = [leaf for name in shipped_sketches() for leaf in leaves_of(flatten(load(name)).nodes)]
-    found = {leaf.kernel.name: leaf.kernel for leaf in leaves if isinstance(leaf.kernel, PlainFragment)}
-    assert {k.dialect for k in found.values() if isinstance(k, ForeignShader)} >= {"main", "shadertoy", "isf"}
-    for kernel in found.values():
+    result = {leaf.kernel.name: leaf.kernel for leaf in leaves if isinstance(leaf.kernel, PlainFragment)}
+    assert {k.dialect for k in result.values() if isinstance(k, ForeignShader)} >= {
+        "main",
+        "shadertoy",
+        "isf",
+    }
+    for kernel in result.values():
         vertex, fragment = (es(node, text) for text in stages_of(kernel))
         ctx.program(vertex_shader=vertex, fragment_shader=fragment).release()
 
@@ -76,8 +80,8 @@ def test_what_packs_numbers_compiles_as_es(node: Node, ctx: moderngl.Context, tm
 def test_a_line_is_as_it_was_but_for_the_version_the_precisions_and_initial_values(node: Node):
     texts = [text for kernel in kernels().values() for text in stages_of(kernel)]
     initialised = 0
-    for text, found in zip(texts, node.each("es.js", "toES", [[text] for text in texts]), strict=True):
-        before, after = text.split("\n"), found.split("\n")
+    for text, result in zip(texts, node.each("es.js", "toES", [[text] for text in texts]), strict=True):
+        before, after = text.split("\n"), result.split("\n")
         assert len(before) == len(after)
         assert (before[0], after[0]) == ("#version 330", "#version 300 es")
         declared = next(i for i, line in enumerate(after) if line.startswith(PRECISION))
@@ -110,8 +114,8 @@ def test_a_line_is_as_it_was_but_for_the_version_the_precisions_and_initial_valu
     ],
 )
 def test_initial_values_go_and_line_ends_stay(node: Node, before: str, after: str):
-    found = es(node, f"#version 330\n{before}\n")
-    assert found == f"#version 300 es\n{PRECISION} {after}\n"
+    text = es(node, f"#version 330\n{before}\n")
+    assert text == f"#version 300 es\n{PRECISION} {after}\n"
 
 
 def test_a_macro_that_declares_uniforms_is_left_to_the_driver(node: Node):
@@ -139,12 +143,12 @@ def test_precisions_are_before_the_first_code_of_whatever_branch(
     node: Node, ctx: moderngl.Context, before: str, after: str
 ):
     main = "out vec4 c; float f() { return 1.0; } void main() { c = vec4(f()); }\n"
-    found = es(node, f"#version 330\n{before}\n{main}")
-    assert found == f"#version 300 es\n{after.replace('{}', PRECISION)}\n{main}"
+    text = es(node, f"#version 330\n{before}\n{main}")
+    assert text == f"#version 300 es\n{after.replace('{}', PRECISION)}\n{main}"
     if "GL_ARB_ES3_compatibility" not in ctx.extensions:
         return
     for defined in ("#define A 0\n#define B 0\n", "#define A 1\n#define B 0\n", "#define A 0\n#define B 1\n"):
-        chosen = found.replace("300 es\n", f"300 es\n{defined}")  # refused where a float has no precision
+        chosen = text.replace("300 es\n", f"300 es\n{defined}")  # refused where a float has no precision
         ctx.program(vertex_shader=VERTEX, fragment_shader=chosen).release()
 
 
@@ -154,8 +158,8 @@ def test_samplers_get_the_precision_that_es_does_not_give_them(node: Node):
         f"uniform {kind} {name}; " for kind, name in zip(kinds, "abcd", strict=True)
     )
     precisions = es(node, text).split("\n")[1].partition(" uniform")[0]
-    wanted = ["float", "int", "sampler2D", "usampler3D", "samplerCube"]
-    assert precisions == " ".join(f"precision highp {kind};" for kind in wanted)
+    expected = ["float", "int", "sampler2D", "usampler3D", "samplerCube"]
+    assert precisions == " ".join(f"precision highp {kind};" for kind in expected)
 
 
 def test_a_version_below_comments_comes_first(node: Node):
@@ -172,13 +176,13 @@ def test_code_above_the_version_is_refused(node: Node):
 def test_extensions_go_unless_they_are_asked_for(node: Node):
     text = "#version 330\n#extension GL_ARB_x : enable\n#extension GL_EXT_y : require\nint x;\n"
     assert es(node, text).split("\n")[1:3] == [PRECISION, ""]
-    found = es(node, text, extensions=["GL_EXT_y"])
-    assert found.split("\n")[1:] == [PRECISION, "#extension GL_EXT_y : require", "int x;", ""]
+    result = es(node, text, extensions=["GL_EXT_y"])
+    assert result.split("\n")[1:] == [PRECISION, "#extension GL_EXT_y : require", "int x;", ""]
 
 
 def test_declarations_that_are_handed_in_come_first(node: Node):
     text = "#version 330\n#define A\n\nint a = f(1);\n"
-    found = es(node, text, declarations="int f(int x) { return x; }")
-    assert found == text.replace("330", "300 es").replace(
+    result = es(node, text, declarations="int f(int x) { return x; }")
+    assert result == text.replace("330", "300 es").replace(
         "A\n", f"A\n{PRECISION} int f(int x) {{ return x; }}", 1
     )

@@ -1,4 +1,4 @@
-"""What no web page can run is refused in a sentence when it is exported."""
+"""What no web page can run is refused in a message when it is exported."""
 
 from __future__ import annotations
 

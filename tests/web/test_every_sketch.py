@@ -79,7 +79,7 @@ def every(begun: Callable[..., Pages]) -> Pages:
 def test_a_page_draws_a_sketch_as_the_engine_does(
     name: str, every: Pages, drawn: Engine, written: dict[str, Any]
 ):
-    sketch, data = small(name), next(one for one in written["sketches"] if one["name"] == name)
+    sketch, data = small(name), next(item for item in written["sketches"] if item["name"] == name)
     every.open(data)
     for settings in [Settings(frame=SIZE), *settings_of(sketch, data)]:
         try:
@@ -103,14 +103,14 @@ def unfiltered(begun: Callable[..., Pages]) -> Pages:
 def test_a_device_that_filters_no_floats_draws_a_sketch_within_3_levels(
     name: str, unfiltered: Pages, drawn: Engine, written: dict[str, Any]
 ):
-    data = next(one for one in written["sketches"] if one["name"] == name)
+    data = next(item for item in written["sketches"] if item["name"] == name)
     unfiltered.open(data)
     frame = drawn.render(small(name), size=SIZE)
     bound = 3 if reads_filtered_floats(data) else 0
     off = np.abs(unfiltered.picture(name).pixels.astype(int) - frame.array).max(axis=-1)
     # What stands on filtered heights is elsewhere by a rounding, and its outline by a pixel here and there.
-    placed = any("instances" in kernel for kernel in data["kernels"])
-    assert np.count_nonzero(off > bound) <= (1e-3 * off.size if placed else 0)
+    positioned = any("instances" in kernel for kernel in data["kernels"])
+    assert np.count_nonzero(off > bound) <= (1e-3 * off.size if positioned else 0)
     unfiltered.run("figures[arguments[0]].close()", name)
 
 
@@ -132,7 +132,7 @@ def reads_filtered_floats(data: dict[str, Any]) -> bool:
             of = wired.get(each["name"]) or {}
             of = fed.get((of.get("loop"), of.get("name")), of)
             if each["sampling"]["filter"] == "linear" and of.get("path") in kernels:
-                outputs = {one["name"]: one["format"] for one in kernels[of["path"]]["outputs"]}
+                outputs = {item["name"]: item["format"] for item in kernels[of["path"]]["outputs"]}
                 if outputs[of["output"]].endswith("32f"):
                     return True
     return False
@@ -144,13 +144,13 @@ def settings_of(sketch: Sketch, data: dict[str, Any]) -> Iterator[Settings]:
     plan = make_plan(sketch, PlanRequest(frame_size=SIZE, variants=KINDS))
     sources = [step.kernel.registry for step in plan.walk() if step.kernel.kind == "source"]
     for _ in range(SETTINGS):
-        found = random_settings(chance, data, plan)
-        found.frame = SIZE
+        settings = random_settings(chance, data, plan)
+        settings.frame = SIZE
         if any(source_kind(name).moment for name in sources):
-            found.time = 0.0  # a page has the texels of the moment of its export
-        if "size" in found.terrain:
-            found.terrain["size"] = chance.choice(SIZES)
-        yield found
+            settings.time = 0.0  # a page has the texels of the moment of its export
+        if "size" in settings.terrain:
+            settings.terrain["size"] = chance.choice(SIZES)
+        yield settings
 
 
 def test_another_renderer_differs_in_its_rounding_only(
@@ -162,12 +162,12 @@ def test_another_renderer_differs_in_its_rounding_only(
     data = page_data([small(name, OTHER_LAND) for name in OTHER_RENDERER], frame=OTHER_SIZE)
     with Pages(tmp_path_factory.mktemp("swiftshader"), SWIFTSHADER) as pages:
         pages.begin(data)
-        for one in data["sketches"]:
-            pages.open(one)
-            frame = drawn.render(small(one["name"], OTHER_LAND), size=OTHER_SIZE)
-            difference = np.abs(pages.picture(one["name"]).pixels.astype(int) - frame.array)[..., :3]
-            assert difference.mean() < 0.4, one["name"]
-            assert (difference.max(axis=2) > 8).mean() < 0.02, one["name"]
+        for item in data["sketches"]:
+            pages.open(item)
+            frame = drawn.render(small(item["name"], OTHER_LAND), size=OTHER_SIZE)
+            difference = np.abs(pages.picture(item["name"]).pixels.astype(int) - frame.array)[..., :3]
+            assert difference.mean() < 0.4, item["name"]
+            assert (difference.max(axis=2) > 8).mean() < 0.02, item["name"]
 
 
 def loops_of(nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -178,7 +178,7 @@ def loops_of(nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def steps_of(nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return the passes among some nodes, and those inside their loops."""
-    found: list[dict[str, Any]] = []
+    values: list[dict[str, Any]] = []
     for node in nodes:
-        found += steps_of(node["body"]) if "body" in node else [node]
-    return found
+        values += steps_of(node["body"]) if "body" in node else [node]
+    return values

@@ -46,11 +46,11 @@ def test_a_source_has_the_engines_texels(any_engine: Engine, name: str):
             components, kind = split_format(texture["format"])
             data = np.frombuffer(bytes_of(page, texture["blob"]), KINDS_OF_NUMBERS[kind])
             width, height = texture["size"]
-            found = data.reshape(height, width, components).astype(np.float32)
+            result = data.reshape(height, width, components).astype(np.float32)
             if data.dtype.kind == "u":
-                found /= np.float32(np.iinfo(data.dtype).max)
+                result /= np.float32(np.iinfo(data.dtype).max)
             expected = any_engine.read(sketch, f"{node['path']}:{texture['output']}")
-            np.testing.assert_array_equal(found.reshape(expected.shape), expected)
+            np.testing.assert_array_equal(result.reshape(expected.shape), expected)
 
 
 SKETCH = """format = 1
@@ -76,11 +76,11 @@ def test_an_image_has_the_texels_of_its_file(tmp_path: Path, opaque: bool):
     data = bytes_of(page, image["blob"])
     if opaque:
         assert image["file"] == "image/webp"
-        found = np.array(PIL.Image.open(io.BytesIO(data)).convert("RGBA"))
+        elements = np.array(PIL.Image.open(io.BytesIO(data)).convert("RGBA"))
     else:
         assert "file" not in image
-        found = np.frombuffer(data, np.uint8).reshape(37, 53, 4)[::-1]
-    np.testing.assert_array_equal(found, pixels)
+        elements = np.frombuffer(data, np.uint8).reshape(37, 53, 4)[::-1]
+    np.testing.assert_array_equal(elements, pixels)
 
 
 def test_an_image_of_16_bits_has_the_engines_half_floats(tmp_path: Path):
@@ -91,10 +91,10 @@ def test_an_image_of_16_bits_has_the_engines_half_floats(tmp_path: Path):
     page = view_of(tmp_path)
     [image] = page["shared"]["images"].values()
     assert image["kind"] == "rgba16f"
-    found = np.frombuffer(bytes_of(page, image["blob"]), np.float16).reshape(5, 7, 4)[::-1]
+    result = np.frombuffer(bytes_of(page, image["blob"]), np.float16).reshape(5, 7, 4)[::-1]
     linear = srgb_to_linear(read_image(tmp_path / "photo.png").pixels[..., :3].astype(np.float64))
-    np.testing.assert_array_equal(found[..., :3], linear.astype(np.float16))
-    assert (found[..., 3] == 1).all()
+    np.testing.assert_array_equal(result[..., :3], linear.astype(np.float16))
+    assert (result[..., 3] == 1).all()
 
 
 def view_of(folder: Path) -> dict[str, Any]:
@@ -118,20 +118,20 @@ def test_terrain_of_a_file_has_its_size_and_one_that_is_computed_has_any():
 
 
 def test_a_sources_own_parameters_are_locked_and_no_others():
-    found = rows("delaunay_flips")
-    source = {row["path"] for row in found.values() if "triangulation" in row["locked"]}
-    assert source and all(found[path]["locked"] for path in source)
-    assert [path for path, row in found.items() if not row["locked"]]
+    values = rows("delaunay_flips")
+    source = {row["path"] for row in values.values() if "triangulation" in row["locked"]}
+    assert source and all(values[path]["locked"] for path in source)
+    assert [path for path, row in values.items() if not row["locked"]]
 
 
 @pytest.mark.slow
 def test_what_a_source_was_made_of_is_locked_with_it(any_engine: Engine):
     """A page does not draw the passes that only the source read, and says why they cannot be changed."""
     [data] = page_data([load("from_example")], engine=any_engine)["sketches"]
-    found = {row["path"]: row["locked"] for row in data["shown"]}
-    assert found["pieces.follow"] == "The terrain was made when the page was exported."
-    assert found["ridges.texels"].endswith("was made when the page was exported.")
-    assert not found["light.sun"] and not found["view.exposure"]
+    result = {row["path"]: row["locked"] for row in data["shown"]}
+    assert result["pieces.follow"] == "The terrain was made when the page was exported."
+    assert result["ridges.texels"].endswith("was made when the page was exported.")
+    assert not result["light.sun"] and not result["view.exposure"]
     [node] = [node for node in data["nodes"] if node["path"] == "pieces"]
     assert node["inputs"] == []
     assert data["terrain"]["locked"] == "The terrain was made in this size when the page was exported."
@@ -161,12 +161,12 @@ def test_kernels_that_a_source_reads_are_locked(any_engine: Engine, tmp_path: Pa
     )
     (tmp_path / "sketch.toml").write_text(text + map_of("noise"))
     [data] = page_data([load(tmp_path)], engine=any_engine)["sketches"]
-    found = {row["path"]: row["locked"] for row in data["shown"]}
+    result = {row["path"]: row["locked"] for row in data["shown"]}
     made = "The table of ranks was made of this when the page was exported."
-    assert (found["first.rise"], found["looped.gain"], found["other.rise"]) == (made, made, "")
-    assert found["noise.widest"] == "The table of ranks was made when the page was exported."
-    assert found["noise.seed"] == ""
-    stopped = {path: one["locked"] for path, one in data["passes"].items() if "locked" in one}
+    assert (result["first.rise"], result["looped.gain"], result["other.rise"]) == (made, made, "")
+    assert result["noise.widest"] == "The table of ranks was made when the page was exported."
+    assert result["noise.seed"] == ""
+    stopped = {path: item["locked"] for path, item in data["passes"].items() if "locked" in item}
     assert stopped == {"spread": made, "looped": made}, "their iterations would change nothing"
 
 
@@ -209,7 +209,7 @@ def inner(tmp_path: Path, trusted_variants: None) -> Sketch:
 def test_what_would_need_another_plan_is_locked_and_nothing_else_is(name: str, inner: Sketch):
     """Set each parameter: where a fast variant gives way to its technique, other passes run."""
     sketch = inner if name == "inner" else load(name)
-    found = {row["path"]: row for row in page_data([sketch])["sketches"][0]["shown"]}
+    result = {row["path"]: row for row in page_data([sketch])["sketches"][0]["shown"]}
 
     def run_with(values: dict[str, object]) -> list[str]:
         plan = make_plan(sketch.with_values(values), PlanRequest(frame_size=(64, 36), variants=KINDS))
@@ -219,18 +219,18 @@ def test_what_would_need_another_plan_is_locked_and_nothing_else_is(name: str, i
     assert any(".fast." in path for path in usual)
     locked = set()
     for shown in shown_parameters(sketch):
-        row = found[shown.path]
+        row = result[shown.path]
         needs_another = run_with({shown.path: row["value"]}) != usual
         assert bool(row["locked"]) == needs_another, shown.path
         locked |= {shown.path} if needs_another else set()
     if name == "inner":
         assert locked == {"height.base.start"}
-        assert found["height.base.start"]["locked"].startswith("A faster form of height runs in this page")
+        assert result["height.base.start"]["locked"].startswith("A faster form of height runs in this page")
 
 
 def test_a_fixed_image_is_not_locked_away_from_its_sentence():
-    found = rows("drape")
-    [why] = {row["locked"] for row in found.values() if row["widget"] == "file" and "image" in row["locked"]}
+    values = rows("drape")
+    [why] = {row["locked"] for row in values.values() if row["widget"] == "file" and "image" in row["locked"]}
     assert why == "The image was chosen when the page was exported."
 
 
@@ -263,11 +263,11 @@ createImageBitmap(new Blob([bytes], { type: "image/webp" }),
 @pytest.mark.skipif(bool(browsers.MISSING), reason=browsers.MISSING)
 def test_a_browser_decodes_an_image_to_the_engines_texels(tmp_path: Path):
     page = page_data([load("drape")])
-    [image] = [one for one in page["shared"]["images"].values() if one.get("file")]
+    [image] = [item for item in page["shared"]["images"].values() if item.get("file")]
     [file] = (SKETCHES / "data").glob("jacksboro_from_above.jpg")
     expected = read_image(file).pixels
     with browsers.Browser(tmp_path / "profile") as browser:
         browser.open("data:text/html,decode")
         browser.run(DECODE, base64.b64encode(bytes_of(page, image["blob"])).decode())
-        found = base64.b64decode(browser.wait("window.decoded"))
-    np.testing.assert_array_equal(np.frombuffer(found, np.uint8).reshape(expected.shape), expected)
+        result = base64.b64decode(browser.wait("window.decoded"))
+    np.testing.assert_array_equal(np.frombuffer(result, np.uint8).reshape(expected.shape), expected)

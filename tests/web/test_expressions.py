@@ -38,19 +38,19 @@ ASK = """async (trees, names, load) => {
 
 def both(node: Node, texts: list[str]) -> list[list[object]]:
     names = {name: [type(value).__name__, value] for name, value in NAMES.items()}
-    found = node.run(ASK, [tree(text) for text in texts], names)
-    return [[float(one) if isinstance(one, int) else one, other] for one, other in found]
+    result = node.run(ASK, [tree(text) for text in texts], names)
+    return [[float(first) if isinstance(first, int) else first, other] for first, other in result]
 
 
 def python(text: str) -> list[object]:
-    found: list[object] = []
+    values: list[object] = []
     for run in (expressions.evaluate_number, expressions.evaluate):
         try:
             value = run(text, NAMES)
-            found.append(value if run is expressions.evaluate_number else str(value))
+            values.append(value if run is expressions.evaluate_number else str(value))
         except ExpressionError as error:
-            found.append(f"PlanError: {error}")
-    return found
+            values.append(f"PlanError: {error}")
+    return values
 
 
 def written(chance: random.Random, deep: int) -> str:
@@ -58,21 +58,23 @@ def written(chance: random.Random, deep: int) -> str:
     if deep == 0 or chance.random() < 0.12:
         numbers = "0 1 2 3 7 64 1000003 4611686018427387904 0.5 2.0 0.1 1e9".split()
         return chance.choice(numbers) if chance.random() < 0.5 else chance.choice(list(NAMES))
-    one, other, third = (written(chance, deep - 1) for _ in range(3))
+    first, other, third = (written(chance, deep - 1) for _ in range(3))
     kind = chance.random()
     if kind < 0.62:
-        return f"({one} {chance.choice(['+', '-', '*', '/', '/', '//', '//', '%', '%'])} {other})"
+        return f"({first} {chance.choice(['+', '-', '*', '/', '/', '//', '//', '%', '%'])} {other})"
     if kind < 0.68:
-        return f"({one} ** {chance.choice(['0', '1', '2', '3', '-1', '-2', '5', '63', 'depth', other])})"
+        return f"({first} ** {chance.choice(['0', '1', '2', '3', '-1', '-2', '5', '63', 'depth', other])})"
     if kind < 0.74:
-        return f"({chance.choice('-+')}{one})"
+        return f"({chance.choice('-+')}{first})"
     if kind < 0.80:
-        return f"({one} if {other} {chance.choice(['<', '<=', '>', '>=', '==', '!='])} {third} else {third})"
+        return (
+            f"({first} if {other} {chance.choice(['<', '<=', '>', '>=', '==', '!='])} {third} else {third})"
+        )
     if kind < 0.84:
-        return f"({one} if {other} else {third})"
+        return f"({first} if {other} else {third})"
     if kind < 0.92:
-        return f"{chance.choice(['abs', 'floor', 'ceil', 'log2', 'bits'])}({one})"
-    return f"{chance.choice(['min', 'max'])}({one}, {other}, {third})"
+        return f"{chance.choice(['abs', 'floor', 'ceil', 'log2', 'bits'])}({first})"
+    return f"{chance.choice(['min', 'max'])}({first}, {other}, {third})"
 
 
 @pytest.mark.slow
@@ -82,9 +84,9 @@ def test_a_thousand_expressions_give_what_pythons_give(node: Node):
     # A number or a name that is all there is needs no words of its own.
     texts = [text for text in texts if len(text) < 300 and isinstance(tree(text), list)]
     assert len(texts) > 1000
-    for text, found in zip(texts, both(node, texts), strict=True):
-        assert found == python(text), text
-    numbers = [found for found in map(python, texts) if isinstance(found[0], float)]
+    for text, result in zip(texts, both(node, texts), strict=True):
+        assert result == python(text), text
+    numbers = [outcome for outcome in map(python, texts) if isinstance(outcome[0], float)]
     assert len(numbers) > 400, "most of what was compared are sentences"
 
 
@@ -105,15 +107,15 @@ def test_a_thousand_expressions_give_what_pythons_give(node: Node):
     ],
 )
 def test_mistakes_are_told_in_the_same_sentence(node: Node, text: str, sentence: str):
-    ((_, found),) = both(node, [text])
-    assert found == f"PlanError: {sentence}" == python(text)[1]
+    ((_, result),) = both(node, [text])
+    assert result == f"PlanError: {sentence}" == python(text)[1]
 
 
 def test_whole_numbers_are_divided_exactly_and_floats_are_not(node: Node):
     texts = ["3 * (size.x / 3)", "1 / 3 + 1 / 3 + 1 / 3", "49 * (1 / 49)", "49 * (1.0 / 49)"]
-    found = both(node, texts)
-    assert [one for _, one in found[:3]] == ["513", "1", "1"]
-    assert "gives 1; a whole number was expected" in found[3][1]
+    result = both(node, texts)
+    assert [item for _, item in result[:3]] == ["513", "1", "1"]
+    assert "gives 1; a whole number was expected" in result[3][1]
 
 
 def test_six_digits_are_written_as_python_writes_them(node: Node):
@@ -121,11 +123,11 @@ def test_six_digits_are_written_as_python_writes_them(node: Node):
     numbers = [chance.uniform(-1, 1) * 10 ** chance.randint(-12, 18) for _ in range(2000)]
     numbers += [chance.randint(100_000, 999_999) + 0.5 for _ in range(500)]
     numbers += [0.0, -0.0, 1e5, 999_999.5, 1e6, 1e-4, 9.999995e-5, 123_456_500.0, 2.5, 1e21]
-    found = node.run("async (data, load) => data.map((await load('exact.js')).general)", numbers)
-    assert found == [f"{number:g}" for number in numbers]
+    result = node.run("async (data, load) => data.map((await load('exact.js')).general)", numbers)
+    assert result == [f"{number:g}" for number in numbers]
 
 
 def test_what_an_expression_names_is_known(node: Node):
     expression = ["text", "…", ["if", "time", ["size", "#terrain", 0], ["+", ["value", "a.b"], "time"]]]
-    found = node.call("expressions.js", "namesIn", expression)
-    assert found == [["name", "time"], ["size", "#terrain"], ["value", "a.b"]]
+    result = node.call("expressions.js", "namesIn", expression)
+    assert result == [["name", "time"], ["size", "#terrain"], ["value", "a.b"]]

@@ -41,9 +41,9 @@ def written() -> dict[str, Any]:
 def firefox(tmp_path_factory: pytest.TempPathFactory, written: dict[str, Any]) -> Iterator[Pages]:
     if missing := MISSING or MISSING_PAGES:
         pytest.skip(missing)
-    with Pages(tmp_path_factory.mktemp("firefox"), browser=Firefox) as found:
-        found.begin(written)
-        yield found
+    with Pages(tmp_path_factory.mktemp("firefox"), browser=Firefox) as pages:
+        pages.begin(written)
+        yield pages
 
 
 @pytest.fixture(scope="module")

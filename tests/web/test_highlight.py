@@ -29,25 +29,25 @@ _NUMBER = re.compile(r"(?<![\w.])(?:0[xX][0-9a-fA-F]+u?|(?:\d+\.?\d*|\.\d+)(?:[e
 
 def by_pygments(text: str) -> list[str]:
     """Return what each character is."""
-    found: list[str] = []
+    names: list[str] = []
     for token, part in GLShaderLexer(stripnl=False, stripall=False, ensurenl=False).get_tokens(text):
-        kind = next((name for known, name in OF_PYGMENTS if token in known), "")
-        found += [kind] * len(part)
-    assert len(found) == len(text)
+        kind = next((name for known_names, name in OF_PYGMENTS if token in known_names), "")
+        names += [kind] * len(part)
+    assert len(names) == len(text)
     for match in _NUMBER.finditer(text):
-        if found[match.start()] == "number":
-            found[match.start() : match.end()] = ["number"] * len(match.group())
-    return found
+        if names[match.start()] == "number":
+            names[match.start() : match.end()] = ["number"] * len(match.group())
+    return names
 
 
 def by_page(node: Node, text: str) -> list[str]:
     lines = node.call("highlight.js", "highlight", text.split("\n"))
-    found: list[str] = []
+    names: list[str] = []
     for line in lines:
         for kind, part in line["parts"]:
-            found += [OURS.get(kind, kind)] * len(part)
-        found.append("\n")
-    return found[:-1]
+            names += [OURS.get(kind, kind)] * len(part)
+        names.append("\n")
+    return names[:-1]
 
 
 def judged(text: str) -> Iterator[int]:

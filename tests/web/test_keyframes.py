@@ -45,8 +45,8 @@ def track(chance: random.Random) -> Track:
     return Track(tuple(at), tuple(make[kind]() for _ in at), eases, holds, angles)
 
 
-def as_data(one: Track) -> dict[str, Any]:
-    return {name: getattr(one, name) for name in ("times", "values", "eases", "holds", "angles")}
+def as_data(item: Track) -> dict[str, Any]:
+    return {name: getattr(item, name) for name in ("times", "values", "eases", "holds", "angles")}
 
 
 @pytest.mark.slow
@@ -54,14 +54,14 @@ def test_tracks_of_every_kind_give_the_same_to_the_last_bit(node: Node):
     chance = random.Random(3)
     tracks = [track(chance) for _ in range(400)]
     moments = [chance.uniform(-3.0, 20.0) for _ in range(60)] + [0.0, 0.25, 1.0, 1.25, 2.0]
-    moments += [moment for one in tracks[:20] for moment in one.times]
-    answers = node.run(TRACKS, [as_data(one) for one in tracks], moments)
+    moments += [moment for item in tracks[:20] for moment in item.times]
+    answers = node.run(TRACKS, [as_data(item) for item in tracks], moments)
     between = 0
-    for one, found in zip(tracks, answers, strict=True):
-        for moment, value in zip(moments, found, strict=True):
-            expected = one.at(moment)
-            assert value == (list(expected) if isinstance(expected, tuple) else expected), (one, moment)
-            between += expected not in one.values
+    for item, answer in zip(tracks, answers, strict=True):
+        for moment, value in zip(moments, answer, strict=True):
+            expected = item.at(moment)
+            assert value == (list(expected) if isinstance(expected, tuple) else expected), (item, moment)
+            between += expected not in item.values
     assert between > 5000, "most moments are before the first keyframe or after the last"
 
 
@@ -85,9 +85,9 @@ def test_what_follows_a_direction_does_so_until_it_is_set(node: Node):
             "c.form": form,
             "d.turn": 1.0,
         }
-        found = node.run(script, [{n: getattr(r, n) for n in Rule.__slots__} for r in rules], values)
+        result = node.run(script, [{n: getattr(r, n) for n in Rule.__slots__} for r in rules], values)
         follow(rules, values)
-        assert found == {k: list(v) if isinstance(v, tuple) else v for k, v in values.items()}
+        assert result == {k: list(v) if isinstance(v, tuple) else v for k, v in values.items()}
 
 
 @pytest.mark.parametrize(
@@ -112,9 +112,9 @@ def test_the_sizes_that_a_kernel_takes_are_the_same(node: Node, accepts: str):
     sides = [1, 2, 3, 16_384, *(2**k + d for k in range(1, 14) for d in (-1, 0, 1))]
     sizes = [(chance.choice(sides), chance.choice(sides)) for _ in range(150)]
     sizes += [(side, side) for side in sides]
-    axes, found = node.run(script, accepted(accepts), sizes)
+    axes, result = node.run(script, accepted(accepts), sizes)
     xs, ys = expressions.accepted_sizes(accepts)
     assert axes[0] == list(xs) and axes[-1] == list(ys)
-    for size, (fits, near) in zip(sizes, found, strict=True):
+    for size, (fits, near) in zip(sizes, result, strict=True):
         assert fits == expressions.is_accepted(accepts, size)
-        assert near == [list(one) for one in expressions.nearest_accepted(accepts, size)]
+        assert near == [list(item) for item in expressions.nearest_accepted(accepts, size)]

@@ -26,13 +26,13 @@ CASES = [
 def test_a_mesh_has_the_same_vertices_and_indices(node: Node, case: tuple[str, dict[str, int]]):
     name, values = case
     expected = meshes.build_mesh(name, meshes.mesh_key(name, values))
-    found = node.call("meshes.js", "buildMesh", name, values)
-    assert found["attributes"].keys() == expected.attributes.keys() == {"corner"}
-    corner = found["attributes"]["corner"]
-    assert corner["data"].dtype == np.float32 and found["indices"].dtype == np.uint32
+    result = node.call("meshes.js", "buildMesh", name, values)
+    assert result["attributes"].keys() == expected.attributes.keys() == {"corner"}
+    corner = result["attributes"]["corner"]
+    assert corner["data"].dtype == np.float32 and result["indices"].dtype == np.uint32
     assert corner["data"].tobytes() == expected.attributes["corner"].tobytes()
     assert corner["size"] == expected.attributes["corner"].shape[1]
-    assert np.array_equal(found["indices"], expected.indices)
+    assert np.array_equal(result["indices"], expected.indices)
 
 
 def test_every_mesh_is_there(node: Node):
@@ -49,9 +49,9 @@ def test_every_mesh_is_there(node: Node):
                 wrong = {**values, parameter: value}
                 with pytest.raises(SketchError) as expected:
                     meshes.mesh_key(name, wrong)
-                with pytest.raises(NodeError) as found:
+                with pytest.raises(NodeError) as result:
                     node.call("meshes.js", "meshKey", name, wrong)
-                assert found.value.message == expected.value.diagnostics[0].message
+                assert result.value.message == expected.value.diagnostics[0].message
 
 
 def test_a_mesh_that_is_not_there_is_named(node: Node):
@@ -60,14 +60,14 @@ def test_a_mesh_that_is_not_there_is_named(node: Node):
 
 
 def test_pieces_of_a_tile_are_joined_as_the_engine_joins_them(node: Node):
-    found = node.call("tiles.js", "pieces")
-    assert list(found) == [" ".join(map(str, piece)) for piece in lod.pieces()]
+    result = node.call("tiles.js", "pieces")
+    assert list(result) == [" ".join(map(str, piece)) for piece in lod.pieces()]
     for piece, indices in lod.pieces().items():
-        assert found[" ".join(map(str, piece))] == indices.tolist(), piece
+        assert result[" ".join(map(str, piece))] == indices.tolist(), piece
     ranges = node.call("tiles.js", "ranges")
     assert ranges == {" ".join(map(str, piece)): list(both) for piece, both in lod.ranges().items()}
 
 
 def test_what_is_chosen_from_has_the_inputs_that_the_engine_reads(node: Node):
-    found = node.run("async (load) => (await load('detail.js')).CHOSEN_BY")
-    assert found == {name: list(chooser.inputs) for name, chooser in lod.CHOOSERS.items()}
+    result = node.run("async (load) => (await load('detail.js')).CHOSEN_BY")
+    assert result == {name: list(chooser.inputs) for name, chooser in lod.CHOOSERS.items()}

@@ -79,9 +79,9 @@ def put(page: Browser, file: str, old: str, new: str) -> None:
 
 
 def saved(page: Browser, folder: Path, values: list[object], camera: Camera | None) -> Path:
-    given = None if camera is None else asdict(camera)
+    value = None if camera is None else asdict(camera)
     path = folder / "my-version.zip"
-    path.write_bytes(base64.b64decode(str(settle(page, "page.version(...arguments)", values, given))))
+    path.write_bytes(base64.b64decode(str(settle(page, "page.version(...arguments)", values, value))))
     return path
 
 
@@ -98,19 +98,19 @@ def test_what_was_edited_and_set_is_the_same_picture_in_python(
     put(page, "generation/diamond_square/raw.glsl", "return total", "return 0.9 * total")
     assert page.run("return page.editor.problems") == []
     page.run("page.set(...arguments)", VALUES, asdict(CAMERA))
-    found = picture(page)
-    assert (found != before).any()
+    result = picture(page)
+    assert (result != before).any()
     path = saved(page, tmp_path, VALUES, CAMERA)
-    assert (rendered(ctx, path, tmp_path) == found).all()
+    assert (rendered(ctx, path, tmp_path) == result).all()
 
 
 def test_a_broken_text_leaves_the_picture_and_is_told_at_its_line(page: Browser):
     before = picture(page)
     put(page, "noise/hash.glsl", "1.0 / 16777216.0", "1.0 / nothing_such")
-    (found,) = page.run("return page.editor.problems")
-    assert found["file"] == "noise/hash.glsl" and "`nothing_such` is not declared" in found["message"]
+    (result,) = page.run("return page.editor.problems")
+    assert result["file"] == "noise/hash.glsl" and "`nothing_such` is not declared" in result["message"]
     line = page.run(
-        "return document.querySelector('.code-text').value.split('\\n')[arguments[0]]", found["line"] - 1
+        "return document.querySelector('.code-text').value.split('\\n')[arguments[0]]", result["line"] - 1
     )
     assert "nothing_such" in line
     assert (picture(page) == before).all()

@@ -16,9 +16,9 @@ SAME = "(value) => value"
     "value", [0.1, -0.0, math.inf, -math.inf, 1e-320, 2**53, "é\u2028\n", None, True, [1, [2.5]], {"a": {}}]
 )
 def test_a_value_comes_back_as_it_was(node: Node, value: object):
-    found = node.run(SAME, value)
-    assert found == value and type(found) is type(value)
-    assert not isinstance(value, float) or math.copysign(1, found) == math.copysign(1, value)
+    result = node.run(SAME, value)
+    assert result == value and type(result) is type(value)
+    assert not isinstance(value, float) or math.copysign(1, result) == math.copysign(1, value)
 
 
 def test_numbers_that_are_none_come_back(node: Node):
@@ -29,8 +29,8 @@ def test_numbers_that_are_none_come_back(node: Node):
 def test_arrays_are_typed_arrays_there(node: Node, kind: str):
     array = np.array([0, 1, 2, 100], kind)
     assert node.run("(value) => ArrayBuffer.isView(value) && value.length", array) == 4
-    found = node.run(SAME, array)
-    assert found.dtype == array.dtype and found.tolist() == array.tolist()
+    result = node.run(SAME, array)
+    assert result.dtype == array.dtype and result.tolist() == array.tolist()
 
 
 def test_maps_and_sets_come_back(node: Node):

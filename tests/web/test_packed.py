@@ -49,10 +49,10 @@ def version(
 ) -> tuple[Path, list[str]]:
     """Return the zip that the page saves, and what it has no place for."""
     nothing = {"texts": {}, "values": [], "camera": None, "time": 0, "steps": [], "frame": [160, 90]}
-    found = node.run(ZIP, page, {**nothing, **made}, store)
+    result = node.run(ZIP, page, {**nothing, **made}, store)
     path = folder / "my-version.zip"
-    path.write_bytes(found["bytes"].tobytes())
-    return path, found["aside"]
+    path.write_bytes(result["bytes"].tobytes())
+    return path, result["aside"]
 
 
 def opened(path: Path, folder: Path) -> Sketch:
@@ -61,14 +61,14 @@ def opened(path: Path, folder: Path) -> Sketch:
 
 def settings(page: dict[str, Any]) -> list[list[Any]]:
     """Return other values for some rows, within their ranges."""
-    pick, found = random.Random(1), []
+    pick, values = random.Random(1), []
     rows = [row for row in page["sketches"][0]["shown"] if not row["locked"] and row["exported"]]
     for row in pick.sample(rows, min(len(rows), 6)):
         value, whole = row["value"], row["type"][0] in "iu"
         if row["widget"] == "menu":
-            found.append([row["path"], pick.randrange(len(row["choices"]))])
+            values.append([row["path"], pick.randrange(len(row["choices"]))])
         elif isinstance(value, bool):
-            found.append([row["path"], not value])
+            values.append([row["path"], not value])
         elif isinstance(value, (int, float, list)):
             ranges = row["ranges"]
             numbers = []
@@ -85,8 +85,8 @@ def settings(page: dict[str, Any]) -> list[list[Any]]:
                 )
                 numbers.append(number)
             else:
-                found.append([row["path"], numbers if isinstance(value, list) else numbers[0]])
-    return found
+                values.append([row["path"], numbers if isinstance(value, list) else numbers[0]])
+    return values
 
 
 @pytest.mark.parametrize("name", EACH_KIND)
@@ -94,12 +94,12 @@ def test_an_unchanged_version_says_what_the_sketch_says(
     node: Node, tmp_path: Path, exporting: Engine, name: str
 ):
     path, aside = version(node, tmp_path, page_of(name, exporting))
-    found, wanted = opened(path, tmp_path), load(name)
+    opened_sketch, expected = opened(path, tmp_path), load(name)
     assert not aside
-    assert [(s.name, s.use, s.inputs, s.size, s.repeat) for s in found.graph.passes] == [
-        (s.name, s.use, s.inputs, s.size, s.repeat) for s in wanted.graph.passes
+    assert [(s.name, s.use, s.inputs, s.size, s.repeat) for s in opened_sketch.graph.passes] == [
+        (s.name, s.use, s.inputs, s.size, s.repeat) for s in expected.graph.passes
     ]
-    assert found.camera == wanted.camera and found.main == wanted.main
+    assert opened_sketch.camera == expected.camera and opened_sketch.main == expected.main
     text = next(iter(read_pack(path).files))
     assert text.startswith(f"{name}/")
 
@@ -109,14 +109,14 @@ def test_values_and_the_camera_come_back_exactly(node: Node, tmp_path: Path, exp
     sketch, page = load(name), page_of(name, exporting)
     values = settings(page)
     path, aside = version(node, tmp_path, page, values=values, camera=CAMERA_DATA)
-    found = opened(path, tmp_path)
-    wanted = sketch.with_values({key: tuple(v) if isinstance(v, list) else v for key, v in values})
-    said, expected = values_of(found), values_of(wanted)
+    opened_sketch = opened(path, tmp_path)
+    target = sketch.with_values({key: tuple(v) if isinstance(v, list) else v for key, v in values})
+    said, expected = values_of(opened_sketch), values_of(target)
     assert not aside
     for key in expected:
         if not isinstance(expected[key], str):
             assert shortest(said[key]) == shortest(expected[key]), key
-    assert found.camera == CAMERA
+    assert opened_sketch.camera == CAMERA
 
 
 def test_terrain_time_and_steps_are_in_the_toml(node: Node, tmp_path: Path):
@@ -124,10 +124,10 @@ def test_terrain_time_and_steps_are_in_the_toml(node: Node, tmp_path: Path):
     path, _ = version(
         node, tmp_path, page_of("diamond_square"), values=values, time=2.5, steps=[["height.raw", 7]]
     )
-    found = opened(path, tmp_path)
-    assert (found.size, found.extent) == ((257, 257), (5000.0, 4000.5))
-    assert (found.relief, found.base_elevation) == (1234.5, -20.0)
-    shot = found.shot("page")
+    opened_sketch = opened(path, tmp_path)
+    assert (opened_sketch.size, opened_sketch.extent) == ((257, 257), (5000.0, 4000.5))
+    assert (opened_sketch.relief, opened_sketch.base_elevation) == (1234.5, -20.0)
+    shot = opened_sketch.shot("page")
     assert (shot.size, shot.time, shot.steps) == ((160, 90), 2.5, (("height.raw", 7),))
 
 
@@ -142,11 +142,11 @@ def test_what_keyframes_steer_is_in_a_shot(node: Node, tmp_path: Path):
         camera=CAMERA_DATA,
         time=3.0,
     )
-    found = opened(path, tmp_path)
-    steered = found.for_shot(found.shot("page")).at(3.0)
-    wanted = sketch.with_values({row["path"]: (77.0, 7.0)}).with_camera(CAMERA).at(3.0)
-    assert steered.camera == wanted.camera
-    assert values_of(steered)[row["targets"][0]] == values_of(wanted)[row["targets"][0]]
+    opened_sketch = opened(path, tmp_path)
+    steered = opened_sketch.for_shot(opened_sketch.shot("page")).at(3.0)
+    expected = sketch.with_values({row["path"]: (77.0, 7.0)}).with_camera(CAMERA).at(3.0)
+    assert steered.camera == expected.camera
+    assert values_of(steered)[row["targets"][0]] == values_of(expected)[row["targets"][0]]
 
 
 def library_files(name: str) -> list[str]:
@@ -166,11 +166,13 @@ def test_an_edited_text_is_that_of_every_pass_that_reads_it(node: Node, tmp_path
     for number, file in enumerate(library_files(name)):
         text = f"{page['shared']['files'][file]}\n#define MY_EDIT {number}\n"
         path, aside = version(node, tmp_path, page, texts={file: text})
-        wanted = with_texts(sketch, {str((GLSL / file).resolve()): text})
-        found, expected = dict(kernels_of(opened(path, tmp_path).graph)), dict(kernels_of(wanted.graph))
-        assert found.keys() == expected.keys() and not aside
-        assert all(found[leaf].source.canonical == expected[leaf].source.canonical for leaf in expected), file
-        assert any("MY_EDIT" in kernel.source.names for kernel in found.values())
+        target = with_texts(sketch, {str((GLSL / file).resolve()): text})
+        kernels, expected = dict(kernels_of(opened(path, tmp_path).graph)), dict(kernels_of(target.graph))
+        assert kernels.keys() == expected.keys() and not aside
+        assert all(kernels[leaf].source.canonical == expected[leaf].source.canonical for leaf in expected), (
+            file
+        )
+        assert any("MY_EDIT" in kernel.source.names for kernel in kernels.values())
 
 
 def test_a_text_that_no_file_of_the_sketch_reads_is_said_to_be_aside(node: Node, tmp_path: Path):
@@ -219,10 +221,12 @@ def test_an_edit_gives_the_picture_that_it_gives_in_place(
     path, _ = version(node, tmp_path, page, texts={file: text})
     with Engine(ctx, driver="fragment") as engine:
         before = engine.render(sketch, size=(160, 90)).array
-        wanted = engine.render(with_texts(sketch, {str((GLSL / file).resolve()): text}), size=(160, 90)).array
-        found = engine.render(opened(path, tmp_path), size=(160, 90)).array
-    assert (np.asarray(found) == np.asarray(wanted)).all()
-    assert (np.asarray(found) != np.asarray(before)).any()
+        expected = engine.render(
+            with_texts(sketch, {str((GLSL / file).resolve()): text}), size=(160, 90)
+        ).array
+        array = engine.render(opened(path, tmp_path), size=(160, 90)).array
+    assert (np.asarray(array) == np.asarray(expected)).all()
+    assert (np.asarray(array) != np.asarray(before)).any()
 
 
 def test_the_zip_is_read_by_python_and_always_the_same(node: Node, tmp_path: Path):

@@ -90,7 +90,7 @@ def test_what_people_wrote_is_text(evil: dict[str, Any]):
     expected += " main img noscript p p p script script"
     assert [tag for tag, _ in page.found] == expected.split()
     assert page.texts["title"] == EVIL
-    [image] = [given for tag, given in page.found if tag == "img"]
+    [image] = [value for tag, value in page.found if tag == "img"]
     assert image["alt"] == EVIL and set(image) == {"id", "src", "alt", "width", "height"}
     _, data, _ = parts_of(page.texts["playground-pressed"])
     assert json.loads(data)["sketches"][0]["title"] == EVIL
@@ -99,14 +99,14 @@ def test_what_people_wrote_is_text(evil: dict[str, Any]):
 def test_nothing_in_the_data_can_end_its_element(evil: dict[str, Any]):
     evil["shared"]["blobs"][EVIL] = packed(data := 99 * bytes(range(256)) + EVIL.encode())
     page = Elements(page_of(evil))
-    assert [given["data-blob"] for _, given in page.found if "data-blob" in given] == [EVIL]
+    assert [value["data-blob"] for _, value in page.found if "data-blob" in value] == [EVIL]
     text = page.texts[EVIL]
     assert text[0] == "~" and "<" not in text and gzip.decompress(undense(text[1:])) == data
 
 
 def test_the_policy_names_what_runs_and_allows_nothing_else(evil: dict[str, Any]):
     page = Elements(page_of(evil))
-    [policy] = [given["content"] for _, given in page.found if given.get("http-equiv")]
+    [policy] = [value["content"] for _, value in page.found if value.get("http-equiv")]
     assert policy
     rules = dict(rule.strip().split(" ", 1) for rule in policy.split(";"))
 
@@ -123,7 +123,7 @@ def test_the_policy_names_what_runs_and_allows_nothing_else(evil: dict[str, Any]
         "base-uri": "'none'",
         "form-action": "'none'",
     }
-    assert not [given for _, given in page.found if any(name.startswith("on") for name in given)]
+    assert not [value for _, value in page.found if any(name.startswith("on") for name in value)]
 
 
 def test_it_is_read_as_it_was_written(node: Node, evil: dict[str, Any]):
@@ -141,10 +141,10 @@ def test_it_is_read_as_it_was_written(node: Node, evil: dict[str, Any]):
         for (const key of keys) blobs[key] = new Uint8Array(await unpacked(blobs[key]));
         return page;
     }"""
-    found = node.run(script, texts, [EVIL])
-    assert found["shared"].pop("blobs")[EVIL].tobytes() == b"elevation"
+    result = node.run(script, texts, [EVIL])
+    assert result["shared"].pop("blobs")[EVIL].tobytes() == b"elevation"
     del evil["shared"]["blobs"]
-    assert found == json.loads(json.dumps(evil))
+    assert result == json.loads(json.dumps(evil))
 
 
 def test_the_same_sketch_gives_the_same_bytes():
@@ -218,7 +218,7 @@ async (loader, text, old, load) => {
 
 
 @pytest.mark.parametrize(
-    ("text", "old", "made", "told"),
+    ("text", "old", "made", "names"),
     [
         (pressed("a\0b\0c"), False, ["style:a", "script:b", "script:c"], []),
         (pressed("a\0b\0c"), True, [], ["playground-old"]),
@@ -229,6 +229,6 @@ async (loader, text, old, load) => {
     ids=["whole", "old browser", "a part less", "a letter less", "nothing"],
 )
 def test_the_loader_says_whether_the_browser_is_too_old_or_the_file_is_damaged(
-    text: str, old: bool, made: list[str], told: list[str], node: Node
+    text: str, old: bool, made: list[str], names: list[str], node: Node
 ):
-    assert node.run(LOADED, read_bundle("loader.js"), text, old) == [made, told]
+    assert node.run(LOADED, read_bundle("loader.js"), text, old) == [made, names]

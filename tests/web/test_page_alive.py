@@ -96,8 +96,8 @@ def test_a_link_a_slider_and_undo_show_what_the_engine_draws(browser: Browser, d
     )
     at_rest(browser)
     moved = picture(browser)
-    wanted = {"height.seed": 5, path: float(value)}
-    assert np.array_equal(moved, expected(drawn, sketch, wanted, moved)) and not np.array_equal(moved, first)
+    target = {"height.seed": 5, path: float(value)}
+    assert np.array_equal(moved, expected(drawn, sketch, target, moved)) and not np.array_equal(moved, first)
     browser.click(".head-line button")
     at_rest(browser)
     assert np.array_equal(picture(browser), first)

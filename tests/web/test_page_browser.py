@@ -81,7 +81,7 @@ class Page:
     def drag(self, *path: tuple[int, int], button: int = 0, finger: bool = False, held: str = "") -> None:
         """Drag through places of the window."""
         pointer: list[dict[str, Any]] = [move(path[0]), {"type": "pointerDown", "button": button}]
-        pointer += [*(move(place) for place in path[1:]), {"type": "pointerUp", "button": button}]
+        pointer += [*(move(position) for position in path[1:]), {"type": "pointerUp", "button": button}]
         hand = {"type": "pointer", "id": "finger" if finger else "hand", "actions": pointer}
         hand |= {"parameters": {"pointerType": "touch" if finger else "mouse"}}
         if not held:
@@ -95,8 +95,8 @@ class Page:
         ]
         return self.act(hand, {"type": "key", "id": "keys", "actions": keys})
 
-    def wheel(self, place: tuple[int, int], down: int) -> None:
-        scroll = {"type": "scroll", "x": place[0], "y": place[1], "deltaX": 0, "deltaY": down}
+    def wheel(self, position: tuple[int, int], down: int) -> None:
+        scroll = {"type": "scroll", "x": position[0], "y": position[1], "deltaX": 0, "deltaY": down}
         self.act({"type": "wheel", "id": "wheel", "actions": [scroll]})
 
     def two_fingers(self, *paths: list[tuple[int, int]]) -> None:
@@ -104,7 +104,7 @@ class Page:
         sources = []
         for number, path in enumerate(paths):
             actions: list[dict[str, Any]] = [move(path[0]), {"type": "pointerDown", "button": 0}]
-            actions += [*(move(place) for place in path[1:]), {"type": "pointerUp", "button": 0}]
+            actions += [*(move(position) for position in path[1:]), {"type": "pointerUp", "button": 0}]
             source = {"type": "pointer", "id": f"finger {number}", "actions": actions}
             sources.append(source | {"parameters": {"pointerType": "touch"}})
         self.act(*sources)
@@ -120,8 +120,8 @@ class Page:
             Path(folder, f"{name}.png").write_bytes(self.browser.picture())
 
 
-def move(place: tuple[int, int]) -> dict[str, Any]:
-    return {"type": "pointerMove", "duration": 0, "x": place[0], "y": place[1]}
+def move(position: tuple[int, int]) -> dict[str, Any]:
+    return {"type": "pointerMove", "duration": 0, "x": position[0], "y": position[1]}
 
 
 @pytest.fixture(scope="module")
@@ -369,8 +369,8 @@ def test_iterations_that_change_nothing_are_locked(wide: Browser, script: Path, 
     page.open()
     page.run(OPEN_ALL)
     row = "const row = document.querySelector('.is-steps'), range = row.querySelector('input');"
-    found = "range.disabled, range.ariaDescription, row.previousSibling.textContent"
-    assert page.run(f"{row} return [{found}]") == [True, MADE, MADE]
+    result = "range.disabled, range.ariaDescription, row.previousSibling.textContent"
+    assert page.run(f"{row} return [{result}]") == [True, MADE, MADE]
     page.run(f"{row} range.value = 5; range.oninput(); row.ondblclick()")
     page.at_rest()
     assert page.state(".steps") == {}
@@ -463,15 +463,15 @@ def test_the_address_holds_the_state_and_brings_it_back(page: Page):
 def test_hostile_texts_stay_texts(wide: Browser, script: Path, tmp_path: Path):
     bad = fake_page.HOSTILE
     data = fake_page.page(title=bad, name=bad, notes=[bad], presets=[{"name": bad, "values": {}}])
-    for one in data["sketches"][0]["shown"]:
-        one |= {
+    for item in data["sketches"][0]["shown"]:
+        item |= {
             "label": bad,
             "description": bad,
             "group": bad,
             "unit": bad,
-            "parts": [bad] * 2 if one["parts"] else [],
+            "parts": [bad] * 2 if item["parts"] else [],
         }
-        one["choices"] = [bad, bad] if one["choices"] else []
+        item["choices"] = [bad, bad] if item["choices"] else []
     data["sketches"][0]["textures"][0]["label"] = bad
     page = Page(wide, fake_page.write(script, tmp_path / "page.html", data).as_uri())
     page.open()
@@ -507,8 +507,10 @@ def test_why_rows_are_locked_is_said_once_in_each_group(wide: Browser, script: P
     main, mesh = ["# Main parameters", MADE, "A", "C"], ["# Mesh", MADE, "A", "# Points", "B", "C"]
     land = ["# Land", "D", "E", "Alone.", MADE, "F", "G", "# Points", MADE, "H", "I"]
     assert page.run(WHY)[: len(main + mesh + land)] == main + mesh + land
-    told = "[...document.querySelectorAll('.panel .locked [type=range]')].map((one) => one.ariaDescription)"
-    assert page.run(f"return {told}") == [MADE] * 5 + ["Alone."] + [MADE] * 4
+    message = (
+        "[...document.querySelectorAll('.panel .locked [type=range]')].map((one) => one.ariaDescription)"
+    )
+    assert page.run(f"return {message}") == [MADE] * 5 + ["Alone."] + [MADE] * 4
     page.run("const field = document.querySelector('[type=search]'); field.value = 'mesh'; field.oninput()")
     assert page.run(WHY) == ["# Mesh", MADE, "A", "B", "C"]
     page.keep("locked")

@@ -115,10 +115,10 @@ def test_a_page_makes_the_stages_of_other_tools_shaders(node: Node, tmp_path: Pa
 
 
 def leaves(nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    found = []
+    values = []
     for node in nodes:
-        found += leaves(node["body"]) if "body" in node else [node]
-    return found
+        values += leaves(node["body"]) if "body" in node else [node]
+    return values
 
 
 class Numbers:
@@ -133,12 +133,12 @@ class Numbers:
             size = self.plan.terrain.size if path == "#terrain" else self.plan.frame_size
             assert size
             return size
-        one = self.sketch["passes"][path]
-        if "own" in one:
-            return tuple(one["own"])
-        if "size" not in one:
-            return self.size(one["base"])
-        x, y = (self.whole(tree) for tree in one["size"])
+        sketch = self.sketch["passes"][path]
+        if "own" in sketch:
+            return tuple(sketch["own"])
+        if "size" not in sketch:
+            return self.size(sketch["base"])
+        x, y = (self.whole(tree) for tree in sketch["size"])
         return x, y
 
     def whole(self, tree: Any) -> int:
@@ -182,10 +182,10 @@ def test_sizes_and_counts_that_the_data_give_are_the_plans(name: str, written: W
     loops: dict[str, Any] = {}
 
     def look(nodes: list[dict[str, Any]]) -> None:
-        for one in nodes:
-            if "body" in one:
-                loops[one["path"]] = sketch["passes"][one["path"]]["repeat"]
-                look(one["body"])
+        for node in nodes:
+            if "body" in node:
+                loops[node["path"]] = sketch["passes"][node["path"]]["repeat"]
+                look(node["body"])
 
     look(sketch["nodes"])
     for step in plan.walk():
@@ -215,4 +215,4 @@ def test_values_are_those_that_the_engine_gives(name: str, written: Written):
             if parameter.widget.kind == "file":
                 assert value in images or step.kernel.kind == "source"
             else:
-                assert parameter.widget.given(value) == step.values[parameter.name]
+                assert parameter.widget.uniform_value(value) == step.values[parameter.name]

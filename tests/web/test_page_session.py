@@ -37,20 +37,20 @@ def run(node: Node, body: str, page: dict[str, Any] | None = None, steps: Any = 
 
 
 def test_a_value_reaches_every_leaf_that_its_row_stands_for(node: Node):
-    found = run(node, "session.set('height.level', 0.5); return leaves()")
-    assert found == {"height.level": 0.5, "height.inner.level": 0.5}
+    result = run(node, "session.set('height.level', 0.5); return leaves()")
+    assert result == {"height.level": 0.5, "height.inner.level": 0.5}
 
 
 def test_an_inner_row_may_differ_until_the_outer_is_set_again(node: Node):
-    found = run(
+    result = run(
         node,
         """session.set("height.level", 0.5); session.set("height.inner.level", 0.75);
         const before = leaves(); session.set("height.level", 1);
         return [before, leaves(), [...session.edits]]""",
     )
-    assert found[0] == {"height.level": 0.5, "height.inner.level": 0.75}
-    assert found[1] == {"height.level": 1, "height.inner.level": 1}
-    assert found[2] == [["height.level", 1]]
+    assert result[0] == {"height.level": 0.5, "height.inner.level": 0.75}
+    assert result[1] == {"height.level": 1, "height.inner.level": 1}
+    assert result[2] == [["height.level", 1]]
 
 
 def test_reset_takes_a_row_back_and_leaves_others(node: Node):
@@ -85,10 +85,10 @@ def test_undo_and_redo_go_through_every_step_and_a_drag_is_one(node: Node):
         const now = () => seen.push([leaves()["height.level"], leaves()["height.seed"], terrain().relief]);
         now(); while (session.undo()) now(); while (session.redo()) now();
         session.undo(); session.set("height.seed", 1); seen.push(session.redo()); return seen"""
-    found = run(node, body)
+    result = run(node, body)
     steps = [[0.8, 7, 900], [0.8, 7, 800], [0.8, None, 800], [None, None, 800]]
-    assert [[a, b, c] for a, b, c in found[:-1]] == steps + steps[-2::-1]
-    assert found[-1] is False, "a new change ends what was undone"
+    assert [[a, b, c] for a, b, c in result[:-1]] == steps + steps[-2::-1]
+    assert result[-1] is False, "a new change ends what was undone"
 
 
 def test_a_pause_ends_a_step(node: Node):
@@ -193,10 +193,10 @@ def test_what_is_copied_is_what_python_takes(node: Node, exporting: Engine, step
     for name, page in pages.items():
         words, toml, count = run(node, body, page)
         sketch = load(name)
-        given = dict(word.partition("=")[::2] for word in re.findall(r'--set "?([^" ]+)', words))
+        names = dict(word.partition("=")[::2] for word in re.findall(r'--set "?([^" ]+)', words))
         preset = tomllib.loads(toml)["preset"][0]
         assert preset["name"] == 'mine "1"'
-        for values in (given, preset["set"]):
+        for values in (names, preset["set"]):
             assert len(values) == len(set(values)) and (count == 0 or len(values) >= 1)
             made = sketch.with_values(values)
             assert made.relief == 123.5

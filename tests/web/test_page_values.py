@@ -55,20 +55,25 @@ def sketches() -> list[Sketch]:
 @cache
 def parameters() -> list[Known]:
     """Return each different parameter of the shipped sketches once, with its row of a page."""
-    found: dict[str, Known] = {}
+    result: dict[str, Known] = {}
     for sketch in sketches():
         for shown in shown_parameters(sketch):
             targets = tuple(target.path for target in resolve(sketch.graph, shown.path))
             data = row(shown, shown.parameter.default, targets)
-            one = shown.parameter
-            found[f"{one.name} {one.type} {one.widget} {one.step}"] = sketch, shown.path, one, data
-    return list(found.values())
+            parameter = shown.parameter
+            result[f"{parameter.name} {parameter.type} {parameter.widget} {parameter.step}"] = (
+                sketch,
+                shown.path,
+                parameter,
+                data,
+            )
+    return list(result.values())
 
 
 def numbers() -> list[Known]:
     """Return those that are written as numbers."""
     kinds = ("number", "slider", "log_slider", "angle", "divider")
-    return [known for known in parameters() if known[2].widget.kind in kinds]
+    return [parameter for parameter in parameters() if parameter[2].widget.kind in kinds]
 
 
 def some_value(parameter: Parameter) -> Value:
@@ -80,17 +85,17 @@ def some_value(parameter: Parameter) -> Value:
         return int(RANDOM.integers(len(parameter.widget.choices)))
     if kind == "direction":
         return tuple(RANDOM.uniform((0, -10), (360, 90)).round(1).tolist())
-    found = []
+    result = []
     for part in range(count):
         low, high = parameter.widget.ends(part)
         low, high = (0.0, 1.0) if kind in ("colour", "point") and low is None else (low, high)
         number = RANDOM.uniform(-40 if low is None else low, 40 if high is None else high)
         if is_whole(parameter.type):
             number = min(max(round(number), math.ceil(low or 0)), number if high is None else int(high))
-            found.append(int(number))
+            result.append(int(number))
         else:
-            found.append(snapped(parameter, tidied(number)))
-    return tuple(found) if count > 1 else found[0]
+            result.append(snapped(parameter, tidied(number)))
+    return tuple(result) if count > 1 else result[0]
 
 
 def test_there_are_parameters_of_every_widget():
@@ -124,9 +129,9 @@ def test_numbers_are_written_and_snapped_as_in_the_window(node: Node):
         return asked.map(([one, number, any]) => [
             written(one, number) + unitOf(one), decimals(one), unitOf(one), snapped(one, any)]);
     }"""
-    for (data, _, _), found, wanted in zip(asked, node.run(script, asked), expected, strict=True):
+    for (data, _, _), result, target in zip(asked, node.run(script, asked), expected, strict=True):
         free = data["ranges"][0][0] is None  # without a range the window writes as many digits as there are
-        assert found[free:] == wanted[free:], data["path"]
+        assert result[free:] == target[free:], data["path"]
 
 
 def test_a_slider_reaches_its_ends_and_comes_back(node: Node):
@@ -196,8 +201,8 @@ def test_values_as_text_are_what_python_reads(node: Node):
         sketch, path, parameter = of[id(data)]
         assert fits, (path, value)
         assert coerce(parameter, text) == value or data["widget"] == "colour", (path, text, value)
-        given = tomllib.loads(f"value = {toml}")["value"]
-        assert check_value(sketch, path, given) == coerce(parameter, text), (path, toml)
+        arguments = tomllib.loads(f"value = {toml}")["value"]
+        assert check_value(sketch, path, arguments) == coerce(parameter, text), (path, toml)
         there = np.asarray(read, float) if not isinstance(read, str) else read
         np.testing.assert_allclose(there, np.asarray(coerce(parameter, text), float), rtol=4e-16, atol=1e-16)
 
@@ -225,9 +230,9 @@ def test_a_dome_is_the_windows(node: Node):
     places = RANDOM.uniform(-1.3, 1.3, (100, 2)).tolist()
     script = "async (n, load) => { const { directionAt, dotOf } = await load('pads.js');"
     script += " return n.map(([x, y]) => [directionAt(x, y), dotOf(...directionAt(x, y))]); }"
-    for place, (direction, dot) in zip(places, node.run(script, places), strict=True):
-        np.testing.assert_allclose(direction, dome.direction_at(*place), rtol=1e-12, atol=1e-12)
-        np.testing.assert_allclose(dot, dome.dot_of(*dome.direction_at(*place)), rtol=1e-12, atol=1e-12)
+    for position, (direction, dot) in zip(places, node.run(script, places), strict=True):
+        np.testing.assert_allclose(direction, dome.direction_at(*position), rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(dot, dome.dot_of(*dome.direction_at(*position)), rtol=1e-12, atol=1e-12)
 
 
 def test_gestures_move_the_camera_as_the_mouse_does_in_the_window(node: Node):
@@ -242,7 +247,7 @@ def test_gestures_move_the_camera_as_the_mouse_does_in_the_window(node: Node):
         camera = Camera(azimuth, elevation, float(RANDOM.uniform(0, 9000)), None, field)
         eye, (across, down) = look(camera, extent, relief, size), RANDOM.uniform(-300, 300, 2).tolist()
         wheel = float(RANDOM.integers(-3, 4))
-        wanted = [
+        expected = [
             steered(camera, eye, Gesture(size[1], across, down, orbiting=True)),
             steered(camera, eye, Gesture(size[1], across, down, panning=True)),
             steered(camera, eye, Gesture(size[1], wheel=wheel)),
@@ -250,13 +255,13 @@ def test_gestures_move_the_camera_as_the_mouse_does_in_the_window(node: Node):
         here = {"azimuth": azimuth, "elevation": elevation, "distance": camera.distance, "target": None}
         here |= {"field_of_view": field}
         there = {"distance": eye.distance, "target": list(eye.target)}
-        found = node.run(script, here, there, across / size[1], down / size[1], wheel)
-        for mine, theirs in zip(found, wanted, strict=True):
+        result = node.run(script, here, there, across / size[1], down / size[1], wheel)
+        for mine, theirs in zip(result, expected, strict=True):
             for name in ("azimuth", "elevation", "field_of_view"):
                 assert mine[name] == pytest.approx(getattr(theirs, name), rel=1e-12)
-        assert found[1]["target"] == pytest.approx(wanted[1].target, rel=1e-9)
+        assert result[1]["target"] == pytest.approx(expected[1].target, rel=1e-9)
         if wheel:
-            assert found[2]["distance"] == pytest.approx(wanted[2].distance, rel=1e-12)
+            assert result[2]["distance"] == pytest.approx(expected[2].distance, rel=1e-12)
 
 
 def test_a_narrow_room_opens_the_view_as_in_the_window(node: Node):
@@ -275,8 +280,8 @@ def test_a_drag_with_ctrl_moves_a_sun_as_in_the_window(node: Node):
     drags = RANDOM.uniform((-10, -10, -3, -3), (370, 90, 3, 3), (50, 4)).tolist()
     script = "async (n, load) => { const { sunMoved } = await load('camera_moves.js');"
     script += " return n.map(([a, e, across, up]) => sunMoved([a, e], across, up)); }"
-    wanted = [list(turned((a, e), across, up)) for a, e, across, up in drags]
-    np.testing.assert_allclose(node.run(script, drags), wanted, atol=0.0100001)
+    expected = [list(turned((a, e), across, up)) for a, e, across, up in drags]
+    np.testing.assert_allclose(node.run(script, drags), expected, atol=0.0100001)
 
 
 def test_frames_of_time_are_the_windows(node: Node):
@@ -298,8 +303,8 @@ def test_main_parameters_have_the_windows_labels(node: Node):
     for sketch in sketches():
         if not sketch.main:
             continue
-        wanted = {item.path: item.title for item in Listing().main(Draft(sketch, sketch))}
+        expected = {item.path: item.title for item in Listing().main(Draft(sketch, sketch))}
         rows = shown_data(sketch, values_of(sketch), lambda path, targets: "")
-        assert node.run(script, rows) == [list(item) for item in wanted.items()], sketch.name
-        seen += len(wanted)
+        assert node.run(script, rows) == [list(item) for item in expected.items()], sketch.name
+        seen += len(expected)
     assert seen > 50

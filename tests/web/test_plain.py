@@ -161,11 +161,11 @@ def test_only_a_picture_that_the_camera_changes_is_steered(pages: Pages, tmp_pat
     (tmp_path / "eyes.frag").write_text(EYES, "utf-8")
     land = load("white_noise").with_values({"size": "33"})
     pages.begin(data := page_data([land, load("life"), load(tmp_path / "eyes.frag")], frame=SIZE))
-    found = []
-    for one in data["sketches"]:
-        pages.open(one)
-        pages.picture(one["name"])
-        found.append(pages.run("return figures[arguments[0]].looks", one["name"]))
-    assert found == [True, False, False]
+    result = []
+    for item in data["sketches"]:
+        pages.open(item)
+        pages.picture(item["name"])
+        result.append(pages.run("return figures[arguments[0]].looks", item["name"]))
+    assert result == [True, False, False]
     pages.picture(land.name, map={"path": "height", "output": "height", "values": {}})
     assert not pages.run("return figures[arguments[0]].looks", land.name)

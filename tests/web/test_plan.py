@@ -97,7 +97,7 @@ def exported(sketch: Sketch, shared: SharedData) -> tuple[dict[str, Any], dict[s
     if sketch.name not in _WRITTEN:
         _WRITTEN[sketch.name] = sketch_data(sketch, shared)
     data = _WRITTEN[sketch.name]
-    return data, {"images": {key: {"size": one["size"]} for key, one in shared.images.data.items()}}
+    return data, {"images": {key: {"size": data["size"]} for key, data in shared.images.data.items()}}
 
 
 def python(sketch: Sketch, settings: Settings) -> Plan | str:
@@ -118,7 +118,7 @@ def python(sketch: Sketch, settings: Settings) -> Plan | str:
 
 def flat(node: PlanNode) -> list[list[Any]]:
     if isinstance(node, LoopStep):
-        inside = [one for each in node.body for one in flat(each)]
+        inside = [item for each in node.body for item in flat(each)]
         return [["loop", node.path, node.repeat, node.whole, node.counts_frames], *inside]
     between = list(node.between) if node.between else None
     files = {p.name for p in node.kernel.parameters if p.widget.kind == "file"}
@@ -139,21 +139,21 @@ def test_every_shipped_sketch_is_planned_as_the_engine_plans_it(node: Node, shar
     assert isinstance(first, Plan)
     several = [Settings(), *(random_settings(chance, data, first) for _ in range(SETTINGS))]
     answers = node.run(ASK, data, images, [settings.state(data) for settings in several])
-    for settings, found in zip(several, answers, strict=True):
+    for settings, answer in zip(several, answers, strict=True):
         expected = python(sketch, settings)
         if isinstance(expected, str):
-            assert found == expected, settings
+            assert answer == expected, settings
             continue
-        assert not isinstance(found, str), (found, settings)
-        nodes = [one for each in expected.nodes for one in flat(each)]
-        assert [one[:2] for one in found["nodes"]] == [one[:2] for one in nodes]
-        for one, other in zip(found["nodes"], nodes, strict=True):
-            values = {name: one[-1][name] for name in other[-1]} if len(one) > 5 else one[-1]
-            assert [*one[:-1], values] == other, settings
+        assert not isinstance(answer, str), (answer, settings)
+        nodes = [item for each in expected.nodes for item in flat(each)]
+        assert [item[:2] for item in answer["nodes"]] == [node[:2] for node in nodes]
+        for left, other in zip(answer["nodes"], nodes, strict=True):
+            values = {name: left[-1][name] for name in other[-1]} if len(left) > 5 else left[-1]
+            assert [*left[:-1], values] == other, settings
         metres = [*expected.terrain.size, *expected.terrain.extent, expected.terrain.relief]
-        assert found["terrain"] == [*metres, expected.terrain.base_elevation]
+        assert answer["terrain"] == [*metres, expected.terrain.base_elevation]
         eye = [*expected.eye.position, *expected.eye.target, expected.eye.distance]
-        np.testing.assert_allclose(found["eye"], eye, rtol=1e-12, atol=1e-8)
+        np.testing.assert_allclose(answer["eye"], eye, rtol=1e-12, atol=1e-8)
 
 
 def given(plan: Plan, step: Step) -> dict[str, Any]:
@@ -174,7 +174,9 @@ def given(plan: Plan, step: Step) -> dict[str, Any]:
 
 def names_given(kernel: Kernel) -> list[str]:
     return [
-        name for name in kernel.given if name not in ("size", "iteration", "iterations", "stage", "until")
+        name
+        for name in kernel.engine_uniforms
+        if name not in ("size", "iteration", "iterations", "stage", "until")
     ]
 
 
@@ -185,9 +187,9 @@ def classes(keys: list[dict[str, dict[str, str]]]) -> list[list[tuple[str, int]]
         [
             (f"{kind} {path}", numbers.setdefault(f"{kind} {key}", len(numbers)))
             for kind in ("steps", "raw", "unfinished", "loops")
-            for path, key in sorted(found[kind].items())
+            for path, key in sorted(result[kind].items())
         ]
-        for found in keys
+        for result in keys
     ]
 
 
@@ -206,25 +208,25 @@ def neighbours(
     chance: random.Random, settings: Settings, data: dict[str, Any], first: Plan
 ) -> list[Settings]:
     """Return settings that differ from some in one thing each, then the same again."""
-    found = [replace(settings, values={path: value}) for path, value in list(settings.values.items())[:2]]
-    found += [replace(settings, time=settings.time + 0.25), replace(settings, frame=(40, 30))]
-    found += [replace(settings, camera=Camera(10.0)), replace(settings, steps={}), replace(settings)]
-    return [*found, replace(settings, steps=random_settings(chance, data, first).steps)]
+    result = [replace(settings, values={path: value}) for path, value in list(settings.values.items())[:2]]
+    result += [replace(settings, time=settings.time + 0.25), replace(settings, frame=(40, 30))]
+    result += [replace(settings, camera=Camera(10.0)), replace(settings, steps={}), replace(settings)]
+    return [*result, replace(settings, steps=random_settings(chance, data, first).steps)]
 
 
-def stale_as_in_the_engine(node: Node, shared: SharedData, sketch: Sketch, wanted: list[Settings]) -> Keys:
+def stale_as_in_the_engine(node: Node, shared: SharedData, sketch: Sketch, target: list[Settings]) -> Keys:
     """Compare what changes between plans for some settings; return the engine's keys of the first."""
     data, images = exported(sketch, shared)
     first = python(sketch, Settings())
     assert isinstance(first, Plan)
     several, plans = [], []
-    for each in wanted:
+    for each in target:
         if isinstance(plan := python(sketch, each), Plan):
             several.append(each)
             plans.append(plan)
     maker = KeyMaker()
     expected = [maker.keys_of(plan, lambda _: "fragment", partial(given, plan)) for plan in plans]
-    known = {
+    existing = {
         step.path: {
             "text": maker.text_of(step.kernel).digest,
             "code": step.kernel.source.code,
@@ -233,15 +235,15 @@ def stale_as_in_the_engine(node: Node, shared: SharedData, sketch: Sketch, wante
         }
         for step in first.walk()
     }
-    found = node.run(STALE, data, images, [each.state(data) for each in several], known)
-    assert classes(found["keys"]) == classes([hashes_of(keys) for keys in expected])
-    for keys, plan, answer in zip(expected, plans, found["keys"], strict=True):
+    result = node.run(STALE, data, images, [each.state(data) for each in several], existing)
+    assert classes(result["keys"]) == classes([hashes_of(keys) for keys in expected])
+    for keys, plan, answer in zip(expected, plans, result["keys"], strict=True):
         changes = [[node.path, sorted(keys.changes[id(node)])] for node in every_node(plan.nodes)]
         assert answer["changes"] == changes
     for step in first.walk():
         text = maker.text_of(step.kernel)
         parameters = {p.name for p in step.kernel.parameters}
-        assert found["used"][step.path] & parameters == text.used & parameters, step.path
+        assert result["used"][step.path] & parameters == text.used & parameters, step.path
     return expected[0]
 
 
@@ -330,16 +332,16 @@ INCREMENTAL = """async (sketch, shared, first, second, load) => {
 def test_a_moved_camera_leaves_every_step_as_it_is(node: Node, shared: SharedData):
     data, images = exported(load("jacksboro"), shared)
     moved = Settings(camera=Camera(10.0, 20.0)).state(data)
-    found = node.run(INCREMENTAL, data, images, Settings().state(data), moved)
-    assert found == {"other": [], "nodes": True}
+    result = node.run(INCREMENTAL, data, images, Settings().state(data), moved)
+    assert result == {"other": [], "nodes": True}
 
 
 def test_a_moved_slider_makes_only_the_steps_anew_that_have_its_value(node: Node, shared: SharedData):
     data, images = exported(load("jacksboro"), shared)
     row = next(row for row in data["shown"] if row["path"] == "colour.grass_below")
     moved = Settings(values={row["path"]: row["value"] + 1.0}).state(data)
-    found = node.run(INCREMENTAL, data, images, Settings().state(data), moved)
-    assert found["other"] == list(dict.fromkeys(path.rpartition(".")[0] for path in row["targets"]))
+    result = node.run(INCREMENTAL, data, images, Settings().state(data), moved)
+    assert result["other"] == list(dict.fromkeys(path.rpartition(".")[0] for path in row["targets"]))
 
 
 def test_another_size_makes_the_plan_anew(node: Node, shared: SharedData):
@@ -352,7 +354,9 @@ def test_another_size_makes_the_plan_anew(node: Node, shared: SharedData):
 def test_a_map_takes_the_place_of_the_view(node: Node, shared: SharedData, name: str, ref: str):
     sketch = load(name)
     data, images = exported(sketch, shared)
-    texture = next(one for one in data["textures"] if one["ref"].partition(":")[0].partition(".")[0] == ref)
+    texture = next(
+        item for item in data["textures"] if item["ref"].partition(":")[0].partition(".")[0] == ref
+    )
     state = Settings().state(data) | {"map": {**texture, "values": {"gain": 2.0}}}
     script = """async (sketch, shared, state, load) => {
         const { makePlan } = await load("planner.js"), { needed } = await load("plan_nodes.js");
@@ -445,12 +449,12 @@ def test_levels_are_planned_and_stale_as_in_the_engine(
         Settings(terrain={"size": (4, 4)}),
     ]
     answers = node.run(ASK, data, images, [settings.state(data) for settings in several])
-    for settings, found in zip(several, answers, strict=True):
+    for settings, answer in zip(several, answers, strict=True):
         expected = python(sketch, settings)
         if isinstance(expected, str):
-            assert found == expected
+            assert answer == expected
             continue
-        nodes = [one for each in expected.nodes for one in flat(each)]
-        assert [one[:-1] for one in found["nodes"]] == [one[:-1] for one in nodes], settings
+        nodes = [item for each in expected.nodes for item in flat(each)]
+        assert [item[:-1] for item in answer["nodes"]] == [node[:-1] for node in nodes], settings
     keys = stale_as_in_the_engine(node, shared, sketch, [s for s in several if not s.terrain])
     assert any("a" in changes for changes in keys.changes.values())

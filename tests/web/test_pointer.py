@@ -1,4 +1,4 @@
-"""Shaders of a page are told of the pointer what the window tells them: see ``Session.hover``."""
+"""Shaders of a page are notified of the pointer what the window tells them: see ``Session.hover``."""
 
 from __future__ import annotations
 
@@ -38,33 +38,33 @@ FOLLOWED = """async (box, size, playing, turns, load) => {
 def followed(node: Node, *turns: Any, playing: bool = False) -> list[dict[str, Any]]:
     """Return what each picture is told, after its events; a turn may say the ms since the one before."""
     said = [turn if isinstance(turn, dict) else {"events": turn} for turn in turns]
-    found = node.run(FOLLOWED, BOX, SIZE, playing, said)
-    assert isinstance(found, list)
-    return found
+    values = node.run(FOLLOWED, BOX, SIZE, playing, said)
+    assert isinstance(values, list)
+    return values
 
 
 def test_the_pointer_is_told_as_in_a_window(node: Node):
     chance, down, turns, expected = random.Random(7), False, [], []
     runner = SimpleNamespace(hover=(0.0, 0.0), drag=(0.0, 0.0, 0.0, 0.0))
     window: Any = SimpleNamespace(engine=SimpleNamespace(runner=runner), sketch=None)
-    place = (0.0, 0.0)
+    position = (0.0, 0.0)
     for _ in range(60):
         event = chance.choice(["pointermove", "pointerup" if down else "pointerdown", ""])
         if event:
             x, y = chance.randint(10, 110), chance.randint(20, 70)
-            place = (2.0 * (x - 10), 2.0 * (70 - y))
+            position = (2.0 * (x - 10), 2.0 * (70 - y))
             turns.append([(event, x, y)])
         else:
             turns.append([])
         held = down  # where it lets go, it has been moved before
         down = event == "pointerdown" or (down and event != "pointerup")
         if held and event == "pointerup":
-            Session.hover(window, place, pressed=True, clicked=False)
-        Session.hover(window, place, pressed=down, clicked=event == "pointerdown")
+            Session.hover(window, position, pressed=True, clicked=False)
+        Session.hover(window, position, pressed=down, clicked=event == "pointerdown")
         expected.append((runner.hover, runner.drag))
-    for told, (hover, drag) in zip(followed(node, *turns), expected, strict=True):
-        assert told["hover"] == pytest.approx(hover)
-        assert told.get("drag", [0.0] * 4) == pytest.approx(drag)
+    for message, (hover, drag) in zip(followed(node, *turns), expected, strict=True):
+        assert message["hover"] == pytest.approx(hover)
+        assert message.get("drag", [0.0] * 4) == pytest.approx(drag)
 
 
 def test_a_press_is_new_for_one_picture_which_asks_for_another(node: Node):
@@ -79,28 +79,28 @@ def test_a_press_is_new_for_one_picture_which_asks_for_another(node: Node):
 
 
 def test_a_pointer_that_was_never_pressed_hovers_only(node: Node):
-    [told] = followed(node, [("pointermove", 35, 70)])
-    assert told["hover"] == [50, 0] and told["changes"] == 1
-    assert "drag" not in told and "mouse" not in told
+    [message] = followed(node, [("pointermove", 35, 70)])
+    assert message["hover"] == [50, 0] and message["changes"] == 1
+    assert "drag" not in message and "mouse" not in message
 
 
 @each("other", [("pointerdown", 20, 30, 2), ("pointermove", 20, 30, 2), ("pointerup", 20, 30, 2)])
 def test_a_second_finger_changes_nothing(node: Node, other: tuple[Any, ...]):
-    pressed, told = followed(node, [("pointerdown", 60, 45)], [other])
-    assert told["changes"] == 0
-    assert told["drag"] == [*pressed["drag"][:3], -50] and told["hover"] == pressed["hover"]
+    pressed, message = followed(node, [("pointerdown", 60, 45)], [other])
+    assert message["changes"] == 0
+    assert message["drag"] == [*pressed["drag"][:3], -50] and message["hover"] == pressed["hover"]
 
 
 def test_the_right_button_presses_nothing(node: Node):
-    [told] = followed(node, [("pointerdown", 60, 45, 1, 2)])
-    assert told["changes"] == 0 and "drag" not in told
+    [message] = followed(node, [("pointerdown", 60, 45, 1, 2)])
+    assert message["changes"] == 0 and "drag" not in message
 
 
 def test_seconds_between_pictures_are_told_while_it_plays_but_for_pauses(node: Node):
     turns = [{"events": [], "after": after} for after in (5000, 20, 50, 3000, 10)]
-    told = [one.get("delta") for one in followed(node, *turns, playing=True)]
-    assert told == [None, pytest.approx(0.02), pytest.approx(0.05), None, pytest.approx(0.01)]
-    assert all("delta" not in one for one in followed(node, *turns))
+    message = [value.get("delta") for value in followed(node, *turns, playing=True)]
+    assert message == [None, pytest.approx(0.02), pytest.approx(0.05), None, pytest.approx(0.01)]
+    assert all("delta" not in value for value in followed(node, *turns))
 
 
 @each(("usual", "reads"), [([["iMouse", "drag"]], True), ([["t", "time"], ["m", "hover_share"]], True),

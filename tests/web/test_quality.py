@@ -26,33 +26,33 @@ MOTIONS = """async (motions, frames, load) => {
 
 def scales(node: Node, *motions: tuple[float, float], frames: int = 14) -> list[list[float]]:
     """Return the scale of each frame of each motion, and at rest after it."""
-    found = node.run(MOTIONS, motions, frames)
-    assert isinstance(found, list)
-    return found
+    values = node.run(MOTIONS, motions, frames)
+    assert isinstance(values, list)
+    return values
 
 
 def test_a_quick_picture_is_whole_though_its_first_frames_are_slow(node: Node) -> None:
-    [found] = scales(node, (40, 2))
-    assert found[-5:] == [1] * 5
+    [result] = scales(node, (40, 2))
+    assert result[-5:] == [1] * 5
 
 
 def test_a_slow_picture_is_small_from_its_second_frame_on(node: Node) -> None:
     """Not step by step, each slow in its turn; 450 ms of pixels are 60 at about a third of the sides."""
-    [found] = scales(node, (450, 0))
-    assert found[0] == 1 and all(scale <= 0.35 for scale in found[1:-1])
-    assert found[-1] == 1
+    [result] = scales(node, (450, 0))
+    assert result[0] == 1 and all(scale <= 0.35 for scale in result[1:-1])
+    assert result[-1] == 1
 
 
 @pytest.mark.parametrize("fixed", [100, 300])
 def test_where_pixels_are_not_what_takes_time_they_are_given_back(node: Node, fixed: float) -> None:
-    [found] = scales(node, (0, fixed))
-    assert found[-6:] == [1] * 6
+    [result] = scales(node, (0, fixed))
+    assert result[-6:] == [1] * 6
 
 
 def test_the_first_frame_at_a_size_decides_nothing(node: Node) -> None:
     """Half the sides would seem to gain nothing, if the making of their textures counted."""
-    [found] = scales(node, (90, 12))
-    assert found[-2] < 1
+    [result] = scales(node, (90, 12))
+    assert result[-2] < 1
 
 
 def test_another_motion_learns_anew_from_where_the_last_ended(node: Node) -> None:

@@ -77,15 +77,15 @@ def test_every_moment_shows_the_engines_texels(
         if kind == "video":
             playing["speed"] = chance.choice([1.0, -1.0, 2.0, 0.5])
         time = chance.randint(0, 300) / 60
-        found = node.call("recordings.js", "blobAt", texture, playing, time)
+        result = node.call("recordings.js", "blobAt", texture, playing, time)
         moment = registered.moment(values | playing, Now(time, LiveInputs()))
         [texels] = registered.make(values | playing, tuple(texture["size"]), moment).values()
-        assert bytes_of(page, found) == texels.tobytes(), (playing, time)
+        assert bytes_of(page, result) == texels.tobytes(), (playing, time)
 
 
 def test_a_long_film_is_cut_and_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     uneven_film(tmp_path / "f.mkv", [0, 40, 50, 120, 500, 510, 900])
-    monkeypatch.setattr(sources, "LONGEST", 0.3)
+    monkeypatch.setattr(sources, "MAX_SECONDS", 0.3)
     page = page_data([made(tmp_path, "video", "f.mkv", False)])
     [texture] = leaf(page)["data"]
     assert texture["times"] == pytest.approx([0, 0.04, 0.05, 0.12])

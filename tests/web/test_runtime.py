@@ -8,7 +8,7 @@ from pathlib import Path
 
 from .node import RUNTIME
 
-LONGEST, WIDEST = 500, 110
+MAX_LINES, MAX_COLUMNS = 500, 110
 IMPORT = re.compile(r'^(?:import |(?:import|export)\b[^;"]*?\bfrom )"([^"]+)";', re.MULTILINE)
 # What makes code or markup of a text: a page's policy forbids the first, and texts of sketches are anyone's.
 UNSAFE = re.compile(
@@ -32,25 +32,25 @@ def test_a_module_begins_with_what_it_does():
 
 
 def test_a_module_is_no_longer_and_no_wider_than_it_should_be():
-    long = {name: text.count("\n") for name, text in modules().items() if text.count("\n") > LONGEST}
+    long = {name: text.count("\n") for name, text in modules().items() if text.count("\n") > MAX_LINES}
     wide = [
         f"{name}:{number}"
         for name, text in modules().items()
         for number, line in enumerate(text.split("\n"), 1)
-        if len(line) > WIDEST
+        if len(line) > MAX_COLUMNS
     ]
     assert not long and not wide
 
 
 def test_a_module_depends_on_other_modules_alone_and_never_on_itself():
-    found = {
+    names = {
         name: [Path(path).name for path in IMPORT.findall(without_comments(text))]
         for name, text in modules().items()
     }
-    assert sum(map(len, found.values())) > 10
+    assert sum(map(len, names.values())) > 10
     for name, text in modules().items():
         assert all(path.startswith("./") for path in IMPORT.findall(without_comments(text))), name
-    left = dict(found)
+    left = dict(names)
     while free := [name for name, imports in left.items() if not left.keys() & set(imports)]:
         for name in free:
             del left[name]

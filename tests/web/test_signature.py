@@ -75,12 +75,12 @@ def test_texts_are_refused_where_python_refuses_them(node: Node, tmp_path: Path)
         assert kernel
         try:
             node.run(SCRIPT, given(kernel), path.read_text())
-            found = None
+            result = None
         except NodeError as error:
             assert error.details["file"] == "./a.glsl"
-            found = error.message, error.details["line"]
-        assert found == refusal(kernel), text
-        refused += found is not None
+            result = error.message, error.details["line"]
+        assert result == refusal(kernel), text
+        refused += result is not None
     assert refused > 12 and len(TEXTS) - refused > 4
 
 

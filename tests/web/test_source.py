@@ -38,9 +38,9 @@ def lines_of(source: SourceText, folder: Path, prefix: str = "") -> list[list[ob
 
 @pytest.mark.slow
 def test_every_program_of_the_library(node: Node):
-    found = node.run(MANY, [shared_files(GLSL), list(kernels()), {}])
-    assert len(found) > 120
-    for kernel, flat in zip(kernels().values(), found, strict=True):
+    result = node.run(MANY, [shared_files(GLSL), list(kernels()), {}])
+    assert len(result) > 120
+    for kernel, flat in zip(kernels().values(), result, strict=True):
         assert flat["lines"] == lines_of(kernel.source, GLSL), kernel.name
         assert flat["names"] == kernel.source.names, kernel.name
 
@@ -48,8 +48,8 @@ def test_every_program_of_the_library(node: Node):
 @pytest.mark.parametrize("name", ["constructor", "toString", "__proto__"])
 def test_a_name_that_javascript_gives_every_object_is_no_file(node: Node, name: str):
     shared = {"files": {"./a.glsl": f'\n#include "{name}"\n'}, "includes": {"./a.glsl": {}}}
-    (found,) = node.run(MANY, [shared, ["./a.glsl"], {}])
-    assert found == {"error": f"no file '{name}' to include", "file": "./a.glsl", "line": 2}
+    (result,) = node.run(MANY, [shared, ["./a.glsl"], {}])
+    assert result == {"error": f"no file '{name}' to include", "file": "./a.glsl", "line": 2}
 
 
 PARTS = [
@@ -76,8 +76,8 @@ PARTS = [
 
 def hostile(rng: np.random.Generator, lengths: tuple[int, int]) -> str:
     """Return a text of pieces that meet where their authors did not think of it."""
-    wanted = [p for p in PARTS if "include" not in p or rng.random() < 0.3]
-    return "".join(rng.choice(wanted) for _ in range(rng.integers(*lengths)))
+    expected = [p for p in PARTS if "include" not in p or rng.random() < 0.3]
+    return "".join(rng.choice(expected) for _ in range(rng.integers(*lengths)))
 
 
 @pytest.mark.slow
@@ -95,16 +95,16 @@ def test_random_texts_are_flattened_as_python_does_and_refused_where_python_refu
         except ShaderError as error:
             first = error.diagnostics[0]
             assert first.file
-            place = Path(first.file).resolve().relative_to(tmp_path.resolve()).as_posix()
+            path = Path(first.file).resolve().relative_to(tmp_path.resolve()).as_posix()
             message = first.message.replace(f"{tmp_path.resolve()}/", "./").partition("; did you mean")[0]
-            expected = [message, f"./{place}", first.line]
+            expected = [message, f"./{path}", first.line]
         texts = {
             f"./{p.relative_to(tmp_path).as_posix()}": p.read_bytes().decode()
             for p in tmp_path.rglob("*.glsl")
         }
-        [found] = node.run(MANY, [{"files": texts, "includes": {}}, ["./a.glsl"], {}])
-        kinds["error" if "error" in found else "lines"] += 1
-        kind = [found["error"], found["file"], found["line"]] if "error" in found else found["lines"]
+        [result] = node.run(MANY, [{"files": texts, "includes": {}}, ["./a.glsl"], {}])
+        kinds["error" if "error" in result else "lines"] += 1
+        kind = [result["error"], result["file"], result["line"]] if "error" in result else result["lines"]
         assert kind == expected, f"case {case}"
     assert min(kinds.values()) > 40
 
@@ -113,8 +113,8 @@ def test_line_ends_and_a_byte_order_mark_are_those_of_any_system(node: Node, tmp
     (tmp_path / "a.glsl").write_bytes(b"\xef\xbb\xbfint a;\r\nint b; // x\rint c;\n")
     expected = lines_of(read_source(tmp_path / "a.glsl", [tmp_path]), tmp_path, "./")
     text = (tmp_path / "a.glsl").read_bytes().decode()
-    [found] = node.run(MANY, [{"files": {"./a.glsl": text}, "includes": {}}, ["./a.glsl"], {}])
-    assert found["lines"] == expected
+    [result] = node.run(MANY, [{"files": {"./a.glsl": text}, "includes": {}}, ["./a.glsl"], {}])
+    assert result["lines"] == expected
     assert [line[0] for line in expected] == ["int a;", "int b;", "int c;", ""]
 
 

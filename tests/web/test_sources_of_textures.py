@@ -46,7 +46,7 @@ def test_the_engine_of_an_export_makes_a_source_once(
     engine.runs.clear()
     job = prepare(engine, sketch, tmp_path / "a.html", Form(techniques={"height": ("./two",)}))
     assert job.page is not None and len(job.page.data["sketches"]) == 2
-    [source] = {n["path"] for one in job.page.data["sketches"] for n in one["nodes"] if n.get("data")}
+    [source] = {n["path"] for item in job.page.data["sketches"] for n in item["nodes"] if n.get("data")}
     assert engine.runs[source] == 1
     run(engine, job)
     assert engine.runs[source] == 1

@@ -70,40 +70,40 @@ def written(node: Node, folder: Path, text: str, values: list[Any], camera: Came
     (folder / "sketch.toml").write_bytes(text.encode())
     sketch = load(folder)
     shown = page_data([sketch])["sketches"][0]["shown"]
-    known = {row["path"] for row in shown} | {"size", "relief"}
+    rows = {row["path"] for row in shown} | {"size", "relief"}
     pieces = sketch_pieces(text, sketch, lambda path: Path(path).relative_to(GLSL).as_posix())
     assert "".join(
         piece if isinstance(piece, str) else piece.get("was", piece.get("use", "")) for piece in pieces
     ).startswith(text.replace("\r\n", "\n"))
-    given = None if camera is None else {name: getattr(camera, name) for name in camera.__slots__}
-    found = node.run(FILL, pieces, [pair for pair in values if pair[0] in known], given, shown)
-    return {**found, "values": {path: value for path, value in values if path in known}}
+    value = None if camera is None else {name: getattr(camera, name) for name in camera.__slots__}
+    result = node.run(FILL, pieces, [pair for pair in values if pair[0] in rows], value, shown)
+    return {**result, "values": {path: value for path, value in values if path in rows}}
 
 
 @pytest.mark.parametrize("ends", ["\n", "\r\n"])
 @pytest.mark.parametrize("style", STYLES)
 def test_what_is_filled_in_is_what_the_sketch_says(node: Node, tmp_path: Path, style: str, ends: str):
     text = STYLES[style].replace("\n", ends)
-    found = written(node, tmp_path, text, VALUES, CAMERA)
-    assert found["left"] == [] and len(found["values"]) > 4
+    result = written(node, tmp_path, text, VALUES, CAMERA)
+    assert result["left"] == [] and len(result["values"]) > 4
     before = load(tmp_path)
-    (tmp_path / "sketch.toml").write_text(found["text"], encoding="utf-8")
+    (tmp_path / "sketch.toml").write_text(result["text"], encoding="utf-8")
     after = load(tmp_path)
     assert after.camera == CAMERA
-    given = {path: tuple(v) if isinstance(v, list) else v for path, v in found["values"].items()}
-    wanted = before.with_values(given)
-    assert (after.size, after.relief) == (wanted.size, wanted.relief)
-    for path, value in values_of(wanted).items():
+    arguments = {path: tuple(v) if isinstance(v, list) else v for path, v in result["values"].items()}
+    expected = before.with_values(arguments)
+    assert (after.size, after.relief) == (expected.size, expected.relief)
+    for path, value in values_of(expected).items():
         assert shortest(values_of(after)[path]) == shortest(value), path
     kept = [line for line in text.split(ends) if line.startswith("#") or "# " in line]
-    assert all(line.partition("#")[2] in found["text"] for line in kept), "comments stay"
+    assert all(line.partition("#")[2] in result["text"] for line in kept), "comments stay"
 
 
 @pytest.mark.parametrize("style", STYLES)
 def test_one_value_changes_no_other(node: Node, tmp_path: Path, style: str):
-    found = written(node, tmp_path, STYLES[style], [["height.seed", 5]], None)
+    result = written(node, tmp_path, STYLES[style], [["height.seed", 5]], None)
     before = load(tmp_path)
-    (tmp_path / "sketch.toml").write_text(found["text"], encoding="utf-8")
+    (tmp_path / "sketch.toml").write_text(result["text"], encoding="utf-8")
     assert values_of(load(tmp_path)) == values_of(before.with_values({"height.seed": 5}))
     assert load(tmp_path).camera == before.camera
 
@@ -113,7 +113,7 @@ def test_a_direction_set_by_its_angles_has_no_place_and_is_said(node: Node, tmp_
         '[[pass]]\nname = "light"\nuse = "lighting/ray_cast"\nset.sun.azimuth = 100\nset.sun.elevation = 20\n'
     )
     values = [["light.sun", [10.0, 30.0]]]
-    found = written(node, tmp_path, f"format = 1\n{PASS}{light}", values, None)
-    assert found["left"] == ["light.sun"]
-    (tmp_path / "sketch.toml").write_text(found["text"], encoding="utf-8")
+    result = written(node, tmp_path, f"format = 1\n{PASS}{light}", values, None)
+    assert result["left"] == ["light.sun"]
+    (tmp_path / "sketch.toml").write_text(result["text"], encoding="utf-8")
     assert values_of(load(tmp_path)) == values_of(load(tmp_path))

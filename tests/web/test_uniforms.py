@@ -30,14 +30,14 @@ def initial_of(parameter: Parameter) -> object:
 def test_every_parameter_of_the_library(node: Node):
     compared = 0
     for kernel in kernels().values():
-        found = declared(node, *(line.code for line in kernel.source.lines))
-        assert found.keys() == {*(p.name for p in kernel.parameters), *(i.name for i in kernel.inputs)}
+        result = declared(node, *(line.code for line in kernel.source.lines))
+        assert result.keys() == {*(p.name for p in kernel.parameters), *(i.name for i in kernel.inputs)}
         for parameter in kernel.parameters:
             if parameter.type != "sampler2D":
-                assert found[parameter.name] == initial_of(parameter), (kernel.name, parameter.name)
+                assert result[parameter.name] == initial_of(parameter), (kernel.name, parameter.name)
                 compared += 1
             else:
-                assert found[parameter.name] is None
+                assert result[parameter.name] is None
     assert compared > 500
 
 
@@ -63,8 +63,8 @@ def test_every_parameter_of_the_library(node: Node):
     ],
 )
 def test_a_literal(node: Node, code: str, value: object):
-    found = declared(node, code)["a"]
-    assert found == value and type(found) in (type(value), int, float)
+    result = declared(node, code)["a"]
+    assert result == value and type(result) in (type(value), int, float)
 
 
 @each(

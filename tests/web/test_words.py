@@ -34,8 +34,8 @@ BY_NAME = {
 
 @pytest.fixture(scope="module")
 def tables(node: Node) -> dict[str, dict[str, dict[str, str]]]:
-    given = "async (name, table, load) => (await load(name))[table]"
-    return {name: node.run(given, name, table) for name, table in TABLES.items()}
+    value = "async (name, table, load) => (await load(name))[table]"
+    return {name: node.run(value, name, table) for name, table in TABLES.items()}
 
 
 @pytest.mark.parametrize("name", TABLES)
@@ -50,25 +50,25 @@ def test_both_languages_have_the_same_words(name: str, tables):
 
 
 def test_no_two_parts_share_a_name(tables):
-    for one, other in combinations(tables.values(), 2):
-        assert not one["en"].keys() & other["en"].keys()
+    for first, other in combinations(tables.values(), 2):
+        assert not first["en"].keys() & other["en"].keys()
 
 
 def test_every_word_is_used_and_every_use_has_one(tables):
-    known = {key for table in tables.values() for key in table["en"]}
+    existing = {key for table in tables.values() for key in table["en"]}
     text = "\n".join(FILES.values())
     used = set(re.findall(r"\bwords\.([a-zA-Z]\w*)\b(?!\()", text)) - {"js", "length"}  # a file; a list
     for names in re.findall(r"\{ ([\w, ]+) \} = (?:\w+\.)*words;", text):
         used |= set(names.split(", "))
-    assert not used - known
+    assert not used - existing
     for name, keys in BY_NAME.items():
         assert not [key for key in keys if f'"{key}"' not in FILES[RUNTIME / name]], name
-    assert known - used == {key for keys in BY_NAME.values() for key in keys}
+    assert existing - used == {key for keys in BY_NAME.values() for key in keys}
 
 
 def test_the_words_of_a_language_are_those_of_its_tables(node: Node, tables):
     """Another language than these two has English ones."""
-    given = [tables["page_words.js"], tables["editor_words.js"]]
+    value = [tables["page_words.js"], tables["editor_words.js"]]
     for tag, language in (("fr", "fr"), ("fr-CA", "fr"), ("en", "en"), ("de", "en"), ("fro", "en")):
-        expected = {**given[0][language], **given[1][language]}
-        assert node.call("words.js", "wordsOf", tag, *given) == expected
+        expected = {**value[0][language], **value[1][language]}
+        assert node.call("words.js", "wordsOf", tag, *value) == expected

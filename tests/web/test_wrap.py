@@ -8,7 +8,7 @@ import pytest
 
 from playground.paths import GLSL
 from playground.shader.source import read_source
-from playground.shader.stage_recipe import Part, Recipe
+from playground.shader.stage_recipe import Recipe, StagePart
 from playground.shader.wrap import FRAGMENT, recipes_of
 from playground.web.stages import stage_data
 
@@ -20,9 +20,9 @@ from .texts import kernels, shared_files
 def made(node: Node, recipe: Recipe, folder: Path, file: str) -> dict[str, object]:
     script = """async (stage, shared, file, load) => (await load("wrap.js")).stageText(
       stage, (await load("source.js")).flatten(shared, file))"""
-    found = node.run(script, stage_data(recipe), shared_files(folder, "./"), file)
-    assert isinstance(found, dict)
-    return found
+    values = node.run(script, stage_data(recipe), shared_files(folder, "./"), file)
+    assert isinstance(values, dict)
+    return values
 
 
 @pytest.mark.slow
@@ -37,8 +37,8 @@ def test_every_program_of_the_library(node: Node):
         for recipe in recipes_of(kernel, FRAGMENT)[1].values()
     ]
     shared = shared_files(GLSL)
-    found = node.run(script, [(stage_data(recipe), name) for name, recipe in recipes], shared)
-    for (name, recipe), stage in zip(recipes, found, strict=True):
+    result = node.run(script, [(stage_data(recipe), name) for name, recipe in recipes], shared)
+    for (name, recipe), stage in zip(recipes, result, strict=True):
         text, first = recipe.make()
         assert stage == {"text": text, "first": first}, name
 
@@ -58,8 +58,8 @@ int after;
     "how",
     [
         {},
-        {"before": (Part("x"), Part("y\ny", ("after", "none")), Part("z", ("none",)))},
-        {"before": (Part("#version 330"),), "after": "int last;\n"},
+        {"before": (StagePart("x"), StagePart("y\ny", ("after", "none")), StagePart("z", ("none",)))},
+        {"before": (StagePart("#version 330"),), "after": "int last;\n"},
         {"without": "vertex"},
         {"without": "fragment"},
         {"replaced": (("texelFetch", "k_fetch_in"), ("after", "k_aft"))},

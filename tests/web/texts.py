@@ -22,10 +22,10 @@ def shared_files(folder: Path, prefix: str = "") -> dict[str, object]:
 @cache
 def kernels() -> dict[str, Kernel]:
     """Return every kernel and every draw of the library, by the name of its file."""
-    found = {}
+    result = {}
     for path in sorted(GLSL.rglob("*.glsl")):
         name = path.relative_to(GLSL).as_posix()
         kernel = parsed_kernel(name, path, [])
         if kernel and kernel.kind in ("kernel", "draw"):
-            found[name] = kernel
-    return found
+            result[name] = kernel
+    return result

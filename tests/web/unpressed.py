@@ -23,8 +23,8 @@ def unpressed(text: str) -> str:
     """Return the text that a pressed one holds."""
     data = undense(text)
     filters = [{"id": lzma.FILTER_LZMA1, "dict_size": 2**24, "lc": 3, "lp": 0, "pb": 0}]
-    found = lzma.LZMADecompressor(lzma.FORMAT_RAW, filters=filters).decompress(data[8:])
-    listed, _, coded = found[: int.from_bytes(data[4:8], "little")].partition(b"\0")
+    result = lzma.LZMADecompressor(lzma.FORMAT_RAW, filters=filters).decompress(data[8:])
+    listed, _, coded = result[: int.from_bytes(data[4:8], "little")].partition(b"\0")
     for code, word in re.findall(rb"([^A-Za-z])([A-Za-z]+)", listed):
         coded = coded.replace(code, word)
     return coded.decode()

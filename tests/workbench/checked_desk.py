@@ -14,7 +14,7 @@ from playground.errors import SandboxCrash
 from playground.live.drops import Drops
 from playground.sketch.assign import values_of
 from playground.workbench.autosave import Autosave, memory_of
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 
@@ -44,7 +44,7 @@ GOOD, BAD = SandboxReport(True), SandboxReport(False, SandboxCrash("the driver c
 LEVEL, ELEVATION = "height.level", "data.elevation"
 
 
-class Desk:
+class Harness:
     """Two sketches, "one" and "two", a session on the first, and its sandbox."""
 
     def __init__(self, folder: Path, engine: Engine) -> None:
@@ -64,16 +64,16 @@ class Desk:
         """Open a window on a sketch."""
         self.sandbox = FakeSandbox()
         memory = memory_of(self.folder / name / "sketch.toml", self.folder / "state")
-        found, _ = memory.read()
+        result, _ = memory.read()
         self.session = Session(
-            self.engine, self.folder / name, start=found.start, sandbox=self.sandbox, now=lambda: self.time
+            self.engine, self.folder / name, start=result.start, sandbox=self.sandbox, now=lambda: self.time
         )
         self.sessions.append(self.session)
         self.drafts = self.session.drafts
-        self.bench = Bench(
+        self.bench = Workbench(
             self.session, WindowControls(lambda: None), folder=self.folder, now=lambda: self.time
         )
-        self.autosave = Autosave(self.session, memory, found, lambda: self.time)
+        self.autosave = Autosave(self.session, memory, result, lambda: self.time)
         self.bench.commands.opens = self.autosave.open  # type: ignore
         self.drops = Drops(self.bench.commands)
         self.answer(GOOD)
@@ -147,18 +147,18 @@ class RandomPlayer:
 
     acts: list[Callable[[], object]]
 
-    def __init__(self, desk: Desk, seed: int) -> None:
-        self.desk, self.random, self.done = desk, random.Random(seed), list[str]()
+    def __init__(self, harness: Harness, seed: int) -> None:
+        self.harness, self.random, self.done = harness, random.Random(seed), list[str]()
 
     def play(self, count: int) -> None:
         for _ in range(count):
             act = self.random.choice(self.acts)
             act()
-            self.desk.bench.undo.record()
+            self.harness.bench.undo.record()
             self.done.append(act.__name__)
 
     def pass_check(self) -> None:
-        self.desk.answer(GOOD)
+        self.harness.answer(GOOD)
 
     def fail_check(self) -> None:
-        self.desk.answer(BAD)
+        self.harness.answer(BAD)

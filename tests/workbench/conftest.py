@@ -9,12 +9,12 @@ import pytest
 
 from playground.engine.engine import Engine
 
-from .checked_desk import Desk
+from .checked_desk import Harness
 
 
 @pytest.fixture
-def desk(tmp_path: Path, any_engine: Engine) -> Iterator[Desk]:
-    made = Desk(tmp_path, any_engine)
+def harness(tmp_path: Path, any_engine: Engine) -> Iterator[Harness]:
+    made = Harness(tmp_path, any_engine)
     yield made
     made.close()
     for session in made.sessions:

@@ -56,14 +56,14 @@ def test_a_jump_shows_how_far_it_came_and_ends_at_the_same_picture(slow):
         if slow.catch_up.behind is None:
             break
         done.append(slow.catch_up.behind)
-        assert not slow.rests
+        assert not slow.is_idle
         assert len(done) < 100
     assert done == [(number, 61) for number in range(5, 61, 4)], "each piece goes on from the last"
     assert engine.runs["count"] - before <= 60 + 2 * len(done), "a picture on the way is one frame at most"
     assert slow.clock.time == 1.0
-    found = slow.read().array
+    array = slow.read().array
     with Engine(engine.ctx) as cold:
-        np.testing.assert_array_equal(found, cold.render(slow.sketch, size=SIZE, time=1.0).array)
+        np.testing.assert_array_equal(array, cold.render(slow.sketch, size=SIZE, time=1.0).array)
 
 
 def test_the_clock_waits_while_the_picture_is_behind(slow):
@@ -81,10 +81,10 @@ def test_the_clock_waits_while_the_picture_is_behind(slow):
 def test_a_picture_that_is_read_is_that_of_its_time(slow):
     slow.clock.time = 1.0
     slow.frame(SIZE)
-    found = slow.read()
+    result = slow.read()
     assert slow.catch_up.behind is None
-    assert found.array[0, 0, 0] > 0
-    np.testing.assert_array_equal(found.array, slow.engine.render(slow.sketch, size=SIZE, time=1.0).array)
+    assert result.array[0, 0, 0] > 0
+    np.testing.assert_array_equal(result.array, slow.engine.render(slow.sketch, size=SIZE, time=1.0).array)
 
 
 def test_a_save_at_a_late_time_shows_how_far_it_came_as_well(slow):
@@ -110,7 +110,7 @@ def test_an_engine_without_patience_runs_to_the_end(any_engine, session):
     any_engine.options.patience = -1.0
     with pytest.raises(Unfinished) as stopped:
         any_engine.draw(session.sketch, size=SIZE, time=2.0)
-    assert stopped.value.wanted == 121
+    assert stopped.value.total == 121
     any_engine.options.patience = None
     assert any_engine.draw(session.sketch, size=SIZE, time=2.0) is not None
 

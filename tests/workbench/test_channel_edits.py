@@ -12,7 +12,7 @@ from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.sketch.assign import values_of
 from playground.workbench.autosave import Autosave, memory_of
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.channels import channels
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
@@ -40,10 +40,12 @@ class Window:
     def __init__(self, engine: Engine, path: Path, folder: Path) -> None:
         self.time = 0.0
         self.memory = memory_of(path, folder / "state")
-        found, _ = self.memory.read()
-        self.session = Session(engine, path, start=found.start, now=lambda: self.time)
-        self.bench = Bench(self.session, WindowControls(lambda: None), folder=folder, now=lambda: self.time)
-        self.autosave = Autosave(self.session, self.memory, found, lambda: self.time)
+        result, _ = self.memory.read()
+        self.session = Session(engine, path, start=result.start, now=lambda: self.time)
+        self.bench = Workbench(
+            self.session, WindowControls(lambda: None), folder=folder, now=lambda: self.time
+        )
+        self.autosave = Autosave(self.session, self.memory, result, lambda: self.time)
         self.bench.commands.opens = self.autosave.open
         self.said: list[str] = []
         self.frame()

@@ -109,10 +109,10 @@ def test_a_path_with_blanks_is_one_program() -> None:
     path = r"C:\Program Files\Notepad++\notepad++.exe"
     editor, _ = find_editor({"VISUAL": path}, lambda name: name if name == path else None, "win32")
     assert editor is not None and editor.command(FILE, 2, 1) == [path, "-n2", "-c1", str(FILE)]
-    found, _ = find_editor(
+    result, _ = find_editor(
         {"ProgramFiles": r"C:\Program Files"}, lambda name: name if name.endswith("++.exe") else None, "win32"
     )
-    assert found is not None and found.name == "notepad++"
+    assert result is not None and result.name == "notepad++"
 
 
 def ended(opener: Opener) -> None:

@@ -180,8 +180,8 @@ def test_what_is_locked_stays_over_any_change_of_the_files(folder: Path) -> None
     change(folder / "terrain.glsl", "level = 0.5;", "level = 0.125;")
     change(folder / "sketch.toml", "other = 0.25", "other = 0.3")
     draft, notes = reload_draft(old, load(folder))
-    found = values_of(draft.sketch)
-    assert (found["height.level"], found["height.other"]) == (0.5, 0.75) and notes == []
+    values = values_of(draft.sketch)
+    assert (values["height.level"], values["height.other"]) == (0.5, 0.75) and notes == []
 
 
 def test_an_edit_is_taken_back_by_any_name_of_its_parameter(folder: Path) -> None:
@@ -226,8 +226,8 @@ def test_a_technique_chosen_by_hand_stays_until_the_file_chooses(folder: Path) -
     stays, _ = reload_draft(chosen, replace(sketch, title="another"))
     assert stays.sketch.graph.find("height").use == "generation/diamond_square"
     change(folder / "sketch.toml", "./terrain", "./other")
-    given, notes = reload_draft(chosen, load(folder))
-    assert given.sketch.graph.find("height").use == "./other" and "gave way" in notes[0]
+    value, notes = reload_draft(chosen, load(folder))
+    assert value.sketch.graph.find("height").use == "./other" and "gave way" in notes[0]
 
 
 def test_choosing_what_the_file_says_is_no_edit(folder: Path) -> None:

@@ -12,418 +12,425 @@ from playground.sketch.model import Camera
 from playground.workbench.edits import Edits
 from playground.workbench.inspect.compare import Compare
 
-from .checked_desk import ADD, BAD, ELEVATION, GOOD, KERNEL, LEVEL, Desk
+from .checked_desk import ADD, BAD, ELEVATION, GOOD, KERNEL, LEVEL, Harness
 
 # ── another sketch is being opened ───────────────────────────────────────────
 
 
 @pytest.mark.parametrize("how", ["folder", "file"])
-def test_a_dropped_sketch_has_its_remembered_edits(desk: Desk, how: str) -> None:
-    desk.drafts.set(LEVEL, 0.5)
-    desk.frame()
-    dropped = desk.folder / "two"
-    desk.drops.take([dropped if how == "folder" else dropped / "sketch.toml"])
-    desk.answer(GOOD)
-    assert (desk.name, desk.level) == ("two", 0.25)
-    desk.drafts.set(LEVEL, 0.75)
-    desk.frame()
-    desk.drops.take([desk.folder / "one"])
-    desk.answer(GOOD)
-    assert (desk.name, desk.level) == ("one", 0.5)
-    desk.close()
+def test_a_dropped_sketch_has_its_remembered_edits(harness: Harness, how: str) -> None:
+    harness.drafts.set(LEVEL, 0.5)
+    harness.frame()
+    dropped = harness.folder / "two"
+    harness.drops.take([dropped if how == "folder" else dropped / "sketch.toml"])
+    harness.answer(GOOD)
+    assert (harness.name, harness.level) == ("two", 0.25)
+    harness.drafts.set(LEVEL, 0.75)
+    harness.frame()
+    harness.drops.take([harness.folder / "one"])
+    harness.answer(GOOD)
+    assert (harness.name, harness.level) == ("one", 0.5)
+    harness.close()
     for name, level in (("one", 0.5), ("two", 0.75)):
-        desk.start(name)
-        assert desk.level == level
-        desk.close()
+        harness.start(name)
+        assert harness.level == level
+        harness.close()
 
 
-def test_an_edit_belongs_to_the_sketch_that_is_shown(desk: Desk) -> None:
-    desk.bench.commands.open(desk.folder / "two")
-    assert desk.drafts.testing and desk.name == "one"
-    desk.drafts.set(LEVEL, 0.5)
-    desk.drafts.set_camera(Camera(azimuth=3.0))
-    desk.drafts.lock(LEVEL, True)
-    desk.frame()
-    assert desk.level == 0.5
-    desk.answer(GOOD)
-    assert (desk.name, desk.level) == ("two", 0.25) and desk.session.shown is not None
-    assert desk.session.shown.sketch == desk.session.shown.file
-    desk.bench.undo.undo()
-    assert "nothing to undo" in desk.messages and desk.level == 0.25
-    desk.close()
-    desk.start("one")
-    assert desk.level == 0.5 and desk.session.shown is not None
-    assert desk.session.shown.edits.locked == (LEVEL,)
+def test_an_edit_belongs_to_the_sketch_that_is_shown(harness: Harness) -> None:
+    harness.bench.commands.open(harness.folder / "two")
+    assert harness.drafts.testing and harness.name == "one"
+    harness.drafts.set(LEVEL, 0.5)
+    harness.drafts.set_camera(Camera(azimuth=3.0))
+    harness.drafts.lock(LEVEL, True)
+    harness.frame()
+    assert harness.level == 0.5
+    harness.answer(GOOD)
+    assert (harness.name, harness.level) == ("two", 0.25) and harness.session.shown is not None
+    assert harness.session.shown.sketch == harness.session.shown.file
+    harness.bench.undo.undo()
+    assert "nothing to undo" in harness.messages and harness.level == 0.25
+    harness.close()
+    harness.start("one")
+    assert harness.level == 0.5 and harness.session.shown is not None
+    assert harness.session.shown.edits.locked == (LEVEL,)
 
 
-def test_an_edit_of_the_frame_in_which_the_other_is_shown_is_remembered(desk: Desk) -> None:
-    desk.bench.commands.open(desk.folder / "two")
-    desk.frame()
-    desk.drafts.set(LEVEL, 0.5)
-    desk.session.stop_at("height", 2)
-    desk.answer(GOOD)
-    assert (desk.name, desk.level) == ("two", 0.25)
-    desk.close()
-    desk.start("one")
-    assert desk.level == 0.5 and desk.session.view.steps == {"height": 2}
+def test_an_edit_of_the_frame_in_which_the_other_is_shown_is_remembered(harness: Harness) -> None:
+    harness.bench.commands.open(harness.folder / "two")
+    harness.frame()
+    harness.drafts.set(LEVEL, 0.5)
+    harness.session.stop_at("height", 2)
+    harness.answer(GOOD)
+    assert (harness.name, harness.level) == ("two", 0.25)
+    harness.close()
+    harness.start("one")
+    assert harness.level == 0.5 and harness.session.view.steps == {"height": 2}
 
 
-def test_to_stay_restores_the_map_the_stopped_repeats_and_the_clock(desk: Desk) -> None:
-    desk.session.stop_at("height", 2)
-    desk.session.show("height:height")
-    desk.session.clock.time, desk.session.clock.playing = 3.0, False
-    desk.frame()
-    desk.bench.commands.open(desk.folder / "two")
-    desk.answer(BAD)
-    desk.bench.commands.open(desk.folder / "one")
-    desk.answer(GOOD)
-    view, clock = desk.session.view, desk.session.clock
-    assert desk.name == "one" and view.steps == {"height": 2}
+def test_to_stay_restores_the_map_the_stopped_repeats_and_the_clock(harness: Harness) -> None:
+    harness.session.stop_at("height", 2)
+    harness.session.show("height:height")
+    harness.session.clock.time, harness.session.clock.playing = 3.0, False
+    harness.frame()
+    harness.bench.commands.open(harness.folder / "two")
+    harness.answer(BAD)
+    harness.bench.commands.open(harness.folder / "one")
+    harness.answer(GOOD)
+    view, clock = harness.session.view, harness.session.clock
+    assert harness.name == "one" and view.steps == {"height": 2}
     assert view.map is not None and view.map.ref == "height:height"
     assert (clock.time, clock.playing) == (3.0, False)
 
 
-def test_an_opening_that_fails_leaves_the_sketch_its_edits_and_its_undo(desk: Desk) -> None:
-    desk.session.stop_at("height", 2)
-    desk.drafts.set(LEVEL, 0.5)
-    desk.frame()
-    desk.write("two/hills.glsl", KERNEL.replace("level *", "levle *"))
-    desk.bench.commands.open(desk.folder / "two")
-    desk.answer(BAD)
-    assert "driver crashed" in str(desk.session.error) and (desk.name, desk.level) == ("one", 0.5)
-    assert desk.session.view.steps == {"height": 2}
-    desk.drafts.set(LEVEL, 0.75)
-    desk.frame()
-    desk.bench.undo.undo()
-    desk.frame()
-    assert desk.level == 0.5
-    desk.bench.undo.undo()
-    desk.frame()
-    assert desk.level == 0.25
-    desk.drafts.set(LEVEL, 0.625)
-    desk.frame()
-    desk.save("levle", "level", "two/hills.glsl")
-    desk.answer(GOOD)
-    assert (desk.name, desk.level, desk.session.view.steps) == ("two", 0.25, {})
-    desk.close()
-    desk.start("one")
-    assert desk.level == 0.625
+def test_an_opening_that_fails_leaves_the_sketch_its_edits_and_its_undo(harness: Harness) -> None:
+    harness.session.stop_at("height", 2)
+    harness.drafts.set(LEVEL, 0.5)
+    harness.frame()
+    harness.write("two/hills.glsl", KERNEL.replace("level *", "levle *"))
+    harness.bench.commands.open(harness.folder / "two")
+    harness.answer(BAD)
+    assert "driver crashed" in str(harness.session.error) and (harness.name, harness.level) == ("one", 0.5)
+    assert harness.session.view.steps == {"height": 2}
+    harness.drafts.set(LEVEL, 0.75)
+    harness.frame()
+    harness.bench.undo.undo()
+    harness.frame()
+    assert harness.level == 0.5
+    harness.bench.undo.undo()
+    harness.frame()
+    assert harness.level == 0.25
+    harness.drafts.set(LEVEL, 0.625)
+    harness.frame()
+    harness.save("levle", "level", "two/hills.glsl")
+    harness.answer(GOOD)
+    assert (harness.name, harness.level, harness.session.view.steps) == ("two", 0.25, {})
+    harness.close()
+    harness.start("one")
+    assert harness.level == 0.625
 
 
-def test_a_sketch_that_does_not_draw_leaves_the_view_of_the_one_shown(any_engine: Engine, desk: Desk) -> None:
-    desk.session.stop_at("height", 2)
-    desk.frame()
-    desk.write("two/hills.glsl", KERNEL.replace("level *", "levle *"))
-    desk.bench.commands.open(desk.folder / "two")
-    desk.answer(GOOD)  # the sandbox has no objection, the driver of this process has one
-    assert desk.session.error is not None and desk.name == "one"
-    assert desk.session.view.steps == {"height": 2}
+def test_a_sketch_that_does_not_draw_leaves_the_view_of_the_one_shown(
+    any_engine: Engine, harness: Harness
+) -> None:
+    harness.session.stop_at("height", 2)
+    harness.frame()
+    harness.write("two/hills.glsl", KERNEL.replace("level *", "levle *"))
+    harness.bench.commands.open(harness.folder / "two")
+    harness.answer(GOOD)  # the sandbox has no objection, the driver of this process has one
+    assert harness.session.error is not None and harness.name == "one"
+    assert harness.session.view.steps == {"height": 2}
 
 
-def test_a_path_without_a_sketch_changes_nothing(desk: Desk) -> None:
-    desk.session.stop_at("height", 2)
-    desk.session.clock.time = 3.0
-    desk.drafts.set(LEVEL, 0.5)
-    desk.frame()
-    desk.bench.commands.open(desk.folder / "none.toml")
-    desk.frame()
-    assert "there is no file" in desk.messages and desk.session.path == desk.folder / "one/sketch.toml"
-    assert desk.session.view.steps == {"height": 2} and desk.session.clock.time == 3.0
-    desk.bench.undo.undo()
-    desk.frame()
-    assert desk.level == 0.25
+def test_a_path_without_a_sketch_changes_nothing(harness: Harness) -> None:
+    harness.session.stop_at("height", 2)
+    harness.session.clock.time = 3.0
+    harness.drafts.set(LEVEL, 0.5)
+    harness.frame()
+    harness.bench.commands.open(harness.folder / "none.toml")
+    harness.frame()
+    assert (
+        "there is no file" in harness.messages and harness.session.path == harness.folder / "one/sketch.toml"
+    )
+    assert harness.session.view.steps == {"height": 2} and harness.session.clock.time == 3.0
+    harness.bench.undo.undo()
+    harness.frame()
+    assert harness.level == 0.25
 
 
-def test_the_sketch_that_is_shown_is_opened_again_with_its_edits_and_its_undo(desk: Desk) -> None:
-    desk.drafts.set(LEVEL, 0.5)
-    desk.frame()
-    desk.bench.commands.open(desk.folder / "two")
-    desk.bench.commands.open(desk.folder / "one")
-    desk.drafts.set(LEVEL, 0.75)
-    desk.frame()
-    desk.answer(GOOD)
-    assert (desk.name, desk.level, desk.session.path.parent.name) == ("one", 0.75, "one")
+def test_the_sketch_that_is_shown_is_opened_again_with_its_edits_and_its_undo(harness: Harness) -> None:
+    harness.drafts.set(LEVEL, 0.5)
+    harness.frame()
+    harness.bench.commands.open(harness.folder / "two")
+    harness.bench.commands.open(harness.folder / "one")
+    harness.drafts.set(LEVEL, 0.75)
+    harness.frame()
+    harness.answer(GOOD)
+    assert (harness.name, harness.level, harness.session.path.parent.name) == ("one", 0.75, "one")
     for level in (0.5, 0.25):
-        desk.bench.undo.undo()
-        desk.frame()
-        assert desk.level == level
+        harness.bench.undo.undo()
+        harness.frame()
+        assert harness.level == level
 
 
-def test_what_needs_a_check_waits_until_the_other_sketch_is_there(desk: Desk) -> None:
-    desk.drafts.choose("height", "./dunes")
-    desk.answer(GOOD)
-    desk.bench.commands.open(desk.folder / "two")
-    desk.drafts.choose("height", "generation/white_noise")
-    assert "height: generation/white_noise is not taken" in desk.messages and "two" in desk.messages
-    desk.drafts.set(ELEVATION, desk.file("b.npy"))
-    assert "data.elevation: b.npy is not taken" in desk.messages
-    desk.bench.undo.undo()
-    assert "height: what the file says is not taken" in desk.messages and desk.technique == "./dunes"
-    assert desk.bench.undo.history.done == 1
-    desk.answer(GOOD)
-    assert (desk.name, desk.technique, desk.elevation) == ("two", "./hills", "a.npy")
-    assert desk.session.error is None
+def test_what_needs_a_check_waits_until_the_other_sketch_is_there(harness: Harness) -> None:
+    harness.drafts.choose("height", "./dunes")
+    harness.answer(GOOD)
+    harness.bench.commands.open(harness.folder / "two")
+    harness.drafts.choose("height", "generation/white_noise")
+    assert "height: generation/white_noise is not taken" in harness.messages and "two" in harness.messages
+    harness.drafts.set(ELEVATION, harness.file("b.npy"))
+    assert "data.elevation: b.npy is not taken" in harness.messages
+    harness.bench.undo.undo()
+    assert "height: what the file says is not taken" in harness.messages and harness.technique == "./dunes"
+    assert harness.bench.undo.history.done == 1
+    harness.answer(GOOD)
+    assert (harness.name, harness.technique, harness.elevation) == ("two", "./hills", "a.npy")
+    assert harness.session.error is None
 
 
-def test_no_keyframe_is_written_while_another_sketch_is_opened(desk: Desk) -> None:
-    desk.drafts.set(LEVEL, 0.5)
-    desk.frame()
-    before = (desk.folder / "one/sketch.toml").read_bytes()
-    desk.bench.commands.open(desk.folder / "two")
-    assert not desk.bench.keyframes.add_here([LEVEL], camera=False)
-    assert "two" in desk.messages and (desk.folder / "one/sketch.toml").read_bytes() == before
-    assert desk.level == 0.5
-    desk.answer(GOOD)
-    assert (desk.name, desk.level) == ("two", 0.25)
+def test_no_keyframe_is_written_while_another_sketch_is_opened(harness: Harness) -> None:
+    harness.drafts.set(LEVEL, 0.5)
+    harness.frame()
+    before = (harness.folder / "one/sketch.toml").read_bytes()
+    harness.bench.commands.open(harness.folder / "two")
+    assert not harness.bench.keyframes.add_here([LEVEL], camera=False)
+    assert "two" in harness.messages and (harness.folder / "one/sketch.toml").read_bytes() == before
+    assert harness.level == 0.5
+    harness.answer(GOOD)
+    assert (harness.name, harness.level) == ("two", 0.25)
 
 
-def test_nothing_is_saved_while_another_sketch_does_not_open_and_no_edit_is_lost(desk: Desk) -> None:
-    before = (desk.folder / "one/sketch.toml").read_bytes()
-    desk.write("two/sketch.toml", "format = 1\n[view")
-    desk.bench.commands.open(desk.folder / "two")
+def test_nothing_is_saved_while_another_sketch_does_not_open_and_no_edit_is_lost(harness: Harness) -> None:
+    before = (harness.folder / "one/sketch.toml").read_bytes()
+    harness.write("two/sketch.toml", "format = 1\n[view")
+    harness.bench.commands.open(harness.folder / "two")
     for level in (0.5, 0.75):
-        desk.drafts.set(LEVEL, level)
-        desk.frame()
-        desk.bench.commands.save_values()
-        desk.frame()
-    assert "sketch.toml is not saved while" in desk.messages and "save a copy" in desk.messages
-    assert (desk.folder / "one/sketch.toml").read_bytes() == before
-    desk.bench.commands.open(desk.folder / "one")
-    desk.answer(GOOD)
-    assert (desk.name, desk.level) == ("one", 0.75)
-    desk.bench.commands.save_values()
-    assert b"level = 0.75" in (desk.folder / "one/sketch.toml").read_bytes()
+        harness.drafts.set(LEVEL, level)
+        harness.frame()
+        harness.bench.commands.save_values()
+        harness.frame()
+    assert "sketch.toml is not saved while" in harness.messages and "save a copy" in harness.messages
+    assert (harness.folder / "one/sketch.toml").read_bytes() == before
+    harness.bench.commands.open(harness.folder / "one")
+    harness.answer(GOOD)
+    assert (harness.name, harness.level) == ("one", 0.75)
+    harness.bench.commands.save_values()
+    assert b"level = 0.75" in (harness.folder / "one/sketch.toml").read_bytes()
 
 
-def test_a_copy_of_what_is_shown_is_opened_instead(desk: Desk) -> None:
-    desk.drafts.set(LEVEL, 0.5)
-    desk.session.stop_at("height", 2)
-    desk.frame()
-    desk.bench.commands.open(desk.folder / "two")
-    desk.bench.commands.save_a_copy()
-    desk.answer(GOOD)
-    desk.answer(GOOD)
-    assert desk.session.path == Path(desk.session.shown.file.file)
-    assert desk.session.path.parent.name.startswith("one") and desk.level == 0.5
-    assert desk.session.view.steps == {"height": 2}
-    desk.bench.undo.undo()
-    desk.frame()
-    assert desk.level == 0.25
+def test_a_copy_of_what_is_shown_is_opened_instead(harness: Harness) -> None:
+    harness.drafts.set(LEVEL, 0.5)
+    harness.session.stop_at("height", 2)
+    harness.frame()
+    harness.bench.commands.open(harness.folder / "two")
+    harness.bench.commands.save_a_copy()
+    harness.answer(GOOD)
+    harness.answer(GOOD)
+    assert harness.session.path == Path(harness.session.shown.file.file)
+    assert harness.session.path.parent.name.startswith("one") and harness.level == 0.5
+    assert harness.session.view.steps == {"height": 2}
+    harness.bench.undo.undo()
+    harness.frame()
+    assert harness.level == 0.25
 
 
 # ── a save, a technique and a data file meet ─────────────────────────────────
 
 
-def change(desk: Desk, what: str) -> None:
+def change(harness: Harness, what: str) -> None:
     if what == "save":
-        desk.save("size = 9", "size = 17")
+        harness.save("size = 9", "size = 17")
     elif what == "technique":
-        desk.drafts.choose("height", "./dunes")
+        harness.drafts.choose("height", "./dunes")
     else:
-        desk.drafts.set(ELEVATION, desk.file("b.npy"))
+        harness.drafts.set(ELEVATION, harness.file("b.npy"))
 
 
 PAIRS = [
-    (one, two) for one in ("save", "technique", "data") for two in ("save", "technique", "data") if one != two
+    (name, two)
+    for name in ("save", "technique", "data")
+    for two in ("save", "technique", "data")
+    if name != two
 ]
 
 
 @pytest.mark.parametrize("changes", [*PAIRS, ("technique", "data", "save"), ("save", "data", "technique")])
-def test_what_meets_during_a_check_is_all_taken(desk: Desk, changes: tuple[str, ...]) -> None:
+def test_what_meets_during_a_check_is_all_taken(harness: Harness, changes: tuple[str, ...]) -> None:
     for what in changes:
-        change(desk, what)
-        desk.frame()
-        assert desk.drafts.testing
-    desk.drafts.set(LEVEL, 0.5)
-    desk.answer(GOOD)
-    assert desk.session.error is None and desk.level == 0.5
-    assert desk.size == (17 if "save" in changes else 9)
-    assert desk.technique == ("./dunes" if "technique" in changes else "./hills")
-    assert desk.elevation == ("b.npy" if "data" in changes else "a.npy")
+        change(harness, what)
+        harness.frame()
+        assert harness.drafts.testing
+    harness.drafts.set(LEVEL, 0.5)
+    harness.answer(GOOD)
+    assert harness.session.error is None and harness.level == 0.5
+    assert harness.size == (17 if "save" in changes else 9)
+    assert harness.technique == ("./dunes" if "technique" in changes else "./hills")
+    assert harness.elevation == ("b.npy" if "data" in changes else "a.npy")
 
 
 @pytest.mark.parametrize(("first", "second"), PAIRS)
-def test_what_fails_is_named_and_the_rest_is_taken(desk: Desk, first: str, second: str) -> None:
-    change(desk, first)
-    change(desk, second)
+def test_what_fails_is_named_and_the_rest_is_taken(harness: Harness, first: str, second: str) -> None:
+    change(harness, first)
+    change(harness, second)
     chosen = second if second != "save" else first  # a choice gives way, what is saved is on the disk
-    desk.answer(BAD)
-    assert f"{'b.npy' if chosen == 'data' else './dunes'} is not taken: " in desk.messages
-    assert "the driver crashed" in desk.messages
-    assert desk.drafts.testing, "the rest is tried by itself"
-    desk.answer(GOOD)
-    assert desk.session.error is None
+    harness.answer(BAD)
+    assert f"{'b.npy' if chosen == 'data' else './dunes'} is not taken: " in harness.messages
+    assert "the driver crashed" in harness.messages
+    assert harness.drafts.testing, "the rest is tried by itself"
+    harness.answer(GOOD)
+    assert harness.session.error is None
     rest = first if chosen == second else second
-    assert desk.size == (17 if rest == "save" else 9)
-    assert desk.technique == ("./dunes" if rest == "technique" else "./hills")
-    assert desk.elevation == ("b.npy" if rest == "data" else "a.npy")
+    assert harness.size == (17 if rest == "save" else 9)
+    assert harness.technique == ("./dunes" if rest == "technique" else "./hills")
+    assert harness.elevation == ("b.npy" if rest == "data" else "a.npy")
 
 
-def test_a_save_that_failed_stays_an_error_when_another_technique_is_shown(desk: Desk) -> None:
-    desk.save("size = 9", "size = 17")
-    desk.answer(BAD)
-    error = desk.session.error
+def test_a_save_that_failed_stays_an_error_when_another_technique_is_shown(harness: Harness) -> None:
+    harness.save("size = 9", "size = 17")
+    harness.answer(BAD)
+    error = harness.session.error
     assert error is not None
-    desk.drafts.choose("height", "./dunes")
-    desk.answer(GOOD)
-    assert (desk.technique, desk.size) == ("./dunes", 9) and desk.session.error is error
-    desk.drafts.reload()
-    desk.answer(GOOD)
-    assert (desk.technique, desk.size) == ("./dunes", 17) and desk.session.error is None
+    harness.drafts.choose("height", "./dunes")
+    harness.answer(GOOD)
+    assert (harness.technique, harness.size) == ("./dunes", 9) and harness.session.error is error
+    harness.drafts.reload()
+    harness.answer(GOOD)
+    assert (harness.technique, harness.size) == ("./dunes", 17) and harness.session.error is None
 
 
-def test_a_choice_waits_for_a_file_that_cannot_be_read(desk: Desk) -> None:
-    desk.drafts.choose("height", "./dunes")
-    desk.save("[view]", "[view")
-    assert desk.session.error is not None
-    desk.frame()
-    desk.save("[view", "[view]")
-    desk.answer(GOOD)
-    assert desk.session.error is None and desk.technique == "./dunes"
+def test_a_choice_waits_for_a_file_that_cannot_be_read(harness: Harness) -> None:
+    harness.drafts.choose("height", "./dunes")
+    harness.save("[view]", "[view")
+    assert harness.session.error is not None
+    harness.frame()
+    harness.save("[view", "[view]")
+    harness.answer(GOOD)
+    assert harness.session.error is None and harness.technique == "./dunes"
 
 
-def test_of_two_choices_for_a_pass_the_last_good_one_counts(desk: Desk) -> None:
+def test_of_two_choices_for_a_pass_the_last_good_one_counts(harness: Harness) -> None:
     for use in ("generation/white_noise", "./dunes"):
-        desk.drafts.choose("height", use)
-    desk.save("size = 9", "size = 17")
-    desk.answer(BAD)
-    assert "./dunes is not taken" in desk.messages
-    desk.answer(GOOD)
-    assert (desk.technique, desk.size) == ("generation/white_noise", 17)
+        harness.drafts.choose("height", use)
+    harness.save("size = 9", "size = 17")
+    harness.answer(BAD)
+    assert "./dunes is not taken" in harness.messages
+    harness.answer(GOOD)
+    assert (harness.technique, harness.size) == ("generation/white_noise", 17)
 
 
-def test_what_is_chosen_with_a_save_is_an_undo_step(desk: Desk) -> None:
-    desk.drafts.choose("height", "./dunes")
-    desk.save("size = 9", "size = 17")
-    desk.answer(GOOD)
-    desk.frame()
-    assert desk.bench.undo.history.done == 1
-    desk.bench.undo.undo()
-    desk.answer(GOOD)
-    assert (desk.technique, desk.size) == ("./hills", 17)
+def test_what_is_chosen_with_a_save_is_an_undo_step(harness: Harness) -> None:
+    harness.drafts.choose("height", "./dunes")
+    harness.save("size = 9", "size = 17")
+    harness.answer(GOOD)
+    harness.frame()
+    assert harness.bench.undo.history.done == 1
+    harness.bench.undo.undo()
+    harness.answer(GOOD)
+    assert (harness.technique, harness.size) == ("./hills", 17)
 
 
 @pytest.mark.parametrize("how", ["fails", "is taken back"])
-def test_an_undo_that_does_not_come_is_no_longer_done(desk: Desk, how: str) -> None:
-    desk.drafts.choose("height", "./dunes")
-    desk.answer(GOOD)
-    desk.save("size = 9", "size = 17")
-    desk.answer(GOOD)
-    undo = desk.bench.undo
+def test_an_undo_that_does_not_come_is_no_longer_done(harness: Harness, how: str) -> None:
+    harness.drafts.choose("height", "./dunes")
+    harness.answer(GOOD)
+    harness.save("size = 9", "size = 17")
+    harness.answer(GOOD)
+    undo = harness.bench.undo
     undo.undo()
-    assert undo.history.done == 0 and desk.drafts.testing
+    assert undo.history.done == 0 and harness.drafts.testing
     if how == "is taken back":
-        desk.drafts.choose("height", "./dunes")
-    desk.answer(BAD)
-    desk.frame()
-    assert undo.history.done == 1 and desk.technique == "./dunes"
+        harness.drafts.choose("height", "./dunes")
+    harness.answer(BAD)
+    harness.frame()
+    assert undo.history.done == 1 and harness.technique == "./dunes"
     undo.undo()
-    desk.answer(GOOD)
-    desk.frame()
-    assert undo.history.done == 0 and desk.technique == "./hills"
+    harness.answer(GOOD)
+    harness.frame()
+    assert undo.history.done == 0 and harness.technique == "./hills"
 
 
-def test_a_preset_during_a_check_leaves_what_is_chosen(desk: Desk) -> None:
-    desk.drafts.set(ELEVATION, desk.file("b.npy"))
-    desk.bench.commands.set_all("Preset", {LEVEL: 0.5})
-    desk.drafts.unset(LEVEL)
-    desk.answer(GOOD)
-    assert (desk.elevation, desk.level) == ("b.npy", 0.25)
+def test_a_preset_during_a_check_leaves_what_is_chosen(harness: Harness) -> None:
+    harness.drafts.set(ELEVATION, harness.file("b.npy"))
+    harness.bench.commands.set_all("Preset", {LEVEL: 0.5})
+    harness.drafts.unset(LEVEL)
+    harness.answer(GOOD)
+    assert (harness.elevation, harness.level) == ("b.npy", 0.25)
 
 
-def test_texts_and_a_technique_that_come_together_are_both_shown(desk: Desk) -> None:
+def test_texts_and_a_technique_that_come_together_are_both_shown(harness: Harness) -> None:
     """As a lesson's figure of the sketch that is open does it."""
     text = ADD.replace("uniform", "uniform float share = 0.5; //! slider(0, 1)\nuniform", 1)
-    desk.drafts.read_as({str(desk.folder / "one/add.glsl"): text})
-    desk.drafts.restore(Edits(techniques=(("height", "./dunes"),)))
-    desk.answer(GOOD)
-    assert desk.technique == "./dunes" and desk.session.sketch is not None
-    assert values_of(desk.session.sketch)["sum.share"] == 0.5
+    harness.drafts.read_as({str(harness.folder / "one/add.glsl"): text})
+    harness.drafts.restore(Edits(techniques=(("height", "./dunes"),)))
+    harness.answer(GOOD)
+    assert harness.technique == "./dunes" and harness.session.sketch is not None
+    assert values_of(harness.session.sketch)["sum.share"] == 0.5
 
 
-def test_a_technique_that_is_taken_back_during_its_check_is_gone(desk: Desk) -> None:
-    desk.drafts.choose("height", "./dunes")
-    desk.drafts.choose("height", "./hills")
-    desk.answer(BAD)
-    assert desk.session.error is None and desk.technique == "./hills" and not desk.drafts.testing
+def test_a_technique_that_is_taken_back_during_its_check_is_gone(harness: Harness) -> None:
+    harness.drafts.choose("height", "./dunes")
+    harness.drafts.choose("height", "./hills")
+    harness.answer(BAD)
+    assert harness.session.error is None and harness.technique == "./hills" and not harness.drafts.testing
 
 
-def test_undo_and_redo_during_a_check(desk: Desk) -> None:
-    desk.drafts.choose("height", "./dunes")
-    desk.answer(GOOD)
-    desk.save("size = 9", "size = 17")
-    desk.answer(GOOD)
-    undo = desk.bench.undo
+def test_undo_and_redo_during_a_check(harness: Harness) -> None:
+    harness.drafts.choose("height", "./dunes")
+    harness.answer(GOOD)
+    harness.save("size = 9", "size = 17")
+    harness.answer(GOOD)
+    undo = harness.bench.undo
     undo.undo()
-    assert desk.drafts.testing
+    assert harness.drafts.testing
     undo.redo()
-    desk.answer(GOOD)
-    desk.frame()
-    assert desk.technique == "./dunes" and not desk.drafts.testing
+    harness.answer(GOOD)
+    harness.frame()
+    assert harness.technique == "./dunes" and not harness.drafts.testing
     undo.undo()
-    desk.save("size = 17", "size = 33")
-    desk.drafts.set(LEVEL, 0.5)
-    desk.answer(GOOD)
-    assert (desk.technique, desk.size, desk.level) == ("./hills", 33, 0.5)
+    harness.save("size = 17", "size = 33")
+    harness.drafts.set(LEVEL, 0.5)
+    harness.answer(GOOD)
+    assert (harness.technique, harness.size, harness.level) == ("./hills", 33, 0.5)
 
 
-def save_after_keeping_a(desk: Desk) -> Compare:
+def save_after_keeping_a(harness: Harness) -> Compare:
     """Keep a state as A, edit it, and save the sketch; return the comparison."""
-    compare = desk.bench.inspection.compare
-    desk.drafts.set(LEVEL, 0.5)
-    desk.frame()
+    compare = harness.bench.inspection.compare
+    harness.drafts.set(LEVEL, 0.5)
+    harness.frame()
     compare.keep()
-    desk.drafts.set(LEVEL, 0.75)
-    desk.frame()
-    desk.save("size = 9", "size = 17")
+    harness.drafts.set(LEVEL, 0.75)
+    harness.frame()
+    harness.save("size = 9", "size = 17")
     return compare
 
 
-def test_going_back_to_a_is_an_undo_step_after_a_save_too(desk: Desk) -> None:
-    compare = save_after_keeping_a(desk)
-    desk.answer(GOOD)
-    steps = len(desk.bench.undo.history.steps)
+def test_going_back_to_a_is_an_undo_step_after_a_save_too(harness: Harness) -> None:
+    compare = save_after_keeping_a(harness)
+    harness.answer(GOOD)
+    steps = len(harness.bench.undo.history.steps)
     compare.back()
-    desk.frame()
-    assert desk.level == 0.5 and len(desk.bench.undo.history.steps) == steps + 1
-    desk.bench.undo.undo()
-    desk.frame()
-    assert desk.level == 0.75
+    harness.frame()
+    assert harness.level == 0.5 and len(harness.bench.undo.history.steps) == steps + 1
+    harness.bench.undo.undo()
+    harness.frame()
+    assert harness.level == 0.75
 
 
-def test_going_back_to_a_during_a_check_stays(desk: Desk) -> None:
-    compare = save_after_keeping_a(desk)
+def test_going_back_to_a_during_a_check_stays(harness: Harness) -> None:
+    compare = save_after_keeping_a(harness)
     compare.back()
-    desk.answer(GOOD)
-    assert (desk.level, desk.size) == (0.5, 17)
+    harness.answer(GOOD)
+    assert (harness.level, harness.size) == (0.5, 17)
 
 
-def test_a_keyframe_that_cannot_be_written_is_still_to_be_undone(desk: Desk) -> None:
-    desk.drafts.set(LEVEL, 0.5)
-    desk.frame()
-    assert desk.bench.keyframes.add_here([LEVEL], camera=False)
-    desk.answer(GOOD)
-    assert desk.bench.keyframes.keyframes and desk.bench.undo.history.done == 2
-    file = desk.folder / "one/sketch.toml"
+def test_a_keyframe_that_cannot_be_written_is_still_to_be_undone(harness: Harness) -> None:
+    harness.drafts.set(LEVEL, 0.5)
+    harness.frame()
+    assert harness.bench.keyframes.add_here([LEVEL], camera=False)
+    harness.answer(GOOD)
+    assert harness.bench.keyframes.keyframes and harness.bench.undo.history.done == 2
+    file = harness.folder / "one/sketch.toml"
     before = file.read_text(encoding="utf-8")
-    desk.write("one/sketch.toml", before.replace("size = 9", "size = 17"))
-    desk.bench.undo.undo()
-    desk.frame()
-    assert "changed meanwhile" in desk.messages and "[[keyframe]]" in file.read_text(encoding="utf-8")
-    assert desk.bench.undo.history.done == 2, "it is not undone"
-    desk.write("one/sketch.toml", before)
-    desk.bench.undo.undo()
-    desk.answer(GOOD)
-    assert desk.bench.keyframes.keyframes == () and desk.level == 0.5
-    assert desk.bench.undo.history.done == 1
+    harness.write("one/sketch.toml", before.replace("size = 9", "size = 17"))
+    harness.bench.undo.undo()
+    harness.frame()
+    assert "changed meanwhile" in harness.messages and "[[keyframe]]" in file.read_text(encoding="utf-8")
+    assert harness.bench.undo.history.done == 2, "it is not undone"
+    harness.write("one/sketch.toml", before)
+    harness.bench.undo.undo()
+    harness.answer(GOOD)
+    assert harness.bench.keyframes.keyframes == () and harness.level == 0.5
+    assert harness.bench.undo.history.done == 1
 
 
-def test_a_keyframe_keeps_a_technique_that_is_checked(desk: Desk) -> None:
-    desk.drafts.set(LEVEL, 0.5)
-    desk.frame()
-    desk.drafts.choose("height", "./dunes")
-    assert desk.bench.keyframes.add_here([LEVEL], camera=False)
-    desk.answer(GOOD)
-    assert desk.technique == "./dunes" and desk.session.shown is not None
-    assert [keyframe.values for keyframe in desk.bench.keyframes.keyframes] == [((LEVEL, 0.5),)]
-    assert not desk.session.shown.edits.has(LEVEL)
+def test_a_keyframe_keeps_a_technique_that_is_checked(harness: Harness) -> None:
+    harness.drafts.set(LEVEL, 0.5)
+    harness.frame()
+    harness.drafts.choose("height", "./dunes")
+    assert harness.bench.keyframes.add_here([LEVEL], camera=False)
+    harness.answer(GOOD)
+    assert harness.technique == "./dunes" and harness.session.shown is not None
+    assert [keyframe.values for keyframe in harness.bench.keyframes.keyframes] == [((LEVEL, 0.5),)]
+    assert not harness.session.shown.edits.has(LEVEL)

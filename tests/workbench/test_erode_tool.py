@@ -41,7 +41,7 @@ def hills(seed: int = 3) -> np.ndarray:
 
 def canvas(engine: Engine, tmp_path: Path) -> Sculpture:
     made = Sculpture(tmp_path / "x.tif", np.zeros((NY, NX), np.float32))
-    made.lie_on(hills())
+    made.set_base(hills())
     made.eroding = ErodeTool(engine, technique_at("erosion/brush", __file__))
     return made
 
@@ -87,7 +87,7 @@ def test_a_window_gives_what_the_whole_terrain_gives(any_engine: Engine, tmp_pat
     away = np.hypot(X - 640, Y - 720)
     t = np.clip((170 - away) / (0.6 * 170), 0, 1)
     level = ground[NY // 2, NX // 2]
-    given = {
+    value = {
         "height": ground - level,
         "brush": (0.9 * t * t * (3 - 2 * t)).astype(np.float32),
         "water": np.zeros((NY, NX, 4), np.float32),
@@ -95,10 +95,10 @@ def test_a_window_gives_what_the_whole_terrain_gives(any_engine: Engine, tmp_pat
     }
     run = OnArrays(any_engine, "erosion/brush")
     for _ in range(stamps):
-        given |= run.run(given, spacing=(DX, DY), relief=1.0, values=values)
-    wanted = given["height"].astype(np.float64) - (ground - level)
-    assert np.abs(wanted).max() > 1
-    np.testing.assert_allclose(on.pixels, wanted, atol=1e-3 * np.abs(wanted).max())
+        value |= run.run(value, spacing=(DX, DY), relief=1.0, values=values)
+    expected = value["height"].astype(np.float64) - (ground - level)
+    assert np.abs(expected).max() > 1
+    np.testing.assert_allclose(on.pixels, expected, atol=1e-3 * np.abs(expected).max())
 
 
 def waves(engine: Engine, tmp_path: Path, texels: int) -> tuple[Sculpture, float]:
@@ -107,7 +107,7 @@ def waves(engine: Engine, tmp_path: Path, texels: int) -> tuple[Sculpture, float
     y, x = np.mgrid[0 : 8 * texels + 1, 0 : 8 * texels + 1] * spacing
     ground = 300 + 120 * np.sin(x / 210) * np.cos(y / 250) + 15 * np.sin(x / 60 + 1) * np.sin(y / 70)
     on = Sculpture(tmp_path / "x.tif", np.zeros(ground.shape, np.float32))
-    on.lie_on(ground.astype(np.float32))
+    on.set_base(ground.astype(np.float32))
     on.eroding = ErodeTool(engine, technique_at("erosion/brush", __file__))
     on.begin()
     on.paint(HERE, HERE, (2560.0, 2560.0), Brush(tool="erode", radius=320.0, strength=0.9), 0.8)
@@ -129,43 +129,45 @@ def test_a_brush_of_as_many_metres_erodes_alike_on_coarse_and_fine_grids(any_eng
 
 
 def test_what_a_brush_leaves_has_the_same_shape_on_coarse_and_fine_grids(any_engine: Engine, tmp_path: Path):
-    found = []
+    result = []
     for per in (1, 2):
         on, _ = waves(any_engine, tmp_path, 16 * per)
         # Without what the coarse grid cannot have.
-        found.append(gaussian_filter(on.pixels.astype(np.float64), 2 * per)[::per, ::per])
-    coarse, fine = found
+        result.append(gaussian_filter(on.pixels.astype(np.float64), 2 * per)[::per, ::per])
+    coarse, fine = result
     assert np.sqrt(((coarse - fine) ** 2).mean()) < 0.1 * np.sqrt((fine**2).mean())
 
 
 def test_a_stroke_is_the_same_bits_in_however_many_frames(any_engine: Engine, tmp_path: Path):
     path = (0.4, 0.45), (0.55, 0.5), (0.5, 0.6)
-    found = [work(canvas(any_engine, tmp_path), *path, seconds=0.8, frames=frames) for frames in (4, 16, 64)]
-    assert np.abs(found[0]).max() > 1
-    for other in found[1:]:
-        np.testing.assert_array_equal(other, found[0])
+    result = [work(canvas(any_engine, tmp_path), *path, seconds=0.8, frames=frames) for frames in (4, 16, 64)]
+    assert np.abs(result[0]).max() > 1
+    for other in result[1:]:
+        np.testing.assert_array_equal(other, result[0])
 
 
 def test_a_fast_stroke_is_the_same_bits_in_however_many_frames(any_engine: Engine, tmp_path: Path):
     """Of 24 radii a second: at each twentieth of a second it erodes once, where the brush then is."""
     path = (0.05, 0.1), (0.9, 0.93)
-    found = [work(canvas(any_engine, tmp_path), *path, seconds=0.4, frames=frames) for frames in (2, 8, 32)]
-    assert found[0].min() < 0
-    for other in found[1:]:
-        np.testing.assert_array_equal(other, found[0])
+    result = [work(canvas(any_engine, tmp_path), *path, seconds=0.4, frames=frames) for frames in (2, 8, 32)]
+    assert result[0].min() < 0
+    for other in result[1:]:
+        np.testing.assert_array_equal(other, result[0])
 
 
-@pytest.mark.parametrize("place", [(0.0, 0.0), (1.0, 0.4), (0.02, 0.99)])
-def test_at_the_edges_it_wears_what_is_there(any_engine: Engine, tmp_path: Path, place: tuple[float, float]):
+@pytest.mark.parametrize("position", [(0.0, 0.0), (1.0, 0.4), (0.02, 0.99)])
+def test_at_the_edges_it_wears_what_is_there(
+    any_engine: Engine, tmp_path: Path, position: tuple[float, float]
+):
     on = canvas(any_engine, tmp_path)
-    change = work(on, place, place, seconds=1.0)
-    away = np.hypot(X - place[0] * EXTENT[0], Y - place[1] * EXTENT[1])
+    change = work(on, position, position, seconds=1.0)
+    away = np.hypot(X - position[0] * EXTENT[0], Y - position[1] * EXTENT[1])
     assert np.isfinite(change).all() and change.min() < -0.5 and change.sum() < 0
     assert (change[away >= 170] == 0).all()
     # A mirrored terrain is eroded alike: no side is treated as another.
     other = canvas(any_engine, tmp_path)
-    other.lie_on(hills()[:, ::-1].copy())
-    mirrored = work(other, (1 - place[0], place[1]), (1 - place[0], place[1]), seconds=1.0)
+    other.set_base(hills()[:, ::-1].copy())
+    mirrored = work(other, (1 - position[0], position[1]), (1 - position[0], position[1]), seconds=1.0)
     np.testing.assert_allclose(mirrored[:, ::-1], change, atol=5e-3 * np.abs(change).max())
 
 
@@ -181,13 +183,13 @@ def test_the_engine_keeps_its_frame_and_warm_stamps_compile_nothing(
     wholes = plans_made_whole(monkeypatch)
     on = canvas(any_engine, tmp_path)
     work(on, HERE, (0.6, 0.5), seconds=0.3)
-    engine, known = any_engine, []
+    engine, existing = any_engine, []
     for _ in range(2):
-        known.append((len(engine.cache), engine.runner.programs.compiled, engine.runner.pool.made))
+        existing.append((len(engine.cache), engine.runner.programs.compiled, engine.runner.pool.made))
         wholes.clear()
         work(on, (0.3, 0.5), (0.6, 0.7), seconds=0.5)
         assert len(wholes) <= 1, "one plan a stroke: of its own level"
-    assert known[0] == known[1]
+    assert existing[0] == existing[1]
 
 
 def test_in_a_session_a_stroke_is_seen_saved_and_undone_to_the_bit(
@@ -221,7 +223,7 @@ def test_where_no_height_is_there_is_nothing_to_erode(session: Session, painting
     assert "erode" not in painting.tools and painting.brush.tool == "raise"
     painting.take_tool("erode")
     assert painting.brush.tool == "raise"
-    assert "there is nothing to erode in rain.image: choose another tool" in session.notes
+    assert "nothing to erode in rain.image: choose another tool" in session.notes
 
 
 OWN = """#pragma kernel(output = "height:r32f")

@@ -13,7 +13,7 @@ from playground.engine.engine import Engine
 from playground.sketch.find import find
 from playground.sketch.model import DEFAULT_PICTURE, Camera
 from playground.workbench.camera_drag import Gesture
-from playground.workbench.framing import WIDEST, field_for, framed, moved
+from playground.workbench.framing import MAX_FIELD_OF_VIEW, field_for, framed, moved
 from playground.workbench.session import Session
 
 from ..loading import load
@@ -48,7 +48,7 @@ def test_a_wide_picture_is_the_sketch_s_own(size: tuple[int, int]) -> None:
 
 
 def test_a_view_is_never_opened_out_of_shape() -> None:
-    assert field_for(35.0, DEFAULT_PICTURE, (40, 720)) == WIDEST
+    assert field_for(35.0, DEFAULT_PICTURE, (40, 720)) == MAX_FIELD_OF_VIEW
     assert field_for(110.0, DEFAULT_PICTURE, (400, 720)) == 110.0, "a wider one of the sketch's own stays"
 
 

@@ -28,16 +28,16 @@ from .test_sculpted_sketch import session as session
 
 
 def test_of_what_is_given_while_it_writes_the_newest_alone_is_written() -> None:
-    begun, may_end, seen = threading.Event(), threading.Event(), []
+    event, may_end, seen = threading.Event(), threading.Event(), []
     writing = LatestWrite()
 
     def first() -> None:
-        begun.set()
+        event.set()
         may_end.wait(10)
         seen.append(0)
 
     writing.give(first)
-    assert begun.wait(10) and writing.pending
+    assert event.wait(10) and writing.pending
     for number in (1, 2, 3):
         writing.give(lambda number=number: seen.append(number))  # type: ignore[misc]
     assert not seen, "nobody has waited for it"
@@ -94,12 +94,12 @@ def test_a_stroke_s_end_waits_for_no_file(
         painting.redo()
     assert canvas.saved and canvas.holds() and canvas.path.read_bytes() == before
     threading.Timer(0.05, may_write.set).start()
-    wanted = canvas.pixels.copy()
+    expected = canvas.pixels.copy()
     painting.press(PLACE)  # goes on while the file is written: what is written is a copy
     assert not canvas.saved
     assert painting.settle() and canvas.saved
     np.testing.assert_array_equal(read_numbers(canvas.path, canvas.size), canvas.pixels)
-    assert (canvas.pixels != wanted).any()
+    assert (canvas.pixels != expected).any()
     painting.close()
 
 
@@ -128,16 +128,16 @@ def test_a_capture_waits_for_the_file_that_it_reads(
     stroke(painting, PLACE)
     painting.press(PLACE)
     captures = Captures(session=session, notices=Notices(), folder=tmp_path, settle=painting.settle)
-    canvas, found = painting.canvas, []
+    canvas, result = painting.canvas, []
     assert isinstance(canvas, Sculpture) and not canvas.saved
 
     def job() -> None:
-        found.append(read_numbers(canvas.path, canvas.size))
+        result.append(read_numbers(canvas.path, canvas.size))
         raise DataError("enough")
 
     monkeypatch.setattr(captures, "job", job)
     captures.start()
-    np.testing.assert_array_equal(found[0], canvas.pixels)
+    np.testing.assert_array_equal(result[0], canvas.pixels)
     painting.close()
 
 

@@ -70,11 +70,11 @@ class Place:
 
     def start(self, **more: object) -> tuple[Session, Autosave]:
         memory = Memory(self.sketch / "sketch.toml", self.state)
-        found, complaint = memory.read()
-        more |= {"start": found.start}
+        result, complaint = memory.read()
+        more |= {"start": result.start}
         session = Session(self.engine, self.sketch, **more)  # type: ignore[arg-type]
         session.notes.extend(filter(None, [complaint]))
-        made = session, Autosave(session, memory, found, lambda: self.now)
+        made = session, Autosave(session, memory, result, lambda: self.now)
         self.open.append(made)
         session.frame(SIZE)
         return made
@@ -311,8 +311,8 @@ def test_when_all_is_reset_nothing_is_remembered_but_the_window(place: Place) ->
     again.frame(SIZE)
     second.look((900, 600))
     second.close()
-    found, _ = Memory(place.sketch / "sketch.toml", place.state).read()
-    assert found == Remembered(window=(900, 600))
+    result, _ = Memory(place.sketch / "sketch.toml", place.state).read()
+    assert result == Remembered(window=(900, 600))
 
 
 BROKEN = {
@@ -339,8 +339,8 @@ def test_a_broken_file_is_set_aside_and_that_is_reported(place: Place, name: str
     session.drafts.set("height.level", 0.5)
     autosave.look((900, 600))
     autosave.close()
-    found, complaint = memory.read()
-    assert complaint == "" and dict(found.edits.values) == {"height.level": 0.5}
+    result, complaint = memory.read()
+    assert complaint == "" and dict(result.edits.values) == {"height.level": 0.5}
 
 
 @each("key", ["values", "camera", "steps", "window", "techniques", "map_values", "time"])
@@ -350,27 +350,27 @@ def test_no_value_of_another_kind_is_taken_or_raises(tmp_path: Path, key: str, w
     memory.write(FULL)
     table = json.loads(memory.path.read_text())
     memory.path.write_text(json.dumps(table | {key: wrong}))
-    found, complaint = memory.read()
-    assert isinstance(found, Remembered) and (complaint or hash(found) is not None)
+    result, complaint = memory.read()
+    assert isinstance(result, Remembered) and (complaint or hash(result) is not None)
 
 
 def test_two_windows_on_one_sketch_do_not_fight(place: Place) -> None:
-    first, one = place.start()
+    first, item = place.start()
     second, two = place.start()
-    for session, autosave, value in ((first, one, 0.5), (second, two, 0.75), (first, one, 0.625)):
+    for session, autosave, value in ((first, item, 0.5), (second, two, 0.75), (first, item, 0.625)):
         session.drafts.set("height.level", value)
         autosave.look((900, 600))
         place.now += QUIET
         autosave.look((900, 600))
     assert any("another window" in note for note in second.notes)
-    found, _ = Memory(place.sketch / "sketch.toml", place.state).read()
-    assert dict(found.edits.values) == {"height.level": 0.625}
-    one.close()
+    result, _ = Memory(place.sketch / "sketch.toml", place.state).read()
+    assert dict(result.edits.values) == {"height.level": 0.625}
+    item.close()
     second.drafts.set("height.level", 0.875)
     two.look((900, 600))
     two.close()
-    found, _ = Memory(place.sketch / "sketch.toml", place.state).read()
-    assert dict(found.edits.values) == {"height.level": 0.875}, "alone, it remembers"
+    result, _ = Memory(place.sketch / "sketch.toml", place.state).read()
+    assert dict(result.edits.values) == {"height.level": 0.875}, "alone, it remembers"
 
 
 def test_each_sketch_opened_in_a_window_is_remembered_by_itself(place: Place) -> None:
@@ -386,7 +386,10 @@ def test_each_sketch_opened_in_a_window_is_remembered_by_itself(place: Place) ->
     autosave.look((900, 600))
     autosave.close()
     written = [Memory(path, place.state).read()[0] for path in (place.sketch / "sketch.toml", other)]
-    assert [dict(found.edits.values) for found in written] == [{"height.level": 0.5}, {"height.level": 0.75}]
+    assert [dict(result.edits.values) for result in written] == [
+        {"height.level": 0.5},
+        {"height.level": 0.75},
+    ]
 
 
 @pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="root may write anywhere")
@@ -400,12 +403,12 @@ def test_where_the_folder_is_a_file_it_is_reported_once(place: Place) -> None:
     check_reported_once(place)
 
 
-def check_reported_once(place: Place) -> None:
-    session, autosave = place.start()
+def check_reported_once(key_path: Place) -> None:
+    session, autosave = key_path.start()
     for value in (0.5, 0.75):
         session.drafts.set("height.level", value)
         autosave.look((900, 600))
-        place.now += QUIET
+        key_path.now += QUIET
         autosave.look((900, 600))
     assert len([note for note in session.notes if "cannot be remembered" in note]) == 1
 

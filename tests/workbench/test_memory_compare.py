@@ -40,11 +40,11 @@ class SlowSandbox:
         self.requests.append(request)
 
     def poll(self) -> SandboxReport | None:
-        found, self.answer = self.answer, None
-        return found
+        sandbox_report, self.answer = self.answer, None
+        return sandbox_report
 
 
-class Desk:
+class Harness:
     """One window after another on a sketch."""
 
     def __init__(self, folder: Path, engine: Engine) -> None:
@@ -56,13 +56,13 @@ class Desk:
 
     def open(self) -> None:
         memory = Memory(self.folder / "sketch.toml", self.folder / "state")
-        found, complaint = memory.read()
+        result, complaint = memory.read()
         assert complaint == ""
-        self.found = found.compared
+        self.found = result.compared
         self.sandbox = SlowSandbox()
-        self.session = Session(self.engine, self.folder, start=found.start, sandbox=self.sandbox)
+        self.session = Session(self.engine, self.folder, start=result.start, sandbox=self.sandbox)
         self.compare = Compare(self.session)
-        self.autosave = Autosave(self.session, memory, found, compare=self.compare)
+        self.autosave = Autosave(self.session, memory, result, compare=self.compare)
         self.session.frame(SIZE)
         self.answer(SandboxReport(True))
 
@@ -87,115 +87,117 @@ class Desk:
 
 
 @pytest.fixture
-def desk(tmp_path: Path, any_engine: Engine):
-    made = Desk(tmp_path, any_engine)
+def harness(tmp_path: Path, any_engine: Engine):
+    made = Harness(tmp_path, any_engine)
     yield made
     made.close()
 
 
-def compare_something(desk: Desk) -> None:
-    desk.session.drafts.set("height.level", 0.75)
-    desk.frame()
-    desk.compare.keep()
-    desk.compare.mode, desk.compare.split, desk.compare.gain = Mode.DIFFERENCE, 0.25, 16.0
-    desk.session.drafts.set("height.level", 0.5)
-    desk.frame()
-    desk.close()
+def compare_something(harness: Harness) -> None:
+    harness.session.drafts.set("height.level", 0.75)
+    harness.frame()
+    harness.compare.keep()
+    harness.compare.mode, harness.compare.split, harness.compare.gain = Mode.DIFFERENCE, 0.25, 16.0
+    harness.session.drafts.set("height.level", 0.5)
+    harness.frame()
+    harness.close()
 
 
-def test_a_is_there_again_once_it_has_been_tried(desk: Desk) -> None:
-    compare_something(desk)
-    desk.open()
-    assert isinstance(desk.found, Compared) and desk.found.mode == "difference"
-    desk.frame()
-    assert not desk.compare.on and desk.autosave.waits, "it waits for the sandbox"
-    assert values_of(desk.sandbox.requests[-1].sketch)["height.level"] == 0.75
-    desk.answer(SandboxReport(True))
-    desk.frame()
-    compare = desk.compare
+def test_a_is_there_again_once_it_has_been_tried(harness: Harness) -> None:
+    compare_something(harness)
+    harness.open()
+    assert isinstance(harness.found, Compared) and harness.found.mode == "difference"
+    harness.frame()
+    assert not harness.compare.on and harness.autosave.waits, "it waits for the sandbox"
+    assert values_of(harness.sandbox.requests[-1].sketch)["height.level"] == 0.75
+    harness.answer(SandboxReport(True))
+    harness.frame()
+    compare = harness.compare
     assert (compare.mode, compare.split, compare.gain) == (Mode.DIFFERENCE, 0.25, 16.0)
-    assert desk.session.sketch is not None
-    alone = desk.session.sketch.with_values({"height.level": 0.75})
-    if desk.session.is_preview:
-        desk.session.read()
-        desk.frame()
-    expected = desk.engine.render(framed(alone, 0.0, DEFAULT_PICTURE, SIZE), size=SIZE).array
-    np.testing.assert_array_equal(desk.first()[..., :3], expected[..., :3])
-    assert values_of(desk.session.sketch)["height.level"] == 0.5
+    assert harness.session.sketch is not None
+    alone = harness.session.sketch.with_values({"height.level": 0.75})
+    if harness.session.is_preview:
+        harness.session.read()
+        harness.frame()
+    expected = harness.engine.render(framed(alone, 0.0, DEFAULT_PICTURE, SIZE), size=SIZE).array
+    np.testing.assert_array_equal(harness.first()[..., :3], expected[..., :3])
+    assert values_of(harness.session.sketch)["height.level"] == 0.5
 
 
-def test_an_a_that_fails_the_sandbox_is_never_drawn(desk: Desk) -> None:
-    compare_something(desk)
-    desk.open()
-    desk.frame()
-    draws = desk.compare.draws
-    desk.answer(SandboxReport(False, SandboxTimeout("pass 'height' took longer than 10 s in the sandbox")))
-    desk.frame()
-    assert not desk.compare.on and desk.compare.draws == draws
-    assert any("A of the last session is left out: pass 'height' took" in note for note in desk.session.notes)
-    desk.close()
-    desk.open()
-    assert desk.found is None, "it is not requested again"
+def test_an_a_that_fails_the_sandbox_is_never_drawn(harness: Harness) -> None:
+    compare_something(harness)
+    harness.open()
+    harness.frame()
+    draws = harness.compare.draws
+    harness.answer(SandboxReport(False, SandboxTimeout("pass 'height' took longer than 10 s in the sandbox")))
+    harness.frame()
+    assert not harness.compare.on and harness.compare.draws == draws
+    assert any(
+        "A of the last session is left out: pass 'height' took" in note for note in harness.session.notes
+    )
+    harness.close()
+    harness.open()
+    assert harness.found is None, "it is not requested again"
 
 
-def test_closed_before_the_sandbox_has_answered_it_is_still_remembered(desk: Desk) -> None:
-    compare_something(desk)
+def test_closed_before_the_sandbox_has_answered_it_is_still_remembered(harness: Harness) -> None:
+    compare_something(harness)
     for _ in range(2):
-        desk.open()
-        desk.frame()
-        assert desk.found is not None and not desk.compare.on
-        desk.close()
+        harness.open()
+        harness.frame()
+        assert harness.found is not None and not harness.compare.on
+        harness.close()
 
 
-def test_a_of_a_sketch_that_is_left_meanwhile_is_not_compared_with_the_other(desk: Desk) -> None:
-    compare_something(desk)
-    other = desk.folder / "other"
+def test_a_of_a_sketch_that_is_left_meanwhile_is_not_compared_with_the_other(harness: Harness) -> None:
+    compare_something(harness)
+    other = harness.folder / "other"
     other.mkdir()
     for name in ("sketch.toml", "terrain.glsl"):
-        (other / name).write_bytes((desk.folder / name).read_bytes())
-    memory = Memory(other / "sketch.toml", desk.folder / "state")
+        (other / name).write_bytes((harness.folder / name).read_bytes())
+    memory = Memory(other / "sketch.toml", harness.folder / "state")
     assert memory.claim()
     memory.write(Remembered(compared=Compared(Edits((("height.level", 0.625),)))))
     memory.close()
-    desk.open()
-    desk.frame()
-    assert desk.sandbox.requests and not desk.compare.on
-    desk.autosave.open(other)
-    desk.answer(SandboxReport(True))
-    assert desk.session.path == other / "sketch.toml" and not desk.session.drafts.opening
+    harness.open()
+    harness.frame()
+    assert harness.sandbox.requests and not harness.compare.on
+    harness.autosave.open(other)
+    harness.answer(SandboxReport(True))
+    assert harness.session.path == other / "sketch.toml" and not harness.session.drafts.opening
     for _ in range(2):
-        desk.answer(SandboxReport(True))
-        desk.frame()
-    stored = desk.compare.stored
+        harness.answer(SandboxReport(True))
+        harness.frame()
+    stored = harness.compare.stored
     assert stored is not None and stored.path == other / "sketch.toml"
     assert Path(stored.draft.file.file).parent == other
     assert dict(stored.draft.edits.values) == {"height.level": 0.625}
 
 
-def test_a_save_goes_before_what_is_only_compared(desk: Desk) -> None:
-    compare_something(desk)
-    desk.open()
-    desk.frame()
-    before = len(desk.sandbox.requests)
-    (desk.folder / "terrain.glsl").write_text(
+def test_a_save_goes_before_what_is_only_compared(harness: Harness) -> None:
+    compare_something(harness)
+    harness.open()
+    harness.frame()
+    before = len(harness.sandbox.requests)
+    (harness.folder / "terrain.glsl").write_text(
         TERRAIN.replace("float(texel.x)", "float(texel.y)"), encoding="utf-8"
     )
-    desk.session.drafts.reload()
-    desk.frame()
-    assert len(desk.sandbox.requests) == before + 1 and desk.session.drafts.testing
-    desk.answer(SandboxReport(True))
-    assert not desk.session.drafts.testing and not desk.compare.on
-    desk.frame()
-    desk.answer(SandboxReport(True))
-    desk.frame()
-    assert desk.compare.on and desk.session.error is None
+    harness.session.drafts.reload()
+    harness.frame()
+    assert len(harness.sandbox.requests) == before + 1 and harness.session.drafts.testing
+    harness.answer(SandboxReport(True))
+    assert not harness.session.drafts.testing and not harness.compare.on
+    harness.frame()
+    harness.answer(SandboxReport(True))
+    harness.frame()
+    assert harness.compare.on and harness.session.error is None
 
 
-def test_nothing_compared_is_nothing_remembered(desk: Desk) -> None:
-    desk.session.drafts.set("height.level", 0.75)
-    desk.compare.keep()
-    desk.compare.end()
-    desk.frame()
-    desk.close()
-    desk.open()
-    assert desk.found is None and not desk.compare.on
+def test_nothing_compared_is_nothing_remembered(harness: Harness) -> None:
+    harness.session.drafts.set("height.level", 0.75)
+    harness.compare.keep()
+    harness.compare.end()
+    harness.frame()
+    harness.close()
+    harness.open()
+    assert harness.found is None and not harness.compare.on

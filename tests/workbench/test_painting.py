@@ -13,7 +13,7 @@ from playground.engine.engine import Engine
 from playground.engine.file_sources import read_mask
 from playground.errors import DataError, ShaderError
 from playground.workbench.brush import ERASER, Brush, covered, stroke
-from playground.workbench.canvas import MOST_TEXELS
+from playground.workbench.canvas import MAX_TEXELS
 from playground.workbench.painted_mask import Mask
 from playground.workbench.painting import Painting
 from playground.workbench.session import Session
@@ -32,9 +32,9 @@ def empty(ny=51, nx=101):
 def distance_to_segment(ny, nx, start, end):
     """Return the distance [m] of each node from a segment, by very many of its points."""
     y, x = np.mgrid[0:ny, 0:nx]
-    place = np.stack([x * EXTENT[0] / (nx - 1), y * EXTENT[1] / (ny - 1)], axis=-1)
+    position = np.stack([x * EXTENT[0] / (nx - 1), y * EXTENT[1] / (ny - 1)], axis=-1)
     points = np.linspace(np.multiply(start, EXTENT), np.multiply(end, EXTENT), 400)
-    return np.linalg.norm(place[:, :, None] - points, axis=-1).min(axis=-1)
+    return np.linalg.norm(position[:, :, None] - points, axis=-1).min(axis=-1)
 
 
 @pytest.mark.parametrize(
@@ -80,18 +80,18 @@ SIZE = (128, 64)  # texels of the pass that reads it
 
 
 def test_a_new_mask_has_the_pass_s_size_and_a_new_name(tmp_path: Path):
-    first = Mask.begun(tmp_path, "hills-image", None, SIZE)
-    second = Mask.begun(tmp_path, "hills-image", None, SIZE)
+    first = Mask.create(tmp_path, "hills-image", None, SIZE)
+    second = Mask.create(tmp_path, "hills-image", None, SIZE)
     assert first.path.name == "hills-image.png" and second.path.name == "hills-image-2.png"
     assert read_image(first.path).size == SIZE
 
 
 def test_a_canvas_has_the_terrain_s_size_and_a_very_large_one_is_held_to_a_bound(tmp_path: Path):
-    canvas = Mask.begun(tmp_path, "usual", None, (1025, 513))
+    canvas = Mask.create(tmp_path, "usual", None, (1025, 513))
     assert read_image(canvas.path).size == canvas.mask.shape[1::-1] == (1025, 513)
-    canvas = Mask.begun(tmp_path, "large", None, (4097, 2049), most=1024)
+    canvas = Mask.create(tmp_path, "large", None, (4097, 2049), most=1024)
     assert read_image(canvas.path).size == (1024, 512)
-    assert MOST_TEXELS == 2**12 + 1
+    assert MAX_TEXELS == 2**12 + 1
 
 
 def read_written(canvas: Mask) -> np.ndarray:
@@ -100,7 +100,7 @@ def read_written(canvas: Mask) -> np.ndarray:
 
 
 def test_strokes_are_saved_in_the_file_north_up_and_taken_back_one_by_one(tmp_path: Path):
-    canvas = Mask.begun(tmp_path, "mask", None, SIZE)
+    canvas = Mask.create(tmp_path, "mask", None, SIZE)
     pictures = [read_written(canvas)]
     for x in (0.2, 0.8):
         canvas.begin()
@@ -110,16 +110,16 @@ def test_strokes_are_saved_in_the_file_north_up_and_taken_back_one_by_one(tmp_pa
     north, south = pictures[-1][:16], pictures[-1][-16:]
     assert north[..., 1].max() == 255 and south[..., 1].max() == 0
     assert (pictures[1] != pictures[2]).any()
-    for wanted in (pictures[1], pictures[0]):
+    for expected in (pictures[1], pictures[0]):
         assert canvas.can_undo
         canvas.undo()
-        np.testing.assert_array_equal(read_written(canvas), wanted)
+        np.testing.assert_array_equal(read_written(canvas), expected)
     assert not canvas.can_undo
     canvas.undo()
-    for wanted in pictures[1:]:
+    for expected in pictures[1:]:
         assert canvas.can_redo
         canvas.redo()
-        np.testing.assert_array_equal(read_written(canvas), wanted)
+        np.testing.assert_array_equal(read_written(canvas), expected)
     assert not canvas.can_redo
     canvas.redo()
     np.testing.assert_array_equal(read_written(canvas), pictures[2])
@@ -128,7 +128,7 @@ def test_strokes_are_saved_in_the_file_north_up_and_taken_back_one_by_one(tmp_pa
 
 
 def test_after_another_stroke_what_was_taken_back_is_not_painted_again(tmp_path: Path):
-    canvas = Mask.begun(tmp_path, "mask", None, SIZE)
+    canvas = Mask.create(tmp_path, "mask", None, SIZE)
     canvas.begin()
     canvas.paint((0.2, 0.5), (0.2, 0.5), EXTENT, HARD)
     canvas.undo()
@@ -140,7 +140,7 @@ def test_after_another_stroke_what_was_taken_back_is_not_painted_again(tmp_path:
 
 
 def test_clearing_can_be_undone(tmp_path: Path):
-    canvas = Mask.begun(tmp_path, "mask", None, SIZE)
+    canvas = Mask.create(tmp_path, "mask", None, SIZE)
     canvas.begin()
     canvas.paint((0.5, 0.5), (0.5, 0.5), EXTENT, HARD)
     canvas.save()
@@ -154,7 +154,7 @@ def test_clearing_can_be_undone(tmp_path: Path):
 def test_a_mask_that_is_there_is_copied_and_stays_as_it_was(tmp_path: Path):
     pixels = np.random.default_rng(1).integers(0, 256, (SIZE[1], SIZE[0], 4), np.uint8)
     write_png(tmp_path / "old.png", pixels)
-    canvas = Mask.begun(tmp_path, "new", tmp_path / "old.png", SIZE)
+    canvas = Mask.create(tmp_path, "new", tmp_path / "old.png", SIZE)
     np.testing.assert_array_equal(read_written(canvas), pixels)
     canvas.clear()
     np.testing.assert_array_equal(read_image(tmp_path / "old.png").pixels, pixels)
@@ -164,14 +164,14 @@ def test_a_mask_of_another_size_takes_the_pass_s(tmp_path: Path):
     pixels = np.zeros((2, 2, 4), np.uint8)
     pixels[0] = [0, 200, 0, 0]  # the north
     write_png(tmp_path / "coarse.png", pixels)
-    canvas = Mask.begun(tmp_path, "fine", tmp_path / "coarse.png", SIZE)
-    found = read_written(canvas)
-    assert found.shape == (SIZE[1], SIZE[0], 4)
-    assert found[0, 0, 1] == 200 and found[-1, -1, 1] == 0 and 90 < found[SIZE[1] // 2, 7, 1] < 110
+    canvas = Mask.create(tmp_path, "fine", tmp_path / "coarse.png", SIZE)
+    array = read_written(canvas)
+    assert array.shape == (SIZE[1], SIZE[0], 4)
+    assert array[0, 0, 1] == 200 and array[-1, -1, 1] == 0 and 90 < array[SIZE[1] // 2, 7, 1] < 110
 
 
 def test_a_canvas_that_is_full_of_the_fourth_layer_is_read_back_as_that(tmp_path: Path):
-    canvas = Mask.begun(tmp_path, "full", None, SIZE)
+    canvas = Mask.create(tmp_path, "full", None, SIZE)
     everything = Brush(layer=3, radius=5000.0, strength=1.0, softness=0.0)
     canvas.begin()
     canvas.paint((0.5, 0.5), (0.5, 0.5), EXTENT, everything)
@@ -182,7 +182,7 @@ def test_a_canvas_that_is_full_of_the_fourth_layer_is_read_back_as_that(tmp_path
 
 def test_a_folder_that_is_missing_has_a_sentence(tmp_path: Path):
     with pytest.raises(DataError, match="missing"):
-        Mask.begun(tmp_path / "missing", "mask", None, SIZE)
+        Mask.create(tmp_path / "missing", "mask", None, SIZE)
 
 
 SKETCH = (
@@ -223,10 +223,10 @@ def test_a_stroke_over_the_picture_is_painted_under_the_mouse(session: Session, 
     assert painting.target == "painted.image"
     painting.toggle()
     painting.brush = Brush(layer=3, radius=150.0, strength=1.0, softness=0.0)
-    place = (0.42, 0.45)
-    x, y = painting.ground(place)
+    position = (0.42, 0.45)
+    x, y = painting.ground(position)
     before = session.engine.read(session.sketch, "weights")
-    painting.press(place)
+    painting.press(position)
     painting.release()
     session.frame((160, 120))
     after = session.engine.read(session.sketch, "weights")
@@ -295,13 +295,13 @@ def test_the_ground_is_that_of_the_height_that_the_view_shows(
     tmp_path: Path, any_engine: Engine, session: Session
 ) -> None:
     """Neither a later pass that gives a height nor what a height is called leads the brush astray."""
-    wanted = Painting(session, tmp_path).ground((0.42, 0.55))
+    expected = Painting(session, tmp_path).ground((0.42, 0.55))
     text = SKETCH.replace(
         "[view]\n", '[[pass]]\nname = "sea_bed"\nuse = "./bed"\n[view]\ninputs = { height = "height" }\n'
     )
     other = shown(tmp_path, any_engine, text, ("bed.glsl", FLAT.format("height", "0.0")))
     try:
-        assert Painting(other, tmp_path).ground((0.42, 0.55)) == wanted
+        assert Painting(other, tmp_path).ground((0.42, 0.55)) == expected
     finally:
         other.release()
 
@@ -349,13 +349,13 @@ def test_the_picture_follows_each_move_and_the_file_is_written_at_the_end(
     painting.press((0.4, 0.5))
     canvas = painting.canvas
     assert canvas is not None and canvas.mask.shape[:2] == (128, 128), "the size of the pass that reads it"
-    begun = weights(session)
+    array = weights(session)
     file = canvas.path.read_bytes()
-    for place in ((0.45, 0.5), (0.5, 0.5), (0.55, 0.52)):
-        painting.move(place)
+    for position in ((0.45, 0.5), (0.5, 0.5), (0.55, 0.52)):
+        painting.move(position)
         np.testing.assert_array_equal(weights(session), canvas.pixels / np.float32(255))
     assert not canvas.saved and canvas.path.read_bytes() == file
-    assert (weights(session) != begun).any()
+    assert (weights(session) != array).any()
     painting.release()
     assert painting.settle() and canvas.saved
     seen = weights(session)
@@ -403,9 +403,9 @@ def test_a_mask_that_others_paint_on_is_read_again(session: Session, tmp_path: P
     np.testing.assert_array_equal(weights(session), theirs[::-1] / np.float32(255))
     painting.press((0.45, 0.5))
     painting.release()
-    found = weights(session)
-    assert (found[..., 2] == 1).mean() > 0.9 and found[..., 3].max() > 0.5
-    np.testing.assert_array_equal(found, canvas.pixels / np.float32(255))
+    array = weights(session)
+    assert (array[..., 2] == 1).mean() > 0.9 and array[..., 3].max() > 0.5
+    np.testing.assert_array_equal(array, canvas.pixels / np.float32(255))
 
 
 @pytest.mark.parametrize("act", ["undo", "clear"])
@@ -452,15 +452,15 @@ def test_a_canvas_that_no_source_reads_texel_for_texel_is_followed_by_its_file(
 
 
 def test_changes_since_a_version_are_a_rectangle_around_them(tmp_path: Path) -> None:
-    canvas = Mask.begun(tmp_path, "mask", None, SIZE)
+    canvas = Mask.create(tmp_path, "mask", None, SIZE)
     small = Brush(layer=0, radius=20.0, strength=1.0, softness=0.0)
     assert canvas.changed_since(canvas.version) == (slice(0, 0), slice(0, 0))
     rng = np.random.default_rng(3)
     versions = []
     for _ in range(300):
         versions.append((canvas.version, canvas.pixels.copy()))
-        place = tuple(rng.uniform(-0.2, 1.2, 2))
-        canvas.paint(place, place, EXTENT, small)
+        position = tuple(rng.uniform(-0.2, 1.2, 2))
+        canvas.paint(position, position, EXTENT, small)
     for version, before in versions[::17]:
         rows, columns = canvas.changed_since(version)
         copy = before.copy()

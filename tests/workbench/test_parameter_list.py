@@ -50,7 +50,7 @@ def test_a_pass_lists_what_it_exports_and_what_is_inside(draft: Draft) -> None:
 
 
 @pytest.mark.parametrize(
-    ("search", "found"),
+    ("search", "names"),
     [
         ("high", {"height.high"}),  # name
         ("BESIDE", {"height.inner.other"}),  # label
@@ -60,9 +60,9 @@ def test_a_pass_lists_what_it_exports_and_what_is_inside(draft: Draft) -> None:
         ("nothing like it", set()),
     ],
 )
-def test_a_search_finds_every_word_somewhere(draft: Draft, search: str, found: set[str]) -> None:
+def test_a_search_finds_every_word_somewhere(draft: Draft, search: str, names: set[str]) -> None:
     left = Listing().filtered(draft, Filter(search))
-    assert {i.path for section in left.values() for i in section.items if section.name == "height"} == found
+    assert {i.path for section in left.values() for i in section.items if section.name == "height"} == names
 
 
 def test_what_is_changed_by_any_name_is_marked_and_found(draft: Draft) -> None:
@@ -104,8 +104,8 @@ MENU = Parameter("a", "int", 0, Widget("menu", choices=("soft", "hard")))
     ],
 )
 def test_a_value_may_be_typed_as_an_expression(parameter: Parameter, text: str, value: object) -> None:
-    found = read_typed(parameter, text, "p.a")
-    assert found == value and type(found) is type(value)
+    result = read_typed(parameter, text, "p.a")
+    assert result == value and type(result) is type(value)
 
 
 @pytest.mark.parametrize(
@@ -172,10 +172,10 @@ def test_a_mutation_stays_near_and_goes_farther_with_its_strength() -> None:
     def way(strength: float) -> float:
         gone = []
         for seed in range(200):
-            found = mutated([*MANY, FREE, FILE], values | {"p.file": "x.png"}, seed, strength)
-            assert found.keys() == parameters.keys()
-            assert all(coerce(parameters[path], v, path) == v for path, v in found.items())
-            gone.append(abs(math.log10(float(found["p.log"]))) / 4)  # type: ignore[arg-type]
+            result = mutated([*MANY, FREE, FILE], values | {"p.file": "x.png"}, seed, strength)
+            assert result.keys() == parameters.keys()
+            assert all(coerce(parameters[path], v, path) == v for path, v in result.items())
+            gone.append(abs(math.log10(float(result["p.log"]))) / 4)  # type: ignore[arg-type]
         return float(np.mean(gone))
 
     # The mean of a normal distribution's absolute value is 0.798 of its deviation.
@@ -186,7 +186,7 @@ def test_a_mutation_stays_near_and_goes_farther_with_its_strength() -> None:
 # ── undo ─────────────────────────────────────────────────────────────────────
 
 
-class Desk:
+class Harness:
     """A history, and the edits that it follows; a second passes in each frame."""
 
     def __init__(self) -> None:
@@ -219,117 +219,117 @@ class Desk:
 
 
 def test_undo_and_redo_go_through_every_state() -> None:
-    desk, states = Desk(), [Edits()]
+    harness, states = Harness(), [Edits()]
     for n in range(5):
-        desk.set(f"p.{n % 2}", float(n))
-        states.append(desk.edits)
-    desk.edits = Edits(desk.edits.values, (("p", "x"),), Camera(azimuth=1.0), ("p.1",))
-    desk.frame()
-    states.append(desk.edits)
+        harness.set(f"p.{n % 2}", float(n))
+        states.append(harness.edits)
+    harness.edits = Edits(harness.edits.values, (("p", "x"),), Camera(azimuth=1.0), ("p.1",))
+    harness.frame()
+    states.append(harness.edits)
     for state in reversed(states[:-1]):
-        desk.undo()
-        assert state_of(desk.edits, {}) == state_of(state, {})
-    assert not desk.history.can_undo and not desk.history.go(-1, lambda changes: True)
+        harness.undo()
+        assert state_of(harness.edits, {}) == state_of(state, {})
+    assert not harness.history.can_undo and not harness.history.go(-1, lambda changes: True)
     for state in states[1:]:
-        desk.redo()
-        assert state_of(desk.edits, {}) == state_of(state, {})
-    assert not desk.history.can_redo and len(desk.history.steps) == 6
+        harness.redo()
+        assert state_of(harness.edits, {}) == state_of(state, {})
+    assert not harness.history.can_redo and len(harness.history.steps) == 6
 
 
 def test_a_drag_is_one_step_and_one_that_comes_back_is_none() -> None:
-    desk = Desk()
+    harness = Harness()
     for n in range(10):
-        desk.set("p.a", n / 10, held=True, seconds=2.0)
-    desk.frame(held=False)
-    assert [s.after for s in desk.history.steps] == [{("value", "p.a"): 0.9}]
+        harness.set("p.a", n / 10, held=True, seconds=2.0)
+    harness.frame(held=False)
+    assert [s.after for s in harness.history.steps] == [{("value", "p.a"): 0.9}]
     for value in (0.5, 0.9):
-        desk.set("p.a", value, held=True)
-    desk.set("p.a", 0.9, held=False, seconds=0.1)
-    desk.frame()
-    desk.set("p.b", 1.0)
-    assert [list(s.after) for s in desk.history.steps] == [[("value", "p.a")], [("value", "p.b")]]
+        harness.set("p.a", value, held=True)
+    harness.set("p.a", 0.9, held=False, seconds=0.1)
+    harness.frame()
+    harness.set("p.b", 1.0)
+    assert [list(s.after) for s in harness.history.steps] == [[("value", "p.a")], [("value", "p.b")]]
 
 
 def test_what_goes_on_in_the_same_way_is_one_step() -> None:
-    desk = Desk()
+    harness = Harness()
     for n in range(5):
-        desk.edits = Edits(camera=Camera(distance=100.0 - n))
-        desk.frame(seconds=0.1)
-    desk.frame(seconds=5.0)
-    desk.edits = Edits(camera=Camera(distance=50.0))
-    desk.frame()
-    assert len(desk.history.steps) == 2
+        harness.edits = Edits(camera=Camera(distance=100.0 - n))
+        harness.frame(seconds=0.1)
+    harness.frame(seconds=5.0)
+    harness.edits = Edits(camera=Camera(distance=50.0))
+    harness.frame()
+    assert len(harness.history.steps) == 2
 
 
 def test_a_new_step_ends_what_could_be_redone_and_the_oldest_go_first() -> None:
-    desk = Desk()
-    desk.history = History(most=4)
-    desk.frame()
+    harness = Harness()
+    harness.history = History(most=4)
+    harness.frame()
     for n in range(6):
-        desk.set("p.a", float(n))
-    assert len(desk.history.steps) == 4 and desk.history.steps[0].after == {("value", "p.a"): 2.0}
-    desk.undo()
-    desk.undo()
-    desk.set("p.b", 1.0)
-    assert len(desk.history.steps) == 3 and not desk.history.can_redo
+        harness.set("p.a", float(n))
+    assert len(harness.history.steps) == 4 and harness.history.steps[0].after == {("value", "p.a"): 2.0}
+    harness.undo()
+    harness.undo()
+    harness.set("p.b", 1.0)
+    assert len(harness.history.steps) == 3 and not harness.history.can_redo
 
 
 def test_undo_leaves_alone_what_its_step_did_not_change_and_reloads_are_no_steps() -> None:
-    desk = Desk()
-    desk.set("p.a", 1.0)
-    desk.set("p.b", 1.0)
-    desk.reads, desk.edits = 1, Edits((("p.b", 1.0),))  # a reload took p.a away
-    desk.frame()
-    assert len(desk.history.steps) == 2
-    desk.undo()
-    assert desk.edits == Edits()
-    desk.redo()
-    assert desk.edits == Edits((("p.b", 1.0),))
+    harness = Harness()
+    harness.set("p.a", 1.0)
+    harness.set("p.b", 1.0)
+    harness.reads, harness.edits = 1, Edits((("p.b", 1.0),))  # a reload took p.a away
+    harness.frame()
+    assert len(harness.history.steps) == 2
+    harness.undo()
+    assert harness.edits == Edits()
+    harness.redo()
+    assert harness.edits == Edits((("p.b", 1.0),))
 
 
 def test_an_undo_that_takes_its_time_is_no_step() -> None:
-    desk = Desk()
-    desk.edits = Edits(techniques=(("p", "x"),))
-    desk.frame()
-    assert desk.history.go(-1, lambda changes: True)
-    desk.history.settle(desk.edits, {})  # nothing has come of it yet
-    desk.frame()
-    desk.edits = Edits()
-    desk.frame()
-    assert desk.history.done == 0 and desk.history.can_redo
-    desk.edits = Edits(techniques=(("p", "x"),))  # by the user, not by redo
-    desk.frame()
-    assert desk.history.done == 1 and not desk.history.can_redo
+    harness = Harness()
+    harness.edits = Edits(techniques=(("p", "x"),))
+    harness.frame()
+    assert harness.history.go(-1, lambda changes: True)
+    harness.history.settle(harness.edits, {})  # nothing has come of it yet
+    harness.frame()
+    harness.edits = Edits()
+    harness.frame()
+    assert harness.history.done == 0 and harness.history.can_redo
+    harness.edits = Edits(techniques=(("p", "x"),))  # by the user, not by redo
+    harness.frame()
+    assert harness.history.done == 1 and not harness.history.can_redo
 
 
 def test_what_is_saved_into_the_file_can_be_undone() -> None:
-    desk = Desk()
-    desk.set("p.a", 0.9)
-    desk.history.saved({("value", "p.a"): 0.5})
-    desk.reads, desk.edits = 1, Edits()  # the reload that follows
-    desk.frame()
-    desk.undo()
-    assert desk.edits == Edits((("p.a", 0.5),)), "what the file said before"
-    desk.redo()
-    assert desk.edits == Edits((("p.a", 0.9),))
+    harness = Harness()
+    harness.set("p.a", 0.9)
+    harness.history.saved({("value", "p.a"): 0.5})
+    harness.reads, harness.edits = 1, Edits()  # the reload that follows
+    harness.frame()
+    harness.undo()
+    assert harness.edits == Edits((("p.a", 0.5),)), "what the file said before"
+    harness.redo()
+    assert harness.edits == Edits((("p.a", 0.9),))
 
 
 def test_steps_have_names() -> None:
-    desk = Desk()
-    desk.set("p.a", 0.5)
-    desk.history.call("Preset dusk")
-    desk.edits = desk.edits.with_value("p.a", 0.75).with_value("p.b", 0.25)
-    desk.frame()
-    desk.edits = Edits(desk.edits.values, (("p", "x"),))
-    desk.frame()
-    desk.edits = Edits(desk.edits.values, (("p", "x"),), locked=("p.a",))
-    desk.frame()
-    desk.history.jump(1.0, 0.0, held=False, now=desk.now)
+    harness = Harness()
+    harness.set("p.a", 0.5)
+    harness.history.call("Preset dusk")
+    harness.edits = harness.edits.with_value("p.a", 0.75).with_value("p.b", 0.25)
+    harness.frame()
+    harness.edits = Edits(harness.edits.values, (("p", "x"),))
+    harness.frame()
+    harness.edits = Edits(harness.edits.values, (("p", "x"),), locked=("p.a",))
+    harness.frame()
+    harness.history.jump(1.0, 0.0, held=False, now=harness.now)
 
     def written(path: str, value: object) -> str:
         return "the file's" if value is None else f"{value:g}"
 
-    assert [in_words(s, str.upper, written) for s in desk.history.steps] == [
+    assert [in_words(s, str.upper, written) for s in harness.history.steps] == [
         "P.A: the file's to 0.5",
         "Preset dusk",
         "p: x",
@@ -339,10 +339,10 @@ def test_steps_have_names() -> None:
 
 
 def test_a_step_that_is_refused_is_not_undone() -> None:
-    desk = Desk()
-    desk.set("p.a", 0.5)
-    assert not desk.history.go(-1, lambda changes: False)
-    assert desk.history.done == 1
-    desk.undo()
-    assert not desk.history.go(1, lambda changes: False)
-    assert desk.history.done == 0 and desk.history.can_redo
+    harness = Harness()
+    harness.set("p.a", 0.5)
+    assert not harness.history.go(-1, lambda changes: False)
+    assert harness.history.done == 1
+    harness.undo()
+    assert not harness.history.go(1, lambda changes: False)
+    assert harness.history.done == 0 and harness.history.can_redo

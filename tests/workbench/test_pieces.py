@@ -45,12 +45,12 @@ def session(tmp_path: Path, any_engine: Engine, monkeypatch) -> Iterator[Session
     monkeypatch.setattr(shown_picture, "PIECE", 0.0)
     (tmp_path / "sea.toml").write_text(SKETCH, encoding="utf-8")
     with Engine(any_engine.ctx) as engine:
-        found = Session(engine, tmp_path / "sea.toml")
-        found.clock.playing = False
-        found.frame(SIZE)
-        found.read()
-        yield found
-        found.release()
+        result = Session(engine, tmp_path / "sea.toml")
+        result.clock.playing = False
+        result.frame(SIZE)
+        result.read()
+        yield result
+        result.release()
 
 
 def turned(session: Session, azimuth: float) -> None:
@@ -67,12 +67,12 @@ def of_a_full_picture(session: Session) -> list[str]:
 
 def pieces(session: Session) -> list[list[str]]:
     """Draw frames until the picture rests; return the passes that each of them ran."""
-    found = []
+    names = []
     while session.is_preview:
         session.frame(SIZE)
-        assert session.error is None and len(found) < 20
-        found.append(list(session.engine.record.ran))
-    return found
+        assert session.error is None and len(names) < 20
+        names.append(list(session.engine.record.ran))
+    return names
 
 
 def test_each_piece_runs_what_is_left(session: Session):
@@ -96,9 +96,9 @@ def test_the_preview_stays_until_the_last(session: Session):
     for _ in expected[:-1]:
         session.frame(SIZE)
         np.testing.assert_array_equal(session.picture.frame("", 0.0).array, preview)
-        assert session.is_preview and session.draws == draws and not session.rests
+        assert session.is_preview and session.draws == draws and not session.is_idle
     session.frame(SIZE)
-    assert session.draws == draws + 1 and session.rests
+    assert session.draws == draws + 1 and session.is_idle
 
 
 def test_what_moves_meanwhile_is_shown_at_once_and_drawn_in_full_later(session: Session):
@@ -117,13 +117,13 @@ def test_what_is_read_back_is_whole_at_once(session: Session):
     turned(session, 40.0)
     session.frame(SIZE)
     session.frame(SIZE)
-    found = session.read().array
+    array = session.read().array
     assert not session.is_preview
-    np.testing.assert_array_equal(found, session.engine.render(session.sketch, size=SIZE).array)
+    np.testing.assert_array_equal(array, session.engine.render(session.sketch, size=SIZE).array)
 
 
 def test_pieces_grow_so_that_a_picture_ends_that_no_cache_holds(session: Session, monkeypatch):
-    """With no room for textures each piece would begin anew for ever."""
+    """With no room for textures each piece would begin again for ever."""
     monkeypatch.setattr(shown_picture, "PIECE", 1e-4)
     monkeypatch.setattr(shown_picture, "STEADY", 3)
     monkeypatch.setattr(session.engine.cache, "limit", 1)

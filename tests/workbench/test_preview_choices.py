@@ -48,12 +48,12 @@ def path(tmp_path: Path) -> Path:
 def session(path: Path, any_engine: Engine, monkeypatch) -> Iterator[Session]:
     monkeypatch.setattr(ContextInfo, "software", True)
     with Engine(any_engine.ctx) as engine:
-        found = Session(engine, path)
-        found.clock.playing = False
-        found.frame(SIZE)
-        found.read()
-        yield found
-        found.release()
+        result = Session(engine, path)
+        result.clock.playing = False
+        result.frame(SIZE)
+        result.read()
+        yield result
+        result.release()
 
 
 @pytest.fixture
@@ -178,9 +178,9 @@ def test_the_sweep_of_a_preview_jumps_no_more_than_stated(tmp_path: Path, any_en
     text = SKETCH.replace("ray_cast", use).replace("size = 65", "size = 257")
     (tmp_path / "soft.toml").write_text(text, encoding="utf-8")
     sketch = load(tmp_path / "soft.toml").with_values({"light.sun": (200.0, 15.0)})
-    found = [
+    result = [
         any_engine.read(each, "light.visibility")
         for each in (sketch, as_preview(sketch, faster={"light.visibility"}))
     ]
-    far = np.abs(found[0] - found[1])
+    far = np.abs(result[0] - result[1])
     assert far.any() and far.mean() <= 0.006

@@ -88,11 +88,11 @@ class Slow:
 
     def move(self, times: int, path: str = "view.level") -> list[int]:
         """Move a slider for so many frames; return by what the sides were divided."""
-        found = []
+        numbers = []
         for number in range(times):
             self.session.drafts.set(path, 0.1 + 0.79 * number / times)
-            found.append(round(SIZE[0] / self.frame(0.05)[0]))
-        return found
+            numbers.append(round(SIZE[0] / self.frame(0.05)[0]))
+        return numbers
 
 
 @pytest.fixture
@@ -117,9 +117,9 @@ def test_a_slow_picture_moves_in_fewer_pixels_and_rests_in_full(slow: Slow):
     divisors = slow.move(12)
     spent = sum(session.engine.record.times.values())
     assert set(divisors[-6:]) == {3} and spent < 1e3 * BUDGETS[3], "the largest within its budget: 111 ms"
-    assert session.is_preview and session.picture.texture.size == SIZE and not session.rests
+    assert session.is_preview and session.picture.texture.size == SIZE and not session.is_idle
     assert slow.frame(REST / 2) != SIZE and slow.frame(REST) == SIZE
-    assert not session.is_preview and session.rests
+    assert not session.is_preview and session.is_idle
     expected = session.engine.render(session.sketch, size=SIZE).array
     np.testing.assert_array_equal(session.read().array[..., :3], expected[..., :3])
 
@@ -185,7 +185,7 @@ def test_a_size_that_fits_stays_until_a_fifth_more_and_grows_where_a_fifth_is_le
 
 
 def test_a_simulation_keeps_its_size(slow: Slow, tmp_path: Path):
-    """Another size would begin it anew, from second 0."""
+    """Another size would begin it again, from second 0."""
     (tmp_path / "count.glsl").write_text(COUNT, encoding="utf-8")
     inside = passes(count=("./count", 'repeat = "frames"', 'feedback = { before = "frame" }'))
     (tmp_path / "counted.toml").write_text(inside, encoding="utf-8")
@@ -203,11 +203,11 @@ def test_time_that_is_too_slow_is_paused_once_so_that_the_picture_is_whole(slow:
     session.open(tmp_path / "playing.toml")
 
     def play(frames: int) -> list[tuple[int, int]]:
-        found = []
+        result = []
         for _ in range(frames):
             session.advance(0.05, datetime(2026, 11, 23, tzinfo=UTC))
-            found.append(slow.frame(0.05))
-        return found
+            result.append(slow.frame(0.05))
+        return result
 
     assert SIZE not in play(4) and not session.clock.playing
     assert [note for note in session.notes if "paused" in note] == [
@@ -262,9 +262,9 @@ def test_compared_pictures_have_the_same_pixels(slow: Slow):
     slow.frame(1.0)
     compare.follow(slow.session.picture.texture)
     assert slow.session.picture.drawn_size == SIZE
-    found = np.frombuffer(compare.picture.read(), np.uint8).reshape(*SIZE[::-1], -1)
+    result = np.frombuffer(compare.picture.read(), np.uint8).reshape(*SIZE[::-1], -1)
     expected = slow.session.engine.render(kept, size=SIZE).array
-    np.testing.assert_array_equal(found[::-1, :, :3], expected[..., :3])
+    np.testing.assert_array_equal(result[::-1, :, :3], expected[..., :3])
     compare.release()
 
 
@@ -300,12 +300,12 @@ def test_a_cubic_surface_is_enlarged_to_itself(
     target = ctx.framebuffer([shown])
     with any_engine.borrowed():
         enlarger.draw(picture, target)
-    found = np.frombuffer(shown.read(), np.uint8).reshape(large[1], large[0], 4)
+    result = np.frombuffer(shown.read(), np.uint8).reshape(large[1], large[0], 4)
     for made in (enlarger, target, shown, picture):
         made.release()
     edge = 2 * (-(-large[0] // small[0]))
     inner = (slice(edge, -edge), slice(edge, -edge))
-    np.testing.assert_allclose(found[..., 0][inner], 255 * surface(large)[inner], atol=1.8)
+    np.testing.assert_allclose(result[..., 0][inner], 255 * surface(large)[inner], atol=1.8)
 
 
 def test_grey_pictures_and_coloured_ones_are_enlarged_in_turn(any_engine: Engine):
@@ -317,8 +317,8 @@ def test_grey_pictures_and_coloured_ones_are_enlarged_in_turn(any_engine: Engine
     for picture, expected in ((grey, (200, 200, 200)), (coloured, (200, 90, 30)), (grey, (200, 200, 200))):
         with any_engine.borrowed():
             enlarger.draw(picture, target)
-        found = np.frombuffer(shown.read(), np.uint8).reshape(-1, 4)
-        np.testing.assert_allclose(found[:, :3], np.tile(expected, (len(found), 1)), atol=1)
+        result = np.frombuffer(shown.read(), np.uint8).reshape(-1, 4)
+        np.testing.assert_allclose(result[:, :3], np.tile(expected, (len(result), 1)), atol=1)
     for made in (enlarger, target, shown, grey, coloured):
         made.release()
 

@@ -13,7 +13,7 @@ from playground.engine.file_sources import read_numbers, write_numbers
 from playground.engine.textures import read_texture
 from playground.errors import DataError
 from playground.workbench.brush import Brush
-from playground.workbench.painting import CLICK, LONGEST, Painting
+from playground.workbench.painting import CLICK, MAX_DAB_SECONDS, Painting
 from playground.workbench.sculpture import RISE, Sculpture
 from playground.workbench.session import Session
 
@@ -78,9 +78,9 @@ def read(session: Session, name: str) -> np.ndarray:
 
 def stroke(painting: Painting, *places: tuple[float, float], seconds: float = 0.05) -> None:
     painting.press(places[0])
-    for place in places:
+    for position in places:
         painting._now.now += seconds  # type: ignore[attr-defined]
-        painting.move(place)
+        painting.move(position)
     painting.release()
     painting.settle()
 
@@ -92,9 +92,9 @@ def test_what_is_painted_is_added_in_metres(session: Session, painting: Painting
     stroke(painting, PLACE)
     after = read(session, "height")
     rise = (after - before) * 200.0
-    wanted = RISE * 150.0 * (CLICK + 0.05)  # [m] in the brush's hard core
+    expected = RISE * 150.0 * (CLICK + 0.05)  # [m] in the brush's hard core
     there = round(y * 64), round(x * 96)
-    assert abs(rise[there] - wanted) < 0.01
+    assert abs(rise[there] - expected) < 0.01
     away = np.hypot(np.arange(97) / 96 * 2000 - x * 2000, (np.arange(65)[:, None] / 64 - y) * 1100)
     assert (rise[away > 150] == 0).all() and (rise[away < 149] > 0).all()
     canvas = painting.canvas
@@ -110,7 +110,7 @@ def test_the_brush_works_for_as_long_as_the_button_is_down(session: Session, pai
     assert abs(canvas.pixels.max() - RISE * 150.0 * (CLICK + 8 * 0.05)) < 1e-3
     painting.undo()
     stroke(painting, PLACE, seconds=60.0)  # a frame that took a minute
-    assert abs(canvas.pixels.max() - RISE * 150.0 * (CLICK + LONGEST)) < 1e-3
+    assert abs(canvas.pixels.max() - RISE * 150.0 * (CLICK + MAX_DAB_SECONDS)) < 1e-3
 
 
 def test_the_file_has_the_window_s_bits_and_draws_its_picture(
@@ -148,9 +148,9 @@ def test_what_ends_a_stroke_with_the_button_down_leaves_nothing_that_cannot_be_u
     painting.press(PLACE)
     getattr(painting, act)()
     ended = canvas.pixels.copy()
-    for place in (PLACE, (0.6, 0.55)):  # the button is still down
+    for position in (PLACE, (0.6, 0.55)):  # the button is still down
         painting._now.now += 0.05  # type: ignore[attr-defined]
-        painting.move(place)
+        painting.move(position)
     painting.release()
     painting.settle()
     np.testing.assert_array_equal(canvas.pixels, ended)
@@ -218,8 +218,8 @@ def test_flatten_goes_to_the_height_where_the_stroke_begins_or_to_a_level(
     for level in (None, 90.0):
         painting.brush = Brush(tool="flatten", radius=250.0, strength=1.0, softness=0.5, level=level)
         stroke(painting, *[PLACE] * 40)
-        found = read(session, "height")[there[0] - 2 : there[0] + 3, there[1] - 2 : there[1] + 3] * 200.0
-        np.testing.assert_allclose(found, hills[there] if level is None else level, atol=1e-3)
+        result = read(session, "height")[there[0] - 2 : there[0] + 3, there[1] - 2 : there[1] + 3] * 200.0
+        np.testing.assert_allclose(result, hills[there] if level is None else level, atol=1e-3)
         painting.undo()
 
 
@@ -232,24 +232,24 @@ def test_a_factor_is_painted_as_what_is_added_to_1(session: Session, painting: P
     stroke(painting, *[(0.6, 0.5)] * 100)
     canvas = painting.canvas
     assert isinstance(canvas, Sculpture) and canvas.ground is None
-    found = read(session, "rain")
-    np.testing.assert_array_equal(found, np.clip(1 + canvas.pixels, 0, 4).astype(np.float32))
-    assert abs(found.min() - 0.35) < 1e-5 and found.max() == 4
+    result = read(session, "rain")
+    np.testing.assert_array_equal(result, np.clip(1 + canvas.pixels, 0, 4).astype(np.float32))
+    assert abs(result.min() - 0.35) < 1e-5 and result.max() == 4
     assert (read(session, "height") == read(session, "hills")).all(), "the other canvas is another"
 
 
 def test_a_file_of_another_size_is_taken_over_and_one_with_gaps_is_refused(tmp_path: Path) -> None:
     write_numbers(tmp_path / "coarse.tif", np.array([[0, 8], [-4, 4]], np.float32))
-    canvas = Sculpture.begun(tmp_path, "fine", tmp_path / "coarse.tif", (9, 5))
+    canvas = Sculpture.create(tmp_path, "fine", tmp_path / "coarse.tif", (9, 5))
     assert canvas.path.name == "fine.tif" and canvas.size == (9, 5)
     np.testing.assert_allclose(canvas.pixels[[0, 0, -1, -1], [0, -1, 0, -1]], [0, 8, -4, 4])
     write_numbers(tmp_path / "gaps.tif", np.array([[0, np.nan], [1, 2]], np.float32))
     with pytest.raises(DataError, match="1 texels have no data; expected a number in each"):
-        Sculpture.begun(tmp_path, "fine", tmp_path / "gaps.tif", (9, 5))
+        Sculpture.create(tmp_path, "fine", tmp_path / "gaps.tif", (9, 5))
 
 
 def test_strokes_over_many_tiles_are_undone_one_by_one(tmp_path: Path) -> None:
-    canvas = Sculpture.begun(tmp_path, "large", None, (203, 150))
+    canvas = Sculpture.create(tmp_path, "large", None, (203, 150))
     rng = np.random.default_rng(5)
     states = [canvas.pixels.copy()]
     for _ in range(8):
@@ -259,7 +259,7 @@ def test_strokes_over_many_tiles_are_undone_one_by_one(tmp_path: Path) -> None:
             canvas.paint(start, end, (2000.0, 1500.0), Brush(tool="raise", radius=90.0), 0.1)
         canvas.save()
         states.append(canvas.pixels.copy())
-    for wanted in states[-2::-1]:
+    for expected in states[-2::-1]:
         canvas.undo()
-        np.testing.assert_array_equal(canvas.pixels, wanted)
+        np.testing.assert_array_equal(canvas.pixels, expected)
     assert not canvas.can_undo

@@ -24,24 +24,24 @@ def hills(seed: int = 3) -> np.ndarray:
 def worked(tool: str, seconds: float, *, ground=None, start=None, at=(MIDDLE, MIDDLE), steps=1, **brush):
     """Return the change after a stroke, float64."""
     change = np.zeros((NY, NX), np.float32) if start is None else start.copy()
-    given = Brush(**{"radius": 120.0, "strength": 0.8, "softness": 0.6, "tool": tool} | brush)
+    value = Brush(**{"radius": 120.0, "strength": 0.8, "softness": 0.6, "tool": tool} | brush)
     for n in range(steps):
         a, b = (tuple(np.array(at[0]) + (np.array(at[1]) - at[0]) * (n + k) / steps) for k in (0, 1))
-        sculpt(change, ground, (a, b), EXTENT, given, seconds=seconds / steps, rate=40.0, level=310.0)
+        sculpt(change, ground, (a, b), EXTENT, value, seconds=seconds / steps, rate=40.0, level=310.0)
     return change.astype(np.float64)
 
 
-def falloff(place=MIDDLE, radius=120.0, softness=0.6) -> np.ndarray:
+def falloff(position=MIDDLE, radius=120.0, softness=0.6) -> np.ndarray:
     """Return the brush's share at each texel, from its description: a cubic over the softness."""
-    away = np.hypot(X - place[0] * EXTENT[0], Y - place[1] * EXTENT[1])
+    away = np.hypot(X - position[0] * EXTENT[0], Y - position[1] * EXTENT[1])
     t = np.clip((radius - away) / (radius * softness), 0, 1)
     return 3 * t**2 - 2 * t**3
 
 
 @pytest.mark.parametrize(("tool", "sign"), [("raise", 1), ("lower", -1)])
 def test_raise_adds_rate_times_seconds_times_falloff(tool, sign):
-    found = worked(tool, 0.5)
-    np.testing.assert_allclose(found, sign * 0.8 * 40.0 * 0.5 * falloff(), atol=1e-4)
+    value = worked(tool, 0.5)
+    np.testing.assert_allclose(value, sign * 0.8 * 40.0 * 0.5 * falloff(), atol=1e-4)
 
 
 @pytest.mark.parametrize("tool", SHAPING)
@@ -54,11 +54,11 @@ def test_what_a_tool_does_in_a_second_does_not_depend_on_the_frames(tool):
 
 def test_a_stroke_along_a_line_is_the_integral_of_the_brush_over_time():
     ends = (0.3, 0.4), (0.7, 0.6)
-    found = worked("raise", 2.0, at=ends)
+    value = worked("raise", 2.0, at=ends)
     shares = np.linspace(0, 1, 2001)
     places = (np.array(ends[0]) + share * (np.array(ends[1]) - ends[0]) for share in shares)
-    wanted = 0.8 * 40.0 * 2.0 * np.mean([falloff(tuple(place)) for place in places], axis=0)
-    np.testing.assert_allclose(found, wanted, atol=0.02 * wanted.max())
+    expected = 0.8 * 40.0 * 2.0 * np.mean([falloff(tuple(position)) for position in places], axis=0)
+    np.testing.assert_allclose(value, expected, atol=0.02 * expected.max())
 
 
 def test_flatten_is_flat_in_the_hard_core_and_leaves_what_is_outside():
@@ -77,11 +77,11 @@ def test_flatten_is_flat_in_the_hard_core_and_leaves_what_is_outside():
 
 def test_flatten_and_erase_go_by_the_exponential():
     start = hills() - 300
-    found = worked("erase", 0.13, start=start)
-    np.testing.assert_allclose(found, start * np.exp(-APPROACH * 0.8 * 0.13 * falloff()), atol=1e-4)
-    found = worked("flatten", 0.13, start=start)
-    wanted = 310 + (start - 310) * np.exp(-APPROACH * 0.8 * 0.13 * falloff())
-    np.testing.assert_allclose(found, wanted, atol=1e-4)
+    value = worked("erase", 0.13, start=start)
+    np.testing.assert_allclose(value, start * np.exp(-APPROACH * 0.8 * 0.13 * falloff()), atol=1e-4)
+    value = worked("flatten", 0.13, start=start)
+    expected = 310 + (start - 310) * np.exp(-APPROACH * 0.8 * 0.13 * falloff())
+    np.testing.assert_allclose(value, expected, atol=1e-4)
 
 
 def test_smooth_moves_rock_and_makes_none():
@@ -103,10 +103,10 @@ def test_smooth_is_the_heat_equation_in_metres():
     most = (32 * min(DX, DY)) ** 2 / 16 * seconds  # the finer side bounds its steps
     for axis, (length, coordinate) in enumerate([(10 * DY, Y), (10 * DX, X)]):
         wave = np.sin(2 * np.pi * coordinate / length)
-        found = wave + worked(
+        result = wave + worked(
             "smooth", seconds, ground=wave.astype(np.float32), strength=0.1, softness=0.0, radius=radius
         )
-        inner = found[12:-12, 15:-15]
+        inner = result[12:-12, 15:-15]
         spacing = (DY, DX)[axis]
         # Of the five-point operator: k^2 becomes (2 - 2 cos(k d)) / d^2.
         decay = np.exp(-0.1 * most * (2 - 2 * np.cos(2 * np.pi * spacing / length)) / spacing**2)
@@ -116,7 +116,7 @@ def test_smooth_is_the_heat_equation_in_metres():
 
 def test_sharpen_raises_what_stands_above_its_mean():
     ground = hills()
-    found = worked("sharpen", 0.2, ground=ground)
+    value = worked("sharpen", 0.2, ground=ground)
     sigma, weight = 30.0, 0.8 * falloff()
     y, x = 17, 33
     # The mean by a slow sum over the square that the brush looks at: three deviations beyond its edge.
@@ -125,25 +125,25 @@ def test_sharpen_raises_what_stands_above_its_mean():
     near = [(j, i, np.exp(-(((i - x) * DX) ** 2 + ((j - y) * DY) ** 2) / (2 * sigma**2)))
             for j in rows for i in columns]  # fmt: skip
     mean = sum(g * float(ground[j, i]) for j, i, g in near) / sum(g for *_, g in near)
-    wanted = (np.exp(SHARPEN * 0.2 * weight[y, x]) - 1) * (ground[y, x] - mean)
-    np.testing.assert_allclose(found[y, x], wanted, rtol=1e-3)
+    expected = (np.exp(SHARPEN * 0.2 * weight[y, x]) - 1) * (ground[y, x] - mean)
+    np.testing.assert_allclose(value[y, x], expected, rtol=1e-3)
     assert abs(worked("sharpen", 1.0, ground=np.full((NY, NX), 70.0, np.float32))).max() < 1e-4
 
 
 @pytest.mark.parametrize("tool", SHAPING)
-@pytest.mark.parametrize("place", [(0.0, 0.0), (1.0, 0.3), (3.0, 3.0), (-0.01, 1.005)])
-def test_at_the_edges_and_off_the_terrain_every_tool_stays_finite(tool, place):
+@pytest.mark.parametrize("position", [(0.0, 0.0), (1.0, 0.3), (3.0, 3.0), (-0.01, 1.005)])
+def test_at_the_edges_and_off_the_terrain_every_tool_stays_finite(tool, position):
     ground = hills()
-    found = worked(tool, 0.1, ground=ground, at=(place, place))
-    assert np.isfinite(found).all()
-    assert found.any() == (place[0] < 2 and tool != "erase")
+    value = worked(tool, 0.1, ground=ground, at=(position, position))
+    assert np.isfinite(value).all()
+    assert value.any() == (position[0] < 2 and tool != "erase")
 
 
 @pytest.mark.parametrize("tool", SHAPING)
 def test_a_mirrored_stroke_is_the_mirror_image(tool):
     ground, start = hills(), hills(4) - 300
-    found = worked(tool, 0.3, ground=ground, start=start, at=((0.3, 0.4), (0.6, 0.5)))
+    value = worked(tool, 0.3, ground=ground, start=start, at=((0.3, 0.4), (0.6, 0.5)))
     other = worked(tool, 0.3, ground=ground[:, ::-1], start=start[:, ::-1], at=((0.7, 0.4), (0.4, 0.5)))[
         :, ::-1
     ]
-    np.testing.assert_allclose(found, other, atol=1e-3)
+    np.testing.assert_allclose(value, other, atol=1e-3)

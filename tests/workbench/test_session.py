@@ -144,7 +144,7 @@ def test_a_save_of_an_included_parameter_shows(bench: Bench) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "old", "new", "place"),
+    ("name", "old", "new", "location"),
     [
         ("terrain.glsl", "level * tilt", "levle * tilt", "terrain.glsl:6:"),
         ("inc/tilt.glsl", "float(texel.x)", "float(texle.x)", "tilt.glsl:2:"),
@@ -155,12 +155,12 @@ def test_a_save_of_an_included_parameter_shows(bench: Bench) -> None:
     ],
 )
 def test_what_is_broken_is_reported_and_the_last_good_picture_stays_until_it_is_fixed(
-    bench: Bench, name: str, old: str, new: str, place: str
+    bench: Bench, name: str, old: str, new: str, location: str
 ) -> None:
     before = bench.picture()
     bench.change(name, old, new)
     np.testing.assert_array_equal(bench.picture(), before)
-    assert place in str(bench.session.error)
+    assert location in str(bench.session.error)
     assert bench.folder / name in bench.session.drafts.files
     bench.change(name, new, old)
     assert bench.session.error is None

@@ -208,14 +208,14 @@ def test_the_sandbox_says_what_is_wrong_with_a_bomb(folder: Path, any_engine: En
 def test_nothing_looks_into_the_picture_while_new_data_is_checked(session: Session, folder: Path) -> None:
     answer(session, SandboxReport(True))
     picture = session.frame(SIZE)
-    assert picture is not None and session.rests
+    assert picture is not None and session.is_idle
     inspector, thumbnails, compare = Inspector(session), Thumbnails(session), Compare(session)
     assert inspector.at((5, 5), picture) is not None
     assert not thumbnails.refresh(["height:height"], 1.0) and thumbnails.made == 1
     compare.keep()
     compare.follow(picture)
     np.save(folder / "terrain.npy", np.full((9, 9), 0.25, np.float32))
-    assert session.awaits_data and not session.rests
+    assert session.awaits_data and not session.is_idle
     assert inspector.at((6, 6), picture) is None
     made, draws = thumbnails.made, compare.draws
     thumbnails.refresh(["view:view"], 2.0)
@@ -224,6 +224,6 @@ def test_nothing_looks_into_the_picture_while_new_data_is_checked(session: Sessi
     assert (thumbnails.made, compare.draws) == (made, draws)
     session.drafts.reload()
     answer(session, SandboxReport(True))
-    assert session.rests and inspector.at((6, 6), picture) is not None
+    assert session.is_idle and inspector.at((6, 6), picture) is not None
     for made_there in (inspector, thumbnails, compare):
         made_there.release()

@@ -37,7 +37,7 @@ def test_memory_is_flat_over_five_hundred_reloads(
 ) -> None:
     """Each with another text, every tenth with a mistake, values set by the user between.
 
-    When a picture is drawn in full, with a mesh of its own, is told, and does not go by the clock.
+    When a picture is drawn in full, with a mesh of its own, is told, and does not depend on the clock.
     """
     monkeypatch.setattr(shown_picture, "REST", math.inf)
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")

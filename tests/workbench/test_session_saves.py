@@ -50,8 +50,8 @@ def kernel(term: str, includes: str = '#include "inc/tilt.glsl"', level: str = "
     )
 
 
-def sketch(use: str, more: str = "size = 17", wanted: str = "") -> str:
-    wired = f"set = {{ {wanted} }}\n" if wanted else ""
+def sketch(use: str, more: str = "size = 17", expected: str = "") -> str:
+    wired = f"set = {{ {expected} }}\n" if expected else ""
     return (
         f'format = 1\n{more}\n[[pass]]\nname = "height"\nuse = "{use}"\n{wired}'
         '[view]\nuse = "view/map"\ninputs = { shown = "height" }\nset = { channel = "red" }\n'
@@ -147,11 +147,11 @@ class Folder:
 
     def note(self) -> None:
         """Keep what is on the disk just now."""
-        found = {}
+        result = {}
         for name in VARIANTS:
             if (self.path / name).is_file():
-                found[name] = (self.path / name).read_bytes()
-        self.states.append(found)
+                result[name] = (self.path / name).read_bytes()
+        self.states.append(result)
 
 
 def save_in_place(folder: Folder, name: str, data: bytes, rest: Callable[[], None]) -> None:
@@ -234,10 +234,10 @@ class Truth:
     def of(self, path: Path, level: float | None, seconds: float) -> tuple[str, bytes]:
         """Return what is wrong, or "" and the picture."""
         try:
-            found = load(path / "sketch.toml")
-            if level is not None and LEVEL in values_of(found):
-                found = found.with_values({LEVEL: level})
-            frame = self.engine.render(found, size=SIZE, time=seconds)
+            result = load(path / "sketch.toml")
+            if level is not None and LEVEL in values_of(result):
+                result = result.with_values({LEVEL: level})
+            frame = self.engine.render(result, size=SIZE, time=seconds)
         except PlaygroundError as error:
             sketch = path / "sketch.toml"
             return str(missing_file_error(sketch) or explained(error, sketch)), b""
@@ -309,8 +309,8 @@ class Run:
 
     def settle(self, wrong: str, picture: bytes) -> None:
         """Go on until this is shown."""
-        begun = time.monotonic()
-        while not self.shows(wrong, picture) and time.monotonic() - begun < PATIENCE:
+        started = time.monotonic()
+        while not self.shows(wrong, picture) and time.monotonic() - started < PATIENCE:
             self.frame()
             self.woken.wait(0.003)
             self.woken.clear()
@@ -334,8 +334,8 @@ def check(tmp_path: Path, engine: Engine, seed: int, sandbox: Sandbox | None) ->
     with Engine(engine.ctx) as other:
         truth = Truth(other)
         try:
-            begun = time.monotonic()
-            while run.session.draws == 0 and time.monotonic() - begun < PATIENCE:
+            started = time.monotonic()
+            while run.session.draws == 0 and time.monotonic() - started < PATIENCE:
                 run.frame()
             assert run.session.draws and run.session.error is None
             done = run.play()
@@ -343,14 +343,14 @@ def check(tmp_path: Path, engine: Engine, seed: int, sandbox: Sandbox | None) ->
             wrong, picture = truth.of(folder.path, run.levels[-1], seconds)
             for _ in range(2):  # and after what is still reported late, it is so again
                 run.settle(wrong, picture)
-                found = f"seed {seed}: {'; '.join(done)}\nsaid: {run.session.error}\ntrue: {wrong}"
-                assert run.shows(wrong, picture), found
+                text = f"seed {seed}: {'; '.join(done)}\nsaid: {run.session.error}\ntrue: {wrong}"
+                assert run.shows(wrong, picture), text
                 for _ in range(3):
                     run.frame()
-            assert run.session.shown.edits.camera == camera and run.session.clock.time == seconds, found
+            assert run.session.shown.edits.camera == camera and run.session.clock.time == seconds, text
             if wrong:
                 assert run.picture() in pictures_of(tmp_path / "past", folder, truth, run.levels, seconds), (
-                    found
+                    text
                 )
         finally:
             run.close()
@@ -375,8 +375,8 @@ def pictures_of(
             (past / str(number) / name).parent.mkdir(parents=True, exist_ok=True)
             (past / str(number) / name).write_bytes(data)
         if "sketch.toml" in dict(files):
-            found = (truth.of(past / str(number), level, seconds)[1] for level in reversed(levels))
-            yield from filter(None, found)
+            result = (truth.of(past / str(number), level, seconds)[1] for level in reversed(levels))
+            yield from filter(None, result)
 
 
 def is_data(name: str) -> bool:

@@ -85,7 +85,7 @@ def test_the_last_picture_stays_until_the_source_has_ended(session, gate):
     for _ in range(3):
         assert session.frame(SIZE) is not None
     assert session.catch_up.behind == (50, 100) and session.catch_up.source == "height"
-    assert session.draws == draws and not session.rests and session.error is None
+    assert session.draws == draws and not session.is_idle and session.error is None
     assert behind_text(50, 100, "height") == "making height … 50 %"
     session.clock.playing, at = True, session.clock.time
     session.advance(0.5, datetime(2026, 1, 1))

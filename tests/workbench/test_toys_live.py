@@ -44,10 +44,10 @@ def test_a_save_of_any_pass_shows_and_a_mistake_keeps_the_last_picture(any_engin
         session.drafts.reload()
         session.frame(SIZE)
         assert session.error is not None
-        found = session.error.diagnostics[0]
-        assert (found.file.rpartition("/")[2], found.line) == (toy.at, line)
-        assert Problems().lines_around(found)[0][1].strip() or "not_declared" in found.excerpt
-        assert MISTAKE.strip() in [text.strip() for _, text in Problems().lines_around(found)]
+        diagnostic = session.error.diagnostics[0]
+        assert (diagnostic.file.rpartition("/")[2], diagnostic.line) == (toy.at, line)
+        assert Problems().lines_around(diagnostic)[0][1].strip() or "not_declared" in diagnostic.excerpt
+        assert MISTAKE.strip() in [text.strip() for _, text in Problems().lines_around(diagnostic)]
         again = session.read()
         assert again is not None
         np.testing.assert_array_equal(again.array, first.array)

@@ -33,16 +33,16 @@ class Watched:
         self.watcher.start()
         time.sleep(0.1)  # the kernel's watches are being set up
 
-    def sees(self, *wanted: Path) -> bool:
-        found: set[Path] = set()
+    def sees(self, *expected: Path) -> bool:
+        paths: set[Path] = set()
         end = time.monotonic() + LIMIT
-        while not set(wanted) <= found and time.monotonic() < end:
+        while not set(expected) <= paths and time.monotonic() < end:
             self.woken.wait(0.02)
             self.woken.clear()
-            found |= self.watcher.take()
-        return set(wanted) <= found
+            paths |= self.watcher.take()
+        return set(expected) <= paths
 
-    def rests(self) -> bool:
+    def is_idle(self) -> bool:
         """Wait until nothing is reported for a while: a file may be reported half-written."""
         end = time.monotonic() + LIMIT
         while time.monotonic() < end:
@@ -149,7 +149,7 @@ def test_what_is_followed_may_change_at_any_time(watched: Watched) -> None:
     save_in_place(other, "one")
     watched.watcher.follow([watched.file, other])
     save_in_place(other, "two")
-    assert watched.sees(other) and watched.rests()
+    assert watched.sees(other) and watched.is_idle()
     save_in_place(watched.include, "nobody follows it any more")
     assert watched.sees_nothing()
     save_in_place(watched.file, "two")

@@ -23,17 +23,17 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
 def _passes(row: Row, room: Room, size: int) -> Iterator[Figure]:
     """Yield milliseconds of Python a pass of the loop ``loop``: without those inside calls of OpenGL."""
     options, engine = row.options, room.engine()
-    sketch, wanted = room.sketch(options, size), str(options["texture"])
+    sketch, texture = room.sketch(options, size), str(options["texture"])
     change = changing(room, options)
-    plan = engine.plan(sketch, (64, 36), 0.0, None, wanted)
+    plan = engine.plan(sketch, (64, 36), 0.0, None, texture)
     steps = _steps_of(plan, str(options["loop"]))
-    found = Samples()
+    samples = Samples()
     for number in range(-2, room.options.rounds):
         with timed_calls() as calls:
-            wall, _ = timed(lambda: engine.texture(change(sketch), wanted))
+            wall, _ = timed(lambda: engine.texture(change(sketch), texture))
         if number >= 0:
-            found.wall.append((wall - calls.milliseconds) / steps)
-    yield Figure(row.suite, row.name, row.what, size, "ms", row.goal, {"auto": found})
+            samples.wall.append((wall - calls.milliseconds) / steps)
+    yield Figure(row.suite, row.name, row.what, size, "ms", row.goal, {"auto": samples})
 
 
 def _steps_of(plan: Plan, path: str) -> int:
@@ -85,5 +85,5 @@ def _calls(row: Row, room: Room, size: int) -> Iterator[Figure]:
             engine.draw(moved, size=pixels)
     for kind, count in counts.items():
         name, what = f"{row.name}-{kind.replace(' ', '-')}", f"{row.what}: {kind}"
-        found = {"auto": Samples([float(count)])}
-        yield Figure(row.suite, name, what, size, "", row.goal, found)
+        samples = {"auto": Samples([float(count)])}
+        yield Figure(row.suite, name, what, size, "", row.goal, samples)

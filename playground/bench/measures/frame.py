@@ -30,18 +30,18 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
     if "beside" in options:
         frames[options["beside"]["name"]] = {**options, "draw": "", "before": "", **options["beside"]}
     turning = iter(range(1, 10**9))
-    loaded = {name: room.sketch(given, size) for name, given in frames.items()}
+    loaded = {name: room.sketch(options, size) for name, options in frames.items()}
 
-    def once(name: str, given: Any) -> tuple[float, float]:
+    def once(name: str, request: Any) -> tuple[float, float]:
         engine, pixels = room.engine(), tuple(options["pixels"])
-        moved = _turned(loaded[name], given, next(turning))
-        if given.get("before"):
-            engine.texture(moved, given["before"], size=pixels)
+        moved = _turned(loaded[name], request, next(turning))
+        if request.get("before"):
+            engine.texture(moved, request["before"], size=pixels)
         engine.ctx.finish()
 
         def draw() -> None:
-            if given.get("draw"):
-                engine.texture(moved, given["draw"], size=pixels)
+            if request.get("draw"):
+                engine.texture(moved, request["draw"], size=pixels)
             else:
                 engine.draw(moved, size=pixels)
             engine.ctx.finish()
@@ -50,8 +50,8 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
 
     samples = {name: Samples() for name in frames}
     for number in range(-2, room.options.rounds):
-        for name, given in frames.items():
-            wall, processor = once(name, given)
+        for name, frame in frames.items():
+            wall, processor = once(name, frame)
             if number >= 0:
                 samples[name].wall.append(wall)
                 samples[name].processor.append(processor)
@@ -59,9 +59,9 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
     yield Figure(row.suite, row.name, row.what, size, "ms", row.goal, {"auto": own}, samples)
 
 
-def _turned(sketch: Sketch, given: Any, number: int) -> Sketch:
+def _turned(sketch: Sketch, request: Any, number: int) -> Sketch:
     look = sketch.camera
-    if "camera" in given:
-        at = dict(given["camera"])
+    if "camera" in request:
+        at = dict(request["camera"])
         look = Camera(**{**at, "target": tuple(at["target"])})
     return sketch.with_camera(replace(look, azimuth=look.azimuth + TURN * number))

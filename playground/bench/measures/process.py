@@ -58,7 +58,7 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
     usual = environment_of(room)
     if "prepare" in options:
         spent(text_of("prepare"), usual)
-    found = Samples()
+    samples = Samples()
     memory = options.get("takes") == "memory"
     rounds = 1 if memory else room.options.rounds
     for number in range(0 if memory or options.get("cold") else -1, rounds):
@@ -69,14 +69,14 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
         wall, seconds, most = spent(text_of("code"), environment)
         if number < 0:
             continue
-        found.wall.append(most / MIB if memory else wall * 1e3)
+        samples.wall.append(most / MIB if memory else wall * 1e3)
         if not memory:
-            found.processor.append(seconds * 1e3)
-    if memory and not any(found.wall):
+            samples.processor.append(seconds * 1e3)
+    if memory and not any(samples.wall):
         room.options.say(f"{row.name}: this system does not say how much memory a process took")
         return
     unit = "MiB" if memory else "ms"
-    yield Figure(row.suite, row.name, row.what, size, unit, row.goal, {"auto": found})
+    yield Figure(row.suite, row.name, row.what, size, unit, row.goal, {"auto": samples})
 
 
 def environment_of(room: Room) -> dict[str, str]:
@@ -92,7 +92,7 @@ def spent(code: str, environment: Mapping[str, str]) -> tuple[float, float, floa
     """
     ends = "spent()" not in code
     command = [sys.executable, "-c", _SPENT + code + (_ENDS if ends else "")]
-    start, wall, found = time.perf_counter(), 0.0, [0.0, 0.0]
+    start, wall, times = time.perf_counter(), 0.0, [0.0, 0.0]
     with (
         tempfile.TemporaryFile("w+", encoding="utf-8") as errors,
         subprocess.Popen(
@@ -103,7 +103,7 @@ def spent(code: str, environment: Mapping[str, str]) -> tuple[float, float, floa
         for line in process.stdout:
             if line.startswith(_MARK):
                 wall = time.perf_counter() - start
-                found = json.loads(line.removeprefix(_MARK))
+                times = json.loads(line.removeprefix(_MARK))
         process.wait()
         if ends:
             wall = time.perf_counter() - start
@@ -111,4 +111,4 @@ def spent(code: str, environment: Mapping[str, str]) -> tuple[float, float, floa
             errors.seek(0)
             last = (errors.read().strip().splitlines() or ["it said nothing"])[-1]
             raise PlaygroundError(f"a process of the benchmark failed: {last}")
-    return wall, float(found[0]), float(found[1])
+    return wall, float(times[0]), float(times[1])

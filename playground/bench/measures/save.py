@@ -42,9 +42,9 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
             watched.follower.follow()
             time.sleep(0.3)
             for file, what in zip(texts, ("a kernel", "an included file", "a value"), strict=True):
-                found = watched.times(file, room.options.rounds)
+                times = watched.times(file, room.options.rounds)
                 name = f"{row.name}-{file.stem}"
-                yield Figure(row.suite, name, f"{row.what}: {what}", size, "ms", row.goal, {"auto": found})
+                yield Figure(row.suite, name, f"{row.what}: {what}", size, "ms", row.goal, {"auto": times})
     finally:
         watched.session.release()
         if sandbox is not None:
@@ -114,16 +114,16 @@ class WatchedSketch:
 
     def times(self, file: Path, rounds: int) -> Samples:
         """Return what saves of a file took until their picture."""
-        found = Samples()
+        samples = Samples()
         for number in range(-UNMEASURED, rounds):
             self.until(lambda: not self.session.is_preview)
             time.sleep(PAUSE)
             start, busy = time.perf_counter(), time.process_time()
             self.save_and_show(file)
             if number >= 0:
-                found.wall.append((time.perf_counter() - start) * 1e3)
-                found.processor.append((time.process_time() - busy) * 1e3)
-        return found
+                samples.wall.append((time.perf_counter() - start) * 1e3)
+                samples.processor.append((time.process_time() - busy) * 1e3)
+        return samples
 
     def save_and_show(self, file: Path) -> None:
         """Save a file, and wait for its picture; raise ``PlaygroundError`` where none comes."""

@@ -1,11 +1,11 @@
-"""What one texture costs, made anew each time, next to what else makes the same."""
+"""What one texture costs, made again each time, next to what else makes the same."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
 
-from playground.bench.peers import Setting, made
+from playground.bench.peers import PeerSetup, made
 from playground.bench.results import Figure
 from playground.bench.room import Room, changing
 from playground.bench.rows import Row
@@ -26,7 +26,7 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
     made of, whose own time is taken off: each round makes one of another terrain as well.
     """
     options = row.options
-    sketch, wanted = room.sketch(options, size), str(options["texture"])
+    sketch, texture = room.sketch(options, size), str(options["texture"])
     varied = any(any_variants(each.technique) for each in sketch.graph.passes if each.name != "height")
     runs: dict[str, Run] = {}
     parts: dict[str, Run] = {}
@@ -40,11 +40,11 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
             engine.texture(change(sketch).plainly(plain), of)
             engine.ctx.finish()
 
-        runs[form] = partial(run, wanted)
+        runs[form] = partial(run, texture)
         if "part" in options:
             parts[_part_of(form)] = partial(run, str(options["part"]))
-    setting = Setting(room, size, options)
-    peers = [peer for given in row.peers if (peer := made(setting, given)) is not None]
+    setting = PeerSetup(room, size, options)
+    peers = [peer for options in row.peers if (peer := made(setting, options)) is not None]
     for name in setting.missing:
         room.options.say(f"{name} is not installed, and is left out; {install_command('bench')}")
     ours = list(runs)

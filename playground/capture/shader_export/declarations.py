@@ -69,7 +69,7 @@ def declarations_of(lines: Sequence[Line]) -> list[Declaration]:
     A text that has conditions of its own, or takes a macro back, is one declaration.
     """
     kept = [lines[index] for index in without_guards([line.code for line in lines])]
-    found: list[Declaration] = []
+    declarations: list[Declaration] = []
     above: list[str] = []  # comments
     codes: list[str] = []
     texts: list[str] = []
@@ -94,13 +94,17 @@ def declarations_of(lines: Sequence[Line]) -> list[Declaration]:
             written = "\n".join(codes)
             names = (directive.group(2),) if directive else _names_in(written)
             is_macro = directive is not None and directive.group(1) == "define"
-            found.append(Declaration(names, written, "\n".join([*above, *texts]), is_macro))
+            declarations.append(Declaration(names, written, "\n".join([*above, *texts]), is_macro))
         above, codes, texts, depth = [], [], [], 0
-    directives = [_DIRECTIVE.match(d.code) for d in found]
+    directives = [_DIRECTIVE.match(d.code) for d in declarations]
     if any(d and d.group(1) in _CONDITIONS for d in directives):
-        whole = tuple(dict.fromkeys(name for d in found if not d.is_macro for name in d.names if name))
-        return [Declaration(whole, "\n".join(d.code for d in found), "\n".join(d.text for d in found))]
-    return found
+        whole = tuple(dict.fromkeys(name for d in declarations if not d.is_macro for name in d.names if name))
+        return [
+            Declaration(
+                whole, "\n".join(d.code for d in declarations), "\n".join(d.text for d in declarations)
+            )
+        ]
+    return declarations
 
 
 def _with_comment(line: Line) -> str:
@@ -136,11 +140,11 @@ def _names_in(code: str) -> tuple[str, ...]:
 
 def _renamed(text: str, names: Mapping[str, str]) -> str:
     """Return a text with other names outside of comments; members of structs keep theirs."""
-    found = []
+    parts = []
     for line in text.split("\n"):
         code, mark, comment = line.partition("//")
-        found.append(_WORD.sub(lambda word: names.get(word.group(), word.group()), code) + mark + comment)
-    new = "\n".join(found)
+        parts.append(_WORD.sub(lambda word: names.get(word.group(), word.group()), code) + mark + comment)
+    new = "\n".join(parts)
     if _STRUCT.match(text):
         back = {new: old for old, new in names.items()}
         head, brace, body = new.partition("{")
@@ -169,22 +173,24 @@ def joined(
     ``renames`` are new names that each pass's text has to have anyway; ``taken`` are those that are
     declared elsewhere. In ``shared`` is everything, in the order that the passes need, and ``own`` is empty.
     """
-    names = [dict(given) for given in renames]
+    names = [dict(rename) for rename in renames]
     while True:
-        now = [[d.renamed(own) for d in found] for found, own in zip(passes, names, strict=True)]
+        now = [
+            [d.renamed(own) for d in declarations] for declarations, own in zip(passes, names, strict=True)
+        ]
         clashes = _clashes(passes, now, names, taken)
         if not clashes:
             break
         for index, name in clashes:
             names[index][name] = _free(f"{prefixes[index]}_{name}", now, taken)
-    shared = dict.fromkeys(d for found in now for d in found)
+    shared = dict.fromkeys(d for declarations in now for d in declarations)
     return Joined(tuple(_once(shared)), tuple(() for _ in passes), tuple(names))
 
 
-def _once(found: Collection[Declaration]) -> list[Declaration]:
+def _once(declarations: Collection[Declaration]) -> list[Declaration]:
     """Return declarations without those whose code is there already."""
     by_code: dict[str, Declaration] = {}
-    for each in found:
+    for each in declarations:
         by_code.setdefault(each.code, each)
     return list(by_code.values())
 
@@ -198,8 +204,8 @@ def _clashes(
     """Return (pass, name of its text) of what means something else in another pass."""
     codes: dict[str, dict[int, str]] = {}  # present name → pass → all that declares it there
     macros: dict[str, set[int]] = {}
-    for index, found in enumerate(now):
-        for each in found:
+    for index, declarations in enumerate(now):
+        for each in declarations:
             for name in each.names:
                 codes.setdefault(name, {})
                 codes[name][index] = codes[name].get(index, "") + each.code + "\n"
@@ -207,12 +213,12 @@ def _clashes(
                     macros.setdefault(name, set()).add(index)
     bad = {name for name, by_pass in codes.items() if len(set(by_pass.values())) > 1 or name in taken}
     for name, owners in macros.items():
-        others = (found for index, found in enumerate(now) if index not in owners)
-        if any(each.reads(name) for found in others for each in found):
+        others = (declarations for index, declarations in enumerate(now) if index not in owners)
+        if any(each.reads(name) for declarations in others for each in declarations):
             bad.add(name)
     clashes = []
-    for index, found in enumerate(passes):
-        for each in found:
+    for index, declarations in enumerate(passes):
+        for each in declarations:
             for name in each.names:
                 if names[index].get(name, name) in bad:
                     clashes.append((index, name))
@@ -220,7 +226,7 @@ def _clashes(
 
 
 def _free(name: str, now: Sequence[Sequence[Declaration]], taken: Collection[str]) -> str:
-    used = {word for found in now for each in found for word in each.words} | {*taken}
+    used = {word for declarations in now for each in declarations for word in each.words} | {*taken}
     while name in used:
         name += "_"
     return name
@@ -232,8 +238,8 @@ def with_common(passes: Sequence[Sequence[Declaration]], never: Collection[str])
     What names one of ``never``, or something that is not shared, is not shared.
     """
     codes: dict[str, dict[int, str]] = {}
-    for index, found in enumerate(passes):
-        for each in found:
+    for index, declarations in enumerate(passes):
+        for each in declarations:
             for name in each.names:
                 codes.setdefault(name, {})
                 codes[name][index] = codes[name].get(index, "") + each.code + "\n"
@@ -244,16 +250,19 @@ def with_common(passes: Sequence[Sequence[Declaration]], never: Collection[str])
             for name in alike
             if all(
                 _may_share(each, name, alike, codes.keys(), never, passes)
-                for found in passes
-                for each in found
+                for declarations in passes
+                for each in declarations
             )
         }
         if now == alike:
             break
         alike = now
-    everything = [each for found in passes for each in found]
+    everything = [each for declarations in passes for each in declarations]
     shared = _once([d for d in everything if d.names and alike.issuperset(d.names)])
-    own = tuple(tuple(d for d in found if not (d.names and alike.issuperset(d.names))) for found in passes)
+    own = tuple(
+        tuple(d for d in declarations if not (d.names and alike.issuperset(d.names)))
+        for declarations in passes
+    )
     return Joined(tuple(shared), own, tuple({} for _ in passes))
 
 
@@ -273,5 +282,5 @@ def _may_share(
         return False
     if not each.is_macro:
         return True
-    without = (found for found in passes if not any(name in d.names for d in found))
-    return not any(d.reads(name) for found in without for d in found)
+    without = (declarations for declarations in passes if not any(name in d.names for d in declarations))
+    return not any(d.reads(name) for declarations in without for d in declarations)

@@ -54,8 +54,8 @@ def check_es(ctx: moderngl.Context, path: Path, text: str) -> None:
         except Exception as error:  # moderngl.Error, by any version's name
             log = [line for line in str(error).splitlines() if "error" in line and line[:1].isdigit()]
             said = log[0] if log else str(error).strip()
-            place, _, message = said.partition(": error: ")
-            number = place.partition(":")[2].partition("(")[0]
+            location, _, message = said.partition(": error: ")
+            number = location.partition(":")[2].partition("(")[0]
             lines = whole.splitlines()
             line = lines[int(number) - 1].strip() if number.isdigit() and int(number) <= len(lines) else ""
             raise ShaderError(

@@ -12,7 +12,7 @@ from playground.capture.extensions import ISF, SHADERTOY_EXPORT, SHADERTOY_TEXT
 from playground.capture.shader_export import isf, shadertoy, standalone
 from playground.capture.shader_export.foreign_given import MOUSE, given_by
 from playground.capture.shader_export.foreign_texts import foreign_text
-from playground.capture.shader_export.passes import PROBES, Leaving, ShaderPass, leaving, plan_of
+from playground.capture.shader_export.passes import PROBES, ExportPlan, ShaderPass, export_plan, plan_of
 from playground.capture.shader_export.texts import (
     Host,
     PassText,
@@ -44,23 +44,23 @@ class ShaderFiles:
 def shader_files(sketch: Sketch, path: Path, *, texture: str, kind: str, time: float) -> ShaderFiles:
     """Return a sketch's picture, or one texture of it, as the shader that the path's ending names.
 
-    Raises ``SketchError`` with a sentence for each thing that the format has not.
+    Raises ``SketchError`` with a message for each thing that the format has not.
     """
     shows = kind
     if texture:
         plan = plan_of(sketch, PROBES[0], time)
         plan.flat.ref(texture, sketch.name)
         shows = kind or kind_of(plan, texture)
-    found = leaving(sketch, texture, shows, time)
+    result = export_plan(sketch, texture, shows, time)
     heading = [f"// {_ascii(sketch.title or sketch.name)}, exported by the {MADE_BY}"]
     ending = path.suffix.lower()
-    notes = _notes(sketch, found)
+    notes = _notes(sketch, result)
     if ending not in (SHADERTOY_TEXT, SHADERTOY_EXPORT):
-        notes += _mouse_notes(found)
+        notes += _mouse_notes(result)
     files: dict[Path, bytes] = {}
     if ending == ISF:
-        inputs = isf.inputs_of(found)
-        texts = _texts(found, inputs.host(), shows)
+        inputs = isf.inputs_of(result)
+        texts = _texts(result, inputs.host(), shows)
         copies = _copies(path, inputs.images)
         text = isf.written(texts, inputs, heading, {name: copy.name for name, copy in copies.items()})
         for name, copy in copies.items():
@@ -69,7 +69,7 @@ def shader_files(sketch: Sketch, path: Path, *, texture: str, kind: str, time: f
         count = len(texts) + len(inputs.decoded)
         what = f"ISF; {_counted(count, 'pass')}, {_counted(len(inputs.header), 'input')}"
     elif ending in (SHADERTOY_TEXT, SHADERTOY_EXPORT):
-        texts = shadertoy.fitted(_texts(found, shadertoy.HOST, shows))
+        texts = shadertoy.fitted(_texts(result, shadertoy.HOST, shows))
         is_export = ending == SHADERTOY_EXPORT
         shadertoy.check(texts, one_text=not is_export)
         least = [max((text.size[axis] or 0) for text in texts) for axis in (0, 1)]
@@ -82,46 +82,48 @@ def shader_files(sketch: Sketch, path: Path, *, texture: str, kind: str, time: f
             text = shadertoy.one_text(texts[0], heading)
             what = "Shadertoy text"
     else:
-        texts = _texts(found, standalone.HOST, shows)
+        texts = _texts(result, standalone.HOST, shows)
         standalone.check(texts)
         text = standalone.one_text(texts[0], heading)
         what = "GLSL 3.30"
     data = _ascii(text).encode()
-    return ShaderFiles(found.plan, {path: data, **files}, f"{what}; {len(data)} bytes", tuple(notes))
+    return ShaderFiles(result.plan, {path: data, **files}, f"{what}; {len(data)} bytes", tuple(notes))
 
 
-def _texts(found: Leaving, host: Host, shows: str) -> list[PassText]:
-    sizes = {one.name: one.size for one in found.passes}
-    passes = [replace(one, shows="") for one in found.passes] if found.is_shown else found.passes
-    texts = [_foreign(one, host) if _is_foreign(one) else text_of(found, one, host, sizes) for one in passes]
+def _texts(plan: ExportPlan, host: Host, shows: str) -> list[PassText]:
+    sizes = {pass_.name: pass_.size for pass_ in plan.passes}
+    passes = [replace(pass_, shows="") for pass_ in plan.passes] if plan.is_shown else plan.passes
+    texts = [
+        _foreign(pass_, host) if _is_foreign(pass_) else text_of(plan, pass_, host, sizes) for pass_ in passes
+    ]
     texts = [*(more := constants_of(texts)), *texts]
-    if found.is_shown:
-        index = len(more) + next(i for i, one in enumerate(found.passes) if one.name == found.picture)
-        output = found.passes[index - len(more)].output
+    if plan.is_shown:
+        index = len(more) + next(i for i, pass_ in enumerate(plan.passes) if pass_.name == plan.picture)
+        output = plan.passes[index - len(more)].output
         texts.append(shown_text(texts[index], output.components, shows, host))
     return texts
 
 
-def _is_foreign(one: ShaderPass) -> bool:
-    return isinstance(one.step.kernel, PlainFragment) and not one.copies.name
+def _is_foreign(pass_: ShaderPass) -> bool:
+    return isinstance(pass_.step.kernel, PlainFragment) and not pass_.copies.name
 
 
-def _foreign(one: ShaderPass, host: Host) -> PassText:
-    time = f"float({host.frame}) / 60.0" if one.by_frames else host.time
-    return foreign_text(one, host, given_by(size_of(one.size, host), time, host.frame, host.mouse))
+def _foreign(pass_: ShaderPass, host: Host) -> PassText:
+    time = f"float({host.frame}) / 60.0" if pass_.by_frames else host.time
+    return foreign_text(pass_, host, given_by(size_of(pass_.size, host), time, host.frame, host.mouse))
 
 
-def _notes(sketch: Sketch, found: Leaving) -> list[str]:
+def _notes(sketch: Sketch, plan: ExportPlan) -> list[str]:
     notes = []
-    if found.follows and any(one.size == (None, None) for one in found.passes[:-1]):
+    if plan.follows and any(pass_.size == (None, None) for pass_ in plan.passes[:-1]):
         notes.append("the terrain has as many texels as the picture has pixels")
     if sketch.keyframes:
-        notes.append(f"keyframes stay behind: values are those at {found.plan.time:g} s")
+        notes.append(f"keyframes stay behind: values are those at {plan.plan.time:g} s")
     return notes
 
 
-def _mouse_notes(found: Leaving) -> list[str]:
-    usual = {pair for one in found.passes for pair in one.step.kernel.usual}
+def _mouse_notes(plan: ExportPlan) -> list[str]:
+    usual = {pair for pass_ in plan.passes for pair in pass_.step.kernel.usual}
     names = sorted({name for name, meaning in usual if meaning in MOUSE})
     return [f"the mouse stays behind: {', '.join(names)} is at 0"] if names else []
 
@@ -147,16 +149,16 @@ def _isf_notes(texts: Sequence[PassText], inputs: isf.Inputs) -> list[str]:
 
 def _copies(path: Path, images: dict[str, Path]) -> dict[str, Path]:
     """Return where each imported image is copied to: beside the file, under a name of its own."""
-    found: dict[str, Path] = {}
+    copies: dict[str, Path] = {}
     for name, source in images.items():
         copy = path.with_name(f"{path.stem}-{source.name}")
-        if copy in found.values():
+        if copy in copies.values():
             copy = path.with_name(f"{path.stem}-{name}{source.suffix}")
         if copy.exists() and _read(copy) != _read(source):
             message = f"{copy.name} is there already, and is another image; choose another name"
             raise DataError(message, file=path)
-        found[name] = copy
-    return found
+        copies[name] = copy
+    return copies
 
 
 def _read(path: Path) -> bytes:

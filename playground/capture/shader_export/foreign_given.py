@@ -13,7 +13,7 @@ MOUSE = ("mouse", "hover", "drag", "hover_share")
 
 
 def reason_to_stay(kernel: Kernel) -> str:
-    """Return what of another tool's shader cannot leave, as the end of a sentence; "" if all of it can."""
+    """Return what of another tool's shader cannot leave, as the end of a message; "" if all of it can."""
     name = Path(kernel.path).name
     if isinstance(kernel, ForeignShader) and (kernel.helpers or kernel.vertex_source):
         return f"is {name}, whose own tool gives it functions or a vertex shader that others have not"
@@ -29,8 +29,8 @@ def reason_to_stay(kernel: Kernel) -> str:
 
 
 def _is_known(meaning: str) -> bool:
-    known = ("time", "resolution", "delta", "frame", "frame_of_time", "date", *MOUSE)
-    return meaning in known or meaning in NEUTRAL or meaning.startswith(SIZES)
+    meanings = ("time", "resolution", "delta", "frame", "frame_of_time", "date", *MOUSE)
+    return meaning in meanings or meaning in NEUTRAL or meaning.startswith(SIZES)
 
 
 def neutral(kind: str, values: tuple[float, ...]) -> str:
@@ -63,7 +63,7 @@ def fitted(expression: str, components: int) -> Callable[[str], str]:
 
 def given_by(size: str, time: str, frame: str, mouse: str) -> dict[str, Callable[[str], str]]:
     """Return what gives each meaning as a type, of expressions that a format has; ``mouse`` may be ""."""
-    found = {
+    expressions = {
         "time": fitted(time, 1),
         "resolution": fitted(f"vec3(vec2({size}), 1.0)", 3),
         "delta": fitted("(1.0 / 60.0)", 1),
@@ -71,6 +71,6 @@ def given_by(size: str, time: str, frame: str, mouse: str) -> dict[str, Callable
         "frame_of_time": fitted(f"float({frame})", 1),
     }
     if mouse:
-        found |= {"drag": fitted(mouse, 4), "mouse": fitted(mouse, 4), "hover": fitted(mouse, 4)}
-        found["hover_share"] = fitted(f"({mouse}.xy / vec2({size}))", 2)
-    return found
+        expressions |= {"drag": fitted(mouse, 4), "mouse": fitted(mouse, 4), "hover": fitted(mouse, 4)}
+        expressions["hover_share"] = fitted(f"({mouse}.xy / vec2({size}))", 2)
+    return expressions

@@ -32,17 +32,17 @@ _VERTEX_OUT = re.compile(
 _PRECISION = re.compile(r"\s*#\s*if(?:def\s+GL_ES|\s+defined\s*\(?\s*GL_ES\s*\)?)\s*$")
 
 
-def foreign_text(one: ShaderPass, host: Host, given: Mapping[str, Callable[[str], str]]) -> PassText:
-    """Return a pass's text; ``given`` has an expression of each meaning by the type that is wanted."""
-    kernel = one.step.kernel
+def foreign_text(pass_: ShaderPass, host: Host, expressions: Mapping[str, Callable[[str], str]]) -> PassText:
+    """Return a pass's text; ``expressions`` has an expression of each meaning by the type that is wanted."""
+    kernel = pass_.step.kernel
     foreign = kernel if isinstance(kernel, ForeignShader) else None
     prelude = foreign.prelude if foreign else ()
     lines, output = _own_lines(kernel)
-    found = [d for line in prelude if (d := _prelude(line))]
+    value = [d for line in prelude if (d := _prelude(line))]
     statements: list[str] = []
     reads: list[Sampled] = []
     unwired: dict[str, str] = {}
-    for declared, wire in one.inputs:
+    for declared, wire in pass_.inputs:
         if wire.name:
             reads.append(Sampled(declared.name, wire.name, declared.sampling, wire.is_before))
         else:
@@ -54,36 +54,36 @@ def foreign_text(one: ShaderPass, host: Host, given: Mapping[str, Callable[[str]
         kind, array = kinds.get(name, ("", ""))
         if not kind or (name, kind + array) in host.native:
             continue
-        found.append(made(f"{kind} {name}{array};", name) if array else variable_of(kind, name))
-        statements += _setting(name, kind, array, meaning, one, given)
+        value.append(made(f"{kind} {name}{array};", name) if array else variable_of(kind, name))
+        statements += _setting(name, kind, array, meaning, pass_, expressions)
     for parameter in kernel.parameters:
-        own, setting = host.parameter(one, parameter, one.step.values[parameter.name])
-        found += own
+        own, setting = host.parameter(pass_, parameter, pass_.step.values[parameter.name])
+        value += own
         statements += setting
     for declaration, setting_text in foreign.vertex if foreign and isinstance(foreign.vertex, tuple) else ():
         match = _VERTEX_OUT.fullmatch(declaration)
         if not match:
             message = (
-                f"pass '{one.step.path}' takes '{declaration}' of a vertex shader, which others have not"
+                f"pass '{pass_.step.path}' takes '{declaration}' of a vertex shader, which others have not"
             )
             raise SketchError(message)
-        found.append(variable_of(match[1], match[2]))
+        value.append(variable_of(match[1], match[2]))
         share = f"(({host.pixel}) / vec2({host.size}))"
         text = setting_text.replace("k_share", share).replace("k_place", f"({share} * 2.0 - 1.0)")
         statements.append(text)
     declarations = [without_unwired(d, unwired) for d in declarations_of(lines)]
     if foreign and foreign.epilogue:
-        entry, result = f"{one.name}_image", "vec4(picture.rgb, 1.0)"
+        entry, result = f"{pass_.name}_image", "vec4(picture.rgb, 1.0)"
         call = ["vec4 picture = vec4(0.0, 0.0, 0.0, 1.0);", f"{entry}(picture, {host.pixel});"]
         declarations = [d.renamed({"mainImage": entry}) for d in declarations]
     else:
-        entry, result = f"{one.name}_main", output
+        entry, result = f"{pass_.name}_main", output
         call = [f"{entry}();"]
         declarations = [d.renamed({"main": entry}) for d in declarations]
-    is_bytes = one.output.format == "rgba8"
-    made_of = (*_without_twins(found), *declarations)
+    is_bytes = pass_.output.format == "rgba8"
+    made_of = (*_without_twins(value), *declarations)
     return PassText(
-        one.name, one.size, made_of, tuple(reads), (*statements, *call), result, is_bytes, kernel.title
+        pass_.name, pass_.size, made_of, tuple(reads), (*statements, *call), result, is_bytes, kernel.title
     )
 
 
@@ -114,8 +114,8 @@ def _prelude(line: str) -> Declaration | None:
     return made("vec4 k_frag_color;", "k_frag_color") if _OUT.match(line) else None
 
 
-def _without_twins(found: list[Declaration]) -> list[Declaration]:
-    return list({(each.names, each.code): each for each in found}.values())
+def _without_twins(declarations: list[Declaration]) -> list[Declaration]:
+    return list({(each.names, each.code): each for each in declarations}.values())
 
 
 def _kinds(kernel: Kernel) -> dict[str, tuple[str, str]]:
@@ -132,19 +132,24 @@ def _kinds(kernel: Kernel) -> dict[str, tuple[str, str]]:
 
 
 def _setting(
-    name: str, kind: str, array: str, meaning: str, one: ShaderPass, given: Mapping[str, Callable[[str], str]]
+    name: str,
+    kind: str,
+    array: str,
+    meaning: str,
+    pass_: ShaderPass,
+    expressions: Mapping[str, Callable[[str], str]],
 ) -> list[str]:
     """Return the statements that set a uniform's global."""
     count = int(array.strip("[] ")) if array else 1
     places = [f"{name}[{index}]" for index in range(count)] if array else [name]
     if meaning.startswith(SIZES):
         samplers = meaning.removeprefix(SIZES).split()
-        wired = {declared.name for declared, wire in one.inputs if wire.name}
+        wired = {declared.name for declared, wire in pass_.inputs if wire.name}
         return [
-            f"{place} = {kind}(vec2(textureSize({sampler}, 0)){', 1.0' if kind == 'vec3' else ''});"
-            for place, sampler in zip(places, samplers, strict=False)
+            f"{target} = {kind}(vec2(textureSize({sampler}, 0)){', 1.0' if kind == 'vec3' else ''});"
+            for target, sampler in zip(places, samplers, strict=False)
             if sampler in wired
         ]
-    if meaning in given:
-        return [f"{place} = {given[meaning](kind)};" for place in places]
-    return [f"{place} = {neutral(kind, NEUTRAL.get(meaning, (0.0,)))};" for place in places]
+    if meaning in expressions:
+        return [f"{target} = {expressions[meaning](kind)};" for target in places]
+    return [f"{target} = {neutral(kind, NEUTRAL.get(meaning, (0.0,)))};" for target in places]

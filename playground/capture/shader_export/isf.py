@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from playground.capture.shader_export.declarations import Declaration, joined, made
-from playground.capture.shader_export.passes import Leaving, ShaderPass
+from playground.capture.shader_export.passes import ExportPlan, ShaderPass
 from playground.capture.shader_export.texts import DECODE, DECODING, Host, PassText, is_sampled, variable_of
 from playground.data.image_files import read_image
 from playground.errors import SketchError
@@ -55,29 +55,29 @@ class Inputs:
         return Host(_RENDER, _TEXEL, "TIME", "FRAMEINDEX", "gl_FragCoord.xy", self.parameter, self.file)
 
     def parameter(
-        self, one: ShaderPass, parameter: Parameter, value: Value
+        self, pass_: ShaderPass, parameter: Parameter, value: Value
     ) -> tuple[tuple[Declaration, ...], tuple[str, ...]]:
         """Return what declares a parameter of a pass, and what sets it from the file's inputs."""
-        path = self.paths[f"{one.step.path}.{parameter.name}"]
+        path = self.paths[f"{pass_.step.path}.{parameter.name}"]
         expression = self._input(path, parameter, value)
-        given: list[Declaration] = []
+        declarations: list[Declaration] = []
         lines: list[str] = []
         if expression != parameter.name:
-            given.append(variable_of(parameter.type, parameter.name))
+            declarations.append(variable_of(parameter.type, parameter.name))
             lines.append(f"{parameter.name} = {expression};")
         if DECODE in expression:
-            given.append(DECODING)
+            declarations.append(DECODING)
         if parameter.widget.kind == "direction":
             name = f"{TOWARDS}{parameter.name}"
-            given += [made("\n".join(_UNIT), "unit_towards"), variable_of("vec3", name)]
+            declarations += [made("\n".join(_UNIT), "unit_towards"), variable_of("vec3", name)]
             lines.append(f"{name} = unit_towards({parameter.name});")
-        return tuple(given), tuple(lines)
+        return tuple(declarations), tuple(lines)
 
-    def file(self, one: ShaderPass, parameter: Parameter, value: Value) -> str:
+    def file(self, pass_: ShaderPass, parameter: Parameter, value: Value) -> str:
         """Return the pass that gives an image file's texels in linear light."""
         path = Path(str(value))
-        for name, known in self.images.items():
-            if known == path:
+        for name, image in self.images.items():
+            if image == path:
                 return self.decoded[name].name
         name = self._free(parameter.name)
         self.images[name] = path
@@ -182,33 +182,33 @@ def _label(path: str, parameter: Parameter) -> str:
     return f"{label_of(head)}: {parameter.title}{unit}"
 
 
-def _paths_of(leaving: Leaving) -> tuple[dict[str, str], dict[str, Parameter]]:
+def _paths_of(leaving: ExportPlan) -> tuple[dict[str, str], dict[str, Parameter]]:
     """Return the path under which a panel shows each parameter of each pass, and what it shows there.
 
     A parameter whose value differs from that of its export has its own.
     """
     sketch, values = leaving.sketch, leaving.plan.flat.values
-    found: dict[str, str] = {}
+    paths: dict[str, str] = {}
     parameters: dict[str, Parameter] = {}
     for shown in shown_parameters(sketch):
         targets = [target.path for target in resolve(sketch.graph, shown.path)]
         for target in targets:
             if shown.exported and values[target] == values[targets[0]]:
-                found.setdefault(target, shown.path)
+                paths.setdefault(target, shown.path)
                 parameters[shown.path] = shown.parameter
-    return found, parameters
+    return paths, parameters
 
 
-def inputs_of(leaving: Leaving) -> Inputs:
+def inputs_of(leaving: ExportPlan) -> Inputs:
     """Return the inputs of a file, none of them added yet."""
     words: dict[str, set[str]] = {}
     paths, shown = _paths_of(leaving)
-    taken = {one.name for one in leaving.passes}
+    taken = {pass_.name for pass_ in leaving.passes}
     declared: set[str] = set()
-    for one in leaving.passes:
-        kernel: Kernel = one.step.kernel
+    for pass_ in leaving.passes:
+        kernel: Kernel = pass_.step.kernel
         for parameter in kernel.parameters:
-            own = f"{one.step.path}.{parameter.name}"
+            own = f"{pass_.step.path}.{parameter.name}"
             path = paths.setdefault(own, own)
             words.setdefault(parameter.name, set()).add(path)
         declared |= kernel.source.names
@@ -277,15 +277,15 @@ def _with_sampling(text: PassText) -> PassText:
     """Return a text that reads textures as it wants to: ISF samples all of them linear and clamped."""
     if not any(each.reads("textureLod") or each.reads("texture") for each in text.declarations):
         return text
-    wanted = {(r.sampling.filter, r.sampling.wrap) for r in text.reads if is_sampled(text, r.word)}
-    if wanted <= {("linear", "clamp")}:
+    samplings = {(r.sampling.filter, r.sampling.wrap) for r in text.reads if is_sampled(text, r.word)}
+    if samplings <= {("linear", "clamp")}:
         return text
-    if len(wanted) > 1:
-        ways = " and ".join(sorted(" ".join(way) for way in wanted))
+    if len(samplings) > 1:
+        ways = " and ".join(sorted(" ".join(way) for way in samplings))
         raise SketchError(
             f"pass '{text.name}' samples its textures in several ways ({ways}), which ISF has not"
         )
-    way = wanted.pop()
+    way = samplings.pop()
     name = f"sampled_{'_'.join(way)}"
     swap = {"textureLod": name, "texture": name}
     changed = tuple(each.renamed(swap) for each in text.declarations)

@@ -36,7 +36,7 @@ PROBES = ((640, 360), (484, 272))
 """Pictures that a sketch is planned for: no side, nor a simple part of one, is another's."""
 
 FRAMES = "frames"
-MOST_PASSES = 64
+MAX_PASSES = 64
 CAMERA = ("clip_from_world", "world_from_clip", "eye")
 _INSTEAD = "; --texture PASS exports one texture"
 
@@ -77,7 +77,7 @@ class ShaderPass:
 
 
 @dataclass(frozen=True)
-class Leaving:
+class ExportPlan:
     """What leaves of a sketch."""
 
     sketch: Sketch  # with the terrain's size of the first probe where it follows the picture's
@@ -90,11 +90,11 @@ class Leaving:
     def is_shown(self) -> bool:
         """Whether the picture is a pass more, that shows one of another size, or one that is read."""
         last = self.passes[-1]
-        read = {wire.name for one in self.passes for wire in one.wires}
+        read = {wire.name for pass_ in self.passes for wire in pass_.wires}
         return last.name != self.picture or last.size != (None, None) or last.name in read
 
 
-def leaving(sketch: Sketch, texture: str, kind: str, time: float) -> Leaving:
+def export_plan(sketch: Sketch, texture: str, kind: str, time: float) -> ExportPlan:
     """Return the passes of a sketch's picture, or of one texture shown as ``kind``.
 
     The terrain has the picture's size where every kernel takes any size. Raises ``SketchError`` with a
@@ -110,8 +110,8 @@ def leaving(sketch: Sketch, texture: str, kind: str, time: float) -> Leaving:
     made = _Passes(plans, ref, kind if texture else "")
     passes = made.all()
     if made.refused:
-        raise SketchError(diagnostics=[Diagnostic(one, file=sketch.name) for one in made.refused])
-    return Leaving(plans[0].sketch if follows else sketch, plans[0], passes, follows, made.made[ref].name)
+        raise SketchError(diagnostics=[Diagnostic(item, file=sketch.name) for item in made.refused])
+    return ExportPlan(plans[0].sketch if follows else sketch, plans[0], passes, follows, made.made[ref].name)
 
 
 def plan_of(sketch: Sketch, size: tuple[int, int], time: float) -> Plan:
@@ -125,11 +125,11 @@ class _Passes:
         self.ref = ref
         self.shows = shows
         self.refused: dict[str, None] = {}
-        self.found: list[ShaderPass] = []
+        self.passes: list[ShaderPass] = []
         self.made: dict[Ref, Wire] = {}  # texture → the pass that gives it
         self.fed: dict[Fed, Wire] = {}  # what a loop feeds back → the pass that gives it
         self.nodes = needed(self.plan.nodes, ref)
-        self.wanted = set(self._read())
+        self.read_refs = set(self._read())
 
     def _read(self) -> Iterator[Ref]:
         yield self.ref
@@ -148,12 +148,12 @@ class _Passes:
                 self._add(node)
             else:
                 self._add_loop(node)
-        if len(self.found) > MOST_PASSES:
-            self.refused[f"{len(self.found)} passes with their steps; {MOST_PASSES} is the most"] = None
-        return tuple(self.found)
+        if len(self.passes) > MAX_PASSES:
+            self.refused[f"{len(self.passes)} passes with their steps; {MAX_PASSES} is the most"] = None
+        return tuple(self.passes)
 
     def _reason(self, node: PlanNode) -> str:
-        """Return why a node cannot leave, in a sentence; "" where it can."""
+        """Return why a node cannot leave, in a message; "" where it can."""
         who = f"pass '{node.path}'"
         if isinstance(node, LoopStep):
             if node.spec.repeat.strip() != FRAMES:
@@ -196,16 +196,16 @@ class _Passes:
     def _size(self, step: Step) -> tuple[int | None, int | None] | None:
         twin = self.other.step(step.path)
         assert twin is not None
-        found: list[int | None] = []
+        numbers: list[int | None] = []
         for axis in (0, 1):
             a, b = step.size[axis], twin.size[axis]
             if (a, b) == (PROBES[0][axis], PROBES[1][axis]):
-                found.append(None)
+                numbers.append(None)
             elif a == b:
-                found.append(a)
+                numbers.append(a)
             else:
                 return None
-        return found[0], found[1]
+        return numbers[0], numbers[1]
 
     def _add_loop(self, node: LoopStep) -> None:
         """Add passes that run once a frame and read what was there in the frame before.
@@ -219,19 +219,19 @@ class _Passes:
             readers = [step for step in steps if source in dict(step.inputs).values()]
             writer = next(step for step in steps if step.path == ref.path)
             output = next(o for o in writer.kernel.outputs if o.name == ref.output)
-            wanted = [o for o in writer.kernel.outputs if Ref(writer.path, o.name) in self.wanted]
-            later = self._name(writer, output, "", len(wanted) > 1)
+            outputs = [o for o in writer.kernel.outputs if Ref(writer.path, o.name) in self.read_refs]
+            later = self._name(writer, output, "", len(outputs) > 1)
             start = self._name_of(first).name
             is_late = any(order.index(step.path) > order.index(writer.path) for step in readers)
             # Of a step with several outputs, each is a pass of its own, and the first comes first.
-            is_late |= len(wanted) > 1 and wanted[-1].name != output.name and writer in readers
+            is_late |= len(outputs) > 1 and outputs[-1].name != output.name and writer in readers
             handed = start and any(_hands_on(step, source) for step in readers)
             wire = Wire(later, True, start)
             if is_late or handed:
                 size = self._size(writer)
                 assert size is not None
-                copy = self._free(writer, output, "_before", len(wanted) > 1)
-                self.found.append(ShaderPass(copy, writer, output, size, (), by_frames=True, copies=wire))
+                copy = self._free(writer, output, "_before", len(outputs) > 1)
+                self.passes.append(ShaderPass(copy, writer, output, size, (), by_frames=True, copies=wire))
                 wire = Wire(copy)
             self.fed[source] = wire
         for step in steps:
@@ -245,7 +245,7 @@ class _Passes:
         inputs = tuple((i, self._name_of(wired.get(i.name))) for i in kernel.inputs)
         starts = {output: self._name_of(wired.get(name)) for name, output in initial_names(kernel).items()}
         at_once = max(self._at_once(step), 1)
-        outputs = [o for o in kernel.outputs if Ref(step.path, o.name) in self.wanted]
+        outputs = [o for o in kernel.outputs if Ref(step.path, o.name) in self.read_refs]
         read = [o for o in kernel.outputs if kernel.reads(previous_name(kernel, o))]
         before = {o.name: starts.get(o.name, NOTHING) for o in kernel.outputs}
         iteration = 0
@@ -256,7 +256,7 @@ class _Passes:
             for output in outputs if is_last else (read or outputs[:0]):
                 name = self._free(step, output, f"_{iteration}" if not is_last else "", len(outputs) > 1)
                 is_picture = is_last and Ref(step.path, output.name) == self.ref
-                self.found.append(
+                self.passes.append(
                     ShaderPass(
                         name,
                         step,
@@ -293,7 +293,7 @@ class _Passes:
 
     def _free(self, step: Step, output: Output, more: str, several: bool) -> str:
         name = self._name(step, output, more, several)
-        while name in GLSL_WORDS or name in [other.name for other in self.found]:
+        while name in GLSL_WORDS or name in [other.name for other in self.passes]:
             name += "_"
         return name
 

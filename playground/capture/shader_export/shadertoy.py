@@ -23,7 +23,7 @@ from playground.capture.shader_export.texts import (
 from playground.errors import Diagnostic, SketchError
 from playground.sketch.model import Parameter, Value
 
-MOST_BUFFERS, MOST_CHANNELS, LARGEST_CORNER = 4, 4, 256
+MAX_BUFFERS, MAX_CHANNELS, MAX_CORNER = 4, 4, 256
 _IDS = ("4dXGR8", "XsXGR8", "4sXGR8", "XdfGR8")
 _IMAGE = "4dfGRr"
 _LETTERS = "ABCD"
@@ -48,18 +48,20 @@ NATIVE = frozenset(
 
 
 def _constant(
-    one: ShaderPass, parameter: Parameter, value: Value
+    pass_: ShaderPass, parameter: Parameter, value: Value
 ) -> tuple[tuple[Declaration, ...], tuple[str, ...]]:
     text = f"const {parameter.type} {parameter.name} = {literal(parameter.type, value)};"
     comment = meaning(parameter)
-    found = [made(f"{text}  // {comment}" if comment else text, parameter.name)]
+    lines = [made(f"{text}  // {comment}" if comment else text, parameter.name)]
     if parameter.widget.kind == "direction" and isinstance(value, tuple):
-        found.append(towards(parameter.name, value))
-    return tuple(found), ()
+        lines.append(towards(parameter.name, value))
+    return tuple(lines), ()
 
 
-def _no_file(one: ShaderPass, parameter: Parameter, value: Value) -> str:
-    message = f"pass '{one.step.path}' reads the image file {value}, which Shadertoy cannot be given; .fs can"
+def _no_file(pass_: ShaderPass, parameter: Parameter, value: Value) -> str:
+    message = (
+        f"pass '{pass_.step.path}' reads the image file {value}, which Shadertoy cannot be given; .fs can"
+    )
     raise SketchError(message)
 
 
@@ -69,44 +71,44 @@ HOST = Host(_SIZE, "ivec2(fragCoord)", "iTime", "iFrame", "fragCoord", _constant
 def fitted(texts: Sequence[PassText]) -> list[PassText]:
     """Return passes that know how large a part of its buffer another pass is in."""
     sizes = {text.name: text.size for text in texts}
-    found = []
+    result = []
     for text in texts:
         for read in text.reads:
             if sizes[read.source] != (None, None):
                 text = with_size_of(text, read.word, size_of(sizes[read.source], HOST))
-        found.append(text)
-    return found
+        result.append(text)
+    return result
 
 
 def check(texts: Sequence[PassText], *, one_text: bool) -> None:
-    """Raise ``SketchError`` with a sentence for each thing that Shadertoy has not."""
+    """Raise ``SketchError`` with a message for each thing that Shadertoy has not."""
     wrong = []
     if one_text and len(texts) > 1:
         names = ", ".join(text.name for text in texts)
         wrong.append(f"a Shadertoy text is one pass; these are {len(texts)} ({names}): export it as .json")
-    elif len(texts) - 1 > MOST_BUFFERS:
+    elif len(texts) - 1 > MAX_BUFFERS:
         names = ", ".join(text.name for text in texts[:-1])
-        wrong.append(f"Shadertoy has {MOST_BUFFERS} buffers, and {len(texts) - 1} are needed ({names})")
+        wrong.append(f"Shadertoy has {MAX_BUFFERS} buffers, and {len(texts) - 1} are needed ({names})")
     by_name = {text.name: text for text in texts}
     for text in texts:
         sources = _sources(text)
-        if len(sources) > MOST_CHANNELS:
+        if len(sources) > MAX_CHANNELS:
             wrong.append(
-                f"pass '{text.name}' reads {len(sources)} textures; Shadertoy has {MOST_CHANNELS} channels"
+                f"pass '{text.name}' reads {len(sources)} textures; Shadertoy has {MAX_CHANNELS} channels"
             )
         for read in text.reads:
             size = by_name[read.source].size
             if size == (None, None):
                 continue
-            small = all(side is None or side <= LARGEST_CORNER for side in size)
+            small = all(side is None or side <= MAX_CORNER for side in size)
             if not small or handed_on(text, read.word):
                 shown = " x ".join(str(side or "the picture's") for side in size)
                 wrong.append(
                     f"pass '{read.source}' has {shown} texels, a Shadertoy buffer those of the picture;"
-                    f" up to {LARGEST_CORNER} fit in its corner, and only if they are read one by one"
+                    f" up to {MAX_CORNER} fit in its corner, and only if they are read one by one"
                 )
     if wrong:
-        raise SketchError(diagnostics=[Diagnostic(one) for one in dict.fromkeys(wrong)])
+        raise SketchError(diagnostics=[Diagnostic(message) for message in dict.fromkeys(wrong)])
 
 
 def one_text(text: PassText, heading: Sequence[str]) -> str:
@@ -121,7 +123,7 @@ def export(texts: Sequence[PassText], name: str, heading: Sequence[str]) -> str:
         channels = _sources(text)
         names = {read.word: f"iChannel{channels.index(read.source)}" for read in text.reads}
         renamed.append(tuple(d.renamed(names) for d in text.declarations))
-    never = (*(f"iChannel{n}" for n in range(MOST_CHANNELS)), *(name for name, _ in NATIVE))
+    never = (*(f"iChannel{n}" for n in range(MAX_CHANNELS)), *(name for name, _ in NATIVE))
     parted = with_common(renamed, never)
     passes = []
     if parted.shared:
@@ -141,8 +143,8 @@ def export(texts: Sequence[PassText], name: str, heading: Sequence[str]) -> str:
     info = {"id": "", "date": "0", "viewed": 0, "name": name, "username": "", "likes": 0, "published": 0}
     info |= {"description": " ".join(line.removeprefix("// ") for line in heading), "flags": 0, "hasliked": 0}
     info |= {"usePreview": 0, "tags": ["terrain"]}
-    found = [{"ver": "0.1", "info": info, "renderpass": passes}]
-    return json.dumps(found, indent=1, ensure_ascii=True) + "\n"
+    opened_sketch = [{"ver": "0.1", "info": info, "renderpass": passes}]
+    return json.dumps(opened_sketch, indent=1, ensure_ascii=True) + "\n"
 
 
 def _sources(text: PassText) -> list[str]:
@@ -151,14 +153,14 @@ def _sources(text: PassText) -> list[str]:
 
 def blocks(declarations: Sequence[Declaration]) -> list[str]:
     """Return declarations as text, a blank line around each that has several lines."""
-    found: list[str] = []
+    lines: list[str] = []
     for each in declarations:
-        if "\n" in each.text and found and found[-1]:
-            found.append("")
-        found.append(each.text)
+        if "\n" in each.text and lines and lines[-1]:
+            lines.append("")
+        lines.append(each.text)
         if "\n" in each.text:
-            found.append("")
-    return [*found, ""] if found and found[-1] else found
+            lines.append("")
+    return [*lines, ""] if lines and lines[-1] else lines
 
 
 def _main(text: PassText, *, is_picture: bool) -> list[str]:

@@ -20,20 +20,20 @@ NATIVE = frozenset({("iResolution", "vec3"), ("iTime", "float")})
 
 
 def _uniform(
-    one: ShaderPass, parameter: Parameter, value: Value
+    pass_: ShaderPass, parameter: Parameter, value: Value
 ) -> tuple[tuple[Declaration, ...], tuple[str, ...]]:
     if parameter.widget.kind == "direction" and isinstance(value, tuple):
         text = f"const {parameter.type} {parameter.name} = {literal(parameter.type, value)};"
         return (made(text, parameter.name), towards(parameter.name, value)), ()
     text = f"uniform {parameter.type} {parameter.name} = {literal(parameter.type, value)};"
-    lines = one.step.kernel.source.lines
+    lines = pass_.step.kernel.source.lines
     index = next(i for i, n in enumerate(lines) if (n.file, n.number) == (parameter.file, parameter.line))
     note = note_at(lines, index).text.strip()
     return (made(f"{text}  //! {note}" if note else text, parameter.name),), ()
 
 
-def _no_file(one: ShaderPass, parameter: Parameter, value: Value) -> str:
-    message = f"pass '{one.step.path}' reads the image file {value}, which a file alone has not; .fs can"
+def _no_file(pass_: ShaderPass, parameter: Parameter, value: Value) -> str:
+    message = f"pass '{pass_.step.path}' reads the image file {value}, which a file alone has not; .fs can"
     raise SketchError(message)
 
 

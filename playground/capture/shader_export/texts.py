@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from playground.capture.extensions import COLOUR
 from playground.capture.shader_export.declarations import Declaration, declarations_of, made
 from playground.capture.shader_export.literals import number, vector
-from playground.capture.shader_export.passes import Leaving, ShaderPass, Wire
+from playground.capture.shader_export.passes import ExportPlan, ShaderPass, Wire
 from playground.engine.camera import unit_vector
 from playground.shader.parameter import AS_IT_IS
 from playground.shader.reserved_names import MATCHES, TOWARDS, WIRED
@@ -72,16 +72,16 @@ class Host:
     mouse: str = ""  # a vec4 as Shadertoy has it; "" where there is none
 
 
-def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, object]) -> PassText:
+def text_of(leaving: ExportPlan, pass_: ShaderPass, host: Host, sizes: Mapping[str, object]) -> PassText:
     """Return a pass's text; ``sizes`` are those of the passes so far, by name."""
-    kernel, step = one.step.kernel, one.step
-    if one.copies.name:
-        return _copy(one, host)
-    given, statements = _given(leaving, one, host)
+    kernel, step = pass_.step.kernel, pass_.step
+    if pass_.copies.name:
+        return _copy(pass_, host)
+    arguments, statements = _given(leaving, pass_, host)
     reads: list[Sampled] = []
     unwired: dict[str, str] = {}
     starting: dict[str, str] = {}
-    for declared, wire in one.inputs:
+    for declared, wire in pass_.inputs:
         source = wire.name
         if source:
             reads.append(Sampled(declared.name, source, declared.sampling, wire.is_before))
@@ -91,20 +91,20 @@ def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, o
         else:
             unwired[declared.name] = _FALLBACKS.get(declared.fallback, "vec4(0.0)")
         if kernel.reads(f"{WIRED}{declared.name}"):
-            given.append(_constant("bool", f"{WIRED}{declared.name}", "true" if source else "false"))
+            arguments.append(_constant("bool", f"{WIRED}{declared.name}", "true" if source else "false"))
         if kernel.reads(f"{MATCHES}{declared.name}"):
-            matches = "true" if source and sizes[source] == one.size else "false"
-            given.append(_constant("bool", f"{MATCHES}{declared.name}", matches))
+            matches = "true" if source and sizes[source] == pass_.size else "false"
+            arguments.append(_constant("bool", f"{MATCHES}{declared.name}", matches))
     for parameter in kernel.parameters:
         value = step.values[parameter.name]
         if parameter.widget.kind == "file":
-            reads.append(Sampled(parameter.name, host.file(one, parameter, value), parameter.sampling))
+            reads.append(Sampled(parameter.name, host.file(pass_, parameter, value), parameter.sampling))
             continue
-        own, setting = host.parameter(one, parameter, value)
-        given += own
+        own, setting = host.parameter(pass_, parameter, value)
+        arguments += own
         statements += setting
-    for output, wire in one.previous:
-        given.append(_previous(kernel, output, wire, host))
+    for output, wire in pass_.previous:
+        arguments.append(_previous(kernel, output, wire, host))
         if wire.name:
             reads.append(Sampled(f"{output.name}_before", wire.name, is_before=wire.is_before))
         if wire.first:
@@ -113,39 +113,39 @@ def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, o
     declarations = [_with_start(d, starting, host.frame) for d in declarations]
     for name in unwired:
         if any(d.reads(name) and name not in d.arguments for d in declarations):
-            reads.append(_instead(one, name, reads))
-    lines, value = _call(kernel, one.output, host.texel)
-    result = _filled(one.output, value)
-    if one.shows:
-        result, more = _shown(one.output, value, one.shows)
-        given += more
+            reads.append(_instead(pass_, name, reads))
+    lines, value = _call(kernel, pass_.output, host.texel)
+    result = _filled(pass_.output, value)
+    if pass_.shows:
+        result, more = _shown(pass_.output, value, pass_.shows)
+        arguments += more
     return PassText(
-        name=one.name,
-        size=one.size,
-        declarations=(*given, *declarations),
+        name=pass_.name,
+        size=pass_.size,
+        declarations=(*arguments, *declarations),
         reads=tuple(reads),
         statements=(*statements, *lines),
         result=result,
-        is_bytes=one.output.format in _BYTES,
+        is_bytes=pass_.output.format in _BYTES,
         title=kernel.title,
     )
 
 
-def _instead(one: ShaderPass, name: str, reads: Sequence[Sampled]) -> Sampled:
+def _instead(pass_: ShaderPass, name: str, reads: Sequence[Sampled]) -> Sampled:
     """Return what an unwired input reads that a function is handed: a pass of its constant.
 
     Where the text asks first whether anything is wired, it is never read, and any texture will do.
     """
-    if one.step.kernel.reads(f"{WIRED}{name}") and reads:
+    if pass_.step.kernel.reads(f"{WIRED}{name}") and reads:
         return Sampled(name, reads[0].source, reads[0].sampling)
-    declared = next(declared for declared, _ in one.inputs if declared.name == name)
+    declared = next(declared for declared, _ in pass_.inputs if declared.name == name)
     return Sampled(name, f"{CONSTANT}{declared.fallback}", declared.sampling)
 
 
 def constants_of(texts: Sequence[PassText]) -> list[PassText]:
     """Return the passes of the constants that some passes read."""
     names = dict.fromkeys(read.source for text in texts for read in text.reads)
-    found = [name for name in names if name.startswith(CONSTANT)]
+    constants = [name for name in names if name.startswith(CONSTANT)]
     title = "an input to which nothing is wired"
     return [
         PassText(
@@ -158,7 +158,7 @@ def constants_of(texts: Sequence[PassText]) -> list[PassText]:
             True,
             title,
         )
-        for name in found
+        for name in constants
     ]
 
 
@@ -196,8 +196,8 @@ def _caller(code: str, position: int) -> str:
     for index in range(position - 1, -1, -1):
         depth += (code[index] == ")") - (code[index] == "(")
         if depth < 0:
-            found = re.search(r"(\w+)\s*$", code[:index])
-            return found[1] if found else ""
+            match = re.search(r"(\w+)\s*$", code[:index])
+            return match[1] if match else ""
     return ""
 
 
@@ -222,21 +222,21 @@ def _constant(kind: str, name: str, value: str, comment: str = "") -> Declaratio
     return made(f"const {kind} {name} = {value};" + (f"  // {comment}" if comment else ""), name)
 
 
-def _given(leaving: Leaving, one: ShaderPass, host: Host) -> tuple[list[Declaration], list[str]]:
+def _given(leaving: ExportPlan, argument: ShaderPass, host: Host) -> tuple[list[Declaration], list[str]]:
     """Return what stands for the names that the engine gives a kernel, and what sets them."""
-    kernel, terrain = one.step.kernel, leaving.plan.terrain
+    kernel, terrain = argument.step.kernel, leaving.plan.terrain
     assert terrain.extent is not None and terrain.relief is not None  # a plan's terrain is known
-    given: list[Declaration] = []
+    declarations: list[Declaration] = []
     statements: list[str] = []
 
     def variable(kind: str, name: str, value: str) -> None:
-        given.append(variable_of(kind, name))
+        declarations.append(variable_of(kind, name))
         statements.append(f"{name} = {value};")
 
     reads_spacing = kernel.reads("spacing")
-    if kernel.reads("size") or reads_spacing or one.previous:
-        variable("ivec2", "size", size_of(one.size, host))
-    free = leaving.follows and leaving.sketch.extent is None and one.size == (None, None)
+    if kernel.reads("size") or reads_spacing or argument.previous:
+        variable("ivec2", "size", size_of(argument.size, host))
+    free = leaving.follows and leaving.sketch.extent is None and argument.size == (None, None)
     if (kernel.reads("extent") or reads_spacing) and free:
         wide = number(terrain.extent[0])
         ratio = "float(size.y - 1) / float(max(size.x - 1, 1))"
@@ -244,24 +244,24 @@ def _given(leaving: Leaving, one: ShaderPass, host: Host) -> tuple[list[Declarat
             variable("ivec2", "size", host.size)
         variable("vec2", "extent", f"{wide} * vec2(1.0, {ratio})")
     elif kernel.reads("extent") or reads_spacing:
-        given.append(_constant("vec2", "extent", vector(terrain.extent), "metres, east and north"))
+        declarations.append(_constant("vec2", "extent", vector(terrain.extent), "metres, east and north"))
     if reads_spacing:
         variable("vec2", "spacing", "extent / vec2(max(size - 1, ivec2(1)))")
     if kernel.reads("relief"):
-        given.append(_constant("float", "relief", number(terrain.relief), "metres from height 0 to 1"))
+        declarations.append(_constant("float", "relief", number(terrain.relief), "metres from height 0 to 1"))
     if kernel.reads("base_elevation"):
         base = number(terrain.base_elevation or 0.0)
-        given.append(_constant("float", "base_elevation", base, "metres above sea level at height 0"))
+        declarations.append(_constant("float", "base_elevation", base, "metres above sea level at height 0"))
     if kernel.reads("time"):
-        variable("float", "time", f"float({host.frame}) / 60.0" if one.by_frames else host.time)
+        variable("float", "time", f"float({host.frame}) / 60.0" if argument.by_frames else host.time)
     counts: dict[str, int | str]
-    counts = {"iteration": one.iteration, "iterations": one.iterations, "until": one.until}
-    if one.by_frames:
+    counts = {"iteration": argument.iteration, "iterations": argument.iterations, "until": argument.until}
+    if argument.by_frames:
         counts = {"iteration": host.frame, "iterations": f"{host.frame} + 1", "until": f"{host.frame} + 1"}
     for name, count in counts.items():
         if kernel.reads(name):
             variable("int", name, str(count))
-    return given, statements
+    return declarations, statements
 
 
 def size_of(size: tuple[int | None, int | None], host: Host) -> str:
@@ -277,16 +277,16 @@ def towards(name: str, direction: tuple[float, ...]) -> Declaration:
     return _constant("vec3", f"{TOWARDS}{name}", vector(unit_vector(direction)))
 
 
-def _copy(one: ShaderPass, host: Host) -> PassText:
+def _copy(pass_: ShaderPass, host: Host) -> PassText:
     """Return a pass that holds what another gave in the frame before."""
-    reads = [Sampled("texels", one.copies.name, is_before=True)]
+    reads = [Sampled("texels", pass_.copies.name, is_before=True)]
     result = f"texelFetch(texels, {host.texel}, 0)"
-    if one.copies.first:
-        reads.append(Sampled("texels_at_first", one.copies.first))
+    if pass_.copies.first:
+        reads.append(Sampled("texels_at_first", pass_.copies.first))
         result = f"{host.frame} == 0 ? texelFetch(texels_at_first, {host.texel}, 0) : {result}"
-    is_bytes = one.output.format in _BYTES
-    title = f"{one.copies.name} as it was in the frame before"
-    return PassText(one.name, one.size, (), tuple(reads), (), result, is_bytes, title)
+    is_bytes = pass_.output.format in _BYTES
+    title = f"{pass_.copies.name} as it was in the frame before"
+    return PassText(pass_.name, pass_.size, (), tuple(reads), (), result, is_bytes, title)
 
 
 def _with_start(declaration: Declaration, starting: Mapping[str, str], frame: str) -> Declaration:
@@ -300,7 +300,7 @@ def _with_start(declaration: Declaration, starting: Mapping[str, str], frame: st
 
 def _either_calls(text: str, name: str, start: str, frame: str) -> str:
     """Return a text in which each fetch of a texel is one of two, by the frame."""
-    found, position = "", 0
+    code, position = "", 0
     for match in re.finditer(rf"\btexelFetch\s*\(\s*{name}\s*,", text):
         depth, end = 1, match.end()
         while depth and end < len(text):
@@ -308,9 +308,9 @@ def _either_calls(text: str, name: str, start: str, frame: str) -> str:
             end += 1
         call = text[match.start() : end]
         other = call.replace(match.group(), f"texelFetch({start},", 1)
-        found += f"{text[position : match.start()]}({frame} == 0 ? {other} : {call})"
+        code += f"{text[position : match.start()]}({frame} == 0 ? {other} : {call})"
         position = end
-    return found + text[position:]
+    return code + text[position:]
 
 
 def _previous(kernel: Kernel, output: Output, wire: Wire, host: Host) -> Declaration:
@@ -319,10 +319,10 @@ def _previous(kernel: Kernel, output: Output, wire: Wire, host: Host) -> Declara
     if not wire.name:
         return made(f"{head} return {kind}(0.0); }}  // there is no step before", name)
     swizzle = {1: ".r", 2: ".rg", 4: ""}[output.components]
-    place = "clamp(texel, ivec2(0), size - 1)"
-    fetch = f"texelFetch({output.name}_before, {place}, 0){swizzle}"
+    texel = "clamp(texel, ivec2(0), size - 1)"
+    fetch = f"texelFetch({output.name}_before, {texel}, 0){swizzle}"
     if wire.first:
-        fetch = f"{host.frame} == 0 ? texelFetch({output.name}_at_first, {place}, 0){swizzle} : {fetch}"
+        fetch = f"{host.frame} == 0 ? texelFetch({output.name}_at_first, {texel}, 0){swizzle} : {fetch}"
     return made(f"{head} return {fetch}; }}", name)
 
 
@@ -350,8 +350,8 @@ def shown_text(text: PassText, components: int, kind: str, host: Host) -> PassTe
     """Return a pass that shows a texture of any size over the whole picture, nearest texel."""
     output = Output("shown", {1: "r32f", 2: "rg32f", 4: "rgba32f"}[components])
     swizzle = {1: ".r", 2: ".rg", 4: ""}[components]
-    place = f"{host.texel} * {size_of(text.size, host)} / {host.size}"
-    result, more = _shown(output, f"texelFetch(shown, {place}, 0){swizzle}", kind)
+    texel = f"{host.texel} * {size_of(text.size, host)} / {host.size}"
+    result, more = _shown(output, f"texelFetch(shown, {texel}, 0){swizzle}", kind)
     return PassText("picture", (None, None), more, (Sampled("shown", text.name),), (), result)
 
 

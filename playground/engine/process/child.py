@@ -80,9 +80,9 @@ class Outcome:
 
     @property
     def ending(self) -> str:
-        """How the process ended, as what a sentence says of it."""
+        """How the process ended, as what a message says of it."""
         if self.not_a_frame:
-            return f"sent what is no answer: {self.not_a_frame}"
+            return f"sent an invalid answer: {self.not_a_frame}"
         if self.signal_name:
             return f"was ended by {self.signal_name}"
         return "died" if self.status is None else f"ended with status {self.status}"

@@ -148,10 +148,10 @@ class Decoder:
 
 class _Pickler(pickle.Pickler):
     def __init__(
-        self, stream: io.BytesIO, known: dict[int, tuple[str, Kernel]], names: Iterator[int]
+        self, stream: io.BytesIO, existing: dict[int, tuple[str, Kernel]], names: Iterator[int]
     ) -> None:
         super().__init__(stream, pickle.HIGHEST_PROTOCOL)
-        self._known, self._names = known, names
+        self._known, self._names = existing, names
         self.used: dict[int, tuple[str, Kernel]] = {}
         self.news: dict[str, Kernel] = {}
 
@@ -167,9 +167,9 @@ class _Pickler(pickle.Pickler):
 
 
 class _Unpickler(pickle.Unpickler):
-    def __init__(self, stream: io.BytesIO, known: dict[str, Kernel]) -> None:
+    def __init__(self, stream: io.BytesIO, kernels: dict[str, Kernel]) -> None:
         super().__init__(stream)
-        self._known = known
+        self._known = kernels
         self.used: dict[str, Kernel] = {}
 
     def persistent_load(self, name: Any) -> Kernel:

@@ -21,7 +21,7 @@ from playground.lessons.tasks.texts import starter_text
 from playground.lessons.values import spelled_value
 from playground.markup import Markup, joined, tag
 
-_LONGEST_ASK = 120  # characters of a question that are repeated over its answer
+_MAX_QUESTION = 120  # characters of a question that are repeated over its answer
 
 ANSWERS = ("inline", "end", "none")
 """Where answers are: folded away under their questions, and on paper at the end; at the end; nowhere."""
@@ -35,7 +35,7 @@ def picture_image(picture: Picture, source: str, alt: str, *, lazy: bool) -> Mar
 
 
 @dataclass(frozen=True)
-class Setting:
+class LessonContext:
     """What the blocks of one lesson are written with."""
 
     lesson: model.Lesson
@@ -82,12 +82,12 @@ class Setting:
         if self.answers == "inline":
             summary = tag("summary", self.label(key))
             return tag("details", summary, tag("div", *inside), class_="answer", data_title=title)
-        place = f"answer-{block.name}"
+        text = f"answer-{block.name}"
         asked = plain(self.filled(ask)).split("\n")[0]
         heading = tag("h3", tag("a", title, href=f"#{block.name}"))
-        short = asked if len(asked) <= _LONGEST_ASK else f"{asked[:_LONGEST_ASK].rsplit(' ', 1)[0]} …"
-        self.at_end.append(tag("section", heading, tag("p", short, class_="asked"), *inside, id=place))
-        return tag("p", tag("a", self.label("answer_below"), href=f"#{place}"), class_="to-answer")
+        short = asked if len(asked) <= _MAX_QUESTION else f"{asked[:_MAX_QUESTION].rsplit(' ', 1)[0]} …"
+        self.at_end.append(tag("section", heading, tag("p", short, class_="asked"), *inside, id=text))
+        return tag("p", tag("a", self.label("answer_below"), href=f"#{text}"), class_="to-answer")
 
     def titled(
         self, block: model.Named, title: str, *inside: Markup | None, **attributes: str | None
@@ -101,7 +101,7 @@ class Setting:
         return filled(markdown, self.numbers, comma=self.lesson.language == "fr")
 
 
-def block_html(block: model.Block, setting: Setting, *, first: bool = False) -> Markup:
+def block_html(block: model.Block, setting: LessonContext, *, first: bool = False) -> Markup:
     """Return a block as HTML; the first picture of a page is loaded at once."""
     if isinstance(block, model.Figure):
         return _figure(block, setting, first)
@@ -114,11 +114,11 @@ def open_command(lesson: model.Lesson) -> str:
     return f"playground lesson open {lesson.name}{language}"
 
 
-def _prose(block: model.Prose, setting: Setting) -> Markup:
+def _prose(block: model.Prose, setting: LessonContext) -> Markup:
     return setting.prose(block.text if block.kind in ("heading", "code") else block.markdown)
 
 
-def _figure(block: model.Figure, setting: Setting, first: bool) -> Markup:
+def _figure(block: model.Figure, setting: LessonContext, first: bool) -> Markup:
     (picture,) = pictures_in(block)
     dragged = None
     if block.sliders and block.name not in setting.live:
@@ -130,7 +130,7 @@ def _figure(block: model.Figure, setting: Setting, first: bool) -> Markup:
 
 
 def _series(
-    block: model.Steps | model.Slider, setting: Setting, labels: list[str], name: str, opens: int
+    block: model.Steps | model.Slider, setting: LessonContext, labels: list[str], name: str, opens: int
 ) -> Markup:
     frames = []
     captions = block.captions if isinstance(block, model.Steps) and block.captions else [""] * len(labels)
@@ -154,22 +154,22 @@ def _series(
     )
 
 
-def _steps(block: model.Steps, setting: Setting) -> Markup:
+def _steps(block: model.Steps, setting: LessonContext) -> Markup:
     count = len(block.iterations)
     labels = [setting.label("step_of", n=index + 1, m=count) for index in range(count)]
     pictures = list(pictures_in(block))
-    opens = next((index for index, one in enumerate(pictures) if not setting.blank(one)), count - 1)
+    opens = next((index for index, picture in enumerate(pictures) if not setting.blank(picture)), count - 1)
     return _series(block, setting, labels, setting.label("step"), opens)
 
 
-def _slider(block: model.Slider, setting: Setting) -> Markup:
+def _slider(block: model.Slider, setting: LessonContext) -> Markup:
     name = block.label or block.parameter
     labels = [spelled_value(block, value, setting.lesson.language) for value in block.values]
     # A sweep opens in its middle, where there is something to drag towards on both sides.
     return _series(block, setting, labels, plain(name), len(labels) // 2)
 
 
-def _compare(block: model.Compare, setting: Setting) -> Markup:
+def _compare(block: model.Compare, setting: LessonContext) -> Markup:
     shown = []
     for picture, label in zip(pictures_in(block), block.labels, strict=True):
         below = tag("p", tag("b", setting.line(label)))
@@ -185,7 +185,7 @@ def _compare(block: model.Compare, setting: Setting) -> Markup:
     )
 
 
-def _code(block: model.Code, setting: Setting) -> Markup:
+def _code(block: model.Code, setting: LessonContext) -> Markup:
     title = setting.label("code_of", file=f"glsl/{block.file}")
     caption = setting.line(block.caption) if block.caption else None
     return tag(
@@ -197,7 +197,7 @@ def _code(block: model.Code, setting: Setting) -> Markup:
     )
 
 
-def _break(block: model.Break, setting: Setting) -> Markup:
+def _break(block: model.Break, setting: LessonContext) -> Markup:
     label, lines = setting.label, bug_region(block)
     correct, broken = pictures_in(block)
     caption = setting.line(block.caption) if block.caption else None
@@ -235,13 +235,13 @@ def _break(block: model.Break, setting: Setting) -> Markup:
     )
 
 
-def _choice(block: model.Question, index: int, setting: Setting) -> Markup:
+def _choice(block: model.Question, index: int, setting: LessonContext) -> Markup:
     right = "yes" if index == block.right else "no"
     button = tag("input", type="radio", name=block.name, value=index, data_right=right)
     return tag("label", button, Markup(" "), tag("span", setting.line(block.choices[index])))
 
 
-def _question(block: model.Question, setting: Setting) -> Markup:
+def _question(block: model.Question, setting: LessonContext) -> Markup:
     label, choices = setting.label, None
     if block.choices:
         choices = tag(
@@ -256,8 +256,8 @@ def _question(block: model.Question, setting: Setting) -> Markup:
     return setting.titled(block, label("question"), setting.prose(block.ask), choices, answer)
 
 
-def _exercise(block: model.Exercise, setting: Setting) -> Markup:
-    pictures = [tag("figure", setting.image(found)) for found in pictures_in(block)]
+def _exercise(block: model.Exercise, setting: LessonContext) -> Markup:
+    pictures = [tag("figure", setting.image(picture)) for picture in pictures_in(block)]
     live = block.name in setting.live
     room = setting.still() if live else None  # only what can be started has one
     title = f"{setting.label('exercise')} {setting.lesson.number_of(block)}"
@@ -275,7 +275,7 @@ def _exercise(block: model.Exercise, setting: Setting) -> Markup:
     )
 
 
-def _challenge(block: model.Challenge, setting: Setting) -> Markup:
+def _challenge(block: model.Challenge, setting: LessonContext) -> Markup:
     (target,) = pictures_in(block)
     title, solution = setting.label("challenge"), None
     if block.solution:
@@ -293,7 +293,7 @@ def _challenge(block: model.Challenge, setting: Setting) -> Markup:
     )
 
 
-def _starter(task: model.Task, setting: Setting) -> Markup | None:
+def _starter(task: model.Task, setting: LessonContext) -> Markup | None:
     """Return the text that a reader begins from, folded away."""
     if not task.file:
         return None
@@ -301,14 +301,14 @@ def _starter(task: model.Task, setting: Setting) -> Markup | None:
     return setting.folded("starter", code_block(starter_text(task), title))
 
 
-def _measure(block: model.Measure, setting: Setting) -> Markup:
+def _measure(block: model.Measure, setting: LessonContext) -> Markup:
     if not block.sentence:
         return joined()
     chip = tag("b", setting.label("measured"), class_="chip")
     return tag("p", chip, Markup(" "), setting.line(block.sentence), id=block.name, class_="measure")
 
 
-_WRITERS: dict[type[model.Block], Callable[[Any, Setting], Markup]] = {
+_WRITERS: dict[type[model.Block], Callable[[Any, LessonContext], Markup]] = {
     model.Prose: _prose,
     model.Steps: _steps,
     model.Slider: _slider,

@@ -21,7 +21,7 @@ from playground.engine.context import context_info
 from playground.engine.engine import Engine
 from playground.errors import DataError
 from playground.json_text import read_json
-from playground.lessons.book.blocks import Setting, picture_image
+from playground.lessons.book.blocks import LessonContext, picture_image
 from playground.lessons.book.gallery import gallery_html
 from playground.lessons.book.images import Album, is_blank, of_picture
 from playground.lessons.book.live_files import LiveBook, live_book
@@ -69,7 +69,7 @@ class Build:
     @property
     def names(self) -> list[str]:
         """The pictures that are to be drawn."""
-        return list(self.album.wanted)
+        return list(self.album.scenes)
 
 
 def prepare(
@@ -158,14 +158,14 @@ def _pages(
         def blank(picture: Picture, files: dict[str, str] = files) -> bool:
             return is_blank(build.album.folder / files[picture.name])
 
-        setting = Setting(
+        setting = LessonContext(
             lesson, book.label, numbers[lesson.name], source, book.anchor, runs, blank, build.answers
         )
         entries += lesson_entries(lesson, setting)
         hero = None
-        if found := build.heroes.get(lesson.name):
-            file, one = found
-            hero = hero_image(f"../{PICTURES}/{file}", one.alt[lesson.language])
+        if hero_picture := build.heroes.get(lesson.name):
+            file, item = hero_picture
+            hero = hero_image(f"../{PICTURES}/{file}", item.alt[lesson.language])
         covers[lesson.name] = _cover(build, lesson, f"../{PICTURES}", lazy=True)
         yield f"{lesson.name}.html", lesson_page(book, lesson, setting, hero)
     yield "index.html", contents_page(book, covers)
@@ -181,8 +181,8 @@ def _pages(
 
 def _cover(build: Build, lesson: Lesson, folder: str, *, lazy: bool = False) -> Markup:
     """Return a lesson's hero, or else its first picture, without a text: its title is next to it."""
-    if found := build.heroes.get(lesson.name):
-        return hero_image(f"{folder}/{found[0]}", "", lazy=lazy)
+    if hero_picture := build.heroes.get(lesson.name):
+        return hero_image(f"{folder}/{hero_picture[0]}", "", lazy=lazy)
     picture = pictures_of(lesson)[0]
     source = of_picture(build.files[lesson.name], folder)(picture)
     return picture_image(picture, source, "", lazy=lazy)

@@ -1,7 +1,7 @@
 // find.js -- the search of the book: words.js has the texts, nothing leaves the page. Accents do not count.
 "use strict";
 globalThis.bookFind = (() => {
-  const words = document.body.dataset, MOST = 30, AROUND = 70;
+  const words = document.body.dataset, MAX_HITS = 30, AROUND = 70;
   const make = (name, properties = {}, ...inside) => {
     const element = Object.assign(document.createElement(name), properties);
     element.append(...inside);
@@ -96,7 +96,7 @@ globalThis.bookFind = (() => {
 
   function show() {
     const query = field.value, found = find(query);
-    list.replaceChildren(...found.slice(0, MOST).map(({ address, page, section, text }, index) => {
+    list.replaceChildren(...found.slice(0, MAX_HITS).map(({ address, page, section, text }, index) => {
       const title = make("span", { className: "title" }, ...marked(section || page, query));
       if (section && section !== page) title.append(make("small", {}, " ", page));
       const row = make("a", { href: address, id: `found-${index}`, tabIndex: -1 }, title,

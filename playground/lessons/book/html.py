@@ -16,7 +16,7 @@ from playground.memo import INTERFACE
 Anchor = Callable[[str], dict[str, str]]
 """Maps a link to the attributes of its element: "lesson:fourier" → {"href": "fourier.html"}."""
 
-DEEPEST = 24
+MAX_INDENT = 24
 """Blanks of indent that book.css knows; a line with more wraps under these."""
 
 
@@ -70,11 +70,11 @@ def wrapped_lines(text: str, html: Markup) -> Markup:
     its end is inside, so that what is copied is the text.
     """
     lines = zip(text.split("\n"), html.split("\n"), strict=True)
-    return joined(*(_wrapped(one, Markup(f"{marked}\n")) for one, marked in lines))
+    return joined(*(_wrapped(line_text, Markup(f"{marked}\n")) for line_text, marked in lines))
 
 
 def _wrapped(text: str, html: Markup) -> Markup:
-    indent = min(len(text) - len(text.lstrip(" ")), DEEPEST)
+    indent = min(len(text) - len(text.lstrip(" ")), MAX_INDENT)
     return tag("span", html, class_=f"l i{indent}" if indent else "l")
 
 
@@ -111,7 +111,7 @@ class _Renderer(RendererHTML):
 
 
 def _rendered(markdown: str, anchor: Anchor, *, inline: bool) -> str:
-    found = parser()
-    found.renderer = _Renderer(found)
+    parser_ = parser()
+    parser_.renderer = _Renderer(parser_)
     env: dict[str, Any] = {"anchor": anchor}
-    return str(found.renderInline(markdown, env) if inline else found.render(markdown, env))
+    return str(parser_.renderInline(markdown, env) if inline else parser_.render(markdown, env))

@@ -29,7 +29,7 @@ SHARPER = 1.5
 BLACK = 32.0
 """Level of 255 that nine tenths of a picture lie below, where there is nothing but black to see."""
 
-FEW_COLOURS = 2048
+MAX_DIAGRAM_COLOURS = 2048
 """Colours that a diagram has at most; terrain has tens of thousands."""
 
 
@@ -38,7 +38,7 @@ class Album:
     """The pictures of a book: their files, and what each shows; equal pictures share a file."""
 
     folder: Path
-    wanted: dict[str, Scene] = field(default_factory=dict)  # file name → what it shows
+    scenes: dict[str, Scene] = field(default_factory=dict)  # file name → what it shows
     _known: dict[tuple[object, ...], str] = field(default_factory=dict)
 
     def add(self, name: str, scene: Scene) -> str:
@@ -46,7 +46,7 @@ class Album:
         key = (scene.sketch, scene.pixels, scene.time, scene.steps)
         if key not in self._known:
             self._known[key] = f"{name}.webp"
-            self.wanted[f"{name}.webp"] = scene
+            self.scenes[f"{name}.webp"] = scene
         return self._known[key]
 
     def add_lesson(self, lesson: Lesson) -> dict[str, str]:
@@ -62,7 +62,7 @@ class Album:
         before: Future[None] | None = None
         with ThreadPoolExecutor(1) as aside:  # a picture is stored while the next is drawn
             for name in names:
-                frame = draw(engine, larger(self.wanted[name]))
+                frame = draw(engine, larger(self.scenes[name]))
                 if before:
                     before.result()
                     advance()
@@ -86,7 +86,7 @@ def store(path: Path, picture: NDArray[np.uint8]) -> None:
 def is_diagram(picture: NDArray[np.uint8]) -> bool:
     """Whether a picture has few colours: compression damages its thin lines, which terrain tolerates."""
     colours = picture[..., :3].astype(np.uint32) @ np.array([1, 256, 65536], np.uint32)
-    return np.unique(colours).size <= FEW_COLOURS
+    return np.unique(colours).size <= MAX_DIAGRAM_COLOURS
 
 
 def is_blank(path: Path) -> bool:

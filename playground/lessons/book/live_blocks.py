@@ -23,8 +23,8 @@ def lesson_data(lesson: model.Lesson, library: Library) -> LiveData:
     scenes = Scenes(library)
     blocks = {}
     for block in lesson.blocks:
-        if isinstance(block, model.Named) and (found := block_data(block, scenes)):
-            blocks[block.name] = found
+        if isinstance(block, model.Named) and (data := block_data(block, scenes)):
+            blocks[block.name] = data
     return {"sketches": scenes.sketches, "blocks": blocks}
 
 
@@ -57,8 +57,8 @@ def _data(block: model.Named, scenes: Scenes) -> LiveData | None:
 def _steps(block: model.Steps, scenes: Scenes) -> LiveData | None:
     """Stop together: any iteration between those that are shown; nothing where that changes no page."""
     setting = scenes.setting(block.scenes[-1])
-    for path, one in scenes.sketches[setting["sketch"]]["passes"].items():
-        if "locked" in one and any(f"{path}.".startswith(f"{stopped}.") for stopped in block.passes):
+    for path, picture in scenes.sketches[setting["sketch"]]["passes"].items():
+        if "locked" in picture and any(f"{path}.".startswith(f"{stopped}.") for stopped in block.passes):
             return None
     return {
         "kind": "steps",
@@ -71,12 +71,12 @@ def _steps(block: model.Steps, scenes: Scenes) -> LiveData | None:
 def _slider(block: model.Slider, scenes: Scenes) -> LiveData:
     """Sweep between the listed values, or go from one to the next where there is nothing between."""
     settings = [scenes.setting(scene) for scene in block.scenes]
-    found: LiveData = {"kind": "slider", "scenes": settings}
+    data: LiveData = {"kind": "slider", "scenes": settings}
     numbers = {setting["sketch"] for setting in settings}
     row = scenes.row(settings[0], block.parameter) if len(numbers) == 1 else None
     if row and not row["locked"] and row["type"] in _NUMBERS and row["widget"] not in ("menu", "file"):
-        found |= {"row": block.parameter, "values": [scenes.value(s, block.parameter) for s in settings]}
-    return found
+        data |= {"row": block.parameter, "values": [scenes.value(s, block.parameter) for s in settings]}
+    return data
 
 
 _NUMBERS = ("int", "uint", "float", "vec2", "vec3", "vec4")

@@ -27,7 +27,7 @@ from playground.web.bundle import read_bundle
 BUNDLES = {"live.js": "book.js", "live.css": "book.css"}
 """File of a book → bundle of the runtime."""
 
-FEW = 4096
+MAX_INLINE_LETTERS = 4096
 """Letters of bytes that a lesson's own script holds, so that a book has no hundred small files."""
 
 
@@ -46,7 +46,7 @@ def live_book(lessons: Sequence[Lesson], engine: Engine | None = None) -> LiveBo
     """
     library = Library(engine)
     data = {lesson.name: lesson_data(lesson, library) for lesson in lessons}
-    blocks = {name: frozenset(found["blocks"]) for name, found in data.items()}
+    blocks = {name: frozenset(data["blocks"]) for name, data in data.items()}
     if not any(blocks.values()):
         return LiveBook(blocks, {})
     files = {name: read_bundle(bundle) for name, bundle in BUNDLES.items()}
@@ -61,21 +61,21 @@ def widget_page(block: Named, engine: Engine | None = None) -> str:
     """
     library = Library(engine)
     scenes = Scenes(library)
-    found = block_data(block, scenes)
-    if found is None:
+    data = block_data(block, scenes)
+    if data is None:
         return ""
     shared = {**library.data(), "blobs": library.shared.blobs.texts}
-    return packed_json({"block": found, "sketches": scenes.sketches, "library": shared})
+    return packed_json({"block": data, "sketches": scenes.sketches, "library": shared})
 
 
 def _scripts(data: dict[str, dict[str, Any]], library: Library) -> Iterator[tuple[str, str]]:
     say = {language: _said_in_a_page(language) for language in LANGUAGES}
     yield "glsl.js", script("glsl", packed_json({**library.data(), "say": say}))
     texts = library.shared.blobs.texts
-    few = {key for key, text in texts.items() if len(text) <= FEW}
-    for lesson, found in data.items():
-        blobs = {key: texts[key] for key in sorted(few & blobs_in(found, library))}
-        yield f"data/{lesson}.js", script(f"data/{lesson}", packed_json({**found, "blobs": blobs}))
+    few = {key for key, text in texts.items() if len(text) <= MAX_INLINE_LETTERS}
+    for lesson, lesson_entry in data.items():
+        blobs = {key: texts[key] for key in sorted(few & blobs_in(lesson_entry, library))}
+        yield f"data/{lesson}.js", script(f"data/{lesson}", packed_json({**lesson_entry, "blobs": blobs}))
     for key in texts.keys() - few:
         yield f"data/{key}.js", script(f"data/{key}", texts[key])
 

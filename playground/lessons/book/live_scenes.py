@@ -45,10 +45,10 @@ class Library:
         del shared["blobs"]
         read = {kernel["file"] for kernel in self.kernels}
         read |= {stage["file"] for kernel in self.kernels for stage in stages_of(kernel) if "file" in stage}
-        for name in (found := list(read)):  # it grows: what a file includes is read as well
+        for name in (names := list(read)):  # it grows: what a file includes is read as well
             news = set(shared["includes"].get(name, {}).values()) - read
             read |= news
-            found += sorted(news)
+            names += sorted(news)
         for table in (shared["files"], shared["includes"]):
             for name in set(table) - read:
                 del table[name]
@@ -76,8 +76,8 @@ class Scenes:
             sketch = replace(scene.sketch, presets=(), shots=())  # a figure offers none
             steps = dict(scene.steps)
             at: dict[str, Any] = {"frame": scene.pixels, "time": scene.time, "steps": steps}
-            found = sketch_data(sketch, self.library.shared, **at, engine=self.library.engine)
-            self._known[key] = self._written(found)
+            data = sketch_data(sketch, self.library.shared, **at, engine=self.library.engine)
+            self._known[key] = self._written(data)
         return self._known[key]
 
     def row(self, setting: dict[str, Any], path: str) -> dict[str, Any] | None:
@@ -98,14 +98,14 @@ class Scenes:
             self.sketches.append(sketch)
         number = self._numbers[outline]
         base = self.sketches[number]
-        found: dict[str, Any] = {"sketch": number}
-        found |= {name: sketch[name] for name in SET if sketch[name] != base[name]}
+        data: dict[str, Any] = {"sketch": number}
+        data |= {name: sketch[name] for name in SET if sketch[name] != base[name]}
         differing = {
             "values": _differing(sketch["values"], base["values"]),
             "shown": _differing(_rows(sketch), _rows(base)),
             "data": _differing(_texels(sketch["nodes"]), _texels(base["nodes"])),
         }
-        return found | {name: table for name, table in differing.items() if table}
+        return data | {name: table for name, table in differing.items() if table}
 
 
 def _outline(sketch: dict[str, Any]) -> str:

@@ -35,14 +35,14 @@ def task_data(task: model.Exercise | model.Challenge, scenes: Scenes) -> LiveDat
         solution, begin = scenes.setting(task.scene), scenes.setting(task.begin)
         if begin["sketch"] != solution["sketch"] or "data" in {**begin, **solution}:
             return None
-        found: LiveData = {"scenes": [solution], "begin": begin, "rows": _rows(task, scenes, solution)}
+        data: LiveData = {"scenes": [solution], "begin": begin, "rows": _rows(task, scenes, solution)}
         if task.file:
-            found |= {"file": task.file, "starter": starter_text(task), "answer": answer_text(task)}
+            data |= {"file": task.file, "starter": starter_text(task), "answer": answer_text(task)}
         if isinstance(task, model.Challenge):
-            return found | {"kind": "challenge", "goal": task.goal}
+            return data | {"kind": "challenge", "goal": task.goal}
         checks = [_check(task, check, scenes, solution) for check in task.checks]
     held = [check for check in checks if check]
-    return found | {"kind": "exercise", "checks": held, "elsewhere": len(checks) - len(held)}
+    return data | {"kind": "exercise", "checks": held, "elsewhere": len(checks) - len(held)}
 
 
 @contextmanager
@@ -87,9 +87,9 @@ def _check(
         for leaf in row["targets"] if row else [path]:
             at[leaf] = values[leaf]
     said = [[path, spelled_at(task.scene, path, value)] for path, value in check.at]
-    found: LiveData = {"hidden": check.hidden, "tolerance": check.tolerance, "at": at}
-    found["said"] = [] if check.hidden else said
+    data: LiveData = {"hidden": check.hidden, "tolerance": check.tolerance, "at": at}
+    data["said"] = [] if check.hidden else said
     if check.of:
         ref = flatten(task.scene.sketch).ref(check.of, task.scene.sketch.name)
-        found["of"] = {"path": ref.path, "output": ref.output, "name": check.of}
-    return found
+        data["of"] = {"path": ref.path, "output": ref.output, "name": check.of}
+    return data

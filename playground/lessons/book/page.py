@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from playground._version import __version__
-from playground.lessons.book.blocks import Setting, block_html, open_command
+from playground.lessons.book.blocks import LessonContext, block_html, open_command
 from playground.lessons.book.html import Anchor, line, plain
 from playground.lessons.course import parts
 from playground.lessons.glossary import Term, alphabetical, linked_term, terms_of
@@ -48,7 +48,7 @@ class Book:
         """
         kind, _, what = link.partition(":")
         if kind == "lesson":
-            return {"href": f"{what}.html"} if any(what == one.name for one in self.lessons) else {}
+            return {"href": f"{what}.html"} if any(what == lesson.name for lesson in self.lessons) else {}
         if kind == "thesis":  # its text is not ours to give; the figures of that chapter are here
             chapter = f"{FIGURES}.html#chapter-{what.partition('.')[0]}"
             return {"href": chapter if self.gallery else "#thesis-title"}
@@ -60,7 +60,7 @@ class Book:
         return {"href": link}
 
 
-def lesson_page(book: Book, lesson: Lesson, setting: Setting, hero: Markup | None = None) -> str:
+def lesson_page(book: Book, lesson: Lesson, setting: LessonContext, hero: Markup | None = None) -> str:
     """Return the page of a lesson, with a picture at its head."""
     body: list[Markup] = []
     first = hero is None
@@ -103,17 +103,17 @@ def section_id(number: int, section: Section) -> str:
     return f"s{number}-{slug(plain(section.title))}"
 
 
-def _contents_of(book: Book, lesson: Lesson, setting: Setting) -> Markup:
+def _contents_of(book: Book, lesson: Lesson, setting: LessonContext) -> Markup:
     """Return the list of a page's sections, to stand at its side."""
-    found = [
+    sections = [
         (section_id(number, section), line(section.title, lambda link: {}))
         for number, section in enumerate(lesson.sections)
         if section.title
     ]
     if setting.at_end:
-        found.append(("answers-title", joined(book.label("answers"))))
-    found += [("play-title", joined(book.label("play"))), ("thesis-title", joined(book.label("thesis")))]
-    rows = [tag("li", tag("a", title, href=f"#{place}")) for place, title in found]
+        sections.append(("answers-title", joined(book.label("answers"))))
+    sections += [("play-title", joined(book.label("play"))), ("thesis-title", joined(book.label("thesis")))]
+    rows = [tag("li", tag("a", title, href=f"#{anchor}")) for anchor, title in sections]
     title = book.label("on_this_page")
     inside = tag("details", tag("summary", title), tag("ol", *rows))
     return tag("nav", inside, class_="toc", aria_label=title)
@@ -133,9 +133,9 @@ def contents_page(book: Book, covers: Mapping[str, Markup]) -> str:
     for number, part in enumerate(parts(), 1):
         cards = [_card(book, by_name.pop(name), covers[name]) for name in part.lessons if name in by_name]
         if cards:
-            title, place = part.titles[book.language], f"part-{number}"
-            heading = tag("h2", title, id=place)
-            shown.append(tag("section", heading, tag("ol", *cards, class_="cards"), aria_labelledby=place))
+            title, anchor = part.titles[book.language], f"part-{number}"
+            heading = tag("h2", title, id=anchor)
+            shown.append(tag("section", heading, tag("ol", *cards, class_="cards"), aria_labelledby=anchor))
     if by_name:  # lessons whose texts are elsewhere
         cards = [_card(book, lesson, covers[name]) for name, lesson in by_name.items()]
         shown.append(tag("ol", *cards, class_="cards"))
@@ -332,9 +332,9 @@ def paper_html(paper: str) -> Markup:
 
 def _pager(book: Book, lesson: Lesson, where: str) -> Markup:
     """Return the links to the lessons before and after; they stand above a lesson and below it."""
-    place = book.lessons.index(lesson)
-    before = book.lessons[place - 1] if place else None
-    after = book.lessons[place + 1] if place + 1 < len(book.lessons) else None
+    index = book.lessons.index(lesson)
+    before = book.lessons[index - 1] if index else None
+    after = book.lessons[index + 1] if index + 1 < len(book.lessons) else None
     return tag(
         "nav",
         tag("a", f"← {before.title}", href=f"{before.name}.html", rel="prev") if before else None,

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 
 from playground.lessons import model
-from playground.lessons.book.blocks import Setting
+from playground.lessons.book.blocks import LessonContext
 from playground.lessons.book.page import GLOSSARY, Book, section_id
 from playground.lessons.glossary import alphabetical
 from playground.lessons.markdown import every_token, parser
@@ -22,7 +22,7 @@ _HIDDEN = {"answer", "fix", "hint", "solution"}
 _ENDS = ("softbreak", "paragraph_close", "heading_close", "td_close", "th_close")
 
 
-def lesson_entries(lesson: model.Lesson, setting: Setting) -> Iterator[Entry]:
+def lesson_entries(lesson: model.Lesson, setting: LessonContext) -> Iterator[Entry]:
     """Yield the sections of a lesson; what stands before the first is its page."""
     for number, section in enumerate(lesson.sections):
         texts = [setting.filled(text) for block in section.blocks for text in _texts(block)]
@@ -58,12 +58,12 @@ def _words(*texts: str) -> str:
 
 
 def _plain(text: str) -> str:
-    found = []
+    parts = []
     for token in every_token(parser().parse(text)):
         if token.type in _ENDS:
-            found.append(" ")
+            parts.append(" ")
         elif token.type == "math_inline":
-            found.append(re.sub(r"[\\{}]", "", token.content))
+            parts.append(re.sub(r"[\\{}]", "", token.content))
         elif token.type in ("text", "code_inline", "fence", "code_block"):
-            found.append(token.content)
-    return "".join(found)
+            parts.append(token.content)
+    return "".join(parts)

@@ -17,18 +17,18 @@ from pathlib import Path
 from playground.errors import DataError
 from playground.lessons.translatable import Said
 
-MOST_FILES = 4000
+MAX_FILES = 4000
 """Files and folders that a submission may hold."""
 
-MOST_TEXT = 2**20
+MAX_TEXT_BYTES = 2**20
 """Bytes of a file that is graded: a kernel or a sketch's TOML."""
 
-_DEEPEST = 16  # folders in folders
-_MOST_ZIP = 2**28  # [bytes] a zip may have
-_MOST_LIST = 2**21  # [bytes] a zip's list of files may have
-_MOST_UNPACKED = 2**30  # [bytes] its files may become
+_MAX_DEPTH = 16  # folders in folders
+_MAX_ZIP_BYTES = 2**28  # [bytes] a zip may have
+_MAX_LIST_BYTES = 2**21  # [bytes] a zip's list of files may have
+_MAX_UNPACKED_BYTES = 2**30  # [bytes] its files may become
 _ALWAYS_FINE = 2**26  # [bytes] unpacked, with any ratio
-_MOST_RATIO = 200  # of what is unpacked to the zip
+_MAX_RATIO = 200  # of what is unpacked to the zip
 _ENDING = ".zip"
 _FIRST_MARK = b"PK\x03\x04"  # of a zip's first file; section 4.3.7
 _END_MARK = b"PK\x05\x06"  # of a zip's list; APPNOTE 6.3.10, section 4.3.16
@@ -43,7 +43,7 @@ class Entry:
     """One file of a submission."""
 
     path: str  # within it, with "/"
-    read: Callable[[], bytes]  # its bytes; raises ``DataError`` in a sentence
+    read: Callable[[], bytes]  # its bytes; raises ``DataError`` in a message
     is_archive: bool = False  # a zip that is not looked into: ``read`` raises why
 
     @property
@@ -55,11 +55,11 @@ class Entry:
 def entries_of(path: Path) -> list[Entry]:
     """List a submission's files, those of the zips in it as well, the shallowest first.
 
-    Raises ``DataError`` in a sentence for what is no folder and no zip, for more than is looked at, and for
+    Raises ``DataError`` in a message for what is no folder and no zip, for more than is looked at, and for
     a zip that was made to do harm.
     """
-    found = list(_zip_entries(path) if is_zip(path) else _folder_entries(path))
-    return sorted(found, key=lambda entry: (entry.path.count("/"), entry.path))
+    entries = list(_zip_entries(path) if is_zip(path) else _folder_entries(path))
+    return sorted(entries, key=lambda entry: (entry.path.count("/"), entry.path))
 
 
 def is_zip(path: Path) -> bool:
@@ -90,10 +90,10 @@ def _folder_entries(top: Path) -> Iterator[Entry]:
             if is_by_system(path):
                 continue
             count += 1
-            if count > MOST_FILES:
-                raise DataError(Said(_TOO_MANY, most=MOST_FILES))
+            if count > MAX_FILES:
+                raise DataError(Said(_TOO_MANY, most=MAX_FILES))
             if item.is_dir(follow_symlinks=False):
-                if path.count("/") < _DEEPEST:
+                if path.count("/") < _MAX_DEPTH:
                     waiting.append((Path(item.path), f"{path}/"))
             elif is_zip(Path(item.path)):
                 yield from _inner_entries(path, Path(item.path))
@@ -104,10 +104,10 @@ def _folder_entries(top: Path) -> Iterator[Entry]:
 def _inner_entries(name: str, path: Path) -> Iterator[Entry]:
     """Yield the files of a zip in a folder; of one that cannot be read, the zip itself."""
     try:
-        found = [Entry(f"{name}/{e.path}", e.read, e.is_archive) for e in _zip_entries(path)]
+        entries = [Entry(f"{name}/{e.path}", e.read, e.is_archive) for e in _zip_entries(path)]
     except DataError as error:
-        found = [Entry(name, _raiser(error), is_archive=True)]
-    yield from found
+        entries = [Entry(name, _raiser(error), is_archive=True)]
+    yield from entries
 
 
 def _raiser(error: DataError) -> Callable[[], bytes]:
@@ -120,12 +120,12 @@ def _raiser(error: DataError) -> Callable[[], bytes]:
 def _listed(folder: Path) -> list[os.DirEntry[str]]:
     try:
         with os.scandir(folder) as items:
-            found = []
+            result = []
             for item in items:
-                found.append(item)
-                if len(found) > MOST_FILES:
+                result.append(item)
+                if len(result) > MAX_FILES:
                     break
-            return sorted(found, key=lambda item: item.name)
+            return sorted(result, key=lambda item: item.name)
     except OSError as error:
         raise DataError(Said("cannot be read: {why}", why=error.strerror)) from None
 
@@ -142,7 +142,7 @@ def _reader_of(path: Path) -> Callable[[], bytes]:
             flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
             flags |= getattr(os, "O_BINARY", 0)
             with os.fdopen(os.open(path, flags), "rb") as file:
-                return _whole(file.read(MOST_TEXT + 1))
+                return _whole(file.read(MAX_TEXT_BYTES + 1))
         except OSError as error:
             raise DataError(Said("cannot be read: {why}", why=error.strerror)) from None
 
@@ -150,12 +150,12 @@ def _reader_of(path: Path) -> Callable[[], bytes]:
 
 
 def _check_size(size: int) -> None:
-    if size > MOST_TEXT:
+    if size > MAX_TEXT_BYTES:
         raise DataError(
             Said(
                 "has {size:.0f} MiB; a text of at most {most:.0f} is read",
                 size=size / 2**20,
-                most=MOST_TEXT / 2**20,
+                most=MAX_TEXT_BYTES / 2**20,
             )
         )
 
@@ -189,35 +189,35 @@ def _check_list(path: Path) -> None:
     if not stat.S_ISREG(path.lstat().st_mode):
         raise DataError(Said("is a link or a device; only plain files are read"))
     size = path.stat().st_size
-    if size > _MOST_ZIP:
+    if size > _MAX_ZIP_BYTES:
         raise DataError(
             Said(
                 "has {size:.0f} MiB; a zip of at most {most} is read",
                 size=size / 2**20,
-                most=_MOST_ZIP // 2**20,
+                most=_MAX_ZIP_BYTES // 2**20,
             )
         )
     with path.open("rb") as file:
         file.seek(max(size - _END_BYTES - _ZIP64_BYTES, 0))
         tail = file.read(_END_BYTES + _ZIP64_BYTES)
-    place = tail.rfind(_END_MARK)
-    if place < 0 or len(tail) < place + 20:
+    end_mark = tail.rfind(_END_MARK)
+    if end_mark < 0 or len(tail) < end_mark + 20:
         raise DataError(Said("is no zip that can be read: it is cut short, or something else by this name"))
-    count = int.from_bytes(tail[place + 10 : place + 12], "little")
-    length = int.from_bytes(tail[place + 12 : place + 16], "little")
+    count = int.from_bytes(tail[end_mark + 10 : end_mark + 12], "little")
+    length = int.from_bytes(tail[end_mark + 12 : end_mark + 16], "little")
     # With this mark before the end record, that of a larger list (zip64) counts, whatever is written here.
-    larger = tail[max(place - _ZIP64_BYTES, 0) : place].startswith(_ZIP64_MARK)
-    if larger or count > MOST_FILES or length > _MOST_LIST:
-        raise DataError(Said(_TOO_MANY, most=MOST_FILES))
+    larger = tail[max(end_mark - _ZIP64_BYTES, 0) : end_mark].startswith(_ZIP64_MARK)
+    if larger or count > MAX_FILES or length > _MAX_LIST_BYTES:
+        raise DataError(Said(_TOO_MANY, most=MAX_FILES))
 
 
 def _check_zip(items: list[zipfile.ZipInfo], size: int) -> None:
-    if len(items) > MOST_FILES:
-        raise DataError(Said(_TOO_MANY, most=MOST_FILES))
+    if len(items) > MAX_FILES:
+        raise DataError(Said(_TOO_MANY, most=MAX_FILES))
     whole = sum(item.file_size for item in items)
     if sum(item.compress_size for item in items) > size:
         raise DataError(Said("its files overlap, as those of a zip bomb do; it is not unpacked"))
-    if whole > _MOST_UNPACKED or (whole > _ALWAYS_FINE and whole > _MOST_RATIO * size):
+    if whole > _MAX_UNPACKED_BYTES or (whole > _ALWAYS_FINE and whole > _MAX_RATIO * size):
         raise DataError(
             Said(
                 "would become {whole:.0f} MiB from {size:.2g}, as a zip bomb does; it is not unpacked",
@@ -244,7 +244,7 @@ def _zip_reader(path: Path, item: zipfile.ZipInfo) -> Callable[[], bytes]:
         _check_size(item.file_size)
         try:
             with zipfile.ZipFile(path) as archive, archive.open(item) as file:
-                return _whole(file.read(MOST_TEXT + 1))
+                return _whole(file.read(MAX_TEXT_BYTES + 1))
         except (
             OSError,
             zipfile.BadZipFile,

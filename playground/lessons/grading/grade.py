@@ -23,10 +23,12 @@ def read_all(
     submissions: Sequence[Submission], assignments: Sequence[Assignment]
 ) -> dict[str, dict[str, HandedIn]]:
     """Return what each student handed in, by the exercise's name."""
-    by_file = {one.file.casefold(): one.name for one in assignments}
+    by_file = {assignment.file.casefold(): assignment.name for assignment in assignments}
     return {
-        one.student: {by_file[file]: found for file, found in read_submission(one.path, by_file).items()}
-        for one in submissions
+        submission.student: {
+            by_file[file]: files for file, files in read_submission(submission.path, by_file).items()
+        }
+        for submission in submissions
     }
 
 
@@ -48,21 +50,31 @@ def grade(
     not have all its points on it.
     """
     judged: Judged = {}
-    for requests in ([(one.name, None) for one in assignments], _texts(read)):
+    for requests in ([(submission.name, None) for submission in assignments], _texts(read)):
         named = [((name, text), Request(name, text)) for name, text in requests]
         for key, outcome in judges.judge_all(named):
             judged[key] = outcome  # type: ignore[index]
             advance()
         _check_answers(judged, assignments)
-    same = {one.name: alike(_readable(read, one), one.starter) for one in assignments if one.task.file}
+    same = {
+        submission.name: alike(_readable(read, submission), submission.starter)
+        for submission in assignments
+        if submission.task.file
+    }
     return [
         Graded(
             student,
             {
-                one.name: _mark(
-                    one, files[one.name], judged, judges.limit_of(one.name), language, same, student
+                submission.name: _mark(
+                    submission,
+                    files[submission.name],
+                    judged,
+                    judges.limit_of(submission.name),
+                    language,
+                    same,
+                    student,
                 )
-                for one in assignments
+                for submission in assignments
             },
         )
         for student, files in read.items()
@@ -81,14 +93,14 @@ def _texts(read: dict[str, dict[str, HandedIn]]) -> list[tuple[str, str]]:
     )
 
 
-def _readable(read: dict[str, dict[str, HandedIn]], one: Assignment) -> dict[str, str]:
-    found = {student: files[one.name] for student, files in read.items()}
-    return {student: file.text for student, file in found.items() if not file.missing and not file.problem}
+def _readable(read: dict[str, dict[str, HandedIn]], assignment: Assignment) -> dict[str, str]:
+    files = {student: files[assignment.name] for student, files in read.items()}
+    return {student: file.text for student, file in files.items() if not file.missing and not file.problem}
 
 
 def _check_answers(judged: Judged, assignments: Sequence[Assignment]) -> None:
-    for one in assignments:
-        mark = judged[one.name, None]
+    for assignment in assignments:
+        mark = judged[assignment.name, None]
         if isinstance(mark, Mark) and mark.is_full:
             continue
         if isinstance(mark, Mark) and mark.score is not None:
@@ -98,12 +110,12 @@ def _check_answers(judged: Judged, assignments: Sequence[Assignment]) -> None:
             got += f": {'; '.join(mark.sentences)}"
         else:
             got = "takes too long here" if mark.took_too_long else f"cannot be drawn here: it {mark.cause}"
-        message = f"{one.name}: the model answer {got}; nothing was graded"
-        raise SketchError(message, file=one.lesson.file, line=one.task.line)
+        message = f"{assignment.name}: the model answer {got}; nothing was graded"
+        raise SketchError(message, file=assignment.lesson.file, line=assignment.task.line)
 
 
 def _mark(
-    one: Assignment,
+    assignment: Assignment,
     file: HandedIn,
     judged: Judged,
     limit: float,
@@ -111,7 +123,7 @@ def _mark(
     same: dict[str, dict[str, tuple[str, ...]]],
     student: str,
 ) -> Mark:
-    nothing, label = no_mark(one.task), report_labels(language)
+    nothing, label = no_mark(assignment.task), report_labels(language)
     if file.missing:
         return replace(nothing, outcome=MISSING, sentences=(label["missing"],))
     if file.problem:
@@ -121,7 +133,7 @@ def _mark(
             sentences=(_sentence(in_language(file.problem, language)),),
             note=in_language(file.note, language),
         )
-    outcome = judged[one.name, file.text]
+    outcome = judged[assignment.name, file.text]
     if isinstance(outcome, Stopped):
         key = "stopped" if outcome.took_too_long else "crashed"
         said = label(key, limit=f"{limit:g}", cause=in_language(outcome.cause, language))
@@ -129,9 +141,11 @@ def _mark(
     else:
         mark = outcome
     if mark.outcome == REFUSED:
-        mark = replace(mark, sentences=tuple(_sentence(f"{one.file} {text}") for text in mark.sentences))
+        mark = replace(
+            mark, sentences=tuple(_sentence(f"{assignment.file} {text}") for text in mark.sentences)
+        )
     return replace(
-        mark, note=in_language(file.note, language), same_as=same.get(one.name, {}).get(student, ())
+        mark, note=in_language(file.note, language), same_as=same.get(assignment.name, {}).get(student, ())
     )
 
 

@@ -25,13 +25,13 @@ class HandedIn:
     """The file of one exercise, or why there is none."""
 
     text: str = ""
-    problem: str = ""  # a sentence without a full stop; "": there is none
+    problem: str = ""  # a message without a full stop; "": there is none
     note: str = ""  # on which of several files it is
     missing: bool = False  # it was not handed in
 
 
-def read_submission(path: Path, wanted: Collection[str]) -> dict[str, HandedIn]:
-    """Return the wanted files of a submission by their names; what is wrong with one is in it, in a sentence.
+def read_submission(path: Path, names: Collection[str]) -> dict[str, HandedIn]:
+    """Return the wanted files of a submission by their names; what is wrong with one is in it, in a message.
 
     Never raises for what a student has done.
     """
@@ -39,10 +39,10 @@ def read_submission(path: Path, wanted: Collection[str]) -> dict[str, HandedIn]:
         entries = entries_of(path)
     except DataError as error:
         problem = Said("{name} {what}", name=printable(path.name), what=error.diagnostics[0].message)
-        return {name: HandedIn(problem=problem) for name in wanted}
-    found = {name: [e for e in entries if _plain_name(e.name) == name.casefold()] for name in wanted}
+        return {name: HandedIn(problem=problem) for name in names}
+    entries_by_name = {name: [e for e in entries if _plain_name(e.name) == name.casefold()] for name in names}
     archives = [entry for entry in entries if entry.is_archive][:1]  # what is missing may be in one
-    return {name: _file_of(named) if named else _file_of(archives) for name, named in found.items()}
+    return {name: _file_of(named) if named else _file_of(archives) for name, named in entries_by_name.items()}
 
 
 def lessons_in(path: Path, lessons: Collection[str]) -> set[str]:

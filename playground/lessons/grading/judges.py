@@ -136,9 +136,9 @@ PREPARING, JUDGING = "preparing", "judging"
 
 _CACHE = 192 * 2**20  # [bytes] of textures
 _QUALITY = 82  # of WebP
-_LONGEST = 160  # characters of a line of a sentence
-_MOST_SENTENCES = 8  # a text may have thousands of mistakes
-_MOST_PAIRS = 4  # of pictures, for each exercise
+_MAX_LINE = 160  # characters of a line of a sentence
+_MAX_MESSAGES = 8  # a text may have thousands of mistakes
+_MAX_PAIRS = 4  # of pictures, for each exercise
 
 
 @dataclass(frozen=True)
@@ -175,7 +175,7 @@ class _Handler:
         self, parent: Parent, engine: Engine, options: Options, assignments: Sequence[Assignment]
     ) -> None:
         self._parent, self._engine, self._language = parent, engine, options.language
-        self._tasks = {one.name: one.task for one in assignments}
+        self._tasks = {assignment.name: assignment.task for assignment in assignments}
         self._wanted: dict[str, tuple[Wanted, ...] | Ends] = {}
 
     def answer(self, request: Request) -> Mark:
@@ -194,26 +194,31 @@ class _Handler:
         self._parent.report(JUDGING)
         try:
             work = _work_of(task, request.text)
-            found = self._judged(task, request.exercise, work)
+            mark = self._judged(task, request.exercise, work)
         except (ContextError, DataError) as error:  # or a texture larger than there is room for
             said = (_short(in_language(error.diagnostics[0].message, self._language)),)
-            found = replace(no_mark(task), outcome=REFUSED, sentences=said)
+            mark = replace(no_mark(task), outcome=REFUSED, sentences=said)
         if is_lost(self._engine.ctx):
             raise SandboxCrash("made the driver reset itself")
-        return found
+        return mark
 
     def _judged(self, task: Exercise | Challenge, name: str, work: Work) -> Mark:
-        wanted = self._wanted[name]
+        ends = self._wanted[name]
         if isinstance(task, Challenge):
-            assert isinstance(wanted, Ends)
-            found = match(self._engine, task, work, wanted)
-            shown_pairs = () if found.mine is None else (Pair(_webp(found.mine), _webp(wanted.target)),)
-            said = [*map(str, found.diagnostics)] or [score_of(found, self._language)]
-            return replace(
-                no_mark(task), sentences=self._said(task, name, said), pairs=shown_pairs, score=found.score
+            assert isinstance(ends, Ends)
+            match_found = match(self._engine, task, work, ends)
+            shown_pairs = (
+                () if match_found.mine is None else (Pair(_webp(match_found.mine), _webp(ends.target)),)
             )
-        assert not isinstance(wanted, Ends)
-        verdict = judge(self._engine, task, work, wanted)
+            said = [*map(str, match_found.diagnostics)] or [score_of(match_found, self._language)]
+            return replace(
+                no_mark(task),
+                sentences=self._said(task, name, said),
+                pairs=shown_pairs,
+                score=match_found.score,
+            )
+        assert not isinstance(ends, Ends)
+        verdict = judge(self._engine, task, work, ends)
         return Mark(
             verdict.points,
             verdict.of,
@@ -227,25 +232,25 @@ class _Handler:
 
         Where a text was read from is the student's own file, not the one that it takes the place of.
         """
-        place, own = shown(path_of(task)) if task.file else "", f"{name}.glsl"
-        return tuple(_short(s.replace(place, own) if place else s) for s in said[:_MOST_SENTENCES])
+        path_text, own = shown(path_of(task)) if task.file else "", f"{name}.glsl"
+        return tuple(_short(s.replace(path_text, own) if path_text else s) for s in said[:_MAX_MESSAGES])
 
     def _pairs(self, exercise: Exercise, work: Work, verdict: Verdict) -> tuple[Pair, ...]:
         """Return the pictures to compare: those that failed first, of measures one of all that is drawn."""
         if verdict.diagnostics:
             return ()
         shown = [
-            result for result in verdict.results if result.mine is not None and result.wanted is not None
+            result for result in verdict.results if result.mine is not None and result.expected is not None
         ]
-        found = []
-        for result in sorted(shown, key=lambda result: result.passed)[:_MOST_PAIRS]:
-            assert result.mine is not None and result.wanted is not None
-            found.append(Pair(_webp(result.mine), _webp(result.wanted)))
-        if not found:
+        pairs = []
+        for result in sorted(shown, key=lambda result: result.passed)[:_MAX_PAIRS]:
+            assert result.mine is not None and result.expected is not None
+            pairs.append(Pair(_webp(result.mine), _webp(result.expected)))
+        if not pairs:
             scenes = scene_of(exercise, work), wanted_scene(exercise)
-            mine, wanted = (_webp(draw(self._engine, small(scene)).array) for scene in scenes)
-            found.append(Pair(mine, wanted))
-        return tuple(found)
+            mine, expected = (_webp(draw(self._engine, small(scene)).array) for scene in scenes)
+            pairs.append(Pair(mine, expected))
+        return tuple(pairs)
 
 
 def no_mark(task: Exercise | Challenge) -> Mark:
@@ -281,7 +286,7 @@ def _outside_file(sketch: Sketch) -> str:
 
 def _short(sentence: str) -> str:
     """Return a sentence, with the code that it may quote, without the rest of endless lines."""
-    lines = [line if len(line) <= _LONGEST else f"{line[:_LONGEST]}…" for line in sentence.split("\n")]
+    lines = [line if len(line) <= _MAX_LINE else f"{line[:_MAX_LINE]}…" for line in sentence.split("\n")]
     return "\n".join(line for line in lines[:3] if line.strip())
 
 

@@ -13,7 +13,7 @@ class Pair:
     """What was handed in and what was wanted, side by side."""
 
     mine: bytes  # WebP
-    wanted: bytes  # WebP
+    expected: bytes  # WebP
 
 
 @dataclass(frozen=True)

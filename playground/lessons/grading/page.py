@@ -25,7 +25,7 @@ _COARSE = 100  # pixels: pictures with fewer are shown texel by texel
 
 
 @dataclass(frozen=True)
-class Setting:
+class ReportContext:
     """What the page is written with."""
 
     language: str
@@ -44,10 +44,10 @@ class Setting:
         return spelled_points(points).replace(".", self.label("decimal"))
 
 
-def page(graded: Sequence[Graded], titles: dict[str, str], setting: Setting) -> str:
+def page(graded: Sequence[Graded], titles: dict[str, str], setting: ReportContext) -> str:
     """Return the page as HTML; ``titles`` are those of the exercises by name."""
     label, style, script = setting.label, _read("report.css"), _read("report.js")
-    mean = sum(one.points for one in graded) / max(len(graded), 1)
+    mean = sum(graded_submission.points for graded_submission in graded) / max(len(graded), 1)
     count = label("students", n=len(graded)) if len(graded) != 1 else label("student")
     of = graded[0].of if graded else 0
     policy = (
@@ -66,7 +66,14 @@ def page(graded: Sequence[Graded], titles: dict[str, str], setting: Setting) -> 
     body = joined(
         tag("header", tag("h1", label["title"]), tag("p", summary)),
         _tools(label),
-        tag("main", tag("ul", *(_student(one, titles, setting) for one in graded), class_="students")),
+        tag(
+            "main",
+            tag(
+                "ul",
+                *(_student(graded_submission, titles, setting) for graded_submission in graded),
+                class_="students",
+            ),
+        ),
         tag("footer", tag("p", label("made_by", version=__version__, renderer=setting.renderer))),
         tag("script", Markup(script)),
     )
@@ -76,8 +83,8 @@ def page(graded: Sequence[Graded], titles: dict[str, str], setting: Setting) -> 
 
 def table_hash_of(text: str) -> str:
     """Return the hash of the table that a page was written with; "" where it has none."""
-    found = re.search(f'<meta name="{_HASH_NAME}" content="([0-9a-f]{{64}})">', text)
-    return found[1] if found else ""
+    match = re.search(f'<meta name="{_HASH_NAME}" content="([0-9a-f]{{64}})">', text)
+    return match[1] if match else ""
 
 
 def _tools(label: Labels) -> Markup:
@@ -98,33 +105,41 @@ def _tools(label: Labels) -> Markup:
     )
 
 
-def _student(one: Graded, titles: dict[str, str], setting: Setting) -> Markup:
-    states = ["full" if one.points == one.of else "not-full"]
-    states += ["trouble"] if any(mark.outcome != GRADED for mark in one.marks.values()) else []
+def _student(graded_submission: Graded, titles: dict[str, str], setting: ReportContext) -> Markup:
+    states = ["full" if graded_submission.points == graded_submission.of else "not-full"]
+    states += ["trouble"] if any(mark.outcome != GRADED for mark in graded_submission.marks.values()) else []
     return tag(
         "li",
-        tag("h2", tag("bdi", one.student), _chip(one.points, one.of, setting)),
-        tag("div", *(_mark(name, titles[name], m, setting) for name, m in one.marks.items()), class_="marks"),
+        tag(
+            "h2",
+            tag("bdi", graded_submission.student),
+            _chip(graded_submission.points, graded_submission.of, setting),
+        ),
+        tag(
+            "div",
+            *(_mark(name, titles[name], m, setting) for name, m in graded_submission.marks.items()),
+            class_="marks",
+        ),
         class_="student",
-        data_name=one.student,
-        data_points=spelled_points(one.points),
+        data_name=graded_submission.student,
+        data_points=spelled_points(graded_submission.points),
         data_states=" ".join(states),
     )
 
 
-def _chip(points: float, of: int, setting: Setting) -> Markup:
+def _chip(points: float, of: int, setting: ReportContext) -> Markup:
     kind = "full" if points == of else "part" if points else "none"
     return tag("span", f"{setting.number(points)} / {of}", class_=f"chip {kind}")
 
 
-def _chip_of(mark: Mark, setting: Setting) -> Markup:
+def _chip_of(mark: Mark, setting: ReportContext) -> Markup:
     if mark.score is None:
         return _chip(mark.points, mark.of, setting)
     kind = "full" if mark.is_full else "part" if mark.score else "none"
     return tag("span", setting.label("score", score=mark.spelled), class_=f"chip {kind}")
 
 
-def _mark(name: str, title: str, mark: Mark, setting: Setting) -> Markup:
+def _mark(name: str, title: str, mark: Mark, setting: ReportContext) -> Markup:
     label = setting.label
     first, *others = mark.pairs or (None,)
     further = [_pair(title, pair, setting) for pair in others if pair]
@@ -147,7 +162,7 @@ def _mark(name: str, title: str, mark: Mark, setting: Setting) -> Markup:
 
 
 def _with_code(sentence: str) -> Markup:
-    """Return a sentence, escaped, what is between backticks as code, and what follows its first line too."""
+    """Return a message, escaped, what is between backticks as code, and what follows its first line too."""
     first, line_end, quoted = sentence.partition("\n")
     first = _DRIVER_QUOTES.sub(r"`\1`", first)
     parts = [tag("code", part) if odd % 2 else joined(part) for odd, part in enumerate(first.split("`"))]
@@ -159,15 +174,15 @@ def _in_list(names: Sequence[str], most: int = 6) -> str:
     return shown if len(names) <= most else f"{shown}, +{len(names) - most}"
 
 
-def _pair(title: str, pair: Pair, setting: Setting) -> Markup:
+def _pair(title: str, pair: Pair, setting: ReportContext) -> Markup:
     figures = [
         _figure(title, setting.label[key], data, setting)
-        for key, data in (("mine", pair.mine), ("wanted", pair.wanted))
+        for key, data in (("mine", pair.mine), ("wanted", pair.expected))
     ]
     return tag("div", *figures, class_="pair")
 
 
-def _figure(title: str, text: str, data: bytes, setting: Setting) -> Markup:
+def _figure(title: str, text: str, data: bytes, setting: ReportContext) -> Markup:
     width, height = setting.size_of(data)
     coarse = "texels" if max(width, height) < _COARSE else None
     image = tag(

@@ -19,7 +19,7 @@ from PIL import Image
 from playground.data.image_files import replacing
 from playground.errors import DataError
 from playground.lessons.grading.marks import Graded
-from playground.lessons.grading.page import Setting, page, table_hash_of
+from playground.lessons.grading.page import ReportContext, page, table_hash_of
 from playground.lessons.grading.table import table_bytes
 from playground.paths import shown
 
@@ -63,7 +63,7 @@ def write_report(
     try:
         (folder / PICTURES).mkdir(parents=True, exist_ok=True)
         table = table_bytes(graded, list(titles), language)
-        text = page(graded, titles, Setting(language, renderer, file_of, _size_of, _hash(table)))
+        text = page(graded, titles, ReportContext(language, renderer, file_of, _size_of, _hash(table)))
         kept = _keep_changed(folder, table)
         _write(folder / TABLE, table)
         _write(folder / PAGE, text.encode("utf-8", "replace"))

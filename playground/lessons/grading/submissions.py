@@ -24,7 +24,7 @@ class Submission:
 
 
 def find_submissions(folder: Path, report: Path) -> tuple[list[Submission], list[str]]:
-    """List the submissions of a folder by name, and in a sentence each what else is there.
+    """List the submissions of a folder by name, and in a message each what else is there.
 
     ``report`` is left out: it may be in the same folder. No two students have one name. Raises
     ``DataError`` for a folder that is missing or holds no submission.
@@ -34,7 +34,7 @@ def find_submissions(folder: Path, report: Path) -> tuple[list[Submission], list
         raise DataError(
             f"{what}; expected a folder with a folder or a zip for each student", file=shown(folder)
         )
-    found: list[Path] = []
+    paths: list[Path] = []
     others: list[str] = []
     try:
         items = sorted(
@@ -50,14 +50,14 @@ def find_submissions(folder: Path, report: Path) -> tuple[list[Submission], list
         elif is_report(path):
             others.append(f"{readable(path.name)!r} is an earlier report of grades")
         else:
-            found.append(path)
-    if not found:
+            paths.append(path)
+    if not paths:
         raise DataError("holds no folder and no zip; expected one for each student", file=shown(folder))
-    names = Counter(_student_of(path) for path in found)
+    names = Counter(_student_of(path) for path in paths)
     students = _numbered(
-        [_student_of(path) if names[_student_of(path)] == 1 else readable(path.name) for path in found]
+        [_student_of(path) if names[_student_of(path)] == 1 else readable(path.name) for path in paths]
     )
-    return [Submission(student, path) for student, path in zip(students, found, strict=True)], others
+    return [Submission(student, path) for student, path in zip(students, paths, strict=True)], others
 
 
 def readable(name: str) -> str:
@@ -67,14 +67,14 @@ def readable(name: str) -> str:
 
 def _numbered(names: Sequence[str]) -> list[str]:
     """Return names of which no two are the same: the second "Ana" is "Ana (2)", if none has that name."""
-    taken, found = set(names), list[str]()
+    taken, result = set(names), list[str]()
     for name in names:
         alone = name
-        if name in found:
+        if name in result:
             alone = next(new for n in count(2) if (new := f"{name} ({n})") not in taken)
             taken.add(alone)
-        found.append(alone)
-    return found
+        result.append(alone)
+    return result
 
 
 def _student_of(path: Path) -> str:

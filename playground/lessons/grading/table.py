@@ -26,10 +26,13 @@ def table_bytes(graded: Sequence[Graded], exercises: Sequence[str], language: st
     text, label = io.StringIO(newline=""), report_labels(language)
     rows = csv.writer(text, delimiter=label("separator"))
     rows.writerow([label("column"), *map(as_text, exercises), label("column_total"), label("column_of")])
-    for one in graded:
-        numbers = [*(one.marks[name].spelled for name in exercises), spelled_points(one.points)]
+    for graded_submission in graded:
+        numbers = [
+            *(graded_submission.marks[name].spelled for name in exercises),
+            spelled_points(graded_submission.points),
+        ]
         decimal = [number.replace(".", label("decimal")) for number in numbers]
-        rows.writerow([as_text(one.student), *decimal, one.of])
+        rows.writerow([as_text(graded_submission.student), *decimal, graded_submission.of])
     return text.getvalue().encode("utf-8-sig", "replace")
 
 

@@ -18,16 +18,16 @@ from playground.lessons.grading.entries import printable
 from playground.lessons.translatable import Said
 from playground.sketch.model import Value
 
-_LONGEST = 2**17  # characters of a sketch's TOML
-_LONGEST_TEXT = 200  # characters of a value
+_MAX_TOML = 2**17  # characters of a sketch's TOML
+_MAX_VALUE = 200  # characters of a value
 
 
 def values_in_toml(text: str, sliders: Sequence[str]) -> dict[str, Value]:
     """Return the values that a sketch's TOML sets of some parameters, by their paths; others are left out.
 
-    Raises ``DataError`` in a sentence for what is no TOML, or names a file elsewhere.
+    Raises ``DataError`` in a message for what is no TOML, or names a file elsewhere.
     """
-    if len(text) > _LONGEST:
+    if len(text) > _MAX_TOML:
         raise DataError(Said("is longer than any sketch: {count} characters", count=len(text)))
     try:
         table = tomllib.loads(text)
@@ -40,13 +40,13 @@ def values_in_toml(text: str, sliders: Sequence[str]) -> dict[str, Value]:
             raise DataError(
                 Said("names '{name}', a file outside of its folder; it was not opened", name=printable(name))
             )
-    found: dict[str, Value] = {}
+    values: dict[str, Value] = {}
     for path in sliders:
         owner, _, rest = path.partition(".")
         value = _under(_settings_of(table, owner), rest) if rest else table.get(path)
         if value is not None:
-            found[path] = _checked(path, value)
-    return found
+            values[path] = _checked(path, value)
+    return values
 
 
 def _settings_of(table: Mapping[str, Any], owner: str) -> Mapping[str, Any]:
@@ -71,7 +71,7 @@ def _under(settings: Mapping[str, Any], path: str) -> Any:
 
 def _checked(path: str, value: Any) -> Value:
     """Return a value if it is one that a parameter may have; whether it suits is the judge's to say."""
-    if isinstance(value, bool | str) and len(str(value)) <= _LONGEST_TEXT:
+    if isinstance(value, bool | str) and len(str(value)) <= _MAX_VALUE:
         return value
     numbers = (
         list(value.values()) if isinstance(value, dict) else value if isinstance(value, list) else [value]
@@ -79,7 +79,11 @@ def _checked(path: str, value: Any) -> Value:
     plain = all(type(n) in (int, float) and math.isfinite(n) and abs(n) < 2**53 for n in numbers)
     if not plain or not 0 < len(numbers) <= 16:
         raise DataError(
-            Said("sets {path} to what is no number: {value}", path=path, value=printable(repr(value)))
+            Said(
+                "sets {path} to a value that is not a number: {value}",
+                path=path,
+                value=printable(repr(value)),
+            )
         )
     return cast(Value, value)
 

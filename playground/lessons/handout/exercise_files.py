@@ -60,13 +60,13 @@ def assignments_of(lessons: Iterable[Lesson]) -> list[Assignment]:
     Where an exercise begins with the answer of an earlier one, it is handed out with what that one begins
     with: the student goes on from a kernel of their own, and no answer is given away.
     """
-    found: list[Assignment] = []
+    assignments: list[Assignment] = []
     for lesson in lessons:
         of_lesson: list[Assignment] = []
         for task in tasks_of(lesson):
             of_lesson.append(_assignment(lesson, task, of_lesson))
-        found += of_lesson
-    return found
+        assignments += of_lesson
+    return assignments
 
 
 def _assignment(lesson: Lesson, task: Exercise | Challenge, earlier: Iterable[Assignment]) -> Assignment:

@@ -63,16 +63,16 @@ def write_handout(
     assignments = assignments_of(lessons)
     if not assignments:
         names = ", ".join(lesson.name for lesson in lessons)
-        raise SketchError(f"{names}: no exercise here checks itself, so there is nothing to hand in")
+        raise SketchError(f"{names}: no exercise here checks itself, so there is no file to hand in")
     top = _NOT_IN_A_NAME.sub("-", path.stem).strip("-. ") or "handout"
     numbers = {
         lesson.name: numbers_of(engine, lesson) if _names_numbers(lesson) else {} for lesson in lessons
     }
     files = {f"{top}/{name}": data for name, data in packed.items()}
     files[f"{top}/README.txt"] = _readme(lessons, assignments, install, "".join(packed)).encode()
-    for one in assignments:
-        for name, data in student_files(one).items():
-            files[f"{top}/{one.name}/{name}"] = data
+    for assignment in assignments:
+        for name, data in student_files(assignment).items():
+            files[f"{top}/{assignment.name}/{name}"] = data
     page = handout_page(lessons, assignments, numbers, engine, hints=hints, advance=advance)
     files[f"{top}/exercises.html"] = page.encode()
     first = assignments[0]
@@ -80,7 +80,7 @@ def write_handout(
         "format": FORMAT,
         "sketch": f"{top}/{first.name}/{first.sketch_file}",
         "version": __version__,
-        "shipped": sorted({one.task.file for one in assignments if one.task.file}),
+        "shipped": sorted({assignment.task.file for assignment in assignments if assignment.task.file}),
     }
     files[MANIFEST] = (json.dumps(manifest, indent=1) + "\n").encode()
     with replacing(path) as handle, zipfile.ZipFile(handle, "w") as archive:
@@ -124,8 +124,8 @@ def _readme(lessons: Sequence[Lesson], assignments: Sequence[Assignment], instal
             "readme",
             title=title,
             install="\n".join([lines[0], *(f"   {line.strip()}".rstrip() for line in lines[1:])]),
-            commands="\n".join(f"   playground live {one.opens}" for one in assignments),
-            files="\n".join(f"   {one.name}/{one.file}" for one in assignments),
+            commands="\n".join(f"   playground live {assignment.opens}" for assignment in assignments),
+            files="\n".join(f"   {assignment.name}/{assignment.file}" for assignment in assignments),
         ).strip()
         + "\n"
     )

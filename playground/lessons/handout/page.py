@@ -33,7 +33,7 @@ _QUALITY = 80  # of WebP
 
 
 @dataclass(frozen=True)
-class _Setting:
+class _PageContext:
     lesson: Lesson
     label: Labels
     numbers: Mapping[str, Number]
@@ -76,13 +76,13 @@ def handout_page(
     Raises as ``Engine.render`` does.
     """
     label = handout_labels(lessons[0].language)
-    by_place = {(one.lesson.name, one.task.name): one for one in assignments}
+    by_place = {(assignment.lesson.name, assignment.task.name): assignment for assignment in assignments}
     body = [
         tag("h1", label["title"]),
         tag("p", label["name_line"], label["colon"], tag("span", Markup("&nbsp;")), class_="name"),
     ]
     for lesson in lessons:
-        setting = _Setting(lesson, label, numbers[lesson.name], engine, hints)
+        setting = _PageContext(lesson, label, numbers[lesson.name], engine, hints)
         body.append(tag("h2", f"{label('lesson', n=lesson.number)}{label['colon']}{lesson.title}"))
         for block in lesson.blocks:
             if isinstance(block, Task):
@@ -105,7 +105,7 @@ def handout_page(
     return f"<!doctype html>\n{whole}\n"
 
 
-def _task(task: Task, one: Assignment | None, setting: _Setting) -> Markup:
+def _task(task: Task, assignment: Assignment | None, setting: _PageContext) -> Markup:
     label = setting.label
     title = label["challenge"]
     points = None
@@ -123,23 +123,23 @@ def _task(task: Task, one: Assignment | None, setting: _Setting) -> Markup:
         tag("h3", title, tag("small", points) if points else None),
         setting.text(task.ask),
         tag("div", *pictures, class_="pictures") if pictures else None,
-        _about(task, one, setting),
+        _about(task, assignment, setting),
         hint,
         class_="task",
     )
 
 
-def _about(task: Task, one: Assignment | None, setting: _Setting) -> Markup | None:
+def _about(task: Task, assignment: Assignment | None, setting: _PageContext) -> Markup | None:
     """Return which file is to be edited, and how it is opened."""
     label = setting.label
-    if one is None:
+    if assignment is None:
         return None
     lines = [
-        tag("p", label["edit"], label["colon"], tag("code", f"{one.name}/{one.file}")),
-        tag("p", label["open"], label["colon"], tag("code", f"playground live {one.opens}")),
+        tag("p", label["edit"], label["colon"], tag("code", f"{assignment.name}/{assignment.file}")),
+        tag("p", label["open"], label["colon"], tag("code", f"playground live {assignment.opens}")),
     ]
-    if one.follows:
-        lines.append(tag("p", label("go_on", n=setting.lesson.number_of(one.follows))))
+    if assignment.follows:
+        lines.append(tag("p", label("go_on", n=setting.lesson.number_of(assignment.follows))))
     if task.file:
         lines.append(tag("p", label("kernel", file=task.file)))
     else:
@@ -152,15 +152,15 @@ def _about(task: Task, one: Assignment | None, setting: _Setting) -> Markup | No
     return tag("div", *lines, class_="about")
 
 
-def _pictures(task: Task, setting: _Setting) -> list[Markup]:
+def _pictures(task: Task, setting: _PageContext) -> list[Markup]:
     """Return what a student begins with, and what the picture is to be, where the picture is judged."""
     label = setting.label
     works = isinstance(task, Challenge) or (isinstance(task, Exercise) and task.checks)
     if not works or task.scene is None:
         return []
-    found = [setting.picture(scene_of(task, starter(task)), label["begin"], label["begin"])]
+    figures = [setting.picture(scene_of(task, starter(task)), label["begin"], label["begin"])]
     # Where only a measure is judged, many pictures are right.
     if isinstance(task, Challenge) or any(check.measure is None for check in getattr(task, "checks", ())):
         alt = plain(filled(getattr(task, "alt", ""), setting.numbers))
-        found.append(setting.picture(task.scene, alt or label["wanted"], label["wanted"]))
-    return found
+        figures.append(setting.picture(task.scene, alt or label["wanted"], label["wanted"]))
+    return figures

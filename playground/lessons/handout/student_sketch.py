@@ -23,7 +23,7 @@ from playground.shader.source import read_source, read_text
 from playground.sketch.load import load
 from playground.sketch.model import Graph, Sketch, Technique
 from playground.sketch.save import save, save_copy
-from playground.sketch.toml_text import Place, drop, put, text_of
+from playground.sketch.toml_text import KeyPath, drop, put, text_of
 
 _HEADER = re.compile(r"^\s*\[\[?\s*([A-Za-z_-]+)")
 _LEFT_OUT = ("shot", "preset", "keyframe")
@@ -31,23 +31,23 @@ _INCLUDE = re.compile(r'^(\s*#\s*include\s+")([^"]+)(")', re.MULTILINE)
 _NOT_IN_A_NAME = re.compile(r"[^A-Za-z0-9_]")
 
 
-def student_files(one: Assignment) -> dict[str, bytes]:
+def student_files(assignment: Assignment) -> dict[str, bytes]:
     """Return the files of an exercise's folder by their names in it.
 
     Raises ``PlaygroundError`` where no such sketch can be made.
     """
-    scene = one.task.begin
+    scene = assignment.task.begin
     assert scene is not None
     with tempfile.TemporaryDirectory(prefix="handout-") as scratch:
         try:
             shipped = load(SKETCHES / f"{scene.sketch.name}.toml")
             first = save_copy(shipped, shipped, Path(scratch))
-            text = _without_moments(read_text(first), one)
+            text = _without_moments(read_text(first), assignment)
             first.unlink()
-            path = first.with_name(one.sketch_file)
+            path = first.with_name(assignment.sketch_file)
             path.write_text(text, encoding="utf-8", newline="\n")
-            if one.task.file:
-                _put_kernel(one, path)
+            if assignment.task.file:
+                _put_kernel(assignment, path)
             _drop_view_settings(path, scene.sketch)
             sketch = load(path)
             save(sketch, _as_begun(sketch, scene.sketch))
@@ -58,10 +58,10 @@ def student_files(one: Assignment) -> dict[str, bytes]:
                 if file.is_file()
             }
         except OSError as error:
-            raise DataError(f"{one.name}: no folder could be made for it: {reason(error)}") from None
+            raise DataError(f"{assignment.name}: no folder could be made for it: {reason(error)}") from None
 
 
-def _without_moments(text: str, one: Assignment) -> str:
+def _without_moments(text: str, assignment: Assignment) -> str:
     """Return a sketch's text without its shots, presets and keyframes, under a heading of its own."""
     kept: list[str] = []
     waiting: list[str] = []  # comments and blank lines, which belong to the table after them
@@ -78,7 +78,7 @@ def _without_moments(text: str, one: Assignment) -> str:
         waiting = []
     while kept and (not kept[0].strip() or kept[0].lstrip().startswith("#")):
         kept.pop(0)  # what the shipped sketch says of itself
-    title = one.title
+    title = assignment.title
     whole = "\n".join([f"# {title}", *kept]).rstrip() + "\n"
     return put(whole, (), "title", text_of(title))
 
@@ -94,25 +94,25 @@ def _drop_view_settings(path: Path, begin: Sketch) -> None:
 
 def _as_begun(sketch: Sketch, begin: Sketch) -> Sketch:
     """Return a student's sketch with the values, the view and the camera that the exercise begins with."""
-    found = sketch
+    edited = sketch
     if (view := begin.graph.find("view")) != sketch.graph.find("view") and view is not None:
         passes = tuple(view if spec.name == "view" else spec for spec in sketch.graph.passes)
-        found = replace(found, graph=replace(sketch.graph, passes=passes))
+        edited = replace(edited, graph=replace(sketch.graph, passes=passes))
     for path, value in begin.overrides:
         try:
-            found = found.with_values({path: value})
+            edited = edited.with_values({path: value})
         except PlaygroundError:
             continue  # of the model answer's kernel, not of what the student begins with
-    return found.with_camera(begin.camera)
+    return edited.with_camera(begin.camera)
 
 
-def _put_kernel(one: Assignment, sketch_file: Path) -> None:
+def _put_kernel(assignment: Assignment, sketch_file: Path) -> None:
     """Write the starter into the folder and have the sketch use it, through the techniques around it."""
-    folder, kernel = sketch_file.parent, path_of(one.task)
-    starter = _includes_from_library(one.starter, kernel)
-    (folder / f"{one.name}.glsl").write_text(starter, encoding="utf-8", newline="\n")
+    folder, kernel = sketch_file.parent, path_of(assignment.task)
+    starter = _includes_from_library(assignment.starter, kernel)
+    (folder / f"{assignment.name}.glsl").write_text(starter, encoding="utf-8", newline="\n")
     own = _OwnKernel(
-        kernel, one.name, folder, _parameters(read_text(kernel), kernel) - _parameters(starter, kernel)
+        kernel, assignment.name, folder, _parameters(read_text(kernel), kernel) - _parameters(starter, kernel)
     )
     graph, text = load(sketch_file).graph, read_text(sketch_file)
     text, gone = _using(own, text, graph, of_sketch=True)
@@ -143,20 +143,20 @@ def _using(own: _OwnKernel, text: str, graph: Graph, *, of_sketch: bool = False)
     number = 0
     for spec in graph.passes:
         is_view = of_sketch and spec.name == "view"
-        place: Place = ("view",) if is_view else ("pass", number)
+        key_path: KeyPath = ("view",) if is_view else ("pass", number)
         number += not is_view
         if not _leads_to(spec.technique, own.shipped):
             if not of_sketch and spec.use.startswith("./"):
-                text = put(text, place, "use", text_of(_from_library(spec.use, Path(graph.path))))
+                text = put(text, key_path, "use", text_of(_from_library(spec.use, Path(graph.path))))
             continue
         lost = own.lacks
         use = own.name
         if isinstance(spec.technique, Graph):
             use, lost = _own_technique(own, spec.technique)
-        text = put(text, place, "use", text_of(f"./{use}"))
+        text = put(text, key_path, "use", text_of(f"./{use}"))
         for key, _ in spec.values:
             if key in lost:
-                text = drop(text, (*place, "set"), key)
+                text = drop(text, (*key_path, "set"), key)
         gone |= {f"{spec.name}.{path}" for path in lost}
     return text, gone
 
@@ -180,8 +180,8 @@ def _own_technique(own: _OwnKernel, technique: Graph) -> tuple[str, set[str]]:
 
 def _parameters(text: str, kernel: Path) -> set[str]:
     """Return the parameters that a text in the place of a kernel declares."""
-    found = parse_kernel(kernel.stem, read_source(kernel, (GLSL,), {str(kernel): text}))
-    return {parameter.name for parameter in found.parameters} if found else set()
+    kernel_read = parse_kernel(kernel.stem, read_source(kernel, (GLSL,), {str(kernel): text}))
+    return {parameter.name for parameter in kernel_read.parameters} if kernel_read else set()
 
 
 def _from_library(use: str, source: Path) -> str:

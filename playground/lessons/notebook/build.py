@@ -39,11 +39,11 @@ def notebook_text(lesson: model.Lesson, numbers: Mapping[str, Number], lessons: 
         cell["id"] = f"{lesson.name.replace('_', '-')[:40]}-{number}"  # the same at every build
         cells.append(cell)
     kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
-    found: Any = form.v4.new_notebook(
+    notebook: Any = form.v4.new_notebook(
         cells=cells, metadata={"kernelspec": kernel, "language_info": {"name": "python"}}
     )
-    form.validate(found)
-    return str(form.writes(found)) + "\n"
+    form.validate(notebook)
+    return str(form.writes(notebook)) + "\n"
 
 
 class _Writer:
@@ -153,5 +153,5 @@ def _begun(task: model.Exercise | model.Challenge) -> str:
         return f'r"""\n{starter_text(task).rstrip()}\n"""'
     assert task.begin is not None
     values = values_of(task.begin.sketch)
-    given = {path: value_of(task.begin.sketch, path, values) for path in task.sliders}
-    return repr(given)
+    value = {path: value_of(task.begin.sketch, path, values) for path in task.sliders}
+    return repr(value)

@@ -11,7 +11,7 @@ from PIL import Image
 from playground.lessons.tasks.difference_map import difference_map
 from playground.lessons.tasks.match import Match
 from playground.lessons.tasks.sentences import points_of, sentences, task_labels
-from playground.lessons.tasks.verdict import Picture, Result, Verdict
+from playground.lessons.tasks.verdict import CheckResult, Picture, Verdict
 from playground.markup import Markup, joined, tag
 
 _MARKS = {True: "✓", False: "✗"}
@@ -66,7 +66,7 @@ class Matched:
     def _repr_html_(self) -> str:
         pictures = (("wanted", self.match.target), ("mine", self.match.mine))
         say = task_labels(self.language)
-        shown = [_picture(found, say[key]) for key, found in pictures if found is not None]
+        shown = [_picture(picture, say[key]) for key, picture in pictures if picture is not None]
         return joined(tag("p", str(self)), tag("div", *shown))
 
 
@@ -75,13 +75,13 @@ def _line(text: str) -> Markup:
     return joined(*(tag("code", part) if odd % 2 else part for odd, part in enumerate(text.split("`"))))
 
 
-def _compared(result: Result, language: str) -> Markup:
+def _compared(result: CheckResult, language: str) -> Markup:
     label = task_labels(language)
-    mine, wanted = result.mine, result.wanted
-    assert mine is not None and wanted is not None
-    shown = [_picture(mine, label["mine"]), _picture(wanted, label["wanted"])]
-    if mine.shape == wanted.shape:
-        shown.append(_picture(difference_map(mine, wanted), label["differs"]))
+    mine, expected = result.mine, result.expected
+    assert mine is not None and expected is not None
+    shown = [_picture(mine, label["mine"]), _picture(expected, label["wanted"])]
+    if mine.shape == expected.shape:
+        shown.append(_picture(difference_map(mine, expected), label["differs"]))
     return tag("div", *shown)
 
 

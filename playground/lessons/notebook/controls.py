@@ -35,7 +35,7 @@ def controls_of(block: Figure | Steps | Slider | Compare, language: str, label: 
     """Return what can be dragged of a block."""
     if isinstance(block, Figure):
         assert block.scene is not None
-        return [found for path in block.sliders for found in _parameter(block.scene, path, label)]
+        return [control for path in block.sliders for control in _parameter(block.scene, path, label)]
     if isinstance(block, Steps):
         name = label("step")
         names = tuple(label("iteration", n=number) for number in block.iterations)
@@ -93,10 +93,10 @@ def _parameter(scene: Scene, path: str, label: Labels) -> list[Control]:
     return [Control(path, parameter.title, "range", float(value), widget.low, widget.high, step, unit=unit)]
 
 
-def _value(scene: Scene, path: str, given: float) -> Value:
+def _value(scene: Scene, path: str, number: float) -> Value:
     parameter = resolve(scene.sketch.graph, path)[0].parameter
     if parameter.type == "bool":
-        return bool(given)
+        return bool(number)
     if is_whole(parameter.type):
-        return round(given)
-    return float(given)
+        return round(number)
+    return float(number)

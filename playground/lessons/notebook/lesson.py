@@ -42,12 +42,12 @@ def _judge() -> JudgeProcess:
     return JudgeProcess()
 
 
-def _work(task: model.Task, given: str | Mapping[str, Value]) -> Work:
+def _work(task: model.Task, text: str | Mapping[str, Value]) -> Work:
     """Return what a student gives as a work; raise ``SketchError`` for a text where values are asked for."""
-    if isinstance(given, str) and not task.file:
+    if isinstance(text, str) and not task.file:
         what = ", ".join(f'"{path}": …' for path in task.sliders)
         raise SketchError(f"'{task.name}' asks for values: {{{what}}}")
-    return Work(given) if isinstance(given, str) else Work(values=dict(given))
+    return Work(text) if isinstance(text, str) else Work(values=dict(text))
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,10 +132,10 @@ class NotebookLesson:
         task = self._task(name)
         if not isinstance(task, model.Challenge):
             raise SketchError(f"block '{name}' is no picture to match: lesson.check checks it")
-        found = _judge().check(task, _work(task, work))
-        assert isinstance(found, Match)
-        self._best[name] = max(found.score, self._best.get(name, 0.0))
-        return Matched(found, self._best[name], self.lesson.language)
+        match = _judge().check(task, _work(task, work))
+        assert isinstance(match, Match)
+        self._best[name] = max(match.score, self._best.get(name, 0.0))
+        return Matched(match, self._best[name], self.lesson.language)
 
     def _task(self, name: str) -> model.Exercise | model.Challenge:
         block = self._block(name)

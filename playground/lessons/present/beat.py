@@ -20,7 +20,7 @@ class Still:
     block: str  # its name
     index: int = 0  # of a series or a comparison: which; ``BOTH``
     broken: bool = False  # with the bug of a break in it
-    begun: bool = False  # of an exercise: what a student begins from
+    started: bool = False  # of an exercise: what a student begins from
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def with_texts(beat: Beat, fill: Callable[[Markdown], Markdown]) -> Beat:
 def scene_of(lesson: Lesson, still: Still) -> Scene | None:
     """Return the picture of a still; of a comparison of two the second, of a bug the whole one."""
     block = lesson.named.get(still.block)
-    if still.begun and isinstance(block, Exercise):
+    if still.started and isinstance(block, Exercise):
         return begun(block, starter(block))
     if isinstance(block, Steps | Slider | Compare):
         return block.scenes[still.index]

@@ -27,7 +27,7 @@ _TASKS = ("exercise", "challenge")
 
 def beats_of(lesson: Lesson) -> tuple[Beat, ...]:
     """Return the beats of a lesson, in its order; raise ``SketchError`` where code that it quotes is gone."""
-    found: list[Beat] = []
+    beats: list[Beat] = []
     shown: Still | None = None
     sliders: tuple[str, ...] = ()
     for page, section in enumerate(lesson.sections):
@@ -48,19 +48,19 @@ def beats_of(lesson: Lesson) -> tuple[Beat, ...]:
             own = beat.still is not None and beat.kind in _TASKS
             if beat.still is not None and not own:
                 shown, sliders = beat.still, beat.sliders
-            if beat.kind == "text" and beat.shown[:1].islower() and found and found[-1].formula:
-                both = "\n\n".join(filter(None, [found[-1].formula, beat.formula]))
+            if beat.kind == "text" and beat.shown[:1].islower() and beats and beats[-1].formula:
+                both = "\n\n".join(filter(None, [beats[-1].formula, beat.formula]))
                 beat = replace(beat, formula=both)  # it goes on from that one
-            if beat.kind == "code" and not beat.shown and found[-1].page == page:
-                beat = replace(beat, shown=found[-1].shown)  # "This is the kernel:" stays
-            found.append(beat if own else replace(beat, still=shown, sliders=sliders))
+            if beat.kind == "code" and not beat.shown and beats[-1].page == page:
+                beat = replace(beat, shown=beats[-1].shown)  # "This is the kernel:" stays
+            beats.append(beat if own else replace(beat, still=shown, sliders=sliders))
             if beat.kind == "sweep" and shown is not None:
                 shown = _at_end(lesson, shown)
-    first = next((beat for beat in found if beat.still is not None), None)
+    first = next((beat for beat in beats if beat.still is not None), None)
     if first is not None:  # the title of a lesson whose first page has no picture
         empty = {"still": first.still, "sliders": first.sliders}
-        found = [beat if beat.still is not None else replace(beat, **empty) for beat in found]  # type: ignore[arg-type]
-    return tuple(found)
+        beats = [beat if beat.still is not None else replace(beat, **empty) for beat in beats]  # type: ignore[arg-type]
+    return tuple(beats)
 
 
 def _at_end(lesson: Lesson, still: Still) -> Still:

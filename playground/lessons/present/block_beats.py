@@ -61,7 +61,7 @@ def beats_of_block(block: Block, formula: Markdown, lesson: Lesson) -> Iterator[
     elif isinstance(block, Exercise):
         aside = "\n\n".join(filter(None, [block.hint, f"**{say['solution']}.** {block.solution}"]))
         label = say["exercise"].format(lesson.number_of(block))
-        still = Still(block.name, begun=True) if block.begin is not None else None
+        still = Still(block.name, started=True) if block.begin is not None else None
         sliders = () if block.file else block.sliders
         yield _told("exercise", block.ask, label=label, aside=aside, still=still, sliders=sliders)
         if block.scene is not None and block not in lesson.sections[-1].blocks:  # the text goes on from it
@@ -148,14 +148,14 @@ def _variants(block: Compare) -> Iterator[Beat]:
 
 
 def _code(block: Code, label: str) -> Iterator[Beat]:
-    found = excerpt(block.file, block.anchor)
-    parts = _shared(found.text.split("\n"))
-    line = found.line
+    excerpt_text = excerpt(block.file, block.anchor)
+    parts = _shared(excerpt_text.text.split("\n"))
+    line = excerpt_text.line
     for number, part in enumerate(parts):
-        name = found.file
+        name = excerpt_text.file
         if len(parts) > 1:
             name += f", {label.format(number + 1, len(parts))}"
-        beat = _told("code", block.caption, label=name, file=found.file)
+        beat = _told("code", block.caption, label=name, file=excerpt_text.file)
         beat = replace(beat, code="\n".join(part), line=line)
         line += len(part)
         yield beat if number == 0 else replace(beat, notes="")

@@ -6,7 +6,7 @@ import re
 
 from playground.lessons.model import Markdown
 
-MOST_WORDS = 40
+MAX_WORDS = 40
 """Words that are shown large at a time; only a single longer sentence is more."""
 
 _WHOLE = re.compile(r"`[^`]*`|\$[^$]*\$|\[[^\]]*\]\([^)]*\)|\{\{[^}]*\}\}|«[^»]*»")  # never cut inside
@@ -26,15 +26,15 @@ def sentences(text: Markdown) -> list[Markdown]:
         return f"\0{len(stored) - 1}\1"
 
     flat = _BLANKS.sub(" ", _WHOLE.sub(store, text)).strip()
-    found, start = [], 0
+    parts, start = [], 0
     for end in _END.finditer(flat):
         part = flat[start : end.end()].strip()
         if _SHORT.search(part) or part.count("**") % 2:
             continue
-        found.append(part)
+        parts.append(part)
         start = end.end()
-    found.append(flat[start:].strip())
-    return [re.sub("\0(\\d+)\1", lambda m: stored[int(m[1])], part) for part in found if part]
+    parts.append(flat[start:].strip())
+    return [re.sub("\0(\\d+)\1", lambda m: stored[int(m[1])], part) for part in parts if part]
 
 
 def words(text: Markdown) -> int:
@@ -42,11 +42,11 @@ def words(text: Markdown) -> int:
     return len(_WORD.findall(_LINK.sub("]", text)))
 
 
-def shown_of(text: Markdown, most: int = MOST_WORDS) -> Markdown:
+def shown_of(text: Markdown, most: int = MAX_WORDS) -> Markdown:
     """Return the first sentences of a paragraph, of at most so many words; the first one always."""
-    found: list[Markdown] = []
+    parts: list[Markdown] = []
     for sentence in sentences(text):
-        if found and words(" ".join([*found, sentence])) > most:
+        if parts and words(" ".join([*parts, sentence])) > most:
             break
-        found.append(sentence)
-    return " ".join(found)
+        parts.append(sentence)
+    return " ".join(parts)

@@ -13,7 +13,7 @@ from playground.lessons.present.beat import Beat
 from playground.lessons.present.sentences import sentences, words
 
 WORDS_A_MINUTE = 200
-LEAST = 3.0
+MIN_SECONDS = 3.0
 """[s] that a beat is on at least."""
 LETTERS, LINES = 60, 2
 """Of a subtitle: letters a line, and lines."""
@@ -44,19 +44,19 @@ def read_of(beat: Beat) -> Markdown:
 def seconds_of(beat: Beat) -> float:
     """Return how long a beat is on [s], by what there is to read."""
     lines = beat.code.count("\n") + 1 if beat.code else 0
-    return max(words(read_of(beat)) * 60 / WORDS_A_MINUTE + lines * _CODE_LINE, LEAST)
+    return max(words(read_of(beat)) * 60 / WORDS_A_MINUTE + lines * _CODE_LINE, MIN_SECONDS)
 
 
 def cues_of(beat: Beat, begin: float, seconds: float) -> list[Cue]:
     """Return the subtitles of a beat that is on from ``begin`` for some seconds."""
     texts = [part for sentence in _told(beat) for part in _parts(sentence)]
     shares = [max(len(text), 12) for text in texts]
-    found, at = [], begin
+    cues, at = [], begin
     for text, share in zip(texts, shares, strict=True):
         end = at + seconds * share / sum(shares)
-        found.append(Cue(at, end, text))
+        cues.append(Cue(at, end, text))
         at = end
-    return found
+    return cues
 
 
 def srt(cues: Iterable[Cue]) -> str:
@@ -70,11 +70,11 @@ def srt(cues: Iterable[Cue]) -> str:
 
 def plain_text(text: Markdown) -> str:
     """Return Markdown as plain text; formulas as nearly as letters say them."""
-    found = re.sub(r"\$\$?([^$]*)\$\$?", lambda match: _plain_formula(match[1]), text)
-    found = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", found)
-    found = re.sub(r"(?m)^\s*(?:[-*]|\d+\.)\s+", "", found)
-    found = re.sub(r"\*\*|`|(?<!\w)\*|\*(?!\w)|\\(?=[*_])", "", found)
-    return " ".join(found.split())
+    plain_markdown = re.sub(r"\$\$?([^$]*)\$\$?", lambda match: _plain_formula(match[1]), text)
+    plain_markdown = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", plain_markdown)
+    plain_markdown = re.sub(r"(?m)^\s*(?:[-*]|\d+\.)\s+", "", plain_markdown)
+    plain_markdown = re.sub(r"\*\*|`|(?<!\w)\*|\*(?!\w)|\\(?=[*_])", "", plain_markdown)
+    return " ".join(plain_markdown.split())
 
 
 def _told(beat: Beat) -> Sequence[str]:
@@ -104,9 +104,9 @@ def _time(seconds: float) -> str:
 
 
 def _plain_formula(latex: str) -> str:
-    found = latex
-    while found != (found := _FRACTION.sub(r"\1/\2", found)):
+    plain_latex = latex
+    while plain_latex != (plain_latex := _FRACTION.sub(r"\1/\2", plain_latex)):
         pass
-    found = re.sub(r"\\(?:text|mathrm|operatorname|mathbf|vec)\s*\{([^{}]*)\}", r"\1", found)
-    found = re.sub(r"\\[a-zA-Z]+", lambda match: _LATEX.get(match[0], match[0][1:]), found)
-    return " ".join(re.sub(r"\\[,;! ]|[{}\\]", " ", found).split())
+    plain_latex = re.sub(r"\\(?:text|mathrm|operatorname|mathbf|vec)\s*\{([^{}]*)\}", r"\1", plain_latex)
+    plain_latex = re.sub(r"\\[a-zA-Z]+", lambda match: _LATEX.get(match[0], match[0][1:]), plain_latex)
+    return " ".join(re.sub(r"\\[,;! ]|[{}\\]", " ", plain_latex).split())

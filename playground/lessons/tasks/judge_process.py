@@ -113,13 +113,13 @@ def open_service(parent: Parent, options: tuple[bool, int | None]) -> Service:
         parent.report(step.path)
 
     engine.runner.before_step = begin
-    return Service(_Judge(engine).answer_or_give_up)
+    return Service(_JudgeHandler(engine).answer_or_give_up)
 
 
 @dataclass
-class _Judge:
+class _JudgeHandler:
     engine: Engine
-    known: dict[tuple[str, ...], tuple[Wanted, ...] | Ends] = field(default_factory=dict)
+    expected: dict[tuple[str, ...], tuple[Wanted, ...] | Ends] = field(default_factory=dict)
 
     def answer_or_give_up(self, request: Request) -> Verdict | Match | Ends:
         """Answer; raise ``SandboxCrash`` where a work has cost the process its context."""
@@ -141,22 +141,22 @@ class _Judge:
         return judge(self.engine, task, request.work, self._wanted(task))
 
     def _wanted(self, task: Exercise) -> tuple[Wanted, ...]:
-        found = self.known.get(_key(task))
-        if not isinstance(found, tuple):
-            self._keep(_key(task), found := answers(self.engine, task))
-        return found
+        expected_results = self.expected.get(_key(task))
+        if not isinstance(expected_results, tuple):
+            self._keep(_key(task), expected_results := answers(self.engine, task))
+        return expected_results
 
     def _ends(self, task: Challenge, side: int) -> Ends:
         key = (*_key(task), str(side))
-        found = self.known.get(key)
-        if not isinstance(found, Ends):
-            self._keep(key, found := ends_of(self.engine, task, side))
-        return found
+        ends = self.expected.get(key)
+        if not isinstance(ends, Ends):
+            self._keep(key, ends := ends_of(self.engine, task, side))
+        return ends
 
-    def _keep(self, key: tuple[str, ...], found: tuple[Wanted, ...] | Ends) -> None:
-        if len(self.known) >= _KNOWN:
-            self.known.clear()
-        self.known[key] = found
+    def _keep(self, key: tuple[str, ...], result: tuple[Wanted, ...] | Ends) -> None:
+        if len(self.expected) >= _KNOWN:
+            self.expected.clear()
+        self.expected[key] = result
 
 
 def _key(task: Exercise | Challenge) -> tuple[str, ...]:

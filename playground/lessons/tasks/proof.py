@@ -26,25 +26,25 @@ def wrong_task(engine: Engine, task: Exercise | Challenge) -> Iterator[str]:
         return
     if not task.checks:
         return
-    wanted = answers(engine, task)
-    good, bad = (judge(engine, task, work, wanted) for work in (answer(task), starter(task)))
+    expected = answers(engine, task)
+    good, bad = (judge(engine, task, work, expected) for work in (answer(task), starter(task)))
     if not good.passed:
-        found = [sentence_of(result, "en") for result in good.results if not result.passed]
-        yield f"exercise '{task.name}': the model answer fails: {' '.join(found or sentences(good, 'en'))}"
-    for number, (check, known) in enumerate(zip(task.checks, wanted, strict=True), start=1):
+        failures = [sentence_of(result, "en") for result in good.results if not result.passed]
+        yield f"exercise '{task.name}': the model answer fails: {' '.join(failures or sentences(good, 'en'))}"
+    for number, (check, expected_result) in enumerate(zip(task.checks, expected, strict=True), start=1):
         which = f"exercise '{task.name}': check {number}"
         if bad.results and bad.results[number - 1].passed:
             yield f"{which}: the starter passes it already"
-        if known.texture is not None and not np.isfinite(known.texture).all():
+        if expected_result.texture is not None and not np.isfinite(expected_result.texture).all():
             yield f"{which}: the model answer's '{check.of}' has values that are not finite"
-        if check.hidden and check.measure is None and _is_frozen(engine, task, check, known):
+        if check.hidden and check.measure is None and _is_frozen(engine, task, check, expected_result):
             yield f"{which}: at its values all is as at those that are shown; give others in at"
 
 
-def _is_frozen(engine: Engine, task: Exercise, check: Check, wanted: Wanted) -> bool:
+def _is_frozen(engine: Engine, task: Exercise, check: Check, expected: Wanted) -> bool:
     """Whether a work that takes no notice of the values of a check would pass it."""
     shown = Exercise(task.line, task.text, task.name, scene=task.scene, checks=(Check(of=check.of),))
-    return compare(check, answers(engine, shown)[0], wanted).passed
+    return compare(check, answers(engine, shown)[0], expected).passed
 
 
 def _challenge(engine: Engine, task: Challenge) -> Iterator[str]:
@@ -52,5 +52,5 @@ def _challenge(engine: Engine, task: Challenge) -> Iterator[str]:
     target, begin, done = (draw(engine, small(scene)).array for scene in scenes)
     if score(target, begin, begin) >= task.goal:
         yield f"challenge '{task.name}': the picture to begin from is the one to match"
-    if (found := score(target, begin, done)) < task.goal:
-        yield f"challenge '{task.name}': its own values score {found:.0f}, below its goal {task.goal}"
+    if (points := score(target, begin, done)) < task.goal:
+        yield f"challenge '{task.name}': its own values score {points:.0f}, below its goal {task.goal}"

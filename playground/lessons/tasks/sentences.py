@@ -9,7 +9,7 @@ from pathlib import Path
 from playground.lessons.library import Labels
 from playground.lessons.measuring import spelled
 from playground.lessons.tasks.match import Match
-from playground.lessons.tasks.verdict import Result, Verdict
+from playground.lessons.tasks.verdict import CheckResult, Verdict
 from playground.lessons.translatable import in_language
 from playground.memo import INTERFACE
 from playground.shader.parameter import spell
@@ -43,16 +43,16 @@ def score_of(match: Match, language: str) -> str:
     return task_labels(language)("score_of", score=int(match.score), goal=match.goal)
 
 
-def sentence_of(result: Result, language: str) -> str:
+def sentence_of(result: CheckResult, language: str) -> str:
     """Return what comes of one check as a sentence."""
     say, check = task_labels(language), result.check
-    given = ", ".join(f"{path} = {_local(spell(value), language)}" for path, value in check.at)
-    where = say["hidden"] if check.hidden else say("at", at=given) if check.at else ""
-    found = _found(result, say, language)
-    return f"{where}{found}" if where else f"{found[0].upper()}{found[1:]}"
+    settings = ", ".join(f"{path} = {_local(spell(value), language)}" for path, value in check.at)
+    where = say["hidden"] if check.hidden else say("at", at=settings) if check.at else ""
+    message = _found(result, say, language)
+    return f"{where}{message}" if where else f"{message[0].upper()}{message[1:]}"
 
 
-def _found(result: Result, say: Labels, language: str) -> str:
+def _found(result: CheckResult, say: Labels, language: str) -> str:
     check = result.check
     if result.mistake:
         return say("mistake", mistake=in_language(result.mistake, language).rstrip("."))
@@ -62,22 +62,22 @@ def _found(result: Result, say: Labels, language: str) -> str:
     if result.passed:
         return say(f"right_{kind}", of=of)
     if result.sizes:
-        mine, wanted = (_size(size, say) for size in result.sizes)
-        return say("size" if check.of else "picture_size", of=of, mine=mine, wanted=wanted)
+        mine, expected = (_size(size, say) for size in result.sizes)
+        return say("size" if check.of else "picture_size", of=of, mine=mine, wanted=expected)
     if result.not_finite:
         return say(
             "not_finite" if result.not_finite > 1 else "not_finite_one", of=of, count=result.not_finite
         )
-    place = say[f"{'map' if check.of else 'place'}_{result.place}"] if result.place else ""
+    region = say[f"{'map' if check.of else 'place'}_{result.region}"] if result.region else ""
     least = check.tolerance if check.of else _BRIGHTER
     more = "more" if result.bias > 0 else "less"
     bias = say[f"bias_{kind}_{more}"] if abs(result.bias) > least else ""
     by, tolerance = (_number(value, language) for value in (result.difference, check.tolerance))
     share = _local(spelled(100.0 * result.difference, 2, "%"), language)
-    return say(f"wrong_{kind}", of=of, share=share, by=by, tolerance=tolerance, place=place, bias=bias)
+    return say(f"wrong_{kind}", of=of, share=share, by=by, tolerance=tolerance, place=region, bias=bias)
 
 
-def _of_measure(result: Result, say: Labels, language: str) -> str:
+def _of_measure(result: CheckResult, say: Labels, language: str) -> str:
     check, measure = result.check, result.check.measure
     assert measure is not None and measure.between is not None
     what = say[f"measure_{measure.what}"]

@@ -15,29 +15,29 @@ Picture = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, eq=False)
-class Result:
+class CheckResult:
     """What came of one check."""
 
     check: Check
     passed: bool
-    # Share of the pixels that differ, or the largest difference of a texel; of a measure its
+    # Fraction of the pixels that differ, or the largest difference of a texel; of a measure its
     # value, NaN where it has none.
     difference: float = 0.0
     bias: float = 0.0  # mean of the work's minus the answer's: levels of 255, or the texture's unit
-    place: str = ""  # where most of it differs, as "top-left" or "middle"; "": in no third of it
+    region: str = ""  # where most of it differs, as "top-left" or "middle"; "": in no third of it
     not_finite: int = 0  # texels of the work that are no numbers
     sizes: tuple[tuple[int, ...], tuple[int, ...]] | None = None  # the work's and the answer's, if not equal
     mistake: str = ""  # why it could not be drawn at these values
     # The work and what is asked for, to compare; those of a check that is hidden are for the teacher.
     mine: Picture | None = None
-    wanted: Picture | None = None
+    expected: Picture | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Verdict:
     """What came of a work."""
 
-    results: tuple[Result, ...]
+    results: tuple[CheckResult, ...]
     diagnostics: tuple[Diagnostic, ...]  # why nothing could be drawn: then there are no results
     points: float
     of: int  # points
@@ -48,6 +48,6 @@ class Verdict:
         return self.points == self.of
 
     @property
-    def visible(self) -> tuple[Result, ...]:
+    def visible(self) -> tuple[CheckResult, ...]:
         """The results whose pictures a student may see."""
         return tuple(result for result in self.results if not result.check.hidden)

@@ -66,7 +66,7 @@ def _of_kernel(task: Task, text: str, values: Mapping[str, Value]) -> Scene:
     assert scene is not None
     before, path = scene.sketch, str(path_of(task))
     sketch = with_texts(replace(before, overrides=()), {path: text}).plainly()
-    try:  # set anew: a value that the answer takes may be none of this kernel's
+    try:  # set again: a value that the answer takes may be none of this kernel's
         sketch = sketch.with_values({**dict(before.overrides), **values})
         flatten(sketch)
     except ParameterError:

@@ -76,9 +76,9 @@ def draw_ab(compare: Compare, undo: Undo, look: Theme, area: Area) -> None:
         draw.add_line(ImVec2(line, y), ImVec2(line, y + high), theme.packed(theme.INK, 0.9), 1.5 * scale)
         middle = y + high / 2
         for letter, away in (("A", -18.0), ("B", 10.0)):
-            place = ImVec2(line + away * scale, middle)
-            draw.add_text(ImVec2(place.x + 1, place.y + 1), theme.packed((0.0, 0.0, 0.0)), letter)
-            draw.add_text(place, theme.packed(theme.INK), letter)
+            position = ImVec2(line + away * scale, middle)
+            draw.add_text(ImVec2(position.x + 1, position.y + 1), theme.packed((0.0, 0.0, 0.0)), letter)
+            draw.add_text(position, theme.packed(theme.INK), letter)
     margin = 12 * scale
     imgui.set_next_window_pos(ImVec2(x + margin, y + margin))
     with window("ab", OVERLAY, ground=theme.colour(theme.GROUND, 0.9), rounding=8 * scale):
@@ -111,9 +111,9 @@ def _bar(compare: Compare, undo: Undo, look: Theme) -> None:
         gain = slide("##gain", compare.gain, (1.0, 64.0), "x %.0f", logarithmic=True)
         compare.gain = compare.gain if gain is None else gain
     for label, note, act in (
-        ("Swap", "Go on from A; what is shown now becomes A", compare.swap),
+        ("Swap", "Go on from A; the current picture becomes A", compare.swap),
         ("Back to A", "Go on from A, which stays", compare.back),
-        ("Keep", "What is shown now becomes A", compare.keep),
+        ("Keep", "The current picture becomes A", compare.keep),
         ("End", "Let A go (A)", compare.end),
     ):
         imgui.same_line()

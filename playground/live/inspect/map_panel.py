@@ -35,17 +35,17 @@ def draw_spread(session: Session, inspection: Inspection, look: Theme) -> None:
     if not imgui.tree_node_ex("Histogram###histogram"):
         return
     inspection.spread_shown = True
-    found = inspection.counter.latest
-    if found is None:
+    result = inspection.counter.latest
+    if result is None:
         imgui.text_disabled("counting …")
     else:
-        _plot(found, shown, inspection, look)
-        _table(found)
-        if not found.whole:
-            imgui.text_disabled(fitting(f"of {found.read:,} texels, whole rows of it", 300 * look.scale))
+        _plot(result, shown, inspection, look)
+        _table(result)
+        if not result.whole:
+            imgui.text_disabled(fitting(f"of {result.read:,} texels, whole rows of it", 300 * look.scale))
         if not inspection.counter.fresh:
             imgui.text_disabled("of a moment ago; counting again …")
-        _ranges(found, session.view)
+        _ranges(result, session.view)
     imgui.tree_pop()
 
 
@@ -88,12 +88,12 @@ def _legend(shown: Map, session: Session, inspection: Inspection, look: Theme) -
         imgui.set_tooltip(f"{number:.6g}" + (f" = {number * factor:.2f} m" if metres is not None else ""))
 
 
-def _plot(found: Histogram, shown: Map, inspection: Inspection, look: Theme) -> None:
+def _plot(histogram: Histogram, shown: Map, inspection: Inspection, look: Theme) -> None:
     _, logarithmic = imgui.checkbox("Logarithmic", inspection.logarithmic)
     inspection.logarithmic = logarithmic
-    span = found.high - found.low
-    edges = found.low + (np.arange(BINS) + 0.5) * ((span or 1.0) / BINS)
-    tallest = max(int(channel.bins.max()) for channel in found.channels)
+    span = histogram.high - histogram.low
+    edges = histogram.low + (np.arange(BINS) + 0.5) * ((span or 1.0) / BINS)
+    tallest = max(int(channel.bins.max()) for channel in histogram.channels)
     flags = implot.Flags_.no_legend.value | implot.Flags_.no_inputs.value
     floor = 0.5 if logarithmic else 0.0
     top = 1.3 * tallest if logarithmic else 1.05 * tallest
@@ -102,13 +102,15 @@ def _plot(found: Histogram, shown: Map, inspection: Inspection, look: Theme) -> 
             return
         locked = implot.AxisFlags_.lock.value
         implot.setup_axes("", "", locked, locked | implot.AxisFlags_.no_tick_labels.value)
-        implot.setup_axis_limits(implot.ImAxis_.x1, found.low, found.low + (span or 1.0), imgui.Cond_.always)
+        implot.setup_axis_limits(
+            implot.ImAxis_.x1, histogram.low, histogram.low + (span or 1.0), imgui.Cond_.always
+        )
         if logarithmic:
             implot.setup_axis_scale(implot.ImAxis_.y1, implot.Scale_.log10)
         implot.setup_axis_limits(implot.ImAxis_.y1, floor, max(top, 1.0), imgui.Cond_.always)
-        for number, channel in enumerate(found.channels):
+        for number, channel in enumerate(histogram.channels):
             spec = implot.Spec()
-            alone = len(found.channels) == 1
+            alone = len(histogram.channels) == 1
             ink = ImVec4(*(theme.INK if alone else _INKS[number]), 1.0)
             spec.line_color, spec.fill_color, spec.fill_alpha = ink, ink, 0.25
             heights = np.maximum(channel.bins.astype(np.float64), floor)
@@ -117,14 +119,14 @@ def _plot(found: Histogram, shown: Map, inspection: Inspection, look: Theme) -> 
         implot.plot_inf_lines("range", np.array(ends_of(shown), np.float64), plots.line(0, 1.0))
 
 
-def _table(found: Histogram) -> None:
+def _table(document: Histogram) -> None:
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
     if not imgui.begin_table("spread", 5, flags):
         return
     for title in ("", "least", "greatest", "mean", "deviation"):
         imgui.table_next_column()
         imgui.text_disabled(title)
-    for number, channel in enumerate(found.channels):
+    for number, channel in enumerate(document.channels):
         imgui.table_next_row()
         imgui.table_next_column()
         imgui.text_colored(theme.colour(_INKS[number]), _CHANNELS[number])
@@ -132,28 +134,28 @@ def _table(found: Histogram) -> None:
             imgui.table_next_column()
             imgui.text_unformatted("none" if math.isnan(value) else f"{value:.4g}")
     imgui.end_table()
-    for number, channel in enumerate(found.channels):
+    for number, channel in enumerate(document.channels):
         if channel.nans or channel.infinities:
             text = f"{_CHANNELS[number]}: {channel.nans:,} NaN, {channel.infinities:,} infinite"
             imgui.text_colored(theme.colour(theme.ALARM), text)
 
 
-def _ranges(found: Histogram, view: View) -> None:
+def _ranges(histogram: Histogram, view: View) -> None:
     """Draw what sets the map's range from the numbers."""
     channel = view.map.value("channel") if view.map is not None else 0
     which = max(int(channel) - 1, 0) if isinstance(channel, int) else 0
-    if which >= len(found.channels) or not found.channels[which].count:
+    if which >= len(histogram.channels) or not histogram.channels[which].count:
         return
-    mine = found.channels[which]
-    wanted: tuple[float, float] | None = None
+    mine = histogram.channels[which]
+    bounds: tuple[float, float] | None = None
     if button("All of it", "The map's range from the least to the greatest number"):
-        wanted = mine.lowest, mine.highest
+        bounds = mine.lowest, mine.highest
     imgui.same_line()
     if button("All but outliers", "Without the least and the greatest 2 in 100"):
-        wanted = found.between(which, _SHARE)
+        bounds = histogram.between(which, _SHARE)
     imgui.same_line()
     if button("Around the mean", 'The middle of "cool and warm" is the mean'):
         view.set_map("middle", mine.mean)
-    if wanted is not None and wanted[0] < wanted[1]:
-        for name, value in zip(("lowest", "highest"), wanted, strict=True):
+    if bounds is not None and bounds[0] < bounds[1]:
+        for name, value in zip(("lowest", "highest"), bounds, strict=True):
             view.set_map(name, value)

@@ -12,7 +12,7 @@ from playground.live.inspect.graph import draw_graph
 from playground.live.inspect.timeline import draw_timeline
 from playground.live.inspect.tooltip import draw_values
 from playground.live.theme import Theme
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.inspect.inspector import Inspector
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def draw_inspection(
-    bench: Bench, picture: moderngl.Texture | None, look: Theme, area: Area, density: float
+    bench: Workbench, picture: moderngl.Texture | None, look: Theme, area: Area, density: float
 ) -> None:
     """Draw all of it that is on; ``picture`` is what the session's last ``frame`` returned."""
     session, inspection = bench.session, bench.inspection
@@ -44,6 +44,6 @@ def _inspect(
     mouse = imgui.get_mouse_pos()
     across = int((mouse.x - area[0]) * density // 1)
     down = int((mouse.y - area[1]) * density // 1)
-    found = inspector.at((across, picture.size[1] - 1 - down), picture)
-    if found is not None:
-        draw_values(found, look, area)
+    report = inspector.at((across, picture.size[1] - 1 - down), picture)
+    if report is not None:
+        draw_values(report, look, area)

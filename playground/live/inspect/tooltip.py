@@ -17,7 +17,7 @@ _AWAY = 18.0  # of the box from the mouse
 _POINTS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
 
 
-def draw_values(found: PixelReport, look: Theme, area: Area) -> None:
+def draw_values(report: PixelReport, look: Theme, area: Area) -> None:
     """Draw it at the mouse, where there is room for it in the picture."""
     mouse, away = imgui.get_io().mouse_pos, _AWAY * look.scale
     x, y, wide, high = area
@@ -35,32 +35,32 @@ def draw_values(found: PixelReport, look: Theme, area: Area) -> None:
         dim = theme.colour(theme.DIM)
         rows = [
             (partial(imgui.text_colored, dim, name), partial(value, text, ink))
-            for name, text, ink in lines_of(found)
+            for name, text, ink in lines_of(report)
         ]
         table("readings", 2, rows, imgui.TableFlags_.sizing_fixed_fit)
 
 
-def lines_of(found: PixelReport) -> list[tuple[str, str, theme.Rgb]]:
+def lines_of(report: PixelReport) -> list[tuple[str, str, theme.Rgb]]:
     """Return the box's lines: a name, what there is, and the colour it is written in."""
-    shade = "".join(f"{byte:02x}" for byte in found.picture)
-    lines = [("pixel", f"{found.pixel[0]}, {found.pixel[1]}  #{shade}", theme.INK)]
-    if found.ground is not None:
-        lines += [(name, text, theme.INK) for name, text in _place(found.ground)]
-    if found.shown is not None:
-        lines.append(_line(found.shown, theme.ACCENT))
-    elif found.ground is None:
+    shade = "".join(f"{byte:02x}" for byte in report.picture)
+    lines = [("pixel", f"{report.pixel[0]}, {report.pixel[1]}  #{shade}", theme.INK)]
+    if report.ground is not None:
+        lines += [(name, text, theme.INK) for name, text in _place(report.ground)]
+    if report.shown is not None:
+        lines.append(_line(report.shown, theme.ACCENT))
+    elif report.ground is None:
         lines.append(("terrain", "none here", theme.DIM))
-    shown = found.shown.name if found.shown else ""
-    lines += [_line(sample, theme.INK) for sample in found.samples if sample.name != shown]
-    if found.missing:
-        listed = ", ".join(ref_name(name) for name in found.missing)
+    shown = report.shown.name if report.shown else ""
+    lines += [_line(sample, theme.INK) for sample in report.samples if sample.name != shown]
+    if report.missing:
+        listed = ", ".join(ref_name(name) for name in report.missing)
         lines.append(("not in this picture", listed, theme.DIM))
     return lines
 
 
 def _place(ground: GroundPoint) -> list[tuple[str, str]]:
     east, north, up = ground.normal
-    found = [
+    names = [
         ("place", f"{ground.east:.1f} m east, {ground.north:.1f} m north"),
         ("ground", f"{ground.height:.2f} m, {ground.above_sea:.2f} m above the sea"),
         ("normal", f"{east:+.3f} {north:+.3f} {up:+.3f}"),
@@ -69,7 +69,7 @@ def _place(ground: GroundPoint) -> list[tuple[str, str]]:
     if math.hypot(east, north) > 1e-6:
         azimuth = math.degrees(math.atan2(east, north)) % 360
         faces = f", faces {_POINTS[round(azimuth / 45) % 8]}"
-    return [*found, ("slope", f"{ground.slope:.1f}°{faces}")]
+    return [*names, ("slope", f"{ground.slope:.1f}°{faces}")]
 
 
 def _line(sample: Sample, ink: theme.Rgb) -> tuple[str, str, theme.Rgb]:

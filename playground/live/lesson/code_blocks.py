@@ -17,14 +17,14 @@ def draw_code_block(block: Code, page: Page) -> None:
     edited = bugs.is_edited(block)
     with page.frame(block.name, theme.WARM if edited else theme.LINE):
         try:
-            found = bugs.excerpt(block)
+            excerpt_found = bugs.excerpt(block)
         except PlaygroundError as error:
             page.text(str(error), dim=True)
         else:
             with page.look.font(page.look.text, theme.SMALL):
-                imgui.text_disabled(f"glsl/{block.file}:{found.line}")
+                imgui.text_disabled(f"glsl/{block.file}:{excerpt_found.line}")
             fence = "```"
-            page.prose.draw(f"{fence}\n{found.text}\n{fence}", page.look, size=theme.SMALL + 1)
+            page.prose.draw(f"{fence}\n{excerpt_found.text}\n{fence}", page.look, size=theme.SMALL + 1)
         if page.button(page.say("edit"), page.say("edit_note")):
             bugs.edit(block)
         if edited:
@@ -60,10 +60,10 @@ def draw_break(block: Break, page: Page) -> None:
 
 
 def _hint(block: Break, page: Page) -> None:
-    known, key = page.reader.shown, (block.name, "hint")
-    if key in known:
+    opened, key = page.reader.shown, (block.name, "hint")
+    if key in opened:
         page.text(block.hint)
         return
     page.same_line(page.say("hint"))
     if page.button(page.say("hint")):
-        known.add(key)
+        opened.add(key)

@@ -25,12 +25,12 @@ if TYPE_CHECKING:
     import moderngl
 
 _PROBE = "a+b"  # what MicroTeX looks at through a locale
-_MOST = 300
+_MAX_TEXTURES = 300
 """Textures that are cached; beyond, all are released and made again where they are visible."""
 
 
 @dataclass(frozen=True)
-class Setting:
+class TypesetFormula:
     """A formula's picture."""
 
     pixels: NDArray[np.uint8]  # (height, width, 4), top row first; straight alpha
@@ -55,18 +55,18 @@ class Formulas:
         """
         key = (latex, round(size), colour, display)
         if key not in self._known:
-            if len(self._known) >= _MOST:
+            if len(self._known) >= _MAX_TEXTURES:
                 self.release()
-            found = set_formula(latex, round(size), colour, display=display)
-            self._known[key] = None if found is None else (self._texture(found.pixels), found.baseline)
+            formula = set_formula(latex, round(size), colour, display=display)
+            self._known[key] = None if formula is None else (self._texture(formula.pixels), formula.baseline)
         return self._known[key]
 
     def release(self) -> None:
         """Release all textures."""
-        known, self._known = self._known, {}
-        for found in known.values():
-            if found is not None:
-                found[0].release()
+        cached, self._known = self._known, {}
+        for formula in cached.values():
+            if formula is not None:
+                formula[0].release()
 
     def _texture(self, pixels: NDArray[np.uint8]) -> moderngl.Texture:
         height, width, _ = pixels.shape
@@ -76,7 +76,7 @@ class Formulas:
         return texture
 
 
-def set_formula(latex: str, size: int, colour: int, *, display: bool) -> Setting | None:
+def set_formula(latex: str, size: int, colour: int, *, display: bool) -> TypesetFormula | None:
     """Return a formula's picture; None for one that MicroTeX cannot read.
 
     ``size`` of its font [pixels]; ``colour`` as imgui packs it.
@@ -88,17 +88,17 @@ def set_formula(latex: str, size: int, colour: int, *, display: bool) -> Setting
         made = microtex.render(latex, float(size), colour, style)
     except Exception:  # nanobind's RuntimeError, for any exception of MicroTeX
         return None
-    return _cut(Setting(made.pixels_as_array().copy(), made.baseline_y))
+    return _cut(TypesetFormula(made.pixels_as_array().copy(), made.baseline_y))
 
 
-def _cut(setting: Setting) -> Setting:
+def _cut(setting: TypesetFormula) -> TypesetFormula:
     """Return a picture without the empty rows and columns around it."""
     seen = setting.pixels[..., 3] > 0
     rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
     if not rows.size:
         return setting
     top, left = int(rows[0]), int(columns[0])
-    return Setting(setting.pixels[top : rows[-1] + 1, left : columns[-1] + 1], setting.baseline - top)
+    return TypesetFormula(setting.pixels[top : rows[-1] + 1, left : columns[-1] + 1], setting.baseline - top)
 
 
 @cache

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from playground.live.theme import Theme
 from playground.workbench.autosave import Autosave
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.lesson.progress import open_progress, progress_file
 from playground.workbench.lesson.reader import Reader
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 class Lessons:
     """The lessons of one window; ``remember`` stores what is shown, for the next start."""
 
-    def __init__(self, bench: Bench, autosave: Autosave, remember: Callable[[], None]) -> None:
+    def __init__(self, bench: Workbench, autosave: Autosave, remember: Callable[[], None]) -> None:
         file = progress_file()
         progress, complaint = open_progress(file)
         bench.session.notes.extend(filter(None, [complaint]))

@@ -35,14 +35,14 @@ class Placed:
 class Line:
     """A line of runs."""
 
-    placed: tuple[Placed, ...]
+    runs: tuple[Placed, ...]
     ascent: float
     descent: float
 
     @property
     def width(self) -> float:
         """The right end of the last run."""
-        return max((p.x + p.extent.width for p in self.placed), default=0.0)
+        return max((p.x + p.extent.width for p in self.runs), default=0.0)
 
 
 Ruler = Callable[[Run], Extent]
@@ -85,25 +85,25 @@ def broken(runs: Runs, width: float, ruler: Ruler) -> tuple[Line, ...]:
 
 def _clusters(runs: Runs) -> list[list[Run]]:
     """Return what may not be separated: words with all that touches them, and the blanks between."""
-    found: list[list[Run]] = []
+    clusters: list[list[Run]] = []
     glued = False
     for run in runs:
         if run.breaks:
-            found.append([run])
+            clusters.append([run])
             glued = False
             continue
         whole = run.formula or (run.code and not run.alone and len(run.text) <= _WHOLE)
         pieces = [run.text] if whole else _WORDS.findall(run.text)
         for piece in pieces:
             if not whole and not piece.strip(" \n"):
-                found.append([replace(run, text=" ")])
+                clusters.append([replace(run, text=" ")])
                 glued = False
             elif glued:
-                found[-1].append(replace(run, text=piece))
+                clusters[-1].append(replace(run, text=piece))
             else:
-                found.append([replace(run, text=piece)])
+                clusters.append([replace(run, text=piece)])
                 glued = True
-    return found
+    return clusters
 
 
 def _fitting(run: Run, extent: Extent, width: float, ruler: Ruler) -> list[tuple[Run, Extent]]:
@@ -117,20 +117,20 @@ def _fitting(run: Run, extent: Extent, width: float, ruler: Ruler) -> list[tuple
 
 def _joined(line: list[Placed], ruler: Ruler) -> Line:
     """Return a line, neighbours in one style as one run."""
-    found: list[Placed] = []
-    for placed in line:
-        last = found[-1] if found else None
+    keys_by_action: list[Placed] = []
+    for positioned in line:
+        last = keys_by_action[-1] if keys_by_action else None
         if (
             last is not None
-            and not placed.run.formula
-            and replace(last.run, text="") == replace(placed.run, text="")
+            and not positioned.run.formula
+            and replace(last.run, text="") == replace(positioned.run, text="")
         ):
-            width = last.extent.width + placed.extent.width
-            run = replace(last.run, text=last.run.text + placed.run.text)
-            found[-1] = Placed(run, last.x, replace(last.extent, width=width))
+            width = last.extent.width + positioned.extent.width
+            run = replace(last.run, text=last.run.text + positioned.run.text)
+            keys_by_action[-1] = Placed(run, last.x, replace(last.extent, width=width))
         else:
-            found.append(placed)
+            keys_by_action.append(positioned)
     plain = ruler(Run(""))
-    ascent = max([plain.ascent, *(p.extent.ascent for p in found)])
-    descent = max([plain.descent, *(p.extent.descent for p in found)])
-    return Line(tuple(found), ascent, descent)
+    ascent = max([plain.ascent, *(p.extent.ascent for p in keys_by_action)])
+    descent = max([plain.descent, *(p.extent.descent for p in keys_by_action)])
+    return Line(tuple(keys_by_action), ascent, descent)

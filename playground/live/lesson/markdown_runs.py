@@ -32,7 +32,7 @@ INSTEAD = str.maketrans({"\u202f": "\u00a0", "⅓": "1/3", "⅔": "2/3"})
 
 
 @dataclass(frozen=True)
-class Part:
+class TextBlock:
     """A part of a text that is on lines of its own."""
 
     kind: str  # paragraph | heading | formula | code | table | rule
@@ -46,7 +46,7 @@ class Part:
 
 
 @INTERFACE.cached()
-def parts_of(words: str) -> tuple[Part, ...]:
+def parts_of(words: str) -> tuple[TextBlock, ...]:
     """Return the parts of a text."""
     return tuple(_parts(parser().parse(words)))
 
@@ -65,7 +65,7 @@ def plain(words: str) -> str:
     return written(" ".join(" ".join(texts).split()))
 
 
-def _parts(tokens: list[Token]) -> Iterator[Part]:
+def _parts(tokens: list[Token]) -> Iterator[TextBlock]:
     lists: list[int | None] = []  # the next number of each list that is open; None: of one with dots
     quotes, mark, tight = 0, "", False
     at = 0
@@ -90,14 +90,14 @@ def _parts(tokens: list[Token]) -> Iterator[Part]:
             heading = opener.type == "heading_open"
             level = int(opener.tag[1]) if heading else 0
             runs = runs_of(token)
-            yield Part("heading" if heading else "paragraph", runs, level, indent, mark, close=tight)
+            yield TextBlock("heading" if heading else "paragraph", runs, level, indent, mark, close=tight)
             tight, mark = bool(lists), ""
         elif token.type == "math_block":
-            yield Part("formula", (Run(token.content.strip(), formula=True, alone=True),), indent=indent)
+            yield TextBlock("formula", (Run(token.content.strip(), formula=True, alone=True),), indent=indent)
         elif token.type in ("fence", "code_block"):
-            yield Part("code", (Run(token.content.rstrip("\n"), code=True, alone=True),), indent=indent)
+            yield TextBlock("code", (Run(token.content.rstrip("\n"), code=True, alone=True),), indent=indent)
         elif token.type == "hr":
-            yield Part("rule")
+            yield TextBlock("rule")
         elif token.type == "table_open":
             end = next(n for n in range(at, len(tokens)) if tokens[n].type == "table_close")
             yield _table(tokens[at:end], indent)
@@ -105,7 +105,7 @@ def _parts(tokens: list[Token]) -> Iterator[Part]:
         at += 1
 
 
-def _table(tokens: list[Token], indent: int) -> Part:
+def _table(tokens: list[Token], indent: int) -> TextBlock:
     rows: list[list[Runs]] = []
     numbers: list[bool] = []
     for at, token in enumerate(tokens):
@@ -117,12 +117,12 @@ def _table(tokens: list[Token], indent: int) -> Part:
                 numbers.append("right" in str(token.attrs.get("style", "")))
                 runs = tuple(replace(run, bold=True) for run in runs)
             rows[-1].append(runs)
-    return Part("table", indent=indent, rows=tuple(map(tuple, rows)), numbers=tuple(numbers))
+    return TextBlock("table", indent=indent, rows=tuple(map(tuple, rows)), numbers=tuple(numbers))
 
 
 def runs_of(inline: Token) -> Runs:
     """Return the runs of an inline token."""
-    found: list[Run] = []
+    runs: list[Run] = []
     style = Run("")
     for token in inline.children or []:
         if token.type in ("strong_open", "strong_close"):
@@ -134,14 +134,14 @@ def runs_of(inline: Token) -> Runs:
         elif token.type == "link_close":
             style = replace(style, link="")
         elif token.type == "code_inline":
-            found.append(replace(style, text=token.content, code=True))
+            runs.append(replace(style, text=token.content, code=True))
         elif token.type.startswith("math_"):
-            found.append(replace(style, text=token.content, formula=True))
+            runs.append(replace(style, text=token.content, formula=True))
         elif token.type == "hardbreak":
-            found.append(Run("", breaks=True))
+            runs.append(Run("", breaks=True))
         elif token.type == "softbreak":
-            found.append(replace(style, text=" "))
+            runs.append(replace(style, text=" "))
         elif token.content:
             term = style.link.startswith("term:")  # a term of the field is in bold where it first appears
-            found.append(replace(style, text=token.content, bold=style.bold or term))
-    return tuple(found)
+            runs.append(replace(style, text=token.content, bold=style.bold or term))
+    return tuple(runs)

@@ -34,9 +34,9 @@ class Page:
     memory: Memory  # of the parameters' rows
     pictures: SmallPictures
 
-    def say(self, key: str, *given: object) -> str:
+    def say(self, key: str, *arguments: object) -> str:
         """Return a label of the interface."""
-        return labels_in(self.reader.language)[key].format(*given)
+        return labels_in(self.reader.language)[key].format(*arguments)
 
     def text(self, words: Markdown, *, size: float = TEXT, dim: bool = False) -> None:
         """Draw a text of the lesson, its numbers in their places."""

@@ -38,8 +38,8 @@ from playground.live.lesson.task_blocks import draw_challenge
 from playground.live.panel_memory import Memory
 from playground.live.panel_rows import fitting
 from playground.live.theme import Theme
-from playground.workbench.lesson.links import described, follow, play_on
-from playground.workbench.lesson.progress import NARROWEST, WIDEST
+from playground.workbench.lesson.links import follow, link_text, play_on
+from playground.workbench.lesson.progress import MAX_WIDTH, MIN_WIDTH
 from playground.workbench.lesson.reader import Reader
 
 DRAWN: dict[type[Block], Any] = {
@@ -57,7 +57,7 @@ DRAWN: dict[type[Block], Any] = {
 }
 """What draws each kind of block."""
 
-_LEAST = 200.0
+_MIN_PICTURE_WIDTH = 200.0
 """Room that the picture has next to the panel, in units of scale 1."""
 
 
@@ -79,15 +79,15 @@ class LessonPanel:
             self._texts = Texts(
                 lambda: self._formulas_of(reader),
                 lambda to: follow(reader, to),
-                lambda to: described(reader, to),
+                lambda to: link_text(reader, to),
             )
         room, scale = imgui.get_main_viewport().size, look.scale
-        widest = max(room.x - _LEAST * scale, 160.0)
+        widest = max(room.x - _MIN_PICTURE_WIDTH * scale, 160.0)
         imgui.set_next_window_pos(ImVec2(0, 0))
-        wanted = min(reader.progress.width * scale, widest)
-        imgui.set_next_window_size(ImVec2(wanted, room.y))
+        target = min(reader.progress.width * scale, widest)
+        imgui.set_next_window_size(ImVec2(target, room.y))
         imgui.set_next_window_size_constraints(
-            ImVec2(min(NARROWEST * scale, widest), room.y), ImVec2(min(WIDEST * scale, widest), room.y)
+            ImVec2(min(MIN_WIDTH * scale, widest), room.y), ImVec2(min(MAX_WIDTH * scale, widest), room.y)
         )
         with window("lesson", SIDE_PANEL, ground=theme.colour((0.110, 0.119, 0.127))):
             page = Page(reader, lesson, look, self._texts, self.memory, self._pictures_of(reader))
@@ -101,7 +101,7 @@ class LessonPanel:
             imgui.end_child()
             _foot(page)
             width = imgui.get_window_size().x
-        if abs(width - wanted) > 0.5:  # pulled; a narrow window alone makes it no narrower for good
+        if abs(width - target) > 0.5:  # pulled; a narrow window alone makes it no narrower for good
             reader.progress.width = width / scale
         return float(width)
 
@@ -137,19 +137,19 @@ def _head(page: Page) -> None:
     if imgui.begin_combo(
         "##lessons", page.say("lesson", lesson.number), imgui.ComboFlags_.height_largest.value
     ):
-        for one in reader.summaries:
-            done = one.name in reader.progress.done  # read to its end: in green
-            label = f"{one.number}  {written(one.title)}##{one.name}"
+        for summary in reader.summaries:
+            done = summary.name in reader.progress.done  # read to its end: in green
+            label = f"{summary.number}  {written(summary.title)}##{summary.name}"
             with inked(theme.ACCENT if done else theme.INK):
-                if imgui.selectable(label, one.name == lesson.name)[0]:
-                    reader.open(one.name)
-            minutes = page.say("minutes", one.minutes, one.exercise_minutes)
-            imgui.set_item_tooltip(f"{plain(one.goal)}\n{minutes}")
+                if imgui.selectable(label, summary.name == lesson.name)[0]:
+                    reader.open(summary.name)
+            minutes = page.say("minutes", summary.minutes, summary.exercise_minutes)
+            imgui.set_item_tooltip(f"{plain(summary.goal)}\n{minutes}")
         imgui.end_combo()
     for code in LANGUAGES:
         imgui.same_line(0, 4 * look.scale)
         if page.button(f"{code.upper()}##{code}", LANGUAGES[code], on=code == reader.language):
-            reader.speak(code)
+            reader.set_language(code)
     imgui.same_line(0, 4 * look.scale)
     if page.button("×##close", page.say("close")):
         reader.toggle()
@@ -229,7 +229,7 @@ def _foot(page: Page) -> None:
         reader.turn_page(-1)
     imgui.same_line()
     last = reader.index == count - 1
-    following = next((one for one in reader.summaries if one.number > page.lesson.number), None)
+    following = next((summary for summary in reader.summaries if summary.number > page.lesson.number), None)
     text = page.say("next_lesson") if last else page.say("next")
     note = "PgDn" if not last else following.title if following else ""
     with styled({imgui.Col_.button: theme.colour((0.29, 0.46, 0.32))}):

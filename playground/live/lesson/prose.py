@@ -13,7 +13,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.live import theme
 from playground.live.lesson.formulas import Formulas
 from playground.live.lesson.line_breaking import Extent, Line, Placed, broken
-from playground.live.lesson.markdown_runs import Part, Run, Runs, parts_of, written
+from playground.live.lesson.markdown_runs import Run, Runs, TextBlock, parts_of, written
 from playground.live.panel_rows import explain
 from playground.live.theme import Theme
 
@@ -63,7 +63,7 @@ class _Typesetter:
     y: float = 0.0
     pieces: list[tuple[_Piece, _Style]] = field(default_factory=list)
 
-    def add(self, part: Part) -> None:
+    def add(self, part: TextBlock) -> None:
         """Put a part below those before it."""
         left = part.indent * _INDENT * self.look.scale
         room = max(self.width - left, 40.0 * self.look.scale)
@@ -77,7 +77,7 @@ class _Typesetter:
         else:
             self._paragraph(part, left, room)
 
-    def _paragraph(self, part: Part, left: float, room: float) -> None:
+    def _paragraph(self, part: TextBlock, left: float, room: float) -> None:
         runs, style, leading = part.runs, self.style, _LEADING * self.look.scale
         if part.kind == "heading":
             style = replace(style, size=style.size + _HEADINGS.get(part.level, 0.0))
@@ -85,15 +85,15 @@ class _Typesetter:
         lines = self._lines(runs, room, style)
         if part.mark and lines:
             mark = self._lines((Run(part.mark),), room, style)[0]
-            place = left - mark.width - 6 * self.look.scale
-            self.pieces.append((_Piece(place, self.y + lines[0].ascent - mark.ascent, mark), style))
+            left_edge = left - mark.width - 6 * self.look.scale
+            self.pieces.append((_Piece(left_edge, self.y + lines[0].ascent - mark.ascent, mark), style))
         for line in lines:
             x = left + max(room - line.width, 0.0) / 2 if part.kind == "formula" else left
             self.pieces.append((_Piece(x, self.y, line), style))
             self.y += line.ascent + line.descent + leading
         self.y -= leading if lines else 0.0
 
-    def _code(self, part: Part, left: float, room: float) -> None:
+    def _code(self, part: TextBlock, left: float, room: float) -> None:
         pad, at, top = 8 * self.look.scale, len(self.pieces), self.y
         self.y += pad
         for text in part.runs[0].text.split("\n"):
@@ -109,16 +109,16 @@ class _Typesetter:
         ground = _Piece(left, top, box=(room, self.y - top, theme.packed(theme.FIELD)))
         self.pieces.insert(at, (ground, self.style))
 
-    def _table(self, part: Part, left: float, room: float) -> None:
+    def _table(self, part: TextBlock, left: float, room: float) -> None:
         gap, scale = _CELL * self.look.scale, self.look.scale
         count = max(map(len, part.rows), default=0)
-        wanted = [0.0] * count
+        target = [0.0] * count
         for row in part.rows:
             for column, cell in enumerate(row):
                 lines = self._lines(cell, 1e6, self.style)
-                wanted[column] = max([wanted[column], *(line.width for line in lines)])
+                target[column] = max([target[column], *(line.width for line in lines)])
         gaps = gap * max(count - 1, 0)
-        widths = _shared(wanted, room - gaps)
+        widths = _shared(target, room - gaps)
         for number, row in enumerate(part.rows):
             x, bottom = left, self.y
             for column, cell in enumerate(row):
@@ -174,8 +174,8 @@ class Prose:
                 wide_box, high_box, colour = piece.box
                 draw.add_rect_filled(ImVec2(x, y), ImVec2(x + wide_box, y + high_box), colour, 4 * look.scale)
             else:
-                for placed in piece.line.placed:
-                    self._run(placed, x, y + piece.line.ascent, style, look)
+                for run in piece.line.runs:
+                    self._run(run, x, y + piece.line.ascent, style, look)
 
     # ── layout ───────────────────────────────────────────────────────────────
 
@@ -198,9 +198,9 @@ class Prose:
 
     def _extent(self, run: Run, style: _Style, look: Theme) -> Extent:
         if run.formula:
-            found = self._formula(run, style)
-            if found is not None:
-                width, height, baseline, _ = found
+            formula = self._formula(run, style)
+            if formula is not None:
+                width, height, baseline, _ = formula
                 return Extent(width, baseline, height - baseline)
         with look.font(*_font(run, style.size, look)):
             size = imgui.calc_text_size(_shown(run))
@@ -213,25 +213,25 @@ class Prose:
         density = imgui.get_io().display_framebuffer_scale.x or 1.0
         # Latin Modern's letters are smaller than those of a text of the same size.
         size = style.size * style.scale * density * 1.12
-        found = self.formulas().get(run.text, size, style.ink, display=run.alone)
-        if found is None:
+        formula = self.formulas().get(run.text, size, style.ink, display=run.alone)
+        if formula is None:
             return None
-        texture, baseline = found
+        texture, baseline = formula
         wide, high = texture.size
         return wide / density, high / density, baseline / density, imgui.ImTextureRef(texture.glo)
 
     # ── drawing ──────────────────────────────────────────────────────────────
 
-    def _run(self, placed: Placed, x: float, baseline: float, style: _Style, look: Theme) -> None:
-        run, extent = placed.run, placed.extent
+    def _run(self, placed_run: Placed, x: float, baseline: float, style: _Style, look: Theme) -> None:
+        run, extent = placed_run.run, placed_run.extent
         draw = imgui.get_window_draw_list()
-        low = ImVec2(x + placed.x, baseline - extent.ascent)
+        low = ImVec2(x + placed_run.x, baseline - extent.ascent)
         high = ImVec2(low.x + extent.width, baseline + extent.descent)
         if run.formula:
-            found = self._formula(run, style)
-            if found is not None:
+            formula = self._formula(run, style)
+            if formula is not None:
                 corner = ImVec2(round(low.x), round(low.y))  # on whole pixels, so that it stays sharp
-                draw.add_image(found[3], corner, ImVec2(corner.x + found[0], corner.y + found[1]))
+                draw.add_image(formula[3], corner, ImVec2(corner.x + formula[0], corner.y + formula[1]))
                 return
         font, size = _font(run, style.size, look)
         text, ink = _shown(run), style.ink
@@ -266,14 +266,14 @@ def _shown(run: Run) -> str:
     return written(run.text)
 
 
-def _shared(wanted: list[float], room: float) -> list[float]:
+def _shared(values: list[float], room: float) -> list[float]:
     """Return the widths of columns: what they want where there is room, else narrow ones whole."""
-    if sum(wanted) <= room:
-        return wanted
-    widths, left = list(wanted), room
-    open_columns = sorted(range(len(wanted)), key=lambda column: wanted[column])
+    if sum(values) <= room:
+        return values
+    widths, left = list(values), room
+    open_columns = sorted(range(len(values)), key=lambda column: values[column])
     for number, column in enumerate(open_columns):
         share = left / (len(open_columns) - number)
-        widths[column] = min(wanted[column], share)
+        widths[column] = min(values[column], share)
         left -= widths[column]
     return widths

@@ -13,7 +13,7 @@ from playground.lessons.tasks.verdict import Picture
 if TYPE_CHECKING:
     import moderngl
 
-_MOST = 24  # textures that are kept; beyond, all are released and made again where they are drawn
+_MAX_TEXTURES = 24  # textures that are kept; beyond, all are released and made again where they are drawn
 
 
 @dataclass
@@ -26,7 +26,7 @@ class SmallPictures:
     def draw(self, picture: Picture, wide: float) -> None:
         """Draw a picture (h, w, 3), top row first, so many pixels wide."""
         if id(picture) not in self._known:
-            if len(self._known) >= _MOST:
+            if len(self._known) >= _MAX_TEXTURES:
                 self.release()
             self._known[id(picture)] = picture, self._texture(picture)
         height, width, _ = picture.shape
@@ -34,8 +34,8 @@ class SmallPictures:
 
     def release(self) -> None:
         """Release all textures."""
-        known, self._known = self._known, {}
-        for _, texture in known.values():
+        cached, self._known = self._known, {}
+        for _, texture in cached.values():
             texture.release()
 
     def _texture(self, picture: Picture) -> moderngl.Texture:

@@ -13,7 +13,7 @@ from playground.lessons.tasks.difference_map import difference_map
 from playground.lessons.tasks.sentences import points_of, sentence_of
 from playground.lessons.tasks.tasks import checks_itself
 from playground.lessons.tasks.texts import path_of
-from playground.lessons.tasks.verdict import Picture, Result, Verdict
+from playground.lessons.tasks.verdict import CheckResult, Picture, Verdict
 from playground.live import theme
 from playground.live.code_window import save
 from playground.live.lesson.figure_blocks import draw_parameters
@@ -39,7 +39,7 @@ def draw_work(block: Exercise, page: Page) -> None:
 def draw_challenge(block: Challenge, page: Page) -> None:
     """Draw a picture to match, and how near the picture in view is."""
     tasks = page.reader.tasks
-    found, best = tasks.scoring.matches.get(block.name), tasks.attempt(block).score
+    match, best = tasks.scoring.matches.get(block.name), tasks.attempt(block).score
     solved = best >= block.goal
     with page.frame(block.name, theme.ACCENT if solved else theme.WARM):
         page.label(page.say("challenge"), theme.ACCENT if solved else theme.WARM)
@@ -50,9 +50,9 @@ def draw_challenge(block: Challenge, page: Page) -> None:
             imgui.set_item_tooltip(written(block.alt))
             imgui.same_line()
         imgui.begin_group()
-        if found is not None and tasks.is_begun(block):
+        if match is not None and tasks.is_begun(block):
             with page.look.font(page.look.bold, theme.TEXT_SIZE + 8):
-                imgui.text(page.say("score", int(found.score)))
+                imgui.text(page.say("score", int(match.score)))
         with page.look.font(page.look.text, theme.SMALL):
             key, shown = ("best_score", (int(best), block.goal)) if best else ("goal_score", (block.goal,))
             imgui.text_disabled(page.say(key, *shown))
@@ -63,7 +63,7 @@ def draw_challenge(block: Challenge, page: Page) -> None:
         _buttons(block, page)
         if tasks.is_begun(block):
             _sliders(block, page)
-        for diagnostic in found.diagnostics if found is not None else ():
+        for diagnostic in match.diagnostics if match is not None else ():
             page.plain(str(diagnostic), theme.ALARM)
         page.behind(block.name, "hint", block.hint)
         page.behind(block.name, "solution", block.solution)
@@ -83,13 +83,13 @@ def task_label(block: Exercise, page: Page) -> str:
 
 def _buttons(block: Task, page: Page) -> None:
     tasks = page.reader.tasks
-    begun, attempt = tasks.is_begun(block), tasks.attempt(block)
-    has_own = begun or bool(attempt.text or attempt.values)
+    is_started, attempt = tasks.is_begun(block), tasks.attempt(block)
+    has_own = is_started or bool(attempt.text or attempt.values)
     judged = tasks.judging.at == block.name
     row: list[
         tuple[str, str, str, Callable[[Any], object], bool]
     ] = []  # key, mark, note, what it does, enabled
-    if not begun:
+    if not is_started:
         row.append(("go_on" if has_own else "start", "start", page.say("start_note"), tasks.start, True))
     elif block.file:
         row.append(("to_the_text", "text", f"glsl/{block.file}", tasks.focus, True))
@@ -137,18 +137,18 @@ def _verdict(block: Exercise, verdict: Verdict, page: Page) -> None:
         _mark(page, good=result.passed)
         page.text(sentence_of(result, language), size=theme.SMALL + 1)
     wrong = [result for result in verdict.visible if not result.passed and result.mine is not None]
-    known, key = page.reader.shown, (block.name, "differences")
-    if wrong and page.button(page.say("differences"), on=key in known):
-        known.symmetric_difference_update({key})
-    if key in known:
+    opened, key = page.reader.shown, (block.name, "differences")
+    if wrong and page.button(page.say("differences"), on=key in opened):
+        opened.symmetric_difference_update({key})
+    if key in opened:
         for result in wrong:
             _difference(result, page)
 
 
 @INTERFACE.cached(weight=128)
-def _map(result: Result) -> Picture:
-    assert result.mine is not None and result.wanted is not None
-    return difference_map(result.mine, result.wanted)
+def _map(result: CheckResult) -> Picture:
+    assert result.mine is not None and result.expected is not None
+    return difference_map(result.mine, result.expected)
 
 
 def _mark(page: Page, *, good: bool) -> None:
@@ -168,12 +168,12 @@ def _mark(page: Page, *, good: bool) -> None:
     imgui.same_line()
 
 
-def _difference(result: Result, page: Page) -> None:
+def _difference(result: CheckResult, page: Page) -> None:
     """Draw the work, what is asked for, and where they differ."""
-    mine, wanted = result.mine, result.wanted
-    assert mine is not None and wanted is not None
-    shown = [("mine", mine), ("wanted", wanted)]
-    if mine.shape == wanted.shape:
+    mine, expected = result.mine, result.expected
+    assert mine is not None and expected is not None
+    shown = [("mine", mine), ("wanted", expected)]
+    if mine.shape == expected.shape:
         shown.append(("differs", _map(result)))
     gap = imgui.get_style().item_spacing.x
     wide = (imgui.get_content_region_avail().x - gap * (len(shown) - 1)) / len(shown)

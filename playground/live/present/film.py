@@ -86,8 +86,8 @@ def write_presentation(
     size = film.sizes.width, film.sizes.height
     with Video(film.path, size, FPS, sum(film.counts)) as video:
         for number, (beat, count) in enumerate(zip(beats, film.counts, strict=True)):
-            place = film.first + number + 1, film.first + len(beats)
-            for picture in _frames(engine, film.lesson, beat, place, count, film.sizes):
+            position = film.first + number + 1, film.first + len(beats)
+            for picture in _frames(engine, film.lesson, beat, position, count, film.sizes):
                 video.add(picture)
             done()
     if video.warning:
@@ -112,18 +112,18 @@ def _seconds(lesson: Lesson, beat: Beat) -> float:
 
 
 def _frames(
-    engine: Engine, lesson: Lesson, beat: Beat, place: tuple[int, int], count: int, sizes: Sizes
+    engine: Engine, lesson: Lesson, beat: Beat, position: tuple[int, int], count: int, sizes: Sizes
 ) -> Iterator[Picture]:
     """Yield the pictures of a beat."""
-    strip, board, block = strip_of(beat, place, sizes), board_of(beat, sizes), _block(lesson, beat)
+    strip, board, block = strip_of(beat, position, sizes), board_of(beat, sizes), _block(lesson, beat)
     if beat.kind == "sweep" and isinstance(block, Slider):
         yield from _sweep(engine, block, count, sizes, strip)
         return
     if isinstance(block, Compare) and beat.still is not None and beat.still.index == BOTH:
         both = [_drawn(engine, scene, sizes) for scene in block.scenes]
-        told = beat.kind == "compare"
+        is_comparison = beat.kind == "compare"
         for number in range(count):
-            share = _wiped(float(number / FPS)) if told else 0.5
+            share = _wiped(float(number / FPS)) if is_comparison else 0.5
             yield _whole(_divided(both, share, sizes), board, strip, sizes)
         return
     whole = _whole(_drawn(engine, _scene(lesson, beat), sizes), board, strip, sizes)
@@ -148,10 +148,10 @@ def _sweep(engine: Engine, block: Slider, count: int, sizes: Sizes, strip: Image
 
 def _values(block: Slider) -> Iterator[Value]:
     """Yield the values of a sweep, and those between two numbers that are not whole."""
-    for one, other in zip(block.values, block.values[1:], strict=False):
-        yield one
-        if isinstance(one, float) and isinstance(other, float):
-            yield from (one + (other - one) * n / _BETWEEN for n in range(1, _BETWEEN))
+    for value, other in zip(block.values, block.values[1:], strict=False):
+        yield value
+        if isinstance(value, float) and isinstance(other, float):
+            yield from (value + (other - value) * n / _BETWEEN for n in range(1, _BETWEEN))
     yield block.values[-1]
 
 
@@ -173,23 +173,23 @@ def _whole(
     picture: Picture, over: Image.Image | None, strip: Image.Image, sizes: Sizes, *, margin: bool = False
 ) -> Picture:
     """Return a picture of the film: what was drawn, what is over it, the strip below."""
-    found = Image.new("RGB", (sizes.width, sizes.height))
-    found.paste(Image.fromarray(picture))
+    image = Image.new("RGB", (sizes.width, sizes.height))
+    image.paste(Image.fromarray(picture))
     if over is not None:
         edge = round(24 * sizes.scale) if margin else 0
-        found.paste(over, (edge, edge), over)
-    found.paste(strip.convert("RGB"), (0, sizes.height - sizes.strip))
-    return np.asarray(found)
+        image.paste(over, (edge, edge), over)
+    image.paste(strip.convert("RGB"), (0, sizes.height - sizes.strip))
+    return np.asarray(image)
 
 
 def _divided(both: list[Picture], share: float, sizes: Sizes) -> Picture:
-    """Return two pictures with a line between them, at a share of the width."""
+    """Return two pictures with a line between them, at a fraction of the width."""
     at = round(share * sizes.width)
-    found = Image.fromarray(both[1].copy())
-    found.paste(Image.fromarray(both[0][:, :at]) if at else Image.new("RGB", (0, 0)))
-    line = ImageDraw.Draw(found)
+    image = Image.fromarray(both[1].copy())
+    image.paste(Image.fromarray(both[0][:, :at]) if at else Image.new("RGB", (0, 0)))
+    line = ImageDraw.Draw(image)
     line.line((at, 0, at, sizes.picture[1]), (255, 255, 255), max(round(3 * sizes.scale), 1))
-    return np.asarray(found)
+    return np.asarray(image)
 
 
 def _wiped(seconds: float) -> float:
@@ -205,9 +205,9 @@ def _scene(lesson: Lesson, beat: Beat) -> Scene:
     block = _block(lesson, beat)
     if isinstance(block, Break) and beat.still.broken:
         return broken(block)
-    found = scene_of(lesson, beat.still)
-    assert found is not None
-    return found
+    scene_shown = scene_of(lesson, beat.still)
+    assert scene_shown is not None
+    return scene_shown
 
 
 def _block(lesson: Lesson, beat: Beat) -> Any:
@@ -216,8 +216,12 @@ def _block(lesson: Lesson, beat: Beat) -> Any:
 
 def _numbers(engine: Engine, film: PresentedFilm) -> dict[str, Number]:
     """Compute the numbers that the film's beats name."""
-    wanted = {name for beat in film.beats for text in texts_of_beat(beat) for name in named_in(text)}
-    return {one.name: measured(engine, one) for one in film.lesson.measures if one.name in wanted}
+    names_needed = {name for beat in film.beats for text in texts_of_beat(beat) for name in named_in(text)}
+    return {
+        measure.name: measured(engine, measure)
+        for measure in film.lesson.measures
+        if measure.name in names_needed
+    }
 
 
 def _with_numbers(beat: Beat, lesson: Lesson, numbers: Mapping[str, Number]) -> Beat:

@@ -133,7 +133,7 @@ def act_on_presentation_keys(stage: Keyed) -> None:
     for digit in filter(str.isdecimal, typed):
         stage.type(digit)
     for key in KEYS:
-        pressed = any(imgui.is_key_pressed(one, repeat=key.repeats) for one in key.keys)
+        pressed = any(imgui.is_key_pressed(key_code, repeat=key.repeats) for key_code in key.keys)
         if pressed or (key.typed and key.typed in typed):
             key.act(stage)
             if not stage.presenter.on:

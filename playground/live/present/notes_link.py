@@ -55,12 +55,12 @@ class NotesLink:
             return
         clock, beat = presenter.clock, self._filled(presenter.beat)
         coming = self._filled(presenter.following) if presenter.following is not None else None
-        key = presenter.on, presenter.at, beat, presenter.blank, clock.running, clock.begun
+        key = presenter.on, presenter.at, beat, presenter.blank, clock.running, clock.started_at
         if key != self._told:
-            from playground.live.present.told import told
+            from playground.live.present.told import notes_message
 
             self._told = key
-            self.notes.tell(told(presenter, beat, coming, language))
+            self.notes.tell(notes_message(presenter, beat, coming, language))
 
     def close(self) -> None:
         """Close the page's port."""

@@ -33,17 +33,17 @@ class Overlays:
             texture.filter = (ctx.LINEAR, ctx.LINEAR)
         self._known[name] = key, texture
 
-    def draw(self, name: str, place: tuple[float, float], density: float) -> None:
+    def draw(self, name: str, position: tuple[float, float], density: float) -> None:
         """Draw an image with its upper left corner at a place, in the window's units."""
         texture = self._known.get(name, (None, None))[1]
         if texture is not None:
-            low = ImVec2(*place)
+            low = ImVec2(*position)
             high = ImVec2(low.x + texture.size[0] / density, low.y + texture.size[1] / density)
             imgui.get_background_draw_list().add_image(imgui.ImTextureRef(texture.glo), low, high)
 
     def release(self) -> None:
         """Release all; they are made again where they are needed."""
-        known, self._known = self._known, {}
-        for _, texture in known.values():
+        cached, self._known = self._known, {}
+        for _, texture in cached.values():
             if texture is not None:
                 texture.release()

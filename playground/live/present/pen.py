@@ -25,13 +25,13 @@ class Pen:
         if not imgui.is_mouse_down(0):
             self.down = False
             return
-        place = _place(area)
+        position = _place(area)
         if imgui.is_mouse_clicked(0):
-            self.down = all(0.0 <= side <= 1.0 for side in place)
+            self.down = all(0.0 <= side <= 1.0 for side in position)
             if self.down:
-                presenter.press(place)
+                presenter.press(position)
         elif self.down:
-            presenter.draw(place)
+            presenter.draw(position)
 
     def draw(self, presenter: Presenter, area: Area, scale: float) -> None:
         """Draw the strokes of the beat, which are as large as the picture in ``area`` makes them."""
@@ -49,10 +49,10 @@ class Pen:
 
     def draw_spot(self, scale: float) -> None:
         """Draw the spot at the mouse."""
-        place, paint = imgui.get_mouse_pos(), imgui.get_foreground_draw_list()
+        position, paint = imgui.get_mouse_pos(), imgui.get_foreground_draw_list()
         for radius, alpha in ((30.0, 0x30), (20.0, 0x60), (12.0, 0xFF)):
-            paint.add_circle_filled(place, radius * scale, (_SPOT & 0x00FFFFFF) | alpha << 24)
-        paint.add_circle_filled(place, 5 * scale, 0xFFE0E0FF)
+            paint.add_circle_filled(position, radius * scale, (_SPOT & 0x00FFFFFF) | alpha << 24)
+        paint.add_circle_filled(position, 5 * scale, 0xFFE0E0FF)
 
 
 def _place(area: Area) -> Point:

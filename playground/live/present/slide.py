@@ -28,7 +28,7 @@ from playground.live.present.typeset import (
 )
 from playground.memo import INTERFACE
 
-LEAST = 28.0
+MIN_LETTER_HEIGHT = 28.0
 """The smallest letters, on a screen of 1080 lines [pixels]."""
 
 _TALL, _WIDE = 1080.0, 1920.0
@@ -77,17 +77,17 @@ class Gauge:
     chosen: bool = False
 
 
-def strip_of(beat: Beat, place: tuple[int, int], sizes: Sizes) -> Image.Image:
-    """Return the strip of a beat, (width, strip) pixels, opaque; ``place``: which of how many, from 1."""
+def strip_of(beat: Beat, position: tuple[int, int], sizes: Sizes) -> Image.Image:
+    """Return the strip of a beat, (width, strip) pixels, opaque; ``position``: which of how many, from 1."""
     image = Image.new("RGBA", (sizes.width, sizes.strip), (*_GROUND, 255))
     draw, scale = ImageDraw.Draw(image), sizes.scale
     side = _SIDE * scale
     draw.rectangle((0, 0, sizes.width, max(3 * scale, 1)), (*FIELD, 255))
-    done = place[0] / max(place[1], 1)
+    done = position[0] / max(position[1], 1)
     draw.rectangle((0, 0, sizes.width * done, max(3 * scale, 1)), (*ACCENT, 255))
-    bold, small = Face("bold", LEAST * scale), Face("text", LEAST * scale)
+    bold, small = Face("bold", MIN_LETTER_HEIGHT * scale), Face("text", MIN_LETTER_HEIGHT * scale)
     baseline = (_ABOVE + 26) * scale
-    counter = f"{place[0]} / {place[1]}"
+    counter = f"{position[0]} / {position[1]}"
     right = sizes.width - side - small.width(counter)
     paint_text(draw, counter, (right, baseline), small, DIM)
     x = side
@@ -109,7 +109,7 @@ def body_of(beat: Beat, sizes: Sizes) -> Laid | None:
     words = f"# {beat.heading}\n\n{beat.shown}" if beat.kind == "title" else beat.shown
     if not words:
         return None
-    return fitted(words, (_TEXT * scale, LEAST * scale), body_room(sizes))
+    return fitted(words, (_TEXT * scale, MIN_LETTER_HEIGHT * scale), body_room(sizes))
 
 
 def body_room(sizes: Sizes) -> tuple[float, float]:
@@ -149,11 +149,11 @@ def board_text(beat: Beat, sizes: Sizes) -> Laid:
             mark = f"**{letter}  {choice}  ✓**" if number == beat.right else f"{letter}  {choice}"
         words += f"\n\n{mark}"
     scale = sizes.scale
-    return fitted(words, (_TITLE * scale, LEAST * scale), _board_room(sizes))
+    return fitted(words, (_TITLE * scale, MIN_LETTER_HEIGHT * scale), _board_room(sizes))
 
 
 def code_size(beat: Beat, sizes: Sizes) -> float:
-    """Return the size of a beat's lines of code [pixels], as large as they fit; maybe below ``LEAST``."""
+    """Return a code beat's letter height [pixels], as large as fits; maybe below ``MIN_LETTER_HEIGHT``."""
     scale = sizes.scale
     wide, high = _board_room(sizes)
     lines = beat.code.split("\n")
@@ -170,7 +170,7 @@ def gauges_of(gauges: Sequence[Gauge], sizes: Sizes) -> Image.Image | None:
     if not gauges:
         return None
     scale = sizes.scale
-    face, bold = Face("text", LEAST * scale), Face("bold", LEAST * scale)
+    face, bold = Face("text", MIN_LETTER_HEIGHT * scale), Face("bold", MIN_LETTER_HEIGHT * scale)
     line, pad, bar = 50 * scale, 16 * scale, 220 * scale
     texts = [f"{gauge.name}  {gauge.value}" for gauge in gauges]
     wide = max(map(face.width, texts)) + bar + 4 * pad + bold.width("0")
@@ -196,7 +196,7 @@ def plate_of(text: str, sizes: Sizes) -> Image.Image | None:
     if not text:
         return None
     scale = sizes.scale
-    face, pad = Face("text", LEAST * scale), 14 * scale
+    face, pad = Face("text", MIN_LETTER_HEIGHT * scale), 14 * scale
     image = Image.new("RGBA", (round(face.width(text) + 2 * pad), round(52 * scale)), (*_GROUND, 232))
     paint_text(ImageDraw.Draw(image), text, (pad, 36 * scale), face, WARM)
     return image
@@ -209,7 +209,10 @@ def help_of(rows: tuple[tuple[str, str], ...], sizes: Sizes) -> Image.Image:
     draw, scale = ImageDraw.Draw(image), sizes.scale
     wide, high = sizes.picture
     line = min(high / (len(rows) + 1.5), 54 * scale)
-    face, bold = Face("text", min(LEAST * scale, line * 0.72)), Face("bold", min(LEAST * scale, line * 0.72))
+    face, bold = (
+        Face("text", min(MIN_LETTER_HEIGHT * scale, line * 0.72)),
+        Face("bold", min(MIN_LETTER_HEIGHT * scale, line * 0.72)),
+    )
     column = max(bold.width(keys) for keys, _ in rows) + 40 * scale
     whole = column + max(face.width(meaning) for _, meaning in rows)
     left, top = max((wide - whole) / 2, 20 * scale), (high - line * len(rows)) / 2
@@ -245,7 +248,7 @@ def _plate(image: Image.Image, text: str, sizes: Sizes, side: float, largest: fl
     """Write a name or a formula at the picture's lower edge: left at 0, in the middle at ½, right at 1."""
     scale, (wide, high) = sizes.scale, sizes.picture
     room = wide * (0.9 if side == 0.5 else 0.45)
-    laid = fitted(text, (largest * scale, LEAST * scale), (room, high * 0.6))
+    laid = fitted(text, (largest * scale, MIN_LETTER_HEIGHT * scale), (room, high * 0.6))
     pad = (14 if side != 0.5 else 30) * scale
     box_wide, box_high = laid.width + 2 * pad, laid.height + pad
     left = 24 * scale + side * (wide - 48 * scale - box_wide)

@@ -19,7 +19,7 @@ from playground.live.present.keys import act_on_presentation_keys, help_rows
 from playground.live.present.notes_link import NotesLink
 from playground.live.present.overlays import Overlays
 from playground.live.present.pen import Pen
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.lesson.presented_pictures import PresentedPictures, Row
 from playground.workbench.lesson.presenter import Presenter
 from playground.workbench.lesson.reader import Reader
@@ -43,7 +43,7 @@ class Presenting:
 class Stage:
     """The presentation of one window; ``wake`` ends the window's sleep, from any thread."""
 
-    def __init__(self, bench: Bench, reader: Reader, wake: Callable[[], None]) -> None:
+    def __init__(self, bench: Workbench, reader: Reader, wake: Callable[[], None]) -> None:
         self.bench, self.reader = bench, reader
         self.pictures = PresentedPictures(reader)
         self.presenter: Presenter = Presenter(self._show, self._left, bench.notices.now)
@@ -195,9 +195,9 @@ class Stage:
 
         presenter, ctx, overlays = self.presenter, self.bench.session.engine.ctx, self._overlays
         beat = self._filled(presenter.beat)
-        place = presenter.at + 1, len(presenter.beats)
-        if not overlays.knows("strip", (ctx, beat, place, sizes)):
-            overlays.put("strip", (ctx, beat, place, sizes), strip_of(beat, place, sizes), ctx)
+        position = presenter.at + 1, len(presenter.beats)
+        if not overlays.knows("strip", (ctx, beat, position, sizes)):
+            overlays.put("strip", (ctx, beat, position, sizes), strip_of(beat, position, sizes), ctx)
             overlays.put("board", None, board_of(beat, sizes), ctx)
         gauges = tuple(
             Gauge(n + 1, row.title, row.text, row.share, n == presenter.slider) for n, row in enumerate(rows)
@@ -207,7 +207,7 @@ class Stage:
         if presenter.helps and not overlays.knows("help", (ctx, sizes)):
             rows_of_help = help_rows(self.reader.language)
             overlays.put("help", (ctx, sizes), help_of(rows_of_help, sizes), ctx)
-        prepares = self._say("prepares") if presenter.at == 0 and self.reader.numbers.wanted else ""
+        prepares = self._say("prepares") if presenter.at == 0 and self.reader.numbers.pending else ""
         says = f"→ {presenter.typed}" if presenter.typed else presenter.notice or prepares
         if not overlays.knows("typed", (ctx, says, sizes)):
             overlays.put("typed", (ctx, says, sizes), plate_of(says, sizes), ctx)
@@ -300,5 +300,5 @@ class Stage:
             beat, self._due = self._due, None
             self.pictures.show(beat)
 
-    def _say(self, key: str, *given: object) -> str:
-        return labels_of(self.reader.language)[key].format(*given)
+    def _say(self, key: str, *arguments: object) -> str:
+        return labels_of(self.reader.language)[key].format(*arguments)

@@ -1,4 +1,4 @@
-"""What the page of notes is told of a beat, as JSON holds it; texts as HTML."""
+"""What the page of notes is notified of a beat, as JSON holds it; texts as HTML."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from playground.workbench.lesson.presenter import Presenter
 _LABELS = ("notes", "following", "over", "pause", "go_on", "reset", "back", "next", "black", "lost")
 
 
-def told(presenter: Presenter, beat: Beat, following: Beat | None, language: str) -> dict[str, Any]:
+def notes_message(presenter: Presenter, beat: Beat, following: Beat | None, language: str) -> dict[str, Any]:
     """Return what is on, with the beat's and the next one's texts; numbers are in them already."""
     clock, labels = presenter.clock, labels_of(language)
     return {
@@ -35,7 +35,7 @@ def told(presenter: Presenter, beat: Beat, following: Beat | None, language: str
 
 
 def html_of(beat: Beat) -> str:
-    """Return all that is told of a beat, and what stands over its picture, as HTML."""
+    """Return all that is notified of a beat, and what stands over its picture, as HTML."""
     parts = []
     if beat.choices and beat.board:
         parts.append(_html(beat.board))

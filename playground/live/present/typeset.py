@@ -9,7 +9,7 @@ from PIL import Image, ImageDraw
 from playground.lessons.model import Markdown
 from playground.live.lesson.formulas import set_formula
 from playground.live.lesson.line_breaking import Extent, Line, Placed, broken
-from playground.live.lesson.markdown_runs import Part, Run, Runs, parts_of, written
+from playground.live.lesson.markdown_runs import Run, Runs, TextBlock, parts_of, written
 from playground.live.present.faces import Face
 from playground.memo import INTERFACE
 
@@ -52,8 +52,8 @@ class Laid:
                 wide, high, rgb = piece.box
                 draw.rounded_rectangle((left, top, left + wide, top + high), high / 6, (*rgb, 255))
             elif piece.line is not None:
-                for placed in piece.line.placed:
-                    _paint_run(image, draw, placed, left, top + piece.line.ascent, piece)
+                for placed_run in piece.line.runs:
+                    _paint_run(image, draw, placed_run, left, top + piece.line.ascent, piece)
 
 
 @INTERFACE.cached(weight=16)
@@ -77,9 +77,9 @@ def fitted(words: Markdown, sizes: tuple[float, float], room: tuple[float, float
     step = max((largest - least) / 8, 0.25)
     size = largest
     while True:
-        found = laid_out(words, round(size, 2), room[0], ink)
-        if (found.height <= room[1] and found.width <= room[0] + 1) or size <= least:
-            return found
+        texts = laid_out(words, round(size, 2), room[0], ink)
+        if (texts.height <= room[1] and texts.width <= room[0] + 1) or size <= least:
+            return texts
         size = max(size - step, least)
 
 
@@ -89,7 +89,7 @@ class _Setter:
         self.y = 0.0
         self.pieces: list[_Piece] = []
 
-    def add(self, part: Part) -> None:
+    def add(self, part: TextBlock) -> None:
         """Add a part below those before."""
         indent = part.indent * _INDENT * self.size
         if part.kind == "rule":
@@ -115,16 +115,16 @@ class _Setter:
             self.pieces.append(_Piece(left, self.y, line, self.size, self.ink))
             self.y += line.ascent + line.descent
 
-    def _table(self, part: Part) -> None:
+    def _table(self, part: TextBlock) -> None:
         gap, count = _CELL * self.size, max(map(len, part.rows), default=0)
-        wanted = [0.0] * count
+        target = [0.0] * count
         for row in part.rows:
             for column, cell in enumerate(row):
                 widths = [line.width for line in broken(cell, 1e6, self.extent)]
-                wanted[column] = max([wanted[column], *widths])
+                target[column] = max([target[column], *widths])
         room = self.width - gap * max(count - 1, 0)
-        shrink = min(room / max(sum(wanted), 1.0), 1.0)
-        widths = [wide * shrink for wide in wanted]
+        shrink = min(room / max(sum(target), 1.0), 1.0)
+        widths = [wide * shrink for wide in target]
         for number, row in enumerate(part.rows):
             x, bottom = 0.0, self.y
             for column, cell in enumerate(row):
@@ -144,9 +144,9 @@ class _Setter:
     def extent(self, run: Run) -> Extent:
         """Return how much room a run takes."""
         if run.formula:
-            found = _formula(run, self.size, self.ink)
-            if found is not None:
-                picture, baseline = found
+            formula = _formula(run, self.size, self.ink)
+            if formula is not None:
+                picture, baseline = formula
                 return Extent(picture.width, baseline, picture.height - baseline)
         face = Face(_style(run), self.size)
         pad = 2 * _pad(self.size) if run.code and not run.alone and run.text.strip() else 0.0
@@ -154,14 +154,19 @@ class _Setter:
 
 
 def _paint_run(
-    image: Image.Image, draw: ImageDraw.ImageDraw, placed: Placed, x: float, baseline: float, piece: _Piece
+    image: Image.Image,
+    draw: ImageDraw.ImageDraw,
+    placed_run: Placed,
+    x: float,
+    baseline: float,
+    piece: _Piece,
 ) -> None:
-    run, extent, size = placed.run, placed.extent, piece.face_size
-    left = x + placed.x
+    run, extent, size = placed_run.run, placed_run.extent, piece.face_size
+    left = x + placed_run.x
     if run.formula:
-        found = _formula(run, size, piece.ink)
-        if found is not None:
-            image.alpha_composite(found[0], (max(round(left), 0), max(round(baseline - found[1]), 0)))
+        formula = _formula(run, size, piece.ink)
+        if formula is not None:
+            image.alpha_composite(formula[0], (max(round(left), 0), max(round(baseline - formula[1]), 0)))
             return
     text = written(run.text)
     if run.code and not run.alone and text.strip():
@@ -172,10 +177,10 @@ def _paint_run(
 
 
 def paint_text(
-    draw: ImageDraw.ImageDraw, text: str, place: tuple[float, float], face: Face, ink: Rgb
+    draw: ImageDraw.ImageDraw, text: str, position: tuple[float, float], face: Face, ink: Rgb
 ) -> None:
     """Write one line of text from a place on its baseline [pixels]."""
-    x, baseline = place
+    x, baseline = position
     for font, part in face.pieces(text):
         draw.text((x, baseline), part, (*ink, 255), font, anchor="ls")
         x += font.getlength(part)
@@ -184,8 +189,12 @@ def paint_text(
 @INTERFACE.cached()
 def _formula_of(latex: str, size: int, ink: Rgb, display: bool) -> tuple[Image.Image, float] | None:
     red, green, blue = ink
-    found = set_formula(latex, size, 255 << 24 | blue << 16 | green << 8 | red, display=display)
-    return None if found is None else (Image.fromarray(found.pixels, "RGBA"), float(found.baseline))
+    typeset_formula = set_formula(latex, size, 255 << 24 | blue << 16 | green << 8 | red, display=display)
+    return (
+        None
+        if typeset_formula is None
+        else (Image.fromarray(typeset_formula.pixels, "RGBA"), float(typeset_formula.baseline))
+    )
 
 
 def _formula(run: Run, size: float, ink: Rgb) -> tuple[Image.Image, float] | None:

@@ -141,8 +141,8 @@ def dialect_of(text: str) -> Dialect | None:
     def live(dialect: Dialect) -> str:
         return live_code(text, WEBGL_2 if dialect.is_webgl else {})
 
-    found = next((d for d in DIALECTS if d.sign(text, live(d))), None)
-    return found or next((d for d in DIALECTS if d.sign(text, code_of(text))), None)
+    dialect = next((d for d in DIALECTS if d.sign(text, live(d))), None)
+    return dialect or next((d for d in DIALECTS if d.sign(text, code_of(text))), None)
 
 
 def is_export(path: Path) -> bool:
@@ -170,9 +170,9 @@ def read_foreign(
     from playground.shader.dialects.passes import graph_of_shaders
 
     key = (read_foreign, path, root, dialect)
-    known: tuple[Graph | None, Files] | None = FILES.get(key) if not instead else None
-    if known is not None and known[1].hold():
-        return known[0]
+    cached: tuple[Graph | None, Files] | None = FILES.get(key) if not instead else None
+    if cached is not None and cached[1].hold():
+        return cached[0]
     files = Files(path, root, instead or {}, named=bool(dialect))
     text = files.text()
     chosen = next((d for d in DIALECTS if d.name == dialect), None) if dialect else dialect_of(text)

@@ -72,8 +72,8 @@ class Rewritten:
 
 def version_of(source: SourceText) -> int:
     """Return the desktop version that a text asks for, 0 where it asks for none or for one of OpenGL ES."""
-    found = next(filter(None, (_VERSION.match(line.code) for line in source.lines)), None)
-    return int(found.group(1)) if found and found.group(2) != "es" and found.group(1) != "100" else 0
+    match = next(filter(None, (_VERSION.match(line.code) for line in source.lines)), None)
+    return int(match.group(1)) if match and match.group(2) != "es" and match.group(1) != "100" else 0
 
 
 def rewritten(source: SourceText, *, is_vertex: bool = False, declared: Collection[str] = ()) -> Rewritten:
@@ -102,8 +102,8 @@ def rewritten(source: SourceText, *, is_vertex: bool = False, declared: Collecti
             if _PRAGMA.match(code) or _EXTENSION.match(code) or (_VERSION.match(code) and not is_modern):
                 lines.append(replace(line, code=""))
                 continue
-        new = rename.sub(lambda found: _renamed(found, names, own), code) if rename else code
-        new = _OLD.sub(lambda found: _new(found, data=data, is_vertex=is_vertex), new)
+        new = rename.sub(lambda match: _renamed(match, names, own), code) if rename else code
+        new = _OLD.sub(lambda match: _new(match, data=data, is_vertex=is_vertex), new)
         lines.append(line if new == code else replace(line, code=new))
     prelude = [*extensions, *(f"in {declared};" for declared in inputs)]
     if data:
@@ -114,11 +114,11 @@ def rewritten(source: SourceText, *, is_vertex: bool = False, declared: Collecti
     return Rewritten(made, tuple(prelude), names)
 
 
-def _new(found: re.Match[str], *, data: bool, is_vertex: bool = False) -> str:
+def _new(match: re.Match[str], *, data: bool, is_vertex: bool = False) -> str:
     """Return what replaces an old word, as long as it."""
-    old = found.group()
-    if found.group("lookup"):
-        new = f"texture{found.group('way') or ''}{found.group('level') or ''}"
+    old = match.group()
+    if match.group("lookup"):
+        new = f"texture{match.group('way') or ''}{match.group('level') or ''}"
     elif old == "gl_FragColor":
         new = f"{_DATA}[0]" if data else _COLOUR
     elif old == "varying" and is_vertex:
@@ -128,31 +128,31 @@ def _new(found: re.Match[str], *, data: bool, is_vertex: bool = False) -> str:
             old, ("in",)
         )[0]
     # In a definition, blanks before the bracket would make another macro of it.
-    return new if _DIRECTIVE.match(found.string) else new.ljust(len(old))
+    return new if _DIRECTIVE.match(match.string) else new.ljust(len(old))
 
 
-def _renamed(found: re.Match[str], names: Mapping[str, str], own: Collection[str]) -> str:
+def _renamed(match: re.Match[str], names: Mapping[str, str], own: Collection[str]) -> str:
     """Return the new name, but of GLSL's own function where it is called or a macro stands for it."""
-    name, after = found.group(), found.string[found.end() :].strip()
-    is_call = after.startswith("(") or (not after and _DIRECTIVE.match(found.string))
+    name, after = match.group(), match.string[match.end() :].strip()
+    is_call = after.startswith("(") or (not after and _DIRECTIVE.match(match.string))
     return name if name in _FUNCTIONS and is_call and name not in own else names[name]
 
 
 def _clashing(source: SourceText, declared: Collection[str]) -> dict[str, str]:
     """Return the author's names that GLSL 3.30 has taken, each with a free one."""
     code = source.code
-    found = sorted(source.names & _NEVER_NAMES)
-    found += [name for name in declared if name in _SINCE_TAKEN or name in _FUNCTIONS]
-    found += [name for name in sorted(source.names & _SINCE_TAKEN) if _declares(code, name)]
-    found += [name for name in _FUNCTIONS if name in source.names and _declares(code, name, variable=True)]
-    found += sorted(_own_functions(source).difference(found))
-    return _free(found, source)
+    clashes = sorted(source.names & _NEVER_NAMES)
+    clashes += [name for name in declared if name in _SINCE_TAKEN or name in _FUNCTIONS]
+    clashes += [name for name in sorted(source.names & _SINCE_TAKEN) if _declares(code, name)]
+    clashes += [name for name in _FUNCTIONS if name in source.names and _declares(code, name, variable=True)]
+    clashes += sorted(_own_functions(source).difference(clashes))
+    return _free(clashes, source)
 
 
-def _free(found: Iterable[str], source: SourceText) -> dict[str, str]:
+def _free(declarations: Iterable[str], source: SourceText) -> dict[str, str]:
     """Return names that are taken, each with a free one."""
     names: dict[str, str] = {}
-    for name in dict.fromkeys(found):
+    for name in dict.fromkeys(declarations):
         new = f"{name}_"
         while new in source.names:
             new += "1"
@@ -163,13 +163,13 @@ def _free(found: Iterable[str], source: SourceText) -> dict[str, str]:
 def _own_functions(source: SourceText) -> set[str]:
     """Return the functions of a text that would hide what its older lookups are rewritten as."""
     code = source.code
-    looked_up = {_new(found, data=False).rstrip() for found in _OLD.finditer(code) if found.group("lookup")}
+    looked_up = {_new(match, data=False).rstrip() for match in _OLD.finditer(code) if match.group("lookup")}
     return {name for name in looked_up & source.names if _declares(code, name)}
 
 
 def _lookups_of_its_own(source: SourceText) -> list[str]:
     """Return the older lookups that a text defines as functions: their calls are those of its own."""
-    words = dict.fromkeys(found.group() for found in _OLD.finditer(source.code) if found.group("lookup"))
+    words = dict.fromkeys(match.group() for match in _OLD.finditer(source.code) if match.group("lookup"))
     typed = r"\b(?!return\b|else\b)[A-Za-z_]\w*\s+"
     return [word for word in words if re.search(rf"{typed}{word}{_SAMPLER_FIRST}", source.code)]
 

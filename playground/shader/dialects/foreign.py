@@ -74,7 +74,7 @@ class Rules:
 
 
 @dataclass(frozen=True)
-class Channel:
+class ShaderChannel:
     """What one sampler of a shader reads: a target, or a technique of ``glsl/``; neither: black."""
 
     target: str = ""  # of the same file: its latest write in this frame, else that of the frame before
@@ -82,17 +82,17 @@ class Channel:
     values: tuple[tuple[str, Value], ...] = ()  # of the technique
     size: tuple[str, str] = STAND_IN_SIZE  # [texels] likewise, expressions
     sampling: Sampling = SAMPLING
-    unfed: str = ""  # what is drawn instead, where the technique is a stand-in: the end of a sentence
+    unfed: str = ""  # what is drawn instead, where the technique is a stand-in: the end of a message
 
 
-def stand_in(kind: str, number: int, unfed: str) -> Channel:
+def stand_in(kind: str, number: int, unfed: str) -> ShaderChannel:
     """Return a channel that a stand-in feeds; ``kind`` is a key of ``STAND_INS``."""
     size = SIZES.get(STAND_INS[kind]) or SIZES_OF_SHAPES.get(kind, STAND_IN_SIZE)
     values: tuple[tuple[str, Value], ...] = () if kind in _ALIKE else (("number", number),)
     if kind in _STRENGTHS:
         values = (*values, ("strength", _STRENGTHS[kind]))
     sampling = _SAMPLINGS.get(kind, SAMPLING)
-    return Channel(use=STAND_INS[kind], values=values, size=size, sampling=sampling, unfed=unfed)
+    return ShaderChannel(use=STAND_INS[kind], values=values, size=size, sampling=sampling, unfed=unfed)
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,9 @@ class Shader:
     text: Rewritten
     rules: Rules
     target: str = ""  # what others read its picture as; of two that write one, the later counts
-    channels: Mapping[str, Channel] = field(default_factory=dict)  # by sampler; others go by the rules
+    channels: Mapping[str, ShaderChannel] = field(
+        default_factory=dict
+    )  # by sampler; others depend on the rules
     parameters: tuple[Parameter, ...] = ()  # besides the uniforms that the text declares
     size: tuple[str, str] | None = None  # expressions; None: the size of the picture
     format: str = "rgba8"
@@ -132,7 +134,7 @@ class Made:
 _COMMENTED_FILE = re.compile(r"^\s*([^\s\"'<>|*?]+\.(?:png|jpe?g|webp|tiff?))\b", re.IGNORECASE)
 _PICTURE = re.compile(r"\buniform\b.*\bu_tex\d+\s*;")
 _COUNT = re.compile(r"\[\s*(\d{1,9})\s*\]")
-_MOST_ELEMENTS = 16  # of an array of samplers: what a driver of OpenGL 3.3 may be limited to
+_MAX_SAMPLERS = 16  # of an array of samplers: what a driver of OpenGL 3.3 may be limited to
 _MODEL = "MODEL_"
 _PACKS = 420  # the version of GLSL that has all of these
 _PACKING = frozenset(f"{way}{kind}2x16" for way in ("pack", "unpack") for kind in ("Half", "Snorm", "Unorm"))
@@ -142,7 +144,7 @@ _STANDS_IN = "a stand-in is drawn; a sketch may wire an image to it"
 _SOUNDS = "a made-up sound stands in; a sketch may wire foreign/sound to it"
 _BANDS = "a made-up sound stands in"
 _NO_PANEL = "it is 0, as no panel shows its type"
-_NO_IMAGE = "it reads 0, and nothing keeps what is written"
+_NO_IMAGE = "it reads 0, and nothing stores what it writes"
 _IMAGE = re.compile(r"[iu]?image(?:[123]D|Cube|Buffer|2DRect)\w*")
 
 
@@ -157,8 +159,8 @@ class ForeignKernel:
         self.declared = uniforms(self.code)
         self.vertex = shader.vertex.source if shader.vertex else None
         own = {**(uniforms(self.vertex.code) if self.vertex else {}), **self.declared}
-        given = shader.rules.names.items()
-        kept = {n: one for n, one in given if n not in own or takes(own[n].type, one[0])}
+        names = shader.rules.names.items()
+        kept = {n: declared for n, declared in names if n not in own or takes(own[n].type, declared[0])}
         self.types = {n: own[n].type for n in kept if n in own}
         self.rules = replace(shader.rules, names=kept)
         self.missing = self._missing(self.source)
@@ -166,18 +168,18 @@ class ForeignKernel:
         self.commented = {(line.file, line.number): file for line, file in commented_files(self.source)}
         self.pictures = dict(self._pictures())
         self.shapes = {n: SHAPES[kind] for n, kind in self._kinds() if kind in SHAPES and self._is_read(n)}
-        self.shapes |= {element: SHAPES[one.type] for element, one in self._elements()}
+        self.shapes |= {element: SHAPES[declared.type] for element, declared in self._elements()}
         self.channels = {name: self._channel(name) for name in self.shapes}
 
     def kernel(self, name: str) -> ForeignShader:
         """Return the kernel as a technique called ``name``."""
         shader, parameters = self.shader, self._parameters()
         own = {p.name for p in parameters}
-        given = {*self.declared, *self.missing, *self.vertex_missing}
+        names = {*self.declared, *self.missing, *self.vertex_missing}
         meanings = [
             (n, f"identity{self.types.get(n, kind)[-1]}" if kind.startswith("mat") else meaning)
             for n, (kind, meaning) in self.rules.names.items()
-            if n in given and n not in own and "sampler" not in kind
+            if n in names and n not in own and "sampler" not in kind
         ]
         vertex: VertexShader | tuple[tuple[str, str], ...]
         if shader.vertex and self.vertex:
@@ -203,7 +205,7 @@ class ForeignKernel:
             tool_names=(
                 *((n, m) for n, (_, m) in self.rules.names.items()),
                 *((p.name, "") for p in shader.parameters),
-                *((one.rstrip(";").split()[-1], "") for one in self.rules.varyings),
+                *((varying.rstrip(";").split()[-1], "") for varying in self.rules.varyings),
             ),
             usual=tuple(meanings),
             unfed=tuple(self._unfed(own)),
@@ -218,16 +220,20 @@ class ForeignKernel:
 
     def _varyings(self) -> list[str]:
         """Return the dialect's own that a text reads and does not declare itself."""
-        known = [declaration for declaration, _ in vertex_outputs(self.code)]
-        return [one for one in self.rules.varyings if one.replace("in ", "out ", 1) not in known]
+        declarations = [declaration for declaration, _ in vertex_outputs(self.code)]
+        return [
+            varying
+            for varying in self.rules.varyings
+            if varying.replace("in ", "out ", 1) not in declarations
+        ]
 
-    def _channel(self, sampler: str) -> Channel:
+    def _channel(self, sampler: str) -> ShaderChannel:
         """Return what feeds a sampler; by the rules where the shader does not say."""
         if sampler in self.shader.channels:
             return self.shader.channels[sampler]
         kind, _, number = self.rules.names.get(sampler, ("", ""))[1].partition(" ")
         if kind not in STAND_INS:
-            return Channel()
+            return ShaderChannel()
         file = self._commented(self.declared[sampler]) if sampler in self.declared else ""
         unfed = f"there is no file '{file}', so a stand-in is drawn" if file else _STANDS_IN
         unfed = _SOUNDS if kind in ("sound", "fft") else unfed
@@ -256,33 +262,33 @@ class ForeignKernel:
         for name in dict.fromkeys([*self.missing, *self.vertex_missing]):
             yield name, self.rules.names[name][0]
         files = {p.name for p in self.shader.parameters}
-        for one in self.declared.values():
+        for declared in self.declared.values():
             if (
-                not one.is_array
-                and one.name not in self.pictures
-                and one.name not in files
-                and not self._line(one).comment.startswith("!")
+                not declared.is_array
+                and declared.name not in self.pictures
+                and declared.name not in files
+                and not self._line(declared).comment.startswith("!")
             ):
-                yield one.name, one.type
+                yield declared.name, declared.type
 
     def _elements(self) -> Iterator[tuple[str, Declared]]:
         """Yield what a wire feeds of the arrays of samplers: ``maps_0`` is the first of ``maps[4]``."""
-        for one in self.declared.values():
-            count = _COUNT.search(one.written) if one.is_array and one.type in SHAPES else None
-            if count and self._is_read(one.name):
+        for declared in self.declared.values():
+            count = _COUNT.search(declared.written) if declared.is_array and declared.type in SHAPES else None
+            if count and self._is_read(declared.name):
                 elements = (
-                    f"{one.name}{ELEMENT}{number}" for number in range(min(int(count[1]), _MOST_ELEMENTS))
+                    f"{declared.name}{ELEMENT}{number}" for number in range(min(int(count[1]), _MAX_SAMPLERS))
                 )
-                yield from ((element, one) for element in elements if element not in self.source.names)
+                yield from ((element, declared) for element in elements if element not in self.source.names)
 
-    def _line(self, one: Declared) -> Line:
-        return self.source.lines[one.line]
+    def _line(self, declared: Declared) -> Line:
+        return self.source.lines[declared.line]
 
     # ── parameters ───────────────────────────────────────────────────────────
 
     def _parameters(self) -> tuple[Parameter, ...]:
         """Return the text's own uniforms; one that no panel can show keeps what the text gives it."""
-        found: dict[str, Parameter] = {}
+        parameters: dict[str, Parameter] = {}
         for declared in self.declared.values():
             line = self._line(declared)
             line = replace(line, code=f"uniform {declared.type} {' '.join(declared.written.split())};")
@@ -294,17 +300,17 @@ class ForeignKernel:
                 if annotated:
                     raise
                 continue
-            found |= {one.name: one for one in some}
-        found |= {one.name: one for one in self.shader.parameters}
-        return (*found.values(), *self.pictures.values())
+            parameters |= {parameter.name: parameter for parameter in some}
+        parameters |= {parameter.name: parameter for parameter in self.shader.parameters}
+        return (*parameters.values(), *self.pictures.values())
 
     def _pictures(self) -> Iterator[tuple[str, Parameter]]:
         """Yield the samplers whose comment names a file that is there."""
-        for one in self.declared.values():
-            line, file = self._line(one), self._commented(one)
+        for declared in self.declared.values():
+            line, file = self._line(declared), self._commented(declared)
             if file and self._is_there(file, line):
                 made = Parameter(
-                    one.name,
+                    declared.name,
                     "sampler2D",
                     file,
                     Widget("file"),
@@ -312,32 +318,34 @@ class ForeignKernel:
                     file=line.file,
                     line=line.number,
                 )
-                yield one.name, made
+                yield declared.name, made
 
-    def _commented(self, one: Declared) -> str:
-        line = self._line(one)
-        return self.commented.get((line.file, line.number), "") if one.type == "sampler2D" else ""
+    def _commented(self, declared: Declared) -> str:
+        line = self._line(declared)
+        return self.commented.get((line.file, line.number), "") if declared.type == "sampler2D" else ""
 
     def _is_there(self, file: str, line: Line) -> bool:
-        there = any(is_file(place) for place in places_of(file, line, self.root))
+        there = any(is_file(path) for path in places_of(file, line, self.root))
         return there and not leads_outside(file, self.root, line.file)
 
     def _unfed(self, fed: Collection[str]) -> Iterator[tuple[str, str]]:
         """Yield what the picture lacks where nothing is wired: each name, and what is drawn instead."""
-        arrays = {one.name for _, one in self._elements()}
-        own = {one.name: one.type for one in self.declared.values() if one.name not in arrays}
+        arrays = {declared.name for _, declared in self._elements()}
+        own = {
+            declared.name: declared.type for declared in self.declared.values() if declared.name not in arrays
+        }
         for element, _ in self._elements():
             yield element, "it reads black"
         own |= {name: self.rules.names[name][0] for name in (*self.missing, *self.vertex_missing)}
         for name, kind in own.items():
-            channel = self.channels.get(name, Channel())
+            channel = self.channels.get(name, ShaderChannel())
             if channel.unfed:
                 yield name, channel.unfed
             elif self.rules.names.get(name, ("", ""))[1] == "bands":
                 yield name, _BANDS
             elif name in fed or name in self.shader.channels:  # where that is black, the tool has it so
                 continue
-            elif "sampler" in kind and channel == Channel() and self._is_read(name):
+            elif "sampler" in kind and channel == ShaderChannel() and self._is_read(name):
                 yield name, "it reads black"
         yield from self._unset(fed)
         if any(line.startswith(_SHADOW_MAP) for line in self.rules.defines(self.source)):
@@ -348,10 +356,10 @@ class ForeignKernel:
 
     def _unset(self, fed: Collection[str]) -> Iterator[tuple[str, str]]:
         """Yield the uniforms that are no parameters, are given by nobody and have no value in the text."""
-        for one in self.declared.values():
-            is_given = one.name in fed or one.name in self.rules.names or "sampler" in one.type
-            if not is_given and "=" not in one.written and self._is_read(one.name):
-                yield one.name, _NO_IMAGE if _IMAGE.match(one.type) else _NO_PANEL
+        for declared in self.declared.values():
+            is_given = declared.name in fed or declared.name in self.rules.names or "sampler" in declared.type
+            if not is_given and "=" not in declared.written and self._is_read(declared.name):
+                yield declared.name, _NO_IMAGE if _IMAGE.match(declared.type) else _NO_PANEL
 
 
 def unfed_warnings(kernel: ForeignShader, wired: Collection[str]) -> tuple[Diagnostic, ...]:
@@ -361,14 +369,14 @@ def unfed_warnings(kernel: ForeignShader, wired: Collection[str]) -> tuple[Diagn
         if name not in wired:
             names.setdefault(instead, []).append(name)
     lines = kernel.source.lines
-    found = []
+    diagnostics = []
     for instead, some in names.items():
         first = re.compile(
             rf"\b(?:{'|'.join([*some, *(name.rpartition(ELEMENT)[0] or name for name in some)])})\b"
         )
         line = next((line for line in lines if first.search(line.code)), lines[0])
-        found.append(line.diagnostic(f"nothing feeds {', '.join(some)}: {instead}", severity="warning"))
-    return tuple(found)
+        diagnostics.append(line.diagnostic(f"nothing feeds {', '.join(some)}: {instead}", severity="warning"))
+    return tuple(diagnostics)
 
 
 def commented_files(source: SourceText) -> Iterator[tuple[Line, str]]:
@@ -385,7 +393,7 @@ def places_of(file: str, line: Line, root: Path) -> tuple[Path, ...]:
 
 def _packing(source: SourceText) -> tuple[str, ...]:
     """Return what packs numbers for a text that does so in a version of GLSL without such functions."""
-    own = {found[1] for found in map(_DEFINED.match, source.code.splitlines()) if found}
+    own = {match[1] for match in map(_DEFINED.match, source.code.splitlines()) if match}
     packs = [n for n in (_PACKING & source.names) - own if not is_declared(source.code, n, anywhere=False)]
     return ("packing.glsl",) if packs and version_of(source) < _PACKS else ()
 
@@ -416,10 +424,10 @@ class Files:
     def text(self, path: Path | None = None) -> str:
         """Return a file's text, by default the shader's; raise ``SketchError`` where it cannot be read."""
         path = path or self.path
-        found = self.instead.get(str(path))
-        found = read_text(path, any_encoding=True) if found is None else found
-        self._texts[str(path)] = found
-        return found
+        entry = self.instead.get(str(path))
+        entry = read_text(path, any_encoding=True) if entry is None else entry
+        self._texts[str(path)] = entry
+        return entry
 
     def check_inside(self, path: Path) -> None:
         """Raise ``SketchError`` for a file that leads out of the root; a user may name such a shader."""
@@ -433,8 +441,8 @@ class Files:
         source, origin = read_source_and_origin(path or self.path, (self.root,), self.instead, foreign=True)
         self._origins.append(origin)
         for line, file in commented_files(source):
-            for place in places_of(file, line, self.root):
-                self.is_there(place)
+            for position in places_of(file, line, self.root):
+                self.is_there(position)
         return source
 
     def part(self, label: str, text: str) -> SourceText:
@@ -447,26 +455,26 @@ class Files:
         return SourceText(str(self.path), source.lines, files)
 
     def note(self, message: str, line: int = 0, path: Path | None = None) -> None:
-        """Note what a user is told of the file, at one of its lines."""
+        """Note what a user is notified of the file, at one of its lines."""
         self._note(Diagnostic(message, shown(path or self.path), line, severity="warning"))
 
     def note_at(self, line: Line, message: str) -> None:
-        """Note what a user is told of a line."""
+        """Note what a user is notified of a line."""
         self._note(line.diagnostic(message, severity="warning"))
 
-    def _note(self, found: Diagnostic) -> None:
-        if found not in self.notes:
-            self.notes.append(found)
+    def _note(self, diagnostic: Diagnostic) -> None:
+        if diagnostic not in self.notes:
+            self.notes.append(diagnostic)
 
-    def is_there(self, place: Path) -> bool:
+    def is_there(self, path: Path) -> bool:
         """Return whether there is a file at a place, in the folder or not."""
-        found = self._there[place] = str(place) in self.instead or is_file(place)
-        return found
+        exists = self._there[path] = str(path) in self.instead or is_file(path)
+        return exists
 
     def hold(self) -> bool:
         """Return whether all that was read and looked for is still the same."""
         return (
-            all(is_file(place) == there for place, there in self._there.items())
+            all(is_file(path) == there for path, there in self._there.items())
             and Origin(tuple(self._texts.items()), ()).holds()
             and all(origin.holds() for origin in self._origins)
         )

@@ -23,9 +23,9 @@ from playground.paths import shown
 from playground.shader import expressions
 from playground.shader.declarations import is_declared, uniforms
 from playground.shader.dialects.es import Rewritten, rewritten
-from playground.shader.dialects.foreign import STAND_INS, Channel, Files, Names, Rules, Shader, stand_in
+from playground.shader.dialects.foreign import STAND_INS, Files, Names, Rules, Shader, ShaderChannel, stand_in
 from playground.shader.dialects.passes import VIEW
-from playground.shader.expressions import LONGEST, ExpressionError
+from playground.shader.expressions import MAX_LETTERS, ExpressionError
 from playground.shader.header import with_axes
 from playground.shader.parameter import Parameter, Sampling, Widget, spell
 from playground.shader.preprocessor import live_source
@@ -53,42 +53,42 @@ class Header:
     def line_of(self, word: str, after: str = "") -> Line:
         """Return the line of a key or a text in quotes, the first ``after`` another; else the first line."""
         start = self.text.find(f'"{after}"') if after else 0
-        place = self.text.find(f'"{word}"', max(start, 0))
-        return self.lines[self.text.count("\n", 0, place)] if place >= 0 else self.lines[0]
+        index = self.text.find(f'"{word}"', max(start, 0))
+        return self.lines[self.text.count("\n", 0, index)] if index >= 0 else self.lines[0]
 
     def line_of_input(self, name: str) -> Line:
         """Return the line that names an input, an image or a buffer."""
-        found = re.search(rf'"(?:NAME|TARGET)"\s*:\s*"{re.escape(name)}"', self.text)
-        return self.lines[self.text.count("\n", 0, found.end())] if found else self.line_of(name)
+        match = re.search(rf'"(?:NAME|TARGET)"\s*:\s*"{re.escape(name)}"', self.text)
+        return self.lines[self.text.count("\n", 0, match.end())] if match else self.line_of(name)
 
     def items(self, key: str, *, named: bool = False) -> list[dict[str, Any]]:
         """Return the objects that a key lists; where they may be ``named``, of an object its values too.
 
         Raises ``ShaderError`` for anything else.
         """
-        found = self.table.get(key) or []
-        if named and isinstance(found, Mapping):
-            found = [
+        entries = self.table.get(key) or []
+        if named and isinstance(entries, Mapping):
+            entries = [
                 {"NAME": name, **(value if isinstance(value, Mapping) else {"PATH": value})}
-                for name, value in found.items()
+                for name, value in entries.items()
             ]
-        if named and isinstance(found, list):
-            found = [{"NAME": one} if isinstance(one, str) else one for one in found]
-        if not isinstance(found, list) or not all(isinstance(one, Mapping) for one in found):
+        if named and isinstance(entries, list):
+            entries = [{"NAME": entry} if isinstance(entry, str) else entry for entry in entries]
+        if not isinstance(entries, list) or not all(isinstance(entry, Mapping) for entry in entries):
             raise self.line_of(key).error(f"{key}: expected a list of objects, as [{{…}}, {{…}}]")
-        return [dict(one) for one in found]
+        return [dict(entry) for entry in entries]
 
     def text_of(self, key: str) -> str:
         """Return a text of the header on one line, "" where there is none."""
-        found = self.table.get(key)
-        return " ".join(found.split()) if isinstance(found, str) else ""
+        text_value = self.table.get(key)
+        return " ".join(text_value.split()) if isinstance(text_value, str) else ""
 
-    def unknown(self, found: Collection[str], known: Collection[str], what: str) -> Diagnostic | None:
-        """Return a warning of keys that mean nothing, with the nearest of the ``known`` ones."""
-        strange = [key for key in found if key not in known]
+    def unknown(self, keys: Collection[str], valid: Collection[str], what: str) -> Diagnostic | None:
+        """Return a warning of keys that mean nothing, with the nearest of the ``valid`` ones."""
+        strange = [key for key in keys if key not in valid]
         if not strange:
             return None
-        hint = nearest(strange[0].upper(), known)
+        hint = nearest(strange[0].upper(), valid)
         hint = hint if "did you mean" in hint else ""
         message = f"{', '.join(strange)} of {what} means nothing here, and is left out{hint}"
         return self.line_of(strange[0]).diagnostic(message, severity="warning")
@@ -123,26 +123,26 @@ def is_true(value: object) -> bool:
 def number_of(value: object) -> float | None:
     """Return a number, also one that is written as a text; None for anything else."""
     try:
-        found = float(value) if isinstance(value, int | float | str) else None
+        number = float(value) if isinstance(value, int | float | str) else None
     except (ValueError, OverflowError):
         return None
-    return found if found is not None and abs(found) < 1e30 else None
+    return number if number is not None and abs(number) < 1e30 else None
 
 
 def numbers_of(value: object, count: int) -> tuple[float, ...] | None:
     """Return so many numbers of a list; None for anything else."""
     if not isinstance(value, list) or len(value) < count:
         return None
-    found = [number_of(one) for one in value[:count]]
-    return tuple(one for one in found if one is not None) if None not in found else None
+    numbers = [number_of(element) for element in value[:count]]
+    return tuple(element for element in numbers if element is not None) if None not in numbers else None
 
 
-def _strict(found: re.Match[str]) -> str:
+def _strict(match: re.Match[str]) -> str:
     """Return what JSON has in place of what authors write, in the same columns where there is room."""
-    word = found.group()
-    if found.group("comment") or found.group("comma"):
+    word = match.group()
+    if match.group("comment") or match.group("comma"):
         return " " * len(word)
-    if not found.group("number"):
+    if not match.group("number"):
         return word
     sign, rest = ("-" if word[0] == "-" else ""), word.lstrip("+-")
     whole, point, after = rest.partition(".")
@@ -160,8 +160,8 @@ def _wrong(error: ValueError | RecursionError, text: str, lines: tuple[Line, ...
         return ShaderError(f"the description holds {message}", file=shown(line.file), line=line.number)
     at = min(error.pos, len(text.rstrip()))
     line = lines[text.count("\n", 0, at)]
-    found = text[at : at + 1]
-    what = f"found '{found}'" if found.strip() else "it ends here"
+    character = text[at : at + 1]
+    what = f"found '{character}'" if character.strip() else "it ends here"
     message = f"the description is not JSON: {error.msg[:1].lower()}{error.msg[1:]}, {what}"
     return line.error(message, at - (text.rfind("\n", 0, at) + 1) + 1)
 
@@ -186,24 +186,24 @@ def translated(text: object, names: Mapping[str, str]) -> str:
     """Return a size in texels, at least 1, as an expression.
 
     ``names`` are the inputs that are numbers, with what they are called here. Raises
-    ``ExpressionError`` in a sentence for what cannot be one.
+    ``ExpressionError`` in a message for what cannot be one.
     """
     if isinstance(text, bool) or not isinstance(text, str | int | float):
         raise ExpressionError(f'{text!r} is no size; expected a number or a text, as "$WIDTH / 2"')
     written = str(text).strip()
 
-    def name(found: re.Match[str]) -> str:
-        word = found.group(1)
+    def name(match: re.Match[str]) -> str:
+        word = match.group(1)
         if word not in _SIZES and (word not in names or names[word] in _ELSEWHERE):
-            valid = [f"${known}" for known in (*_SIZES, *names)]
+            valid = [f"${size}" for size in (*_SIZES, *names)]
             raise ExpressionError(
-                f"'{written}' names '{found.group()}', which is not known here{nearest(found.group(), valid)}"
+                f"'{written}' names '{match.group()}', which is not known here{nearest(match.group(), valid)}"
             )
         return _SIZES.get(word) or names[word]
 
     plain = _NAME.sub(name, written)
-    if len(plain) > LONGEST:
-        raise ExpressionError(f"{spell(written)} is longer than {LONGEST} characters")
+    if len(plain) > MAX_LETTERS:
+        raise ExpressionError(f"{spell(written)} is longer than {MAX_LETTERS} characters")
     try:
         tree = ast.parse(plain, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -265,7 +265,7 @@ class Inputs:
     """What a header declares for its text."""
 
     parameters: list[Parameter] = field(default_factory=list)
-    channels: dict[str, Channel] = field(default_factory=dict)  # by sampler
+    channels: dict[str, ShaderChannel] = field(default_factory=dict)  # by sampler
     cubes: list[str] = field(default_factory=list)  # those of the channels that are cube maps
     notes: list[Diagnostic] = field(default_factory=list)
 
@@ -281,25 +281,27 @@ def read_inputs(header: Header, files: Files, taken: Callable[[str], str]) -> In
     ``taken`` returns what a name is already, "" for a free one. Raises ``ShaderError`` for an input
     without a name of its own, or of a type that there is not.
     """
-    found = Inputs()
-    for one in header.items("INPUTS"):
-        name = _name(one, header, "an input", found, taken)
+    inputs = Inputs()
+    for entry in header.items("INPUTS"):
+        name = _name(entry, header, "an input", inputs, taken)
         line = header.line_of_input(name)
-        kind = _BY_LOWER.get(str(one.get("TYPE", "")).lower(), "")
+        kind = _BY_LOWER.get(str(entry.get("TYPE", "")).lower(), "")
         if not kind:
-            given = str(one.get("TYPE", ""))
-            message = f"input '{name}' is left out: ISF has no type '{given}'{nearest(given, _READERS)}"
-            found.notes.append(line.diagnostic(message, severity="warning"))
+            type_name = str(entry.get("TYPE", ""))
+            message = (
+                f"input '{name}' is left out: ISF has no type '{type_name}'{nearest(type_name, _READERS)}"
+            )
+            inputs.notes.append(line.diagnostic(message, severity="warning"))
             continue
-        note = header.unknown(one.keys(), _IN_KEYS, f"input '{name}'")
-        found.notes += [note] if note else []
-        _READERS[kind](_Declared(name, one, line), found)
-    for one in header.items("IMPORTED", named=True):
-        name = _name(one, header, "an imported image", found, taken)
-        note = header.unknown(one.keys(), _IMPORT_KEYS, f"image '{name}'")
-        found.notes += [note] if note else []
-        _import(name, one, header.line_of_input(name), files, found)
-    return found
+        note = header.unknown(entry.keys(), _IN_KEYS, f"input '{name}'")
+        inputs.notes += [note] if note else []
+        _READERS[kind](_Declared(name, entry, line), inputs)
+    for entry in header.items("IMPORTED", named=True):
+        name = _name(entry, header, "an imported image", inputs, taken)
+        note = header.unknown(entry.keys(), _IMPORT_KEYS, f"image '{name}'")
+        inputs.notes += [note] if note else []
+        _import(name, entry, header.line_of_input(name), files, inputs)
+    return inputs
 
 
 @dataclass(frozen=True)
@@ -311,51 +313,51 @@ class _Declared:
     def parameter(self, kind: str, default: Any, widget: Widget) -> Parameter:
         """Return a parameter of a GLSL type."""
         label, tooltip = (str(self.table.get(key) or "").strip() for key in ("LABEL", "DESCRIPTION"))
-        found = Parameter(self.name, kind, default, widget, label=label, tooltip=tooltip)
-        return replace(found, file=self.line.file, line=self.line.number)
+        parameter = Parameter(self.name, kind, default, widget, label=label, tooltip=tooltip)
+        return replace(parameter, file=self.line.file, line=self.line.number)
 
     def number(self, key: str) -> float | None:
         return number_of(self.table.get(key))
 
 
 def _name(
-    one: Mapping[str, Any], header: Header, what: str, found: Inputs, taken: Callable[[str], str]
+    entry: Mapping[str, Any], header: Header, what: str, settings: Inputs, taken: Callable[[str], str]
 ) -> str:
-    name = one.get("NAME")
+    name = entry.get("NAME")
     if not isinstance(name, str) or not name.isidentifier() or not name.isascii():
         line = header.line_of_input(name) if isinstance(name, str) else header.line_of("INPUTS")
         raise line.error(f'{what} needs a NAME that GLSL can use, as "NAME": "level"; found {name!r}')
-    already = "two inputs have this name" if name in found.names else taken(name)
+    already = "two inputs have this name" if name in settings.names else taken(name)
     if already:
         raise header.line_of_input(name).error(f"{what} cannot be called '{name}': {already}")
     return name
 
 
-def _float(declared: _Declared, found: Inputs) -> None:
+def _float(declared: _Declared, inputs: Inputs) -> None:
     low, high, default = (declared.number(key) for key in ("MIN", "MAX", "DEFAULT"))
     least, most = _ordered(0.0 if low is None else low, 1.0 if high is None else high)
     value = (least + most) / 2 if default is None else default
     if low is None and high is None:  # the author bounds nothing
         least, most = min(least, value), max(most, value)
     widget = Widget("slider", least, most)
-    found.parameters.append(declared.parameter("float", min(max(value, least), most), widget))
+    inputs.parameters.append(declared.parameter("float", min(max(value, least), most), widget))
 
 
-def _bool(declared: _Declared, found: Inputs) -> None:
+def _bool(declared: _Declared, inputs: Inputs) -> None:
     default = is_true(declared.table["DEFAULT"]) if "DEFAULT" in declared.table else True
-    found.parameters.append(declared.parameter("bool", default, Widget("checkbox")))
+    inputs.parameters.append(declared.parameter("bool", default, Widget("checkbox")))
 
 
-def _event(declared: _Declared, found: Inputs) -> None:
-    found.parameters.append(declared.parameter("bool", False, Widget("button")))
+def _event(declared: _Declared, inputs: Inputs) -> None:
+    inputs.parameters.append(declared.parameter("bool", False, Widget("button")))
 
 
-def _long(declared: _Declared, found: Inputs) -> None:
+def _long(declared: _Declared, inputs: Inputs) -> None:
     values, labels = (declared.table.get(key) or [] for key in ("VALUES", "LABELS"))
     default = declared.number("DEFAULT")
     if not isinstance(values, list) or not isinstance(labels, list):
         raise declared.line.error(f"input '{declared.name}': expected lists as its VALUES and LABELS")
-    numbers = [number_of(one) for one in values] or [float(n) for n in range(len(labels))]
+    numbers = [number_of(element) for element in values] or [float(n) for n in range(len(labels))]
     if None in numbers:
         raise declared.line.error(f"input '{declared.name}': expected whole numbers as its VALUES")
     whole = [_whole(n) for n in numbers if n is not None]
@@ -366,7 +368,7 @@ def _long(declared: _Declared, found: Inputs) -> None:
             least, most = _ordered(_whole(low), _whole(high))
             widget = Widget("slider", least, most)
             default = min(max(least if default is None else default, least), most)
-        found.parameters.append(declared.parameter("int", _whole(default or 0.0), widget))
+        inputs.parameters.append(declared.parameter("int", _whole(default or 0.0), widget))
         return
     names: list[str] = []
     for at, number in enumerate(whole):
@@ -378,10 +380,10 @@ def _long(declared: _Declared, found: Inputs) -> None:
         names.append(label)
     chosen = whole.index(int(default)) if default is not None and default in whole else 0
     menu = Widget("menu", choices=tuple(names), values=tuple(whole))
-    found.parameters.append(declared.parameter("int", chosen, menu))
+    inputs.parameters.append(declared.parameter("int", chosen, menu))
 
 
-def _point(declared: _Declared, found: Inputs) -> None:
+def _point(declared: _Declared, point_picked: Inputs) -> None:
     low, high, default = (numbers_of(declared.table.get(key), 2) for key in ("MIN", "MAX", "DEFAULT"))
     least, most = low or (0.0, 0.0), high or (1.0, 1.0)
     axes = [_ordered(a, b) for a, b in zip(least, most, strict=True)]
@@ -389,34 +391,34 @@ def _point(declared: _Declared, found: Inputs) -> None:
     if low is None and high is None:  # the author bounds nothing: places in pixels, as in version 1
         axes = [(min(a, n), max(b, n)) for (a, b), n in zip(axes, value, strict=True)]
     held = tuple(min(max(n, a), b) for n, (a, b) in zip(value, axes, strict=True))
-    found.parameters.append(declared.parameter("vec2", held, with_axes("point", axes)))
+    point_picked.parameters.append(declared.parameter("vec2", held, with_axes("point", axes)))
 
 
-def _color(declared: _Declared, found: Inputs) -> None:
-    given = declared.table.get("DEFAULT")
-    value = numbers_of(given, 4) or (*(numbers_of(given, 3) or (0.0, 0.0, 0.0)), 1.0)
-    found.parameters.append(declared.parameter("vec4", value, Widget("colour", raw=True)))
+def _color(declared: _Declared, inputs: Inputs) -> None:
+    table = declared.table.get("DEFAULT")
+    value = numbers_of(table, 4) or (*(numbers_of(table, 3) or (0.0, 0.0, 0.0)), 1.0)
+    inputs.parameters.append(declared.parameter("vec4", value, Widget("colour", raw=True)))
 
 
-def _image(declared: _Declared, found: Inputs) -> None:
-    number = sum(channel.use == STAND_INS["picture"] for channel in found.channels.values())
-    found.channels[declared.name] = _card(number)
+def _image(declared: _Declared, inputs: Inputs) -> None:
+    number = sum(channel.use == STAND_INS["picture"] for channel in inputs.channels.values())
+    inputs.channels[declared.name] = _card(number)
 
 
-def _cube(declared: _Declared, found: Inputs) -> None:
-    _add_cube(declared.name, found, "a sky stands in for it")
+def _cube(declared: _Declared, inputs: Inputs) -> None:
+    _add_cube(declared.name, inputs, "a sky stands in for it")
 
 
-def _add_cube(name: str, found: Inputs, unfed: str) -> None:
-    found.cubes.append(name)
-    found.channels[name] = replace(stand_in("sky", 0, unfed), sampling=IMAGE)
+def _add_cube(name: str, inputs: Inputs, unfed: str) -> None:
+    inputs.cubes.append(name)
+    inputs.channels[name] = replace(stand_in("sky", 0, unfed), sampling=IMAGE)
 
 
 def _sound(content: int) -> Callable[[_Declared, Inputs], None]:
-    def read(declared: _Declared, found: Inputs) -> None:
+    def read(declared: _Declared, inputs: Inputs) -> None:
         most = declared.number("MAX")
         bins = _BINS if most is None else min(max(_whole(most), 1), 4096)
-        found.channels[declared.name] = Channel(
+        inputs.channels[declared.name] = ShaderChannel(
             use="foreign/spectrum",
             values=(("content", content),),
             size=(str(bins), "1"),
@@ -427,7 +429,7 @@ def _sound(content: int) -> Callable[[_Declared, Inputs], None]:
     return read
 
 
-def _card(number: int, unfed: str = "a stand-in is drawn; a sketch may wire an image to it") -> Channel:
+def _card(number: int, unfed: str = "a stand-in is drawn; a sketch may wire an image to it") -> ShaderChannel:
     """Return the channel of an image that nothing feeds."""
     return replace(stand_in("picture", number, unfed), size=OF_PICTURE, sampling=IMAGE)
 
@@ -449,53 +451,53 @@ _READERS: dict[str, Callable[[_Declared, Inputs], None]] = {
 _BY_LOWER = {kind.lower(): kind for kind in _READERS} | {"int": "long"}
 
 
-def _import(name: str, one: Mapping[str, Any], line: Line, files: Files, found: Inputs) -> None:
-    path = one.get("PATH")
-    if str(one.get("TYPE", "")).lower() == "cube" or isinstance(path, list):
-        _import_cube(name, path, line, files, found)
+def _import(name: str, entry: Mapping[str, Any], line: Line, files: Files, inputs: Inputs) -> None:
+    path = entry.get("PATH")
+    if str(entry.get("TYPE", "")).lower() == "cube" or isinstance(path, list):
+        _import_cube(name, path, line, files, inputs)
         return
     path = _path(name, path, line)
     if wrong := _lacking(path, line, files):
-        found.channels[name] = _card(0, f"{wrong}, so a stand-in is drawn")
+        inputs.channels[name] = _card(0, f"{wrong}, so a stand-in is drawn")
         return
-    declared = _Declared(name, one, line)
+    declared = _Declared(name, entry, line)
     parameter = declared.parameter("sampler2D", path, Widget("file"))
-    found.parameters.append(replace(parameter, sampling=IMAGE))
+    inputs.parameters.append(replace(parameter, sampling=IMAGE))
 
 
-def _import_cube(name: str, given: object, line: Line, files: Files, found: Inputs) -> None:
+def _import_cube(name: str, paths_given: object, line: Line, files: Files, inputs: Inputs) -> None:
     """Add a cube map of six images: right, left, top, bottom, front, back."""
-    if not isinstance(given, list) or len(given) != len(_FACES):
+    if not isinstance(paths_given, list) or len(paths_given) != len(_FACES):
         message = f"cube '{name}' needs the paths of six images, +X, -X, +Y, -Y, +Z and -Z, as its PATH"
         raise line.error(message)
-    paths = [_path(name, one, line) for one in given]
+    paths = [_path(name, path, line) for path in paths_given]
     wrong = next(filter(None, (_lacking(path, line, files) for path in paths)), "")
     if wrong:
-        _add_cube(name, found, f"{wrong}, so a sky stands in")
+        _add_cube(name, inputs, f"{wrong}, so a sky stands in")
         return
-    found.cubes.append(name)
+    inputs.cubes.append(name)
     # What fills the pass ships, so that a path has to be that from the sketch's folder.
     values = tuple(zip(_FACES, (_from_root(path, line, files) for path in paths), strict=True))
-    found.channels[name] = Channel(use="foreign/cube_faces", values=values, size=_CUBE, sampling=IMAGE)
+    inputs.channels[name] = ShaderChannel(use="foreign/cube_faces", values=values, size=_CUBE, sampling=IMAGE)
 
 
-def _path(name: str, given: object, line: Line) -> str:
-    if not isinstance(given, str) or not given.strip() or "\0" in given:
+def _path(name: str, value: object, line: Line) -> str:
+    if not isinstance(value, str) or not value.strip() or "\0" in value:
         raise line.error(f'image \'{name}\' needs the path of its file, as "PATH": "moon.jpg"')
-    return given.strip().replace("\\", "/")
+    return value.strip().replace("\\", "/")
 
 
 def _lacking(path: str, line: Line, files: Files) -> str:
     """Return why there is no image at a path, "" where there is one."""
     if leads_outside(path, files.root, line.file):
         return f"'{path}' lies outside the sketch's folder"
-    there = [files.is_there(place / path) for place in (Path(line.file).parent, files.root)]
+    there = [files.is_there(folder / path) for folder in (Path(line.file).parent, files.root)]
     return "" if any(there) else f"there is no file '{path}'"
 
 
 def _from_root(path: str, line: Line, files: Files) -> str:
-    place = Path(line.file).parent / path
-    return place.resolve().relative_to(files.root.resolve()).as_posix() if files.is_there(place) else path
+    folder = Path(line.file).parent / path
+    return folder.resolve().relative_to(files.root.resolve()).as_posix() if files.is_there(folder) else path
 
 
 def _ordered(low: float, high: float) -> tuple[float, float]:
@@ -528,8 +530,8 @@ _TAKEN = re.compile(
 _PROPERTY = re.compile(r"\b_(\w+)_(imgRect|imgSize|flip)\b")
 _PROPERTIES = {"imgRect": "vec4(0.0, 0.0, IMG_SIZE({0}))", "imgSize": "IMG_SIZE({0})", "flip": "false"}
 _SENTENCE = re.compile(r"(.{3,}?[.!?])(?:\s|$)")
-_LONGEST_TITLE = 72
-_MOST_PASSES = 64
+_MAX_TITLE = 72
+_MAX_PASSES = 64
 _MODES = ("", "ISF", "FRAGMENT", "FRAGMENT_SHADER")
 _KEYS = (
     *("MODE", "ISFVSN", "VSN", "DESCRIPTION", "CREDIT", "CATEGORIES", "INPUTS", "PASSES", "IMPORTED"),
@@ -573,8 +575,8 @@ class _Reader:
         note = self.header.unknown(self.header.table.keys(), _KEYS, "the description")
         self.notes += [note] if note else []
         self.passes = self.header.items("PASSES") or [{}]
-        if len(self.passes) > _MOST_PASSES:
-            message = f"{len(self.passes)} passes are more than the {_MOST_PASSES} that are drawn"
+        if len(self.passes) > _MAX_PASSES:
+            message = f"{len(self.passes)} passes are more than the {_MAX_PASSES} that are drawn"
             raise self.header.line_of("PASSES").error(message)
         self.inputs: Inputs = read_inputs(self.header, files, _taken)
         self.notes += self.inputs.notes
@@ -589,14 +591,14 @@ class _Reader:
         helpers = ("isf_image.glsl", "isf_fragment.glsl"), ("isf_image.glsl", "isf_vertex.glsl")
         rules = Rules("isf", names, varyings=(_COORDINATE,), helpers=helpers[0], vertex_helpers=helpers[1])
         channels = {self._called(name): channel for name, channel in self.inputs.channels.items()}
-        channels |= {self._called(name): Channel(target=name, sampling=IMAGE) for name in self.targets}
+        channels |= {self._called(name): ShaderChannel(target=name, sampling=IMAGE) for name in self.targets}
         parameters = tuple(self._parameters())
         properties = self._properties()
         common = [f"#define _{name}_{what} {_PROPERTIES[what].format(name)}" for name, what in properties]
-        found = []
-        for index, (one, name) in enumerate(zip(self.passes, self._pass_names(), strict=True)):
-            target = self.targets.get(str(one.get("TARGET") or ""))
-            found.append(
+        result = []
+        for index, (pass_table, name) in enumerate(zip(self.passes, self._pass_names(), strict=True)):
+            target = self.targets.get(str(pass_table.get("TARGET") or ""))
+            result.append(
                 Shader(
                     name,
                     self.text,
@@ -604,9 +606,9 @@ class _Reader:
                     target=target.name if target else "",
                     channels=channels,
                     parameters=parameters,
-                    size=self._size(one, target, index),
+                    size=self._size(pass_table, target, index),
                     format="rgba32f"
-                    if is_true(one.get("FLOAT")) or (target and target.is_float)
+                    if is_true(pass_table.get("FLOAT")) or (target and target.is_float)
                     else "rgba8",
                     prelude=(*self._index(index), *common),
                     named=frozenset(name for name, what in properties if what != "flip"),
@@ -616,7 +618,7 @@ class _Reader:
             )
         self.files.notes += dict.fromkeys(self.notes)
         self.files.title = self._title()
-        return found
+        return result
 
     # ── what the description says ────────────────────────────────────────────
 
@@ -625,8 +627,8 @@ class _Reader:
         description, credit = self.header.text_of("DESCRIPTION"), self.header.text_of("CREDIT")
         match = _SENTENCE.match(description)
         title = (match.group(1) if match else description).rstrip(".")
-        title = title if len(title) <= _LONGEST_TITLE else f"{title[: _LONGEST_TITLE - 1]}…"
-        credit = credit if len(credit) <= _LONGEST_TITLE else ""
+        title = title if len(title) <= _MAX_TITLE else f"{title[: _MAX_TITLE - 1]}…"
+        credit = credit if len(credit) <= _MAX_TITLE else ""
         if credit and not credit.lower().startswith(("by ", "created by ")):
             credit = f"by {credit}"
         return f"{title or self.files.path.stem}, {credit}" if credit else title
@@ -634,25 +636,25 @@ class _Reader:
     def _targets(self) -> Iterator[_Target]:
         """Yield the buffers of PASSES, and of version 1's PERSISTENT_BUFFERS."""
         kept = {}
-        for one in self.header.items("PERSISTENT_BUFFERS", named=True):
-            name = self._target_name(one.get("NAME"), "a persistent buffer")
-            kept[name] = one
-            self._note(one, _BUFFER_KEYS, f"buffer '{name}'")
+        for table in self.header.items("PERSISTENT_BUFFERS", named=True):
+            name = self._target_name(table.get("NAME"), "a persistent buffer")
+            kept[name] = table
+            self._note(table, _BUFFER_KEYS, f"buffer '{name}'")
         writers: dict[str, list[Mapping[str, Any]]] = {name: [] for name in kept}
-        for index, one in enumerate(self.passes):
-            self._note(one, _PASS_KEYS, f"pass {index}")
-            if one.get("TARGET"):
+        for index, table in enumerate(self.passes):
+            self._note(table, _PASS_KEYS, f"pass {index}")
+            if table.get("TARGET"):
                 writers.setdefault(
-                    self._target_name(one["TARGET"], f"the target of pass {index}"), []
-                ).append(one)
+                    self._target_name(table["TARGET"], f"the target of pass {index}"), []
+                ).append(table)
         for name, some in writers.items():
-            known = [*some, kept.get(name, {})]
+            tables = [*some, kept.get(name, {})]
             sizes = {
-                key: next((one[key] for one in known if one.get(key) not in (None, "")), None)
+                key: next((table[key] for table in tables if table.get(key) not in (None, "")), None)
                 for key in ("WIDTH", "HEIGHT")
             }
-            keeps = name in kept or any(is_true(one.get("PERSISTENT")) for one in some)
-            yield _Target(name, keeps, any(is_true(one.get("FLOAT")) for one in known), sizes)
+            keeps = name in kept or any(is_true(table.get("PERSISTENT")) for table in some)
+            yield _Target(name, keeps, any(is_true(table.get("FLOAT")) for table in tables), sizes)
 
     def _target_name(self, name: object, what: str) -> str:
         line = self.header.line_of_input(name) if isinstance(name, str) else self.header.line_of("PASSES")
@@ -663,45 +665,49 @@ class _Reader:
             raise line.error(f"{what} cannot be called '{name}': {taken}")
         return name
 
-    def _note(self, found: Mapping[str, Any], known: Sequence[str], what: str) -> None:
-        note = self.header.unknown(found.keys(), known, what)
+    def _note(self, table: Mapping[str, Any], keys: Sequence[str], what: str) -> None:
+        note = self.header.unknown(table.keys(), keys, what)
         self.notes += [note] if note else []
 
-    def _size(self, one: Mapping[str, Any], target: _Target | None, index: int) -> tuple[str, str] | None:
+    def _size(
+        self, pass_table: Mapping[str, Any], target: _Target | None, index: int
+    ) -> tuple[str, str] | None:
         """Return the size of a pass; the last one's is the picture's."""
-        given = {key: one.get(key) or (target.sizes[key] if target else None) for key in ("WIDTH", "HEIGHT")}
-        if not any(given.values()):
+        sides = {
+            key: pass_table.get(key) or (target.sizes[key] if target else None) for key in ("WIDTH", "HEIGHT")
+        }
+        if not any(sides.values()):
             return None
         numbers = {p.name: self._called(p.name) for p in self.inputs.parameters if p.type in _NUMBERS}
-        found = []
+        sizes = []
         for key, default in (("WIDTH", "$WIDTH"), ("HEIGHT", "$HEIGHT")):
             try:
-                found.append(translated(given[key] or default, numbers))
+                sizes.append(translated(sides[key] or default, numbers))
             except ExpressionError as error:
-                after = str(one.get("TARGET") or "PASSES")
+                after = str(pass_table.get("TARGET") or "PASSES")
                 raise self.header.line_of(key, after).error(f"{key} of pass {index}: {error}") from None
         if index == len(self.passes) - 1:
-            if found != [translated("$WIDTH", {}), translated("$HEIGHT", {})]:
+            if sizes != [translated("$WIDTH", {}), translated("$HEIGHT", {})]:
                 line = self.header.line_of(
-                    "WIDTH" if given["WIDTH"] else "HEIGHT", str(one.get("TARGET") or "")
+                    "WIDTH" if sides["WIDTH"] else "HEIGHT", str(pass_table.get("TARGET") or "")
                 )
                 message = f"pass {index} is the last, so it is the picture and has the picture's size"
                 self.notes.append(line.diagnostic(message, severity="warning"))
             return None
-        return found[0], found[1]
+        return sizes[0], sizes[1]
 
     def _pass_names(self) -> list[str]:
         """Return a name for each pass: that of its target where it has one."""
         if len(self.passes) == 1:
             return [VIEW]
-        found: list[str] = []
-        for index, one in enumerate(self.passes):
-            first = name = str(one.get("TARGET") or f"pass_{index}")
+        names: list[str] = []
+        for index, pass_table in enumerate(self.passes):
+            first = name = str(pass_table.get("TARGET") or f"pass_{index}")
             number = 2
-            while name in found or name in self.inputs.names or (name in self.targets and name != first):
+            while name in names or name in self.inputs.names or (name in self.targets and name != first):
                 name, number = f"{first}_{number}", number + 1
-            found.append(name)
-        return found
+            names.append(name)
+        return names
 
     # ── its texts ────────────────────────────────────────────────────────────
 
@@ -722,7 +728,7 @@ class _Reader:
     def _vertex(self) -> Rewritten | None:
         """Return the author's own vertex shader, if there is one beside the file."""
         places = [self.files.path.with_suffix(suffix) for suffix in VERTEX_FILES]
-        there = [place for place in places if self.files.is_there(place)]
+        there = [path for path in places if self.files.is_there(path)]
         if not there:
             return None
         source = live_source(self.files.source(there[0]), {}, unsure=_MACROS, unknown=None)
@@ -737,9 +743,9 @@ class _Reader:
     def _properties(self) -> dict[tuple[str, str], None]:
         """Return what the texts read that an image has besides its texels: image and property."""
         code = self.text.source.code + (self.vertex.source.code if self.vertex else "")
-        known = {*map(self._called, self.inputs.channels), *map(self._called, self.targets)}
-        known |= {p.name for p in self._parameters() if p.type == "sampler2D"}
-        return dict.fromkeys((name, what) for name, what in _PROPERTY.findall(code) if name in known)
+        names = {*map(self._called, self.inputs.channels), *map(self._called, self.targets)}
+        names |= {p.name for p in self._parameters() if p.type == "sampler2D"}
+        return dict.fromkeys((name, what) for name, what in _PROPERTY.findall(code) if name in names)
 
 
 _NUMBERS = ("float", "int", "bool")

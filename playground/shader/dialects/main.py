@@ -17,7 +17,7 @@ from functools import cached_property
 from playground.shader.declarations import uniforms, vertex_outputs
 from playground.shader.dialects import shadertoy
 from playground.shader.dialects.es import Rewritten, rewritten, version_of
-from playground.shader.dialects.foreign import Channel, Files, Made, Names, Rules, Shader
+from playground.shader.dialects.foreign import Files, Made, Names, Rules, Shader, ShaderChannel
 from playground.shader.dialects.passes import VIEW
 from playground.shader.parameter import Sampling
 from playground.shader.preprocessor import WEBGL, Conditions, live_source, macros_of
@@ -64,25 +64,25 @@ class _Pass:
         return tuple(f"{begins}{self.number}" for begins in _SAMPLERS[self.kind])
 
 
-def shaders_of(text: Rewritten, rules: Rules, known: Mapping[str, str]) -> Sequence[Shader | Made]:
+def shaders_of(text: Rewritten, rules: Rules, macros: Mapping[str, str]) -> Sequence[Shader | Made]:
     """Return the passes of a text, the picture last; of a text without any, none.
 
-    ``known`` are macros that a driver would define besides those of the rules.
+    ``macros`` are macros that a driver would define besides those of the rules.
     """
-    return _Viewer(text, rules, known).shaders()
+    return _Viewer(text, rules, macros).shaders()
 
 
 class _Viewer:
     """One text, and which of its lines each pass has."""
 
-    def __init__(self, text: Rewritten, rules: Rules, known: Mapping[str, str]) -> None:
+    def __init__(self, text: Rewritten, rules: Rules, names: Mapping[str, str]) -> None:
         self.text = text
-        self.known = known
+        self.driver_macros = names
         self.rules = rules
         self.conditions = Conditions([line.code for line in text.source.lines])
         before = [line for line in rules.defines(text.source) if not line.endswith("BACKGROUND")]
         self.declared = tuple(line for line in before if not line.startswith("#define"))
-        self.given = macros_of(before)
+        self.given_macros = macros_of(before)
         self._live: dict[tuple[str, ...], tuple[str, ...]] = {}
         self.bare = self.live()
         self.sources: dict[tuple[str, ...], SourceText] = {}
@@ -91,7 +91,7 @@ class _Viewer:
         """Return the lines that there are where some passes' macros are defined."""
         if macros not in self._live:
             self._live[macros] = self.conditions.live(
-                {**self.known, **self.given, **dict.fromkeys(macros, "")}
+                {**self.driver_macros, **self.given_macros, **dict.fromkeys(macros, "")}
             )
         return self._live[macros]
 
@@ -102,33 +102,46 @@ class _Viewer:
     @cached_property
     def passes(self) -> tuple[_Pass, ...]:
         """Those that are drawn before the picture, in order."""
-        found: dict[str, _Pass] = {}
+        passes: dict[str, _Pass] = {}
         for name in sorted(self.conditions.names):
             if (match := _PASS.fullmatch(name)) and self.changes(name):
-                one = _Pass(name, _KINDS.get(match[1] or "", "pyramid"), match[2] or "")
-                found.setdefault(one.name, one)
-        return tuple(sorted(found.values(), key=lambda one: (_ORDER.index(one.kind), int(one.number or 0))))
+                viewer_pass = _Pass(name, _KINDS.get(match[1] or "", "pyramid"), match[2] or "")
+                passes.setdefault(viewer_pass.name, viewer_pass)
+        return tuple(
+            sorted(
+                passes.values(),
+                key=lambda viewer_pass: (_ORDER.index(viewer_pass.kind), int(viewer_pass.number or 0)),
+            )
+        )
 
     def shaders(self) -> list[Shader | Made]:
         """Return all passes, the picture last; none where there is but the picture."""
         post = self.changes("POSTPROCESSING")
         if not self.passes and not post:
             return []
-        found: list[Shader | Made] = []
-        for one in self.passes:
-            size = self._size(one)
-            if one.kind == "pyramid":
-                found += self._pyramid(one, size)
-            elif one.kind == "flood":
-                found += self._flood(one, size)
+        result: list[Shader | Made] = []
+        for viewer_pass in self.passes:
+            size = self._size(viewer_pass)
+            if viewer_pass.kind == "pyramid":
+                result += self._pyramid(viewer_pass, size)
+            elif viewer_pass.kind == "flood":
+                result += self._flood(viewer_pass, size)
             else:
-                found.append(self._shader(one.name, (one.define,), target=one.name, size=size, own=one))
+                result.append(
+                    self._shader(
+                        viewer_pass.name,
+                        (viewer_pass.define,),
+                        target=viewer_pass.name,
+                        size=size,
+                        own=viewer_pass,
+                    )
+                )
         background = ("BACKGROUND",) if self.changes("BACKGROUND") else ()
         if not post:
-            return [*found, self._shader(VIEW, background, format="rgba8")]
-        own = {"u_scene": Channel()}
-        found.append(self._shader(_SCENE, background, target=_SCENE, format="rgba8", channels=own))
-        return [*found, self._shader(VIEW, ("POSTPROCESSING",), format="rgba8")]
+            return [*result, self._shader(VIEW, background, format="rgba8")]
+        own = {"u_scene": ShaderChannel()}
+        result.append(self._shader(_SCENE, background, target=_SCENE, format="rgba8", channels=own))
+        return [*result, self._shader(VIEW, ("POSTPROCESSING",), format="rgba8")]
 
     def _shader(
         self,
@@ -139,18 +152,20 @@ class _Viewer:
         size: Size = None,
         format: str = "rgba32f",
         own: _Pass | None = None,
-        channels: Mapping[str, Channel] | None = None,
+        channels: Mapping[str, ShaderChannel] | None = None,
         names: Names | None = None,
         repeat: str = "",
         feeds: str = "",
     ) -> Shader:
         """Return the text with some macros defined, as a pass; ``own`` is the pass that it is the text of."""
         made = Rewritten(self._source(macros), self.text.prelude)
-        defined = {**self.given, **dict.fromkeys(macros, "")}
+        defined = {**self.given_macros, **dict.fromkeys(macros, "")}
         before = (*(f"#define {n} {v}".rstrip() for n, v in defined.items()), *self.declared)
-        known: Names = {s: ("sampler2D", "none") for one in self.passes for s in one.samplers}
+        samplers: Names = {
+            s: ("sampler2D", "none") for viewer_pass in self.passes for s in viewer_pass.samplers
+        }
         rules = replace(
-            self.rules, names={**self.rules.names, **known, **(names or {})}, defines=lambda source: before
+            self.rules, names={**self.rules.names, **samplers, **(names or {})}, defines=lambda source: before
         )
         return Shader(
             name,
@@ -176,21 +191,21 @@ class _Viewer:
             self.sources[codes] = SourceText(source.path, lines, source.files)
         return self.sources[codes]
 
-    def _buffers(self, own: _Pass | None) -> dict[str, Channel]:
+    def _buffers(self, own: _Pass | None) -> dict[str, ShaderChannel]:
         """Return what reads the scene and the passes; only double buffers and floods read themselves."""
-        found: dict[str, Channel] = {}
+        channels: dict[str, ShaderChannel] = {}
         if self.changes("POSTPROCESSING"):  # before it is drawn, the scene is that of the last frame
-            found["u_scene"] = Channel(target=_SCENE, sampling=_BUFFER)
-        for one in self.passes:
-            sampling = _LEVEL if one.kind == "pyramid" else _BUFFER
-            black = one is own and one.kind in ("buffer", "pyramid")
-            channel = Channel() if black else Channel(target=one.name, sampling=sampling)
-            found |= dict.fromkeys(one.samplers, channel)
-        return found
+            channels["u_scene"] = ShaderChannel(target=_SCENE, sampling=_BUFFER)
+        for viewer_pass in self.passes:
+            sampling = _LEVEL if viewer_pass.kind == "pyramid" else _BUFFER
+            black = viewer_pass is own and viewer_pass.kind in ("buffer", "pyramid")
+            channel = ShaderChannel() if black else ShaderChannel(target=viewer_pass.name, sampling=sampling)
+            channels |= dict.fromkeys(viewer_pass.samplers, channel)
+        return channels
 
-    def _size(self, one: _Pass) -> Size:
+    def _size(self, viewer_pass: _Pass) -> Size:
         """Return the size in the comment behind a sampler's declaration: texels, or shares of the picture."""
-        declared = re.compile(rf"\buniform\b.*\bsampler2D\s+(?:{'|'.join(one.samplers)})\s*;")
+        declared = re.compile(rf"\buniform\b.*\bsampler2D\s+(?:{'|'.join(viewer_pass.samplers)})\s*;")
         for line in self.text.source.lines:
             if declared.search(line.code) and (match := _SIZE.match(line.comment)):
                 if match[1]:
@@ -205,23 +220,29 @@ class _Viewer:
 
     # ── floods ───────────────────────────────────────────────────────────────
 
-    def _flood(self, one: _Pass, size: Size) -> list[Shader | Made]:
+    def _flood(self, viewer_pass: _Pass, size: Size) -> list[Shader | Made]:
         """Return the pass of the seeds, and the rounds of jumps after it."""
-        seeds = f"{one.name}_seeds"
-        first = self._shader(seeds, (one.define,), target=seeds, size=size, own=one)
+        seeds = f"{viewer_pass.name}_seeds"
+        first = self._shader(seeds, (viewer_pass.define,), target=seeds, size=size, own=viewer_pass)
         algorithm = self._algorithm(_FLOODS)
         if not algorithm:
             return [
                 first,
-                Made(one.name, "foreign/jump_flood", {"initial": seeds}, target=one.name, size=size),
+                Made(
+                    viewer_pass.name,
+                    "foreign/jump_flood",
+                    {"initial": seeds},
+                    target=viewer_pass.name,
+                    size=size,
+                ),
             ]
         width, height = size or ("size.x", "size.y")
         rounds = self._shader(
-            one.name,
+            viewer_pass.name,
             algorithm,
-            target=one.name,
+            target=viewer_pass.name,
             size=size,
-            channels={"u_floodSrc": Channel(target=seeds, sampling=_SEED)},
+            channels={"u_floodSrc": ShaderChannel(target=seeds, sampling=_SEED)},
             names={"u_floodIndex": ("int", "iteration"), "u_floodTotal": ("int", "iterations")},
             repeat=f"1 + bits(max({width}, {height}) - 1)",
             feeds="u_floodSrc",
@@ -230,19 +251,19 @@ class _Viewer:
 
     # ── pyramids ─────────────────────────────────────────────────────────────
 
-    def _pyramid(self, one: _Pass, size: Size) -> list[Shader | Made]:
+    def _pyramid(self, viewer_pass: _Pass, size: Size) -> list[Shader | Made]:
         """Return the pass at the foot of a pyramid, its levels down, and those up again.
 
         Of a picture whose shorter side is m there are levels while m is at least 2 ** (level + 2). Of
         the others, those up give what they are given of their own level: nothing runs for them.
         """
         algorithm = self._algorithm(_PYRAMIDS)
-        foot = f"{one.name}_foot"
-        found: list[Shader | Made] = [
-            self._shader(foot, (one.define,), target=foot, size=size, own=one),
+        foot = f"{viewer_pass.name}_foot"
+        pyramid: list[Shader | Made] = [
+            self._shader(foot, (viewer_pass.define,), target=foot, size=size, own=viewer_pass),
         ]
         width, height = size or ("size.x", "size.y")
-        downs = [foot, *(f"{one.name}_down{level}" for level in range(LEVELS))]
+        downs = [foot, *(f"{viewer_pass.name}_down{level}" for level in range(LEVELS))]
 
         def size_of(level: int) -> tuple[str, str]:
             return f"max({width} // {2**level}, 1)", f"max({height} // {2**level}, 1)"
@@ -252,19 +273,19 @@ class _Viewer:
                 use = "foreign/pyramid_up" if repeat else "foreign/pyramid_down"
                 inputs = dict(zip(("level", "coarser") if repeat else ("finer",), reads, strict=False))
                 feeds = "level" if repeat else ""
-                found.append(Made(name, use, inputs, target, size_of(below), repeat, feeds))
+                pyramid.append(Made(name, use, inputs, target, size_of(below), repeat, feeds))
                 return
-            found.append(self._level(name, target, level, reads, size_of(below), repeat, below, algorithm))
+            pyramid.append(self._level(name, target, level, reads, size_of(below), repeat, below, algorithm))
 
         for level in range(LEVELS):
             add(downs[level + 1], downs[level + 1], level, (downs[level], ""), "", level + 1)
         coarser = downs[LEVELS]
         for level in reversed(range(LEVELS)):
-            name = one.name if level == 0 else f"{one.name}_up{level}"
+            name = viewer_pass.name if level == 0 else f"{viewer_pass.name}_up{level}"
             repeat = f"0 + (min({width}, {height}) >= {2 ** (level + 2)})"
             add(name, name, level, (downs[level], coarser), repeat, level)
             coarser = name
-        return found
+        return pyramid
 
     def _level(
         self,
@@ -278,12 +299,12 @@ class _Viewer:
         algorithm: tuple[str, ...],
     ) -> Shader:
         """Return a level by the text's own algorithm; it is ``below`` the foot, as powers of two."""
-        channels: dict[str, Channel] = {}
+        channels: dict[str, ShaderChannel] = {}
         names: dict[str, tuple[str, str]] = {}
         for begins in _SAMPLERS["pyramid"]:
             for number, read in enumerate(reads):
                 sampler = f"{begins}Tex{number}"
-                channels[sampler] = Channel(target=read, sampling=_LEVEL) if read else Channel()
+                channels[sampler] = ShaderChannel(target=read, sampling=_LEVEL) if read else ShaderChannel()
                 names[sampler] = ("sampler2D", "none")
             names[f"{begins}Depth"] = ("int", f"{VALUE}{level}")
             names[f"{begins}Upscaling"] = ("bool", f"{VALUE}{int(bool(repeat))}")
@@ -302,7 +323,7 @@ class _Viewer:
         )
 
 
-_MOST_PICTURES = 10
+_MAX_IMAGES = 10
 _TYPES = {
     "time": "float",
     "resolution": "vec2",
@@ -315,7 +336,7 @@ _MEANINGS = {"mouse": "hover", "frame": "frame_of_time"}
 _MATRICES = (
     "u_modelMatrix u_viewMatrix u_projectionMatrix u_modelViewMatrix u_modelViewProjectionMatrix".split()
 )
-_PICTURES = range(_MOST_PICTURES)
+_PICTURES = range(_MAX_IMAGES)
 _BEFORE = ("backbuffer", "u_backbuffer", "prevFrame", "prevPass", "texPreviousFrame")
 """Samplers that read the picture of the frame before: 8 bits a channel, as the tools have it."""
 
@@ -375,17 +396,17 @@ def _needs_dialect(source: SourceText) -> bool:
 
 def _defines(source: SourceText) -> tuple[str, ...]:
     """Return glslViewer's own macros where its names occur."""
-    found = ["#define GLSLVIEWER 1", "#define PLATFORM_LINUX"]
-    found = found if any(name.startswith("u_") for name in source.names) else []
+    result = ["#define GLSLVIEWER 1", "#define PLATFORM_LINUX"]
+    result = result if any(name.startswith("u_") for name in source.names) else []
     tested = {
         name for line in source.lines if _CONDITION.match(line.code) for name in _NAME.findall(line.code)
     }
     for name, lines in _SHADOW_MAP.items():  # where a text asks for it first, it does without
         if name in source.names and name not in tested:
-            found += [
+            result += [
                 line for line in lines if line.startswith("#") or "u_lightShadowMap" not in source.names
             ]
-    return (*found, "#define BACKGROUND") if "BACKGROUND" in source.names else tuple(found)
+    return (*result, "#define BACKGROUND") if "BACKGROUND" in source.names else tuple(result)
 
 
 _CONDITION, _NAME = re.compile(r"\s*#\s*(?:el)?if"), re.compile(r"[A-Za-z_]\w*")
@@ -402,14 +423,14 @@ def shaders(files: Files) -> Sequence[Shader | Made]:
     """Return the passes of a file, none where it lacks nothing that a plain shader is given."""
     whole = files.source()
     version = version_of(whole)
-    known = {} if version else WEBGL
+    existing = {} if version else WEBGL
     rules = replace(RULES, names=shadertoy.with_sampler_types(NAMES, whole))
-    if found := shaders_of(rewritten(whole), rules, known):
-        return found
-    macros = {**known, **macros_of(_defines(whole))}
+    if shaders_of_text := shaders_of(rewritten(whole), rules, existing):
+        return shaders_of_text
+    macros = {**existing, **macros_of(_defines(whole))}
     source = live_source(whole, macros, unknown=None if version else False)
     if not files.named and version >= 330 and not _needs_dialect(source):
         return ()
     text = rewritten(source)
-    before = dict.fromkeys(_BEFORE, Channel(target=VIEW, sampling=Sampling("linear", "clamp")))
+    before = dict.fromkeys(_BEFORE, ShaderChannel(target=VIEW, sampling=Sampling("linear", "clamp")))
     return (Shader(VIEW, text, rules, target=VIEW, channels=before, keeps=True),)

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from playground.errors import Diagnostic, ShaderError, nearest
 from playground.paths import GLSL, shown
-from playground.shader.dialects.foreign import Channel, ForeignKernel, Made, Shader
+from playground.shader.dialects.foreign import ForeignKernel, Made, Shader, ShaderChannel
 from playground.shader.kernel import Export, ForeignShader, Graph, Kernel, PassSpec, Technique
 
 Read = Callable[[str, Path, Path], Technique]
@@ -23,7 +23,7 @@ Read = Callable[[str, Path, Path], Technique]
 
 VIEW = "view"
 _BEFORE = "before_"  # begins the input that has a target's content of the frame before
-_MOST_NAMED = 3  # passes in one message
+_MAX_NAMED = 3  # passes in one message
 _FRAMES = "frames"
 
 
@@ -45,11 +45,11 @@ class _Passes:
         self.shaders = shaders
         self.read = read  # returns what feeds a channel, and what makes a pass
         self.techniques: list[Technique] = []
-        self.channels: list[Mapping[str, Channel]] = []
+        self.channels: list[Mapping[str, ShaderChannel]] = []
         for shader in shaders:
             if isinstance(shader, Made):
                 self.techniques.append(read(shader.use, GLSL, GLSL))
-                self.channels.append({name: Channel(target) for name, target in shader.reads.items()})
+                self.channels.append({name: ShaderChannel(target) for name, target in shader.reads.items()})
             else:
                 foreign = ForeignKernel(shader, root)
                 self.techniques.append(foreign.kernel(name))
@@ -74,29 +74,33 @@ class _Passes:
         for target, paths in self.state.items():
             for path in paths:
                 reads[path.partition(".")[0]].add(last[target])
-        reached, found = set[str](), {self.shaders[-1].name}
-        while found:
-            reached |= found
-            found = set().union(*[reads[name] for name in found]) - reached
+        reached, read_names = set[str](), {self.shaders[-1].name}
+        while read_names:
+            reached |= read_names
+            read_names = set().union(*[reads[name] for name in read_names]) - reached
         left = [shader.name for shader in self.shaders if shader.name not in reached]
         if left:
-            more = f" and {len(left) - _MOST_NAMED} more" if len(left) > _MOST_NAMED else ""
-            names = f"{', '.join(left[:_MOST_NAMED])}{more}"
+            more = f" and {len(left) - _MAX_NAMED} more" if len(left) > _MAX_NAMED else ""
+            names = f"{', '.join(left[:_MAX_NAMED])}{more}"
             message = f"the picture reads nothing of {names}: what the picture does not need is not drawn"
             yield self.kernels[-1].source.lines[0].diagnostic(message, severity="warning")
 
     def _drop_unread(self) -> None:
         """Drop the parameters that a pass declares and only other passes read."""
-        kernels = [one for one in self.techniques if isinstance(one, ForeignShader)]
-        reads = {id(one): _names_read(one) for one in kernels}
-        declared = {p.name for one in kernels for p in one.parameters}
+        kernels = [technique for technique in self.techniques if isinstance(technique, ForeignShader)]
+        reads = {id(kernel): _names_read(kernel) for kernel in kernels}
+        declared = {p.name for kernel in kernels for p in kernel.parameters}
         anywhere = set().union(*reads.values())
-        anywhere |= {name for one in kernels for name in declared if one.source.counts[name] > 1}
-        for index, one in enumerate(self.techniques):
-            if isinstance(one, ForeignShader):
-                kept = [p for p in one.parameters if p.name in reads[id(one)] or p.name not in anywhere]
-                if len(kept) < len(one.parameters):
-                    self.techniques[index] = replace(one, parameters=tuple(kept))
+        anywhere |= {name for kernel in kernels for name in declared if kernel.source.counts[name] > 1}
+        for index, technique in enumerate(self.techniques):
+            if isinstance(technique, ForeignShader):
+                kept = [
+                    p
+                    for p in technique.parameters
+                    if p.name in reads[id(technique)] or p.name not in anywhere
+                ]
+                if len(kept) < len(technique.parameters):
+                    self.techniques[index] = replace(technique, parameters=tuple(kept))
 
     def _wire(self, index: int, sampler: str, target: str) -> None:
         writers = [i for i, shader in enumerate(self.shaders) if shader.target == target]
@@ -116,17 +120,17 @@ class _Passes:
         hint = nearest(target, [shader.target for shader in self.shaders if shader.target])
         return line.error(f"{sampler} reads '{target}', which no pass writes{hint}")
 
-    def _inputs(self) -> Iterator[tuple[str, tuple[Channel, list[str]]]]:
+    def _inputs(self) -> Iterator[tuple[str, tuple[ShaderChannel, list[str]]]]:
         """Yield what may be wired from outside: a name, what feeds it, the samplers that read it, as paths.
 
         Samplers of one name that are fed alike are one input.
         """
-        found: dict[str, list[tuple[str, Channel]]] = {}
+        channels_by_pass: dict[str, list[tuple[str, ShaderChannel]]] = {}
         for shader, channels in zip(self.shaders, self.channels, strict=True):
             for sampler, channel in channels.items():
                 if not channel.target:
-                    found.setdefault(sampler, []).append((shader.name, channel))
-        for sampler, readers in found.items():
+                    channels_by_pass.setdefault(sampler, []).append((shader.name, channel))
+        for sampler, readers in channels_by_pass.items():
             if all(channel == readers[0][1] for _, channel in readers):
                 yield sampler, (readers[0][1], [f"{shader}.{sampler}" for shader, _ in readers])
                 continue
@@ -191,14 +195,14 @@ class _Passes:
 
         Two that name different files differ as well.
         """
-        found: dict[str, list[tuple[str, object]]] = {}
+        parameters_by_pass: dict[str, list[tuple[str, object]]] = {}
         for shader, technique in zip(self.shaders, self.techniques, strict=True):
             if isinstance(shader, Made) or not isinstance(technique, Kernel):
                 continue
             for p in technique.parameters:
                 kind = (p.type, p.default) if p.widget.kind == "file" else p.type
-                found.setdefault(p.name, []).append((shader.name, kind))
-        for name, owners in found.items():
+                parameters_by_pass.setdefault(p.name, []).append((shader.name, kind))
+        for name, owners in parameters_by_pass.items():
             if len({kind for _, kind in owners}) == 1:
                 yield Export(name, tuple(f"{owner}.{name}" for owner, _ in owners))
             else:

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field, replace
 from playground.errors import ShaderError, nearest
 from playground.shader.declarations import expanded, is_declared
 from playground.shader.dialects.es import rewritten
-from playground.shader.dialects.foreign import Channel, Files, Names, Rules, Shader
+from playground.shader.dialects.foreign import Files, Names, Rules, Shader, ShaderChannel
 from playground.shader.dialects.passes import VIEW
 from playground.shader.parameter import Parameter, Sampling, Widget, spell
 from playground.shader.preprocessor import WEBGL_2, live_source
@@ -43,8 +43,8 @@ _MACRO = re.compile(r"^[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)(.*)$", re.MULTILI
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _PARAMETER = re.compile(r"\s*(?:(?:const|in|out|inout|lowp|mediump|highp)\s+)*([A-Za-z_]\w*)")
 _SHAPED = {"samplerCube", "sampler3D"}
-_LONGEST_CALL = 1_000  # characters
-_MOST_LOOKUPS = 4  # of one channel that are looked at
+_MAX_CALL_LETTERS = 1_000  # characters
+_MAX_LOOKUPS = 4  # of one channel that are looked at
 _NEAR = 4_000  # characters, in which most names are declared
 _BRACKETS = re.compile(r"\([^()]*\)")
 _SWIZZLE = re.compile(r"\.\s*([xyzw]+|[rgba]+|[stpq]+)$")
@@ -64,8 +64,8 @@ def sampler_types(code: str) -> dict[str, str]:
     types: dict[str, set[str]] = {name: {"sampler2D"} for name in twos}
     for name, kind in (*_handed(code), *((name, "sampler3D") for name in _TEXELS.findall(code))):
         types.setdefault(name, set()).add(kind)
-    found = {name: kinds.pop() for name, kinds in types.items() if len(kinds) == 1 and kinds < _SHAPED}
-    return {name: "samplerCube" for name in threes - types.keys()} | found
+    kinds = {name: kinds.pop() for name, kinds in types.items() if len(kinds) == 1 and kinds < _SHAPED}
+    return {name: "samplerCube" for name in threes - types.keys()} | kinds
 
 
 def names_reached(code: str, names: Collection[str]) -> set[str]:
@@ -73,11 +73,11 @@ def names_reached(code: str, names: Collection[str]) -> set[str]:
     bodies: dict[str, set[str]] = {}
     for name, body in (*_bodies(code), *_MACRO.findall(code)):
         bodies.setdefault(name, set()).update(_WORD.findall(body))
-    found, added = set[str](), set(names)
+    names_seen, added = set[str](), set(names)
     while added:
-        found |= added
-        added = set().union(*(bodies.get(name, ()) for name in added)) - found
-    return found
+        names_seen |= added
+        added = set().union(*(bodies.get(name, ()) for name in added)) - names_seen
+    return names_seen
 
 
 def _bodies(code: str) -> Iterator[tuple[str, str]]:
@@ -94,29 +94,31 @@ def _handed(code: str) -> Iterator[tuple[str, str]]:
     """Yield the channels that functions are called with, each with the type that the function takes."""
     functions: dict[str, list[list[str]]] = {}
     for name, parameters in _FUNCTION.findall(code):
-        kinds = [found[1] if (found := _PARAMETER.match(one)) else "" for one in parameters.split(",")]
+        kinds = [
+            match[1] if (match := _PARAMETER.match(argument)) else "" for argument in parameters.split(",")
+        ]
         functions.setdefault(name, []).append(kinds)
     for name, forms in functions.items():
         if not any(kind.startswith("sampler") for kinds in forms for kind in kinds):
             continue
         looked_at = Counter[str]()
         for call in re.finditer(rf"\b{name}\s*\(", code):
-            given = _arguments(code, call.end())
-            channels = " ".join(one for one in given if _CHANNEL.fullmatch(one))
+            arguments = _arguments(code, call.end())
+            channels = " ".join(argument for argument in arguments if _CHANNEL.fullmatch(argument))
             looked_at[channels] += 1
-            if not channels or looked_at[channels] > _MOST_LOOKUPS:
+            if not channels or looked_at[channels] > _MAX_LOOKUPS:
                 continue
-            fitting = [kinds for kinds in forms if len(kinds) == len(given)]
+            fitting = [kinds for kinds in forms if len(kinds) == len(arguments)]
             if len(fitting) > 1:
-                widths = [_width(one, code[: call.start()]) for one in given]
+                widths = [_width(argument, code[: call.start()]) for argument in arguments]
                 fitting = [
                     kinds
                     for kinds in fitting
                     if all(not w or _TYPES.get(k, w) == w for k, w in zip(kinds, widths, strict=True))
                 ]
-            for at, one in enumerate(given):
-                if _CHANNEL.fullmatch(one):
-                    yield from ((one, kinds[at]) for kinds in fitting)
+            for at, argument in enumerate(arguments):
+                if _CHANNEL.fullmatch(argument):
+                    yield from ((argument, kinds[at]) for kinds in fitting)
 
 
 def _looked_up(code: str) -> tuple[set[str], set[str]]:
@@ -124,10 +126,14 @@ def _looked_up(code: str) -> tuple[set[str], set[str]]:
     threes, twos, unknown = Counter[str](), set[str](), set[str]()
     for match in _LOOKUP.finditer(code):
         name = match.group(2)
-        if name in twos or threes[name] >= _MOST_LOOKUPS:
+        if name in twos or threes[name] >= _MAX_LOOKUPS:
             continue
-        given = _arguments(code, match.end())
-        width = 3 if "Cube" in match.group(1) else _width(given[0] if given else "", code[: match.start()])
+        arguments = _arguments(code, match.end())
+        width = (
+            3
+            if "Cube" in match.group(1)
+            else _width(arguments[0] if arguments else "", code[: match.start()])
+        )
         if width == 3:
             threes[name] += 1
         else:
@@ -137,14 +143,14 @@ def _looked_up(code: str) -> tuple[set[str], set[str]]:
 
 def _arguments(code: str, start: int) -> list[str]:
     """Return the texts of a call's arguments from one on, up to the call's bracket; none where it is far."""
-    depth, found = 0, list[str]()
-    for place in range(start, min(len(code), start + _LONGEST_CALL)):
-        depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(code[place], 0)
-        if depth < 0 or (depth == 0 and code[place] == ","):
-            found.append(code[start:place].strip())
-            start = place + 1
+    depth, arguments = 0, list[str]()
+    for index in range(start, min(len(code), start + _MAX_CALL_LETTERS)):
+        depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(code[index], 0)
+        if depth < 0 or (depth == 0 and code[index] == ","):
+            arguments.append(code[start:index].strip())
+            start = index + 1
         if depth < 0:
-            return found
+            return arguments
     return []
 
 
@@ -179,34 +185,34 @@ def _width(text: str, before: str) -> int:
 def _declared(name: str, before: str) -> int:
     """Return the width of the latest declaration of a name, also behind others with calls in their values."""
     near = before[-_NEAR:]
-    found = list(re.finditer(f"{_DECLARED}{name}", near)) or list(re.finditer(f"{_DECLARED}{name}", before))
-    if not found:
+    matches = list(re.finditer(f"{_DECLARED}{name}", near)) or list(re.finditer(f"{_DECLARED}{name}", before))
+    if not matches:
         flat = before
         while (inner := _BRACKETS.sub(lambda match: " " * len(match.group()), flat)) != flat:
             flat = inner
-        found = list(re.finditer(f"{_DECLARED}{name}", flat))
-    return _TYPES[found[-1].group(1)] if found else 0
+        matches = list(re.finditer(f"{_DECLARED}{name}", flat))
+    return _TYPES[matches[-1].group(1)] if matches else 0
 
 
 def _split(text: str, at: str = "+-*/") -> list[str]:
     """Return the parts of an expression between its outer operators, or its commas."""
-    found, depth, start = list[str](), 0, 0
-    for place, letter in enumerate(text):
+    parts, depth, start = list[str](), 0, 0
+    for index, letter in enumerate(text):
         depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(letter, 0)
-        is_exponent = letter in "+-" and re.search(r"[\d.][eE]$", text[:place])
-        if depth == 0 and letter in at and text[start:place].strip() and not is_exponent:
-            found.append(text[start:place])
-            start = place + 1
-    return [*found, text[start:]]
+        is_exponent = letter in "+-" and re.search(r"[\d.][eE]$", text[:index])
+        if depth == 0 and letter in at and text[start:index].strip() and not is_exponent:
+            parts.append(text[start:index])
+            start = index + 1
+    return [*parts, text[start:]]
 
 
 def _opening(text: str) -> int:
     """Return where the bracket opens that a text ends with; -1 where none does."""
     depth = 0
-    for place in range(len(text) - 1, -1, -1):
-        depth += {")": 1, "(": -1}.get(text[place], 0)
+    for index in range(len(text) - 1, -1, -1):
+        depth += {")": 1, "(": -1}.get(text[index], 0)
         if depth == 0:
-            return place
+            return index
     return -1
 
 
@@ -295,7 +301,7 @@ def _defines(source: SourceText, function: str) -> Line | None:
 
 
 KEYBOARD = "iKeyboard"
-MOST_CHANNELS = 10
+MAX_CHANNELS = 10
 
 _STRICT = "StrictCompatibility"  # mainImage is what runs: so it is here wherever a text has one
 _DIRECTIVE = re.compile(rf"\s*#\s*(i[A-Z]\w*|{_STRICT})\b(.*)", re.DOTALL)
@@ -349,11 +355,11 @@ class ChannelLines:
         """Return how it is read; what no line says is as ``usual``."""
         least, most = self.settings.get("MinFilter", ""), self.settings.get("MagFilter", "")
         wrap = self.settings.get("WrapMode", "")
-        found = replace(usual, wrap=wrap.lower()) if wrap else usual
+        result = replace(usual, wrap=wrap.lower()) if wrap else usual
         if least:
             form = "nearest" if least.startswith("Nearest") else "linear"
-            found = replace(found, filter=form, mipmap="MipMap" in least)
-        return replace(found, magnify=most.lower()) if most else found
+            result = replace(result, filter=form, mipmap="MipMap" in least)
+        return replace(result, magnify=most.lower()) if most else result
 
 
 @dataclass(frozen=True)
@@ -403,12 +409,12 @@ def _channel(line: Line, channels: dict[int, ChannelLines]) -> None:
     if not name:
         channel.path, channel.line = text, line
         return
-    setting = next((known for known in _CHOICES if known.lower() == name.lower()), None)
+    setting = next((choice for choice in _CHOICES if choice.lower() == name.lower()), None)
     if setting is None:
         raise line.error(
             f"#iChannel{number} has no '{name}'{nearest(name, _CHOICES)}", line.text.find(name) + 1
         )
-    value = next((known for known in _CHOICES[setting] if known.lower() == text.lower()), None)
+    value = next((choice for choice in _CHOICES[setting] if choice.lower() == text.lower()), None)
     if value is None:
         wrong = f"{setting} of #iChannel{number}: no '{text}'{nearest(text, _CHOICES[setting])}"
         raise line.error(wrong, line.text.find(text) + 1)
@@ -444,11 +450,11 @@ def _initial(line: Line, kind: str, glsl: str, initial: str | None, bounds: list
     if glsl == "bool" or not (bounds or glsl != kind or "vec" in glsl):
         return f" = {initial}"
     numbers = initial.partition("(")[2] if "(" in initial else initial
-    given = [_float(line, number) for number in _NUMBER.findall(numbers)]
+    names = [_float(line, number) for number in _NUMBER.findall(numbers)]
     if len(bounds) == 2 and bounds[0] < bounds[1]:
-        given = [min(max(number, bounds[0]), bounds[1]) for number in given]
+        names = [min(max(number, bounds[0]), bounds[1]) for number in names]
     whole = glsl in ("int", "uint") or glsl.startswith(("i", "u"))
-    texts = [str(int(number)) if whole else repr(number) for number in given]
+    texts = [str(int(number)) if whole else repr(number) for number in names]
     if "vec" not in glsl:
         return f" = {texts[0] if texts else initial}"
     return f" = {glsl}({', '.join(texts)})"
@@ -483,7 +489,7 @@ _NOT_NAMES = re.compile(r"\W+")
 class ToyInput:
     """What one channel reads: a pass or a technique, or an image file."""
 
-    channel: Channel
+    channel: ShaderChannel
     type: str = "sampler2D"
     file: str = ""  # an image, from the root
 
@@ -525,28 +531,28 @@ def shaders_of(passes: Sequence[ToyPass], dialect: str = "shadertoy") -> tuple[S
 
     Buffers and cube maps come in the order given. Raises ``ShaderError`` for one without its function.
     """
-    ordered = sorted(passes, key=lambda one: _ORDER.index(one.kind))
+    ordered = sorted(passes, key=lambda item: _ORDER.index(item.kind))
     macros = {"SHADER_TOY": "", **WEBGL_2} if dialect == "vscode" else MACROS
-    live = [replace(one, source=live_source(one.source, macros)) for one in ordered]
-    return tuple(_shader(one, dialect) for one in live)
+    live = [replace(item, source=live_source(item.source, macros)) for item in ordered]
+    return tuple(_shader(item, dialect) for item in live)
 
 
-def _shader(one: ToyPass, dialect: str) -> Shader:
-    function = _FUNCTIONS[one.kind]
-    is_there = function in one.source.names
-    has_main = one.may_have_main and not is_there and is_declared(one.source.code, "main", anywhere=False)
+def _shader(toy: ToyPass, dialect: str) -> Shader:
+    function = _FUNCTIONS[toy.kind]
+    is_there = function in toy.source.names
+    has_main = toy.may_have_main and not is_there and is_declared(toy.source.code, "main", anywhere=False)
     if not (is_there or has_main):
-        own = [line for line in one.source.lines if line.text.strip()]
-        place = own[-1] if own else one.source.lines[-1]
-        others = next((f for f in ("mainImage", "mainCubemap", "mainSound") if f in one.source.names), "")
+        own = [line for line in toy.source.lines if line.text.strip()]
+        position = own[-1] if own else toy.source.lines[-1]
+        others = next((f for f in ("mainImage", "mainCubemap", "mainSound") if f in toy.source.names), "")
         hint = f", but a {others}" if others else ""
-        raise ShaderError(diagnostics=[place.diagnostic(f"{one.label} has no {function}{hint}")])
-    names = dict(with_sampler_types(MORE_NAMES if dialect == "vscode" else NAMES, one.source))
+        raise ShaderError(diagnostics=[position.diagnostic(f"{toy.label} has no {function}{hint}")])
+    names = dict(with_sampler_types(MORE_NAMES if dialect == "vscode" else NAMES, toy.source))
     parameters = []
-    for sampler, feeds in one.inputs.items():
+    for sampler, feeds in toy.inputs.items():
         if feeds.file:
             names.pop(sampler, None)
-            line = one.source.lines[-1]
+            line = toy.source.lines[-1]
             parameters.append(
                 Parameter(
                     sampler,
@@ -560,35 +566,35 @@ def _shader(one: ToyPass, dialect: str) -> Shader:
             )
         else:
             names[sampler] = (feeds.type, "none")
-    if one.kind == CUBE:
+    if toy.kind == CUBE:
         names["iResolution"] = ("vec3", "square_resolution")
-    has_keyboard = KEYBOARD in one.inputs
+    has_keyboard = KEYBOARD in toy.inputs
     return Shader(
-        one.name,
-        rewritten(one.source),
+        toy.name,
+        rewritten(toy.source),
         Rules(
             dialect,
             names,
-            epilogue="" if has_main else _EPILOGUES[one.kind],
+            epilogue="" if has_main else _EPILOGUES[toy.kind],
             helpers=("vscode_keyboard.glsl",) if has_keyboard else (),
             defines=defines if dialect != "vscode" else lambda source: (),
         ),
         named=frozenset({KEYBOARD}) if has_keyboard else frozenset(),
-        target=one.name,
-        channels={name: feeds.channel for name, feeds in one.inputs.items() if not feeds.file},
+        target=toy.name,
+        channels={name: feeds.channel for name, feeds in toy.inputs.items() if not feeds.file},
         parameters=tuple(parameters),
-        size=(str(CUBE_SIDE), str(6 * CUBE_SIDE)) if one.kind == CUBE else None,
-        format=_FORMATS[one.kind],
-        prelude=_prelude(one.kind, dialect),
-        keeps=one.kind != IMAGE,
+        size=(str(CUBE_SIDE), str(6 * CUBE_SIDE)) if toy.kind == CUBE else None,
+        format=_FORMATS[toy.kind],
+        prelude=_prelude(toy.kind, dialect),
+        keeps=toy.kind != IMAGE,
     )
 
 
 def _prelude(kind: str, dialect: str) -> tuple[str, ...]:
-    found = (f"const float k_side = {CUBE_SIDE}.0;",) if kind == CUBE else ()
-    return ("#define SHADER_TOY", *found) if dialect == "vscode" else found
+    lines = (f"const float k_side = {CUBE_SIDE}.0;",) if kind == CUBE else ()
+    return ("#define SHADER_TOY", *lines) if dialect == "vscode" else lines
 
 
-def reading(target: str, sampling: Sampling = OF_BUFFERS) -> Channel:
+def reading(target: str, sampling: Sampling = OF_BUFFERS) -> ShaderChannel:
     """Return a channel that reads a pass."""
-    return replace(Channel(target=target), sampling=sampling)
+    return replace(ShaderChannel(target=target), sampling=sampling)

@@ -20,7 +20,7 @@ from playground.allowed_files import is_inside, leads_outside
 from playground.errors import SketchError
 from playground.json_text import read_json
 from playground.paths import shown
-from playground.shader.dialects.foreign import SAMPLING, Channel, Files, Shader, stand_in
+from playground.shader.dialects.foreign import SAMPLING, Files, Shader, ShaderChannel, stand_in
 from playground.shader.dialects.shadertoy import (
     BUFFER,
     CUBE,
@@ -89,21 +89,21 @@ def shaders(files: Files) -> Sequence[Shader]:
     """Return the passes of an export; raise ``SketchError`` for what is damaged or draws nothing."""
     shader = _table(files)
     passes = _passes(files, shader)
-    common = next((files.part(one.label, one.code) for one in passes if one.kind == _COMMON), None)
-    for one in passes:
-        if one.kind == _SOUND:
-            files.note(f"{one.label} is sound, which is not drawn")
-    drawn = [one for one in passes if one.kind in (IMAGE, BUFFER, CUBE)]
-    if not any(one.kind == IMAGE for one in drawn):
-        there = ", ".join(one.label for one in passes) or "nothing"
+    common = next((files.part(pass_.label, pass_.code) for pass_ in passes if pass_.kind == _COMMON), None)
+    for pass_ in passes:
+        if pass_.kind == _SOUND:
+            files.note(f"{pass_.label} is sound, which is not drawn")
+    drawn = [pass_ for pass_ in passes if pass_.kind in (IMAGE, BUFFER, CUBE)]
+    if not any(item.kind == IMAGE for item in drawn):
+        there = ", ".join(pass_.label for pass_ in passes) or "nothing"
         raise _wrong(files, f"there is no Image pass to draw; there is {there}")
-    written = {output: one for one in drawn for output in one.outputs}
+    written = {output: item for item in drawn for output in item.outputs}
     made = []
-    for one in sorted(drawn, key=lambda one: one.label):
-        source = files.part(one.label, one.code)
+    for pass_ in sorted(drawn, key=lambda item: item.label):
+        source = files.part(pass_.label, pass_.code)
         note_not_drawn(files, live_source(source, MACROS))
-        inputs = dict(_inputs(files, one, written, drawn))
-        made.append(ToyPass(one.label, one.kind, with_common(common, source), inputs))
+        inputs = dict(_inputs(files, pass_, written, drawn))
+        made.append(ToyPass(pass_.label, pass_.kind, with_common(common, source), inputs))
     info = shader.get("info")
     files.title = str(info.get("name") or "") if isinstance(info, dict) else ""
     return shaders_of(made, "export")
@@ -112,15 +112,17 @@ def shaders(files: Files) -> Sequence[Shader]:
 def _table(files: Files) -> Mapping[str, Any]:
     """Return the table that holds ``renderpass``."""
     try:
-        found = read_json(files.text(), strict=False)
+        document = read_json(files.text(), strict=False)
     except json.JSONDecodeError as error:
         message = f"damaged JSON: {error.msg[:1].lower()}{error.msg[1:]}"
         raise SketchError(message, file=shown(files.path), line=error.lineno, column=error.colno) from None
     except ValueError as error:
         raise _wrong(files, f"damaged JSON: {error}") from None
-    several = found if isinstance(found, list) else [found]
-    tables = [one.get("Shader", one) for one in several if isinstance(one, dict)]
-    shaders = [one for one in tables if isinstance(one, dict) and isinstance(one.get("renderpass"), list)]
+    several = document if isinstance(document, list) else [document]
+    tables = [table.get("Shader", table) for table in several if isinstance(table, dict)]
+    shaders = [
+        table for table in tables if isinstance(table, dict) and isinstance(table.get("renderpass"), list)
+    ]
     if not shaders:
         raise _wrong(files, "an export holds a list of passes called renderpass, and none is here")
     if len(shaders) > 1:
@@ -130,36 +132,36 @@ def _table(files: Files) -> Mapping[str, Any]:
 
 def _passes(files: Files, shader: Mapping[str, Any]) -> list[_Pass]:
     """Return the passes with their labels, each of them once."""
-    found: list[_Pass] = []
-    for index, given in enumerate(shader["renderpass"]):
+    passes: list[_Pass] = []
+    for index, table in enumerate(shader["renderpass"]):
         where = f"renderpass[{index}]"
-        if given is None or given == {}:
+        if table is None or table == {}:
             continue
-        if not isinstance(given, dict):
+        if not isinstance(table, dict):
             raise _wrong(files, f"{where} is not a table of a pass")
-        code = given.get("code")
-        name = str(given.get("name") or "")
+        code = table.get("code")
+        name = str(table.get("name") or "")
         if not isinstance(code, str):
             raise _wrong(files, f"{name or where} has no code, a text")
-        kind = given.get("type") or next((k for sign, k in _BY_NAME if sign.search(name)), IMAGE)
+        kind = table.get("type") or next((k for sign, k in _BY_NAME if sign.search(name)), IMAGE)
         if kind not in _KINDS:
             files.note(f"{name or where} is of the type '{kind}', which is not drawn")
             continue
-        label = _label(kind, name, [one.label for one in found])
+        label = _label(kind, name, [toy.label for toy in passes])
         if not label:
             raise _wrong(files, f"{where}: a second pass called {name or kind}")
-        inputs = tuple(one for one in given.get("inputs") or () if isinstance(one, dict) and one)
-        outputs = given.get("outputs") or ()
-        ids = tuple(str(one["id"]) for one in outputs if isinstance(one, dict) and "id" in one)
-        found.append(_Pass(label, kind, code, inputs, ids))
-    return found
+        inputs = tuple(toy for toy in table.get("inputs") or () if isinstance(toy, dict) and toy)
+        outputs = table.get("outputs") or ()
+        ids = tuple(str(toy["id"]) for toy in outputs if isinstance(toy, dict) and "id" in toy)
+        passes.append(_Pass(label, kind, code, inputs, ids))
+    return passes
 
 
 def _label(kind: str, name: str, taken: Sequence[str]) -> str:
     """Return what a pass is called: the site's word for its kind, and a letter; "" where it is taken."""
-    one = {_COMMON: "Common", _SOUND: "Sound", IMAGE: "Image"}.get(kind)
-    if one:
-        return one if one not in taken else ""
+    label = {_COMMON: "Common", _SOUND: "Sound", IMAGE: "Image"}.get(kind)
+    if label:
+        return label if label not in taken else ""
     word = "Buffer" if kind == BUFFER else "Cube"
     if (match := _LETTERED.match(name)) and (named := f"{word} {match.group(1).upper()}") not in taken:
         return named
@@ -167,36 +169,36 @@ def _label(kind: str, name: str, taken: Sequence[str]) -> str:
 
 
 def _inputs(
-    files: Files, one: _Pass, written: Mapping[str, _Pass], drawn: Sequence[_Pass]
+    files: Files, toy: _Pass, written: Mapping[str, _Pass], drawn: Sequence[_Pass]
 ) -> list[tuple[str, ToyInput]]:
-    found: dict[str, ToyInput] = {}
-    for given in one.inputs:
-        number = given.get("channel", 0)
+    channels: dict[str, ToyInput] = {}
+    for table in toy.inputs:
+        number = table.get("channel", 0)
         if str(number) not in _CHANNELS:
-            raise _wrong(files, f"{one.label}: an input for channel {number}; there are 0 to 3")
-        found[f"iChannel{int(number)}"] = _input(files, one, int(number), given, written, drawn)
-    return list(found.items())
+            raise _wrong(files, f"{toy.label}: an input for channel {number}; there are 0 to 3")
+        channels[f"iChannel{int(number)}"] = _input(files, toy, int(number), table, written, drawn)
+    return list(channels.items())
 
 
 def _input(
     files: Files,
-    one: _Pass,
+    toy: _Pass,
     number: int,
-    given: Mapping[str, Any],
+    table: Mapping[str, Any],
     written: Mapping[str, _Pass],
     drawn: Sequence[_Pass],
 ) -> ToyInput:
-    kind = str(given.get("ctype") or given.get("type") or "texture")
-    source = str(given.get("src") or given.get("filepath") or "")
-    sampling = _sampling(given.get("sampler"))
-    target = _target(kind, str(given.get("id", "")), source, written, drawn)
+    kind = str(table.get("ctype") or table.get("type") or "texture")
+    source = str(table.get("src") or table.get("filepath") or "")
+    sampling = _sampling(table.get("sampler"))
+    target = _target(kind, str(table.get("id", "")), source, written, drawn)
     if target is not None:
         sampler = "samplerCube" if target.kind == CUBE else "sampler2D"
         return ToyInput(reading(pass_name(target.label), sampling or OF_BUFFERS), sampler)
     if kind == "buffer":
-        return ToyInput(Channel(target=f"output {given.get('id', '')}".strip()))
+        return ToyInput(ShaderChannel(target=f"output {table.get('id', '')}".strip()))
     if kind == "texture" and _is_own(files, source):
-        return ToyInput(Channel(sampling=sampling or SAMPLING), file=source)
+        return ToyInput(ShaderChannel(sampling=sampling or SAMPLING), file=source)
     if kind == "keyboard":
         return ToyInput(stand_in("keys", 0, ""))
     if kind in _SOUNDS and _is_own(files, source):
@@ -227,7 +229,7 @@ def _target(
     match = _PREVIEW.search(source)
     word = {"buffer": BUFFER, "cubemap": CUBE}[match.group(1)] if match else ""
     letter = _LETTERS[int(match.group(2)) : int(match.group(2)) + 1] if match else ""
-    return next((one for one in drawn if one.kind == word and one.label.endswith(f" {letter}")), None)
+    return next((toy for toy in drawn if toy.kind == word and toy.label.endswith(f" {letter}")), None)
 
 
 def _is_own(files: Files, source: str) -> bool:
@@ -237,13 +239,13 @@ def _is_own(files: Files, source: str) -> bool:
     return files.is_there(files.root / source) and not leads_outside(source, files.root)
 
 
-def _sampling(given: object) -> Sampling | None:
+def _sampling(table: object) -> Sampling | None:
     """Return how a sampler reads; None where it does not say."""
-    if not isinstance(given, dict) or not given:
+    if not isinstance(table, dict) or not table:
         return None
-    form = str(given.get("filter", "linear"))
-    wrap = "repeat" if str(given.get("wrap", "repeat")) == "repeat" else "clamp"
-    flip, decode = (str(given.get(word, usual)).lower() for word, usual in (("vflip", True), ("srgb", False)))
+    form = str(table.get("filter", "linear"))
+    wrap = "repeat" if str(table.get("wrap", "repeat")) == "repeat" else "clamp"
+    flip, decode = (str(table.get(word, usual)).lower() for word, usual in (("vflip", True), ("srgb", False)))
     return Sampling(
         "nearest" if form == "nearest" else "linear",
         wrap,
@@ -273,10 +275,14 @@ _MAIN_IMAGE = re.compile(r"\bmainImage\b")
 
 def image_of(folder: Path) -> Path | None:
     """Return the file of a folder's Image; None where it has none of its own that is one."""
-    found = next((place for place in _places(folder, _IMAGE) if place.is_file()), None)
-    if found is None or not is_inside(found, (folder,)):
+    path_found = next((path for path in _places(folder, _IMAGE) if path.is_file()), None)
+    if path_found is None or not is_inside(path_found, (folder,)):
         return None
-    return found if _MAIN_IMAGE.search(live_code(found.read_text("utf-8", "replace"), WEBGL_2)) else None
+    return (
+        path_found
+        if _MAIN_IMAGE.search(live_code(path_found.read_text("utf-8", "replace"), WEBGL_2))
+        else None
+    )
 
 
 def is_of_folder(path: Path) -> bool:
@@ -289,9 +295,14 @@ def has_more(files: Files) -> bool:
     path = files.path
     if not _is_named(path):
         return False
-    others = [place for place in _all_places(path.parent) if place != path]
-    there = [place for place in others if files.is_there(place)]  # all, so that one that comes is seen
-    return not all(_is_one_file((path, place)) for place in there) and image_of(path.parent) is not None
+    others = [path_there for path_there in _all_places(path.parent) if path_there != path]
+    there = [
+        path_there for path_there in others if files.is_there(path_there)
+    ]  # all, so that one that comes is seen
+    return (
+        not all(_is_one_file((path, path_there)) for path_there in there)
+        and image_of(path.parent) is not None
+    )
 
 
 def is_image(path: Path) -> bool:
@@ -300,17 +311,17 @@ def is_image(path: Path) -> bool:
 
 
 def _is_named(path: Path) -> bool:
-    return path.name in {place.name for place in _all_places(path.parent)}
+    return path.name in {path_there.name for path_there in _all_places(path.parent)}
 
 
 def _all_places(folder: Path) -> list[Path]:
-    return [place for label in (*_LABELS, _COMMON_FILE, _SOUND_FILE) for place in _places(folder, label)]
+    return [path for label in (*_LABELS, _COMMON_FILE, _SOUND_FILE) for path in _places(folder, label)]
 
 
 def folder_passes(files: Files) -> Sequence[Shader]:
     """Return the passes of the folder that a file is in."""
     folder = files.path.parent
-    there = {label: found for label in _LABELS if (found := _file(files, folder, label))}
+    there = {label: file for label in _LABELS if (file := _file(files, folder, label))}
     if _file(files, folder, _SOUND_FILE):
         files.note(f"{_SOUND_FILE} is sound, which is not drawn")
     sources = {path: live_source(files.source(path), MACROS) for path in there.values()}
@@ -329,7 +340,7 @@ def folder_passes(files: Files) -> Sequence[Shader]:
     for label, path in there.items():
         reader.add(path, kinds[label])
     files.title = title_of(files.source(there[_IMAGE])) or folder.name
-    return shaders_of(sorted(reader.passes(), key=lambda one: one.label))
+    return shaders_of(sorted(reader.passes(), key=lambda item: item.label))
 
 
 def _folder_inputs(
@@ -340,10 +351,10 @@ def _folder_inputs(
     whole, shared = with_common(common, source), common.code if common else ""
     for line in (*source.lines, *(common.lines if common else ())):
         for number, text in _COMMENT.findall(line.comment):
-            wanted = pass_name(re.sub("[ _]", "", text))
+            target = pass_name(re.sub("[ _]", "", text))
             own = next(label for label, file in there.items() if file == path)
-            label = next((one for one in there if pass_name(one.replace(" ", "")) == wanted), "")
-            named.setdefault(int(number), {"self": own, _KEYBOARD: _KEYBOARD}.get(wanted, label))
+            label = next((item for item in there if pass_name(item.replace(" ", "")) == target), "")
+            named.setdefault(int(number), {"self": own, _KEYBOARD: _KEYBOARD}.get(target, label))
     taken = read_directives(source).channels
     assumed, unused = {}, {}
     types, read = sampler_types(whole.code), names_reached(shared, source.names)
@@ -353,32 +364,32 @@ def _folder_inputs(
         if number in named or number in taken:
             continue
         if f"iChannel{number}" not in read:  # what Common does with it, this pass does not call
-            unused[number] = ToyInput(Channel(), kind)
+            unused[number] = ToyInput(ShaderChannel(), kind)
         elif label in there:
             named[number] = assumed[number] = label
     if assumed:
         pairs = ", ".join(f"iChannel{number} reads {label}" for number, label in assumed.items())
         files.note(f"nothing says otherwise, so {pairs}; a comment as // iChannel0: Buffer B does", path=path)
-    found = unused | {
+    result = unused | {
         number: ToyInput(reading(pass_name(label)), "samplerCube" if label in _CUBES else "sampler2D")
         for number, label in named.items()
         if label in there
     }
     keys = ToyInput(stand_in("keys", 0, ""))
-    found |= {number: keys for number, label in named.items() if label == _KEYBOARD}
-    return {f"iChannel{number}": feeds for number, feeds in found.items()}
+    result |= {number: keys for number, label in named.items() if label == _KEYBOARD}
+    return {f"iChannel{number}": feeds for number, feeds in result.items()}
 
 
 def _file(files: Files, folder: Path, label: str) -> Path | None:
     """Return the file of a pass; raise ``SketchError`` where there are two."""
-    found = [place for place in _places(folder, label) if files.is_there(place)]
-    if len(found) > 1 and not _is_one_file(found):
-        both = " and ".join(shown(place) for place in found[:2])
+    paths = [path for path in _places(folder, label) if files.is_there(path)]
+    if len(paths) > 1 and not _is_one_file(paths):
+        both = " and ".join(shown(path) for path in paths[:2])
         raise SketchError(f"{both} are both {label}; remove one", file=shown(files.path))
-    if not found:
+    if not paths:
         return None
-    files.check_inside(found[0])
-    return found[0].resolve()
+    files.check_inside(paths[0])
+    return paths[0].resolve()
 
 
 def _places(folder: Path, label: str) -> list[Path]:
@@ -395,4 +406,4 @@ def _names(label: str) -> Iterator[str]:
 
 def _is_one_file(places: Sequence[Path]) -> bool:
     """Return whether places are one file: where capitals do not count, each of its names is there."""
-    return all(place.samefile(places[0]) and not place.is_symlink() for place in places)
+    return all(path.samefile(places[0]) and not path.is_symlink() for path in places)

@@ -11,7 +11,7 @@ from playground.allowed_files import SHADERS, how_to_open, is_inside, names_belo
 from playground.errors import ShaderError, nearest
 from playground.paths import shown
 from playground.shader.dialects import shadertoy
-from playground.shader.dialects.foreign import SAMPLING, SIZES, Channel, Files, Shader, stand_in
+from playground.shader.dialects.foreign import SAMPLING, SIZES, Files, Shader, ShaderChannel, stand_in
 from playground.shader.dialects.shadertoy import (
     BUFFER,
     CUBE,
@@ -42,7 +42,7 @@ _FACES = (
 )
 _FACE_NAMES = ("right", "left", "top", "bottom", "front", "back")
 _CUBE_SIZE = ("512", "3072")
-_MOST_PASSES = 32
+_MAX_PASSES = 32
 
 
 def shaders(files: Files) -> Sequence[Shader]:
@@ -75,8 +75,8 @@ class Reader:
             if path not in self._done:
                 self._read_before.add(path)
             return self._names[path]
-        if len(self._names) >= _MOST_PASSES:
-            raise ShaderError(f"more than {_MOST_PASSES} passes", file=path)
+        if len(self._names) >= _MAX_PASSES:
+            raise ShaderError(f"more than {_MAX_PASSES} passes", file=path)
         label = self.labels.get(path, path.stem)
         name = pass_name(label) or "pass"
         while name in self._names.values():
@@ -98,13 +98,13 @@ class Reader:
 
     def passes(self) -> tuple[ToyPass, ...]:
         """Return the passes; where the picture reads itself, one more shows it."""
-        found = []
-        for path, one in self._done.items():
-            if one.kind == IMAGE and path in self._read_before:
-                found += [replace(one, kind=BUFFER), _showing(one)]
+        passes = []
+        for path, toy in self._done.items():
+            if toy.kind == IMAGE and path in self._read_before:
+                passes += [replace(toy, kind=BUFFER), _showing(toy)]
             else:
-                found.append(one)
-        return tuple(found)
+                passes.append(toy)
+        return tuple(passes)
 
     def _feed(self, path: Path, number: int, channel: shadertoy.ChannelLines) -> ToyInput:
         """Return what a channel reads; raise ``ShaderError`` for a shader that is not there."""
@@ -115,14 +115,14 @@ class Reader:
             return ToyInput(reading(self._names[path], of_buffers))
         ending = Path(text).suffix.lower()
         if ending in SHADERS:
-            found = self._found(text, channel.line)
-            if found is None:
+            path_found = self._found(text, channel.line)
+            if path_found is None:
                 hint = nearest(text, names_below((path.parent,), SHADERS))
                 raise channel.line.error(f"#iChannel{number}: there is no file '{text}'{hint}")
-            if found == path:
+            if path_found == path:
                 self._read_before.add(path)
-            kind = self.kinds.get(found, BUFFER)
-            name = self.add(found, kind)
+            kind = self.kinds.get(path_found, BUFFER)
+            name = self.add(path_found, kind)
             return ToyInput(reading(name, of_buffers), "samplerCube" if kind == CUBE else "sampler2D")
         if channel.is_cube:
             return self._cube(text, channel, number)
@@ -135,19 +135,19 @@ class Reader:
             return ToyInput(self._sound(text, number, channel))
         elif ending not in _PICTURES:
             unfed = f"'{text}' is no image that can be read, so a stand-in is drawn"
-        elif (found := self._found(text, channel.line)) is not None:
-            file = found.relative_to(self.files.root.resolve()).as_posix()
-            return ToyInput(Channel(sampling=of_pictures), file=file)
+        elif (path_found := self._found(text, channel.line)) is not None:
+            file = path_found.relative_to(self.files.root.resolve()).as_posix()
+            return ToyInput(ShaderChannel(sampling=of_pictures), file=file)
         else:
             unfed = f"there is no file '{text}' in this folder, so a stand-in is drawn"
         return ToyInput(replace(stand_in(form, number, unfed), sampling=of_pictures))
 
-    def _sound(self, text: str, number: int, channel: shadertoy.ChannelLines) -> Channel:
+    def _sound(self, text: str, number: int, channel: shadertoy.ChannelLines) -> ShaderChannel:
         """Return a sound file's spectrum and wave, or those of a made-up one."""
-        sampling, found = channel.sampling(OF_BUFFERS), self._found(text, channel.line)
-        if found is not None:
-            file = found.relative_to(self.files.root.resolve()).as_posix()
-            return Channel("", "foreign/sound", (("sound", file),), SIZES["foreign/sound"], sampling)
+        sampling, path_found = channel.sampling(OF_BUFFERS), self._found(text, channel.line)
+        if path_found is not None:
+            file = path_found.relative_to(self.files.root.resolve()).as_posix()
+            return ShaderChannel("", "foreign/sound", (("sound", file),), SIZES["foreign/sound"], sampling)
         unfed = f"there is no file '{text}' in this folder, so a made-up sound stands in for it"
         return replace(stand_in("sound", 0, unfed), sampling=sampling)
 
@@ -164,7 +164,7 @@ class Reader:
                         (name, face.relative_to(root).as_posix())
                         for name, face in zip(_FACE_NAMES, there, strict=True)
                     ]
-                    made = Channel(
+                    made = ShaderChannel(
                         use="foreign/cube_faces", values=tuple(values), size=_CUBE_SIZE, sampling=sampling
                     )
                     return ToyInput(made, "samplerCube")
@@ -175,11 +175,11 @@ class Reader:
         """Return the file that a line names, inside the folder; None where there is none."""
         root = self.files.root.resolve()
         for folder in _around(Path(line.file).parent, root):
-            place = folder / text
-            if "\0" not in text and self.files.is_there(place):
-                if is_inside(place, (root,)):
-                    return place.resolve()
-                more = how_to_open(place.resolve(), root)
+            path = folder / text
+            if "\0" not in text and self.files.is_there(path):
+                if is_inside(path, (root,)):
+                    return path.resolve()
+                more = how_to_open(path.resolve(), root)
                 raise line.error(f"'{text}' lies outside the shader's own folder, {shown(root)}{more}")
         return None
 
@@ -191,10 +191,10 @@ def _around(folder: Path, root: Path) -> Iterator[Path]:
     yield root
 
 
-def _showing(one: ToyPass) -> ToyPass:
+def _showing(toy: ToyPass) -> ToyPass:
     """Return the pass that shows another, opaque."""
-    first = one.source.lines[0]
+    first = toy.source.lines[0]
     code = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(k_shown, ivec2(p), 0); }"
     line = Line("", code, "", first.file, first.number)
-    source = SourceText(one.source.path, (line,), one.source.files)
-    return ToyPass("shown", IMAGE, source, {"k_shown": ToyInput(reading(one.name))})
+    source = SourceText(toy.source.path, (line,), toy.source.files)
+    return ToyPass("shown", IMAGE, source, {"k_shown": ToyInput(reading(toy.name))})

@@ -1,6 +1,6 @@
 """Broken pictures that a comparison must not let pass, and good ones that it must not refuse.
 
-    model.py         a mutant: its name, and one sentence, what a person would have broken
+    model.py         a mutant: its name, and one message, what a person would have broken
     rendering.toml   mutants that the engine draws: texts, parameters, wiring, camera
     render_mutants.py    that table, read
     breaking.py      a mutant and a sketch → the broken sketch

@@ -98,9 +98,9 @@ def _reads_time(graph: Graph) -> bool:
     repeats = [spec.repeat for spec in _passes(graph)]
     kernels = [kernel for _, kernel in kernels_of(graph)]
     repeats += [kernel.repeat for kernel in kernels]
-    given = {meaning for kernel in kernels for _, meaning in kernel.usual}
+    meanings = {meaning for kernel in kernels for _, meaning in kernel.usual}
     return (
-        bool({"time", "frame", "frame_of_time"} & given)
+        bool({"time", "frame", "frame_of_time"} & meanings)
         or any(kernel.reads(name) for kernel in kernels for name in names)
         or any(follows_time(text) for text in repeats)
     )

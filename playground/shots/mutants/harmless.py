@@ -82,19 +82,19 @@ def _listed(*conditions: str) -> str:
 def processes(count: int, drivers: tuple[str, ...]) -> list[Process]:
     """Choose so many drawings, by these drivers, and share them out among processes."""
     randomness = random.Random(_SEED)
-    found: list[Process] = []
+    result: list[Process] = []
     left = count
     while left > 0:
-        number = len(found)  # environments alternate, so that a few processes have most of them
+        number = len(result)  # environments alternate, so that a few processes have most of them
         threads = _THREADS[number % len(_THREADS)]
         environment = _ENVIRONMENTS[number % len(_ENVIRONMENTS)]
         if threads:
             environment = (*environment, ("LP_NUM_THREADS", threads))
         drawings = [_drawing(randomness, drivers) for _ in range(min(left, _A_PROCESS))]
         moved, elsewhere, cold = (randomness.random() < part for part in (0.3, 0.5, 0.2))
-        found.append(Process(tuple(drawings), environment, elsewhere, moved, cold))
+        result.append(Process(tuple(drawings), environment, elsewhere, moved, cold))
         left -= len(drawings)
-    return found
+    return result
 
 
 def _drawing(randomness: random.Random, drivers: tuple[str, ...]) -> Drawing:

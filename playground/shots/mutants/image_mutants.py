@@ -53,8 +53,8 @@ def _lost_row(picture: Picture) -> Picture:
 
 
 def _dead_pixel(picture: Picture) -> Picture:
-    place = picture.shape[0] // 2, picture.shape[1] // 3
-    return _set(picture, place, [*(255 - picture[place][:3]), 255])
+    texel = picture.shape[0] // 2, picture.shape[1] // 3
+    return _set(picture, texel, [*(255 - picture[texel][:3]), 255])
 
 
 def _dark_rim(picture: Picture) -> Picture:

@@ -30,7 +30,7 @@ class Rendering:
     """A mutant that the engine draws: something is broken in the sketch."""
 
     name: str
-    broke: str  # one sentence
+    broke: str  # one message
     edits: tuple[Edit, ...] = ()
     values: tuple[tuple[str, object], ...] = ()  # parameter path → value
     plus: tuple[tuple[str, object], ...] = ()  # path of a parameter or "camera.…" → what is added
@@ -50,7 +50,7 @@ class Finished:
     """A mutant that is made of the finished picture: something is broken on its way out."""
 
     name: str
-    broke: str  # one sentence
+    broke: str  # one message
     change: Callable[[Picture], Picture]
     exempt: bool = False  # it is no defect: the same build must let it pass
 

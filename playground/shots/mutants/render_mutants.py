@@ -19,12 +19,12 @@ _KEYS = {"name", "broke", "edit", "set", "plus", "times", "wire", "samples", "la
 def rendering_mutants(table: Path = TABLE) -> tuple[Rendering, ...]:
     """Return the mutants of a table; raise ``DataError`` for a key or a name that is wrong in it."""
     with table.open("rb") as file:
-        found = tuple(_mutant(entry, table) for entry in tomllib.load(file)["mutant"])
-    names = [mutant.name for mutant in found]
+        renderings = tuple(_mutant(entry, table) for entry in tomllib.load(file)["mutant"])
+    names = [mutant.name for mutant in renderings]
     for name in names:
         if names.count(name) > 1:
             raise DataError(f"two mutants are called '{name}'", file=table)
-    return found
+    return renderings
 
 
 def _mutant(entry: dict[str, Any], table: Path) -> Rendering:

@@ -70,17 +70,17 @@ def redraw(
     for process in processes(count, _drivers(sketch, renderer)):
         images = _images_of(process, sketch, Subject(sketch.file, shot, software, device), limit)
         for number, drawing in enumerate(process.drawings):
-            found = images[min(number, len(images) - 1)]  # after an error there is nothing more
-            if isinstance(found, str):
-                yield Redrawn(process, drawing, found, False)
+            image = images[min(number, len(images) - 1)]  # after an error there is nothing more
+            if isinstance(image, str):
+                yield Redrawn(process, drawing, image, False)
                 continue
-            judgement = judged(found, expected, renderer)[0]
+            judgement = judged(image, expected, renderer)[0]
             refused = "" if judgement.ok else judgement.sentence
             # The form of a kernel is part of what is drawn, and other drivers take other forms.
             same_forms = process.all_forms and drawing.driver == "auto"
-            if not refused and same_forms and found.drawn != expected.drawn:
+            if not refused and same_forms and image.drawn != expected.drawn:
                 refused = "the picture passes, but the hash of what was drawn has changed"
-            yield Redrawn(process, drawing, refused, bool(np.array_equal(found.array, expected.array)))
+            yield Redrawn(process, drawing, refused, bool(np.array_equal(image.array, expected.array)))
 
 
 def _drivers(sketch: Sketch, renderer: ContextInfo) -> tuple[str, ...]:
@@ -96,7 +96,7 @@ def _drivers(sketch: Sketch, renderer: ContextInfo) -> tuple[str, ...]:
 
 def _images_of(process: Process, sketch: Sketch, subject: Subject, limit: float) -> list[RenderedShot | str]:
     """Return the image of each drawing, the last an error's text where one fails."""
-    found: list[RenderedShot | str] = []
+    frames: list[RenderedShot | str] = []
     with TemporaryDirectory(ignore_cleanup_errors=True) as name:
         folder = Path(name)
         if process.moved:
@@ -114,11 +114,11 @@ def _images_of(process: Process, sketch: Sketch, subject: Subject, limit: float)
             for drawing in process.drawings:
                 outcome = pool.run(drawing, seconds=limit)
                 if outcome.kind != "answer":
-                    found.append(str(outcome.failure("the drawing")))
+                    frames.append(str(outcome.failure("the drawing")))
                     break
                 assert isinstance(outcome.value, RenderedShot)
-                found.append(outcome.value)
-    return found
+                frames.append(outcome.value)
+    return frames
 
 
 def _moved(sketch: Sketch, folder: Path) -> str:
@@ -131,9 +131,9 @@ def _moved(sketch: Sketch, folder: Path) -> str:
         return sketch.file
     values = values_of(sketch)
     own = {path for path in map(Path, sketch.files) if path.is_relative_to(home)}
-    for place, kernel in kernels_of(sketch.graph):
+    for position, kernel in kernels_of(sketch.graph):
         for parameter in kernel.parameters:
-            text = str(values[f"{place}.{parameter.name}"])
+            text = str(values[f"{position}.{parameter.name}"])
             if parameter.widget.kind == "file" and text and not is_absolute(text) and is_file(home / text):
                 own.add(home / text)
     target = folder / home.name  # a folder may give the sketch its name

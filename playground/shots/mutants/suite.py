@@ -28,7 +28,7 @@ ROUNDING = 1
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Result:
+class MutantResult:
     """What came of one mutant."""
 
     mutant: Mutant
@@ -46,8 +46,8 @@ class Result:
     @property
     def unseen(self) -> bool:
         """Whether the shot does not show the defect: no level differs by more than rounding may change it."""
-        found = self.comparison
-        faint = found is not None and found.verdict == "same" and found.most <= ROUNDING
+        comparison = self.comparison
+        faint = comparison is not None and comparison.verdict == "same" and comparison.most <= ROUNDING
         return faint and not self.mutant.exempt and not self.caught()
 
     @property
@@ -61,7 +61,7 @@ class Result:
 
     @property
     def share(self) -> float:
-        """Share of the pixels that differ by more than one level."""
+        """Fraction of the pixels that differ by more than one level."""
         assert self.comparison is not None
         return self.comparison.over / (self.comparison.size[0] * self.comparison.size[1])
 
@@ -77,7 +77,7 @@ class Result:
 
     def as_json(self) -> dict[str, object]:
         """Return it as JSON takes it."""
-        found = self.comparison
+        comparison = self.comparison
         return {
             "name": self.mutant.name,
             "broke": self.mutant.broke,
@@ -86,8 +86,8 @@ class Result:
             "shot": self.shot,
             "why_not": self.why_not,
             "unseen": self.unseen,
-            "most": None if found is None else found.most,
-            "share_over_1": None if found is None else self.share,
+            "most": None if comparison is None else comparison.most,
+            "share_over_1": None if comparison is None else self.share,
             "flip_mean": None if self.perceived is None else self.perceived.mean,
             "flip_tile": None if self.perceived is None else self.perceived.tile,
             "tiers": {
@@ -104,11 +104,11 @@ def all_mutants() -> tuple[Mutant, ...]:
 
 def named(names: Sequence[str]) -> tuple[Mutant, ...]:
     """Return mutants by name, all of them if none is named; raise ``SketchError`` with the nearest name."""
-    known = {mutant.name: mutant for mutant in all_mutants()}
+    mutants = {mutant.name: mutant for mutant in all_mutants()}
     for name in names:
-        if name not in known:
-            raise SketchError(f"no mutant '{name}'{nearest(name, known)}")
-    return tuple(known[name] for name in names) or tuple(known.values())
+        if name not in mutants:
+            raise SketchError(f"no mutant '{name}'{nearest(name, mutants)}")
+    return tuple(mutants[name] for name in names) or tuple(mutants.values())
 
 
 def shot_of(sketch: Sketch, name: str = "", size: tuple[int, int] | None = None) -> Shot:
@@ -120,7 +120,7 @@ def shot_of(sketch: Sketch, name: str = "", size: tuple[int, int] | None = None)
     return replace(shot, size=size or shot.size)
 
 
-class Bench:
+class MutantRunner:
     """A sketch, an engine, and the unbroken pictures that mutants are compared with."""
 
     def __init__(
@@ -132,7 +132,7 @@ class Bench:
         self.size = size  # [pixels] None: the shot's
         self.expected: dict[str, RenderedShot] = {}  # unbroken, by the shot's name
 
-    def run(self, mutants: Sequence[Mutant]) -> Iterator[Result]:
+    def run(self, mutants: Sequence[Mutant]) -> Iterator[MutantResult]:
         """Yield what came of each mutant.
 
         Raises ``PlaygroundError`` where the sketch itself cannot be drawn.
@@ -153,32 +153,32 @@ class Bench:
 
     def _take(self, shown: Sketch, shot: Shot, time: float) -> RenderedShot:
         # What the shot sets is set already: it must not be set over what a mutant breaks.
-        wanted = Shot(shot.name, shot.size, time, steps=shot.steps, mask=shot.mask)
-        return render_shot(self.engine, ShotCase(shown, wanted))
+        target = Shot(shot.name, shot.size, time, steps=shot.steps, mask=shot.mask)
+        return render_shot(self.engine, ShotCase(shown, target))
 
-    def _result(self, mutant: Mutant, shot: Shot) -> Result:
+    def _result(self, mutant: Mutant, shot: Shot) -> MutantResult:
         expected = self.unbroken(shot)
         if isinstance(mutant, Rendering):
             try:
                 sketch = broken(mutant, self.sketch.for_shot(shot))
             except DoesNotApply as reason:
-                return Result(mutant=mutant, shot=shot.name, why_not=str(reason))
+                return MutantResult(mutant=mutant, shot=shot.name, why_not=str(reason))
             rendered = self._take(sketch, shot, shot.time + mutant.later)
         else:
             rendered = replace(expected, array=mutant.change(expected.array))
         tiers = judged(rendered, expected, self.engine.info, rule_of(ShotCase(self.sketch, shot), expected))
         comparison = compare(rendered.array, expected.array)
-        return Result(
+        return MutantResult(
             mutant=mutant, shot=shot.name, comparison=comparison, tiers=tiers, picture=rendered.array
         )
 
 
-def survivors(results: Sequence[Result], tier: int) -> list[str]:
+def survivors(results: Sequence[MutantResult], tier: int) -> list[str]:
     """Return the names of the defects that a tier lets pass."""
     return [result.mutant.name for result in results if result.counts and not result.caught(tier)]
 
 
-def kill_rate(results: Sequence[Result], tier: int) -> tuple[int, int]:
+def kill_rate(results: Sequence[MutantResult], tier: int) -> tuple[int, int]:
     """Return how many defects a tier catches, and of how many."""
     counted = [result for result in results if result.counts]
     return sum(result.caught(tier) for result in counted), len(counted)

@@ -24,7 +24,7 @@ def judged(
     builds and renderers would draw differently by themselves comes on top. ``rule`` is what the shot
     says of its comparison.
     """
-    found = []
+    judgements = []
     fingerprint = fingerprint_of(renderer, actual.size, actual.drawn)
     wrong = {"not_finite": actual.not_finite, "gl_error": actual.gl_error}
     for tier in TIERS:
@@ -33,5 +33,5 @@ def judged(
             origin = replace(origin, version=f"{origin.version}, {tier}")
         reference = Reference(Path(), expected.array, origin.texts())
         own, others = ((), (reference,)) if tier == OTHER_RENDERER else ((reference,), ())
-        found.append(judge(actual.array, fingerprint, own, others, **wrong, rule=rule)[0])
-    return tuple(found)
+        judgements.append(judge(actual.array, fingerprint, own, others, **wrong, rule=rule)[0])
+    return tuple(judgements)

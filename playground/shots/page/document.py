@@ -18,7 +18,15 @@ from playground.errors import counted
 from playground.markup import Markup, joined, tag
 from playground.memo import INTERFACE
 from playground.shots.page.labels import MEANINGS, meaning
-from playground.shots.page.shot import Setting, can_be_accepted, chip, failure, moment, passed_row, row
+from playground.shots.page.shot import (
+    ShotPageContext,
+    can_be_accepted,
+    chip,
+    failure,
+    moment,
+    passed_row,
+    row,
+)
 from playground.shots.results import Record
 
 _HERE = Path(__file__).resolve().parent
@@ -32,7 +40,7 @@ _REVIEW_KEYS = tag(
 )
 
 
-def page(records: Sequence[Record], setting: Setting, notes: Sequence[str] = ()) -> str:
+def page(records: Sequence[Record], setting: ShotPageContext, notes: Sequence[str] = ()) -> str:
     """Return the page as HTML; ``notes`` are sentences for its head, as on pictures left out."""
     failed = [record for record in records if not record.ok]
     passed = [record for record in records if record.ok]
@@ -56,7 +64,7 @@ def page(records: Sequence[Record], setting: Setting, notes: Sequence[str] = ())
     )
 
 
-def policy_of(setting: Setting) -> str:
+def policy_of(setting: ShotPageContext) -> str:
     """Return the page's Content-Security-Policy: its style, its script, no other source than its own."""
     sources = "img-src 'self' data:; connect-src 'self'" if setting.review else "img-src data:"
     return (
@@ -70,7 +78,7 @@ def _style() -> str:
     return _read("report.css")
 
 
-def _script(setting: Setting) -> str:
+def _script(setting: ShotPageContext) -> str:
     return "".join(
         map(_read, ["png.js", "viewer.js", "report.js", *(["review.js"] if setting.review else [])])
     )

@@ -1,4 +1,4 @@
-"""Explain each word of a result: a label, and a sentence or two on what to make of it."""
+"""Explain each word of a result: a label, and a message or two on what to make of it."""
 
 from __future__ import annotations
 

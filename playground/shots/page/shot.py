@@ -26,7 +26,7 @@ _ALT = {
     "actual": "as it was drawn now",
     "difference": "the difference between the two, 16 times as strong; black is none",
     "flip": "the FLIP map: the brighter, the more an eye would see of the difference",
-    "masked": "as it was drawn now, with stripes over what is masked",
+    "masked": "as it was drawn now, with stripes over masked areas",
 }
 
 _KEYS = {
@@ -47,7 +47,7 @@ _KEYS = {
 
 
 @dataclass(frozen=True)
-class Setting:
+class ShotPageContext:
     """What the page is for, as far as its parts differ."""
 
     folder: str  # the results, as a shell in the tests' folder names them
@@ -77,7 +77,7 @@ def accept_command(record: Record, folder: str) -> str:
     return shlex.join(words)
 
 
-def failure(record: Record, setting: Setting) -> Markup:
+def failure(record: Record, setting: ShotPageContext) -> Markup:
     """Return the article on a shot that failed."""
     heading = f"title-{anchor(record)}"
     explained = (meaning(record.word).sentence, record.catches)
@@ -119,11 +119,11 @@ def failure(record: Record, setting: Setting) -> Markup:
 
 def _verdict(record: Record) -> str:
     """Return the sentence without the word that it begins with, which the page shows next to it."""
-    found = record.sentence.removeprefix(f"{record.word}: ")
-    return found[:1].upper() + found[1:]
+    sentence = record.sentence.removeprefix(f"{record.word}: ")
+    return sentence[:1].upper() + sentence[1:]
 
 
-def _pictures(record: Record, setting: Setting) -> Markup | None:
+def _pictures(record: Record, setting: ShotPageContext) -> Markup | None:
     figures = []
     for kind, caption in CAPTIONS.items():
         if kind not in record.pictures:
@@ -170,7 +170,7 @@ def _buttons(record: Record) -> Markup:
     )
 
 
-def _accepting(record: Record, setting: Setting) -> Markup:
+def _accepting(record: Record, setting: ShotPageContext) -> Markup:
     if not can_be_accepted(record):
         why = "No reference can be made of it: fix the sketch or the shader, then run the tests again."
         if record.word not in NEVER_ACCEPTED:
@@ -178,7 +178,7 @@ def _accepting(record: Record, setting: Setting) -> Markup:
         elif record.word == "blank":
             why = "No reference can be made of it, unless the shot says allow_blank."
         elif record.word == "error":
-            why = "There is nothing to accept: put right what the sentence says, then run the tests again."
+            why = "Nothing to accept: fix the reported error, then run the tests again."
         return tag("section", tag("p", why), class_="accepting")
     parts: list[Markup] = [tag("h3", "If this is right")]
     commands = [("accepts this very picture", accept_command(record, setting.folder))]

@@ -20,7 +20,7 @@ const LABELS = {
   flip: "FLIP map",
   masked: "Not compared",
 };
-const LARGEST = 64; // [CSS pixels a picture pixel]
+const MAX_PIXEL_SIZE = 64; // [CSS pixels a picture pixel]
 const GRID_FROM = 10; // [CSS pixels a picture pixel] below, a grid would hide what it parts
 const NEAR = 22; // [CSS pixels] how near to the divider a finger takes it
 
@@ -240,7 +240,7 @@ class Viewer {
   zoomTo(scale, x = this.pixel ? this.pixel[0] + 0.5 : this.x, y = this.pixel ? this.pixel[1] + 0.5 : this.y) {
     const before = this.scale();
     const least = this.fitting();
-    const after = Math.min(Math.max(scale, Math.min(least, 1)), LARGEST);
+    const after = Math.min(Math.max(scale, Math.min(least, 1)), MAX_PIXEL_SIZE);
     if (after <= least && scale < before) return this.fit();
     this.x = x + ((this.x - x) * before) / after;
     this.y = y + ((this.y - y) * before) / after;

@@ -11,7 +11,7 @@ import { quoted, read, shellWord, toml, write } from "./value_text.js";
 /** @typedef {{index: number, values: [string, Value][], camera: Camera | null, time: number | null,
  *             refused: string[]}} Link */
 
-const LONGEST = 32768; // characters that are read
+const MAX_LETTERS = 32768; // characters that are read
 const CAMERA = 7; // numbers: azimuth, elevation, distance, target, field of view
 
 /** @param {string} text what may stand unescaped stays readable */
@@ -50,7 +50,7 @@ export function fragmentOf(session, { time }) {
 export function readFragment(fragment, sketches, rowsOf) {
   const pairs = fragment
     .replace(/^#/, "")
-    .slice(0, LONGEST)
+    .slice(0, MAX_LETTERS)
     .split("&")
     .filter(Boolean)
     .map((pair) => {

@@ -8,7 +8,7 @@ import { createKeptStates } from "./kept_states.js";
  *             cancel?: (() => void) | null}} Cached */
 /** @typedef {ReturnType<typeof createCache>} Cache */
 
-const MOST = 1024; // results of any size: a driver spends memory on each texture besides its texels
+const MAX_RESULTS = 1024; // results of any size: a driver spends memory on each texture besides its texels
 const VERSIONS = 4; // of one pass: whoever drags a slider comes back to none of them
 const SHARE_OF_STATES = 4; // a quarter of the budget may be earlier states of loops
 
@@ -56,7 +56,7 @@ export const createCache = (limit, textures) => {
   const trim = () => {
     let now = bytes();
     for (const [key, { results }] of known) {
-      if (now <= limit && known.size <= MOST) return;
+      if (now <= limit && known.size <= MAX_RESULTS) return;
       if (isPinned(key)) continue;
       for (const result of results.values()) now -= textures.bytesOf(result);
       drop(key);

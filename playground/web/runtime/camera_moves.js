@@ -10,8 +10,8 @@ import { clamp } from "./numbers.js";
 const HALF_TURN = 180;
 /** How much nearer one notch of the wheel brings the eye. */
 export const NOTCH = 0.88;
-const WIDEST = 100; // [degrees] that a view is opened to at most
-const LOWEST = -10; // [degrees] of a sun, below the horizon
+const MAX_FIELD_OF_VIEW = 100; // [degrees] that a view is opened to at most
+const MIN_SUN_ELEVATION = -10; // [degrees] of a sun, below the horizon
 const DEGREE = Math.PI / 180;
 
 /** @param {Camera} camera @param {number} across @param {number} down shares of the picture's height */
@@ -34,7 +34,7 @@ export function fieldFor(degrees, wanted, room) {
   const narrower = wanted[0] / wanted[1] / (room[0] / Math.max(room[1], 1));
   if (narrower <= 1) return degrees;
   const opened = (2 * Math.atan(Math.tan((degrees * DEGREE) / 2) * narrower)) / DEGREE;
-  return Math.max(degrees, Math.min(opened, WIDEST));
+  return Math.max(degrees, Math.min(opened, MAX_FIELD_OF_VIEW));
 }
 
 /** A direction after a drag, to the right and upwards in shares of the picture's height.
@@ -42,5 +42,5 @@ export function fieldFor(degrees, wanted, room) {
  *  @returns {[number, number]} */
 export function sunMoved(sun, across, up) {
   const azimuth = (((sun[0] + across * HALF_TURN) % 360) + 360) % 360;
-  return [+azimuth.toFixed(2), clamp(+(sun[1] + (up * HALF_TURN) / 2).toFixed(2), LOWEST, 90)];
+  return [+azimuth.toFixed(2), clamp(+(sun[1] + (up * HALF_TURN) / 2).toFixed(2), MIN_SUN_ELEVATION, 90)];
 }

@@ -10,7 +10,7 @@ import { isSize } from "./binder.js";
 /** @typedef {import("./kernels.js").Job} Job */
 
 const OFTEN = 3; // draws with the same choices, after which they are written in
-const MOST = 8; // programs with choices that are remembered of one without
+const MAX_PROGRAMS = 8; // programs with choices that are remembered of one without
 
 /** Write checkboxes, menus and what is wired into a stage's text as constants: no line and no column moves.
  *  @param {string} text @param {[string, number][]} choices names, whole numbers @returns {string} */
@@ -53,7 +53,7 @@ export const createChosen = ({ software, parallel }, programs, often = OFTEN) =>
     const found = chosen.get(key) ?? { times: 0, program: null };
     chosen.delete(key);
     chosen.set(key, found);
-    if (chosen.size > MOST) chosen.delete(/** @type {string} */ (chosen.keys().next().value));
+    if (chosen.size > MAX_PROGRAMS) chosen.delete(/** @type {string} */ (chosen.keys().next().value));
     if (found.program?.state === "gone") found.program = null;
     if (!found.program && ++found.times < often) return general;
     found.program ??= programs.ask(texts(general, choices));

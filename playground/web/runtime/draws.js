@@ -18,7 +18,7 @@ import { ranges } from "./tiles.js";
 /** @typedef {{key: string, attributes: [string, number, WebGLBuffer][], indices: WebGLBuffer, length: number,
  *             tiles: WebGLBuffer | null}} Mesh */
 
-const MOST_MESHES = 16, MOST_INSTANCES = 2 ** 20;
+const MAX_MESHES = 16, MAX_INSTANCES = 2 ** 20;
 
 /** @param {import("./context.js").Context} context @param {import("./textures.js").Textures} textures
  *  @param {import("./programs.js").Programs} programs @param {import("./binder.js").Binder} binder
@@ -75,7 +75,7 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
       tiles: name in CHOSEN_BY ? make("Buffer") : null,
     };
     meshes.set(key, made);
-    if (meshes.size > MOST_MESHES) release(/** @type {Mesh} */ (meshes.values().next().value));
+    if (meshes.size > MAX_MESHES) release(/** @type {Mesh} */ (meshes.values().next().value));
     return made;
   };
 
@@ -185,8 +185,8 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
     const names = kernels.namesOf(job), found = whole(instances, {
       name: (name) => names.name(name) ?? componentOf(job, name),
     });
-    if (found >= 0 && found <= MOST_INSTANCES) return found;
-    const message = `instances = ${found}; 0 to ${MOST_INSTANCES} were expected`;
+    if (found >= 0 && found <= MAX_INSTANCES) return found;
+    const message = `instances = ${found}; 0 to ${MAX_INSTANCES} were expected`;
     throw failure("sketch", `pass '${step.path}': ${message}`);
   };
 

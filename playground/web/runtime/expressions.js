@@ -19,7 +19,7 @@ import { arithmetic, bitLength, compared, float, floor, general, power } from ".
  *  of a mistake in an expression that nothing has placed yet.
  *  @typedef {Error & {where: string | undefined}} PlanError */
 
-const LIMIT = 2n ** 62n, LARGEST_BASE = 2n ** 31n;
+const LIMIT = 2n ** 62n, MAX_BASE = 2n ** 31n;
 const COUNTERS = ["iteration", "iterations"];
 
 /** @param {string} message @param {string} [where] @returns {PlanError} */
@@ -66,7 +66,7 @@ const FUNCTIONS = {
   ceil: (value) => -floor(arithmetic("*", value, -1n)),
   "**": (base, exponent) => {
     if (typeof exponent !== "bigint") throw planError("the exponent of a power should be a whole number");
-    const large = compared(base, LARGEST_BASE) > 0 || compared(base, -LARGEST_BASE) < 0;
+    const large = compared(base, MAX_BASE) > 0 || compared(base, -MAX_BASE) < 0;
     if (large || exponent > 62n || exponent < -62n) throw planError("a power may not be that large");
     if (!compared(base, 0n) && exponent < 0n) throw planError("division by zero");
     const found = power(base, exponent);

@@ -11,7 +11,7 @@ import { stepsOf } from "./plan_nodes.js";
 /** @typedef {{path: string, output: string}} Ref */
 
 const CLEARANCE = 0.002; // above the ground, as a share of the eye's distance from its target
-const HIGHEST = 89; // degrees of elevation, at most
+const MAX_ELEVATION = 89; // degrees of elevation, at most
 
 /** @param {(kernel: import("./schema.js").Kernel) => Set<string>} namesOf the names in a kernel's text */
 export const createEyeHeight = (namesOf) => {
@@ -47,7 +47,7 @@ export const createEyeHeight = (namesOf) => {
     return {
       ...plan.camera,
       azimuth: level > 0 ? Math.atan2(east, north) * degrees : plan.camera.azimuth,
-      elevation: Math.min(Math.atan2(up, level) * degrees, HIGHEST),
+      elevation: Math.min(Math.atan2(up, level) * degrees, MAX_ELEVATION),
       distance: Math.hypot(level, up),
       target: /** @type {[number, number, number]} */ ([...target]),
     };

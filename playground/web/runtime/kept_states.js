@@ -8,8 +8,8 @@
 /** @typedef {Map<string, import("./textures.js").Result>} State  by the path of the step that computed it */
 /** @typedef {{now: number, states: Map<number, State>}} Kept  the states of one key, by iterations done */
 
-const MOST_STATES = 48; // of one loop
-const MOST_KEYS = 2; // of one loop's path
+const MAX_STATES = 48; // of one loop
+const MAX_KEYS = 2; // of one loop's path
 
 /** @param {number} limit bytes @param {import("./textures.js").Textures} textures */
 export const createKeptStates = (limit, textures) => {
@@ -73,14 +73,14 @@ export const createKeptStates = (limit, textures) => {
       keys.delete(key);
       keys.set(key, kept);
       const oldest = keys.keys().next().value;
-      if (keys.size > MOST_KEYS) {
+      if (keys.size > MAX_KEYS) {
         keys.get(oldest).states.forEach(give);
         keys.delete(oldest);
       }
       kept.now = now;
       if (kept.states.has(number)) give(pop(kept, number));
       kept.states.set(number, state);
-      if (kept.states.size > MOST_STATES) give(pop(kept, least(kept)));
+      if (kept.states.size > MAX_STATES) give(pop(kept, least(kept)));
       while (sum(every().map(weightOf)) > limit && thin());
     },
 

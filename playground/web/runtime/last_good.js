@@ -10,7 +10,7 @@
 /** Where texts are kept: in the tab's storage, in its name where that is refused, or nowhere.
  *  @typedef {"storage" | "name" | ""} Place */
 
-const MOST = 2_000_000; // characters
+const MAX_LETTERS = 2_000_000; // characters
 
 /** Make what keeps the texts of a page.
  *  @param {string} key                          of the sketch: see keyOf
@@ -28,7 +28,7 @@ export function createGuard(key, places = {}) {
   /** @param {unknown} value */
   function write(value) {
     const text = value ? JSON.stringify(value) : "";
-    if (text.length > MOST) return;
+    if (text.length > MAX_LETTERS) return;
     if (place === "storage" && storage) {
       try {
         if (text) storage.setItem(name, text);

@@ -5,7 +5,7 @@
 const CONTEXT_BITS = 3; // lc: of the byte before that choose a literal's probabilities
 const STATES = 12, LITERAL_STATES = 7; // in the latter the last was a literal
 const PROBABILITY_BITS = 11, ADAPTS = 5; // 1/32 of the way with each bit
-const SHORTEST = 2; // bytes of a match
+const MIN_MATCH = 2; // bytes of a match
 
 // Where each kind of choice has its probabilities.
 const IS_MATCH = 0, IS_REPEAT = IS_MATCH + STATES, IS_LATER = IS_REPEAT + STATES; // of the last 4 distances,
@@ -68,12 +68,12 @@ export function unlzma(packed, length) {
     return value;
   };
   const lengthOf = (/** @type {number} */ at) => {
-    if (!bit(at)) return SHORTEST + number(at + 2, 3);
-    return bit(at + 1) ? SHORTEST + 16 + number(at + 256, 8) : SHORTEST + 8 + number(at + 16, 3);
+    if (!bit(at)) return MIN_MATCH + number(at + 2, 3);
+    return bit(at + 1) ? MIN_MATCH + 16 + number(at + 256, 8) : MIN_MATCH + 8 + number(at + 16, 3);
   };
   /** How many bytes back, less one. @param {number} count  bytes of the match */
   const distanceOf = (count) => {
-    const slot = number(SLOTS + 64 * Math.min(count - SHORTEST, 3), 6);
+    const slot = number(SLOTS + 64 * Math.min(count - MIN_MATCH, 3), 6);
     if (slot < 4) return slot;
     const bits = (slot >> 1) - 1, base = (2 | (slot & 1)) << bits;
     if (slot < 14) return base + reversed(NEAR + base - slot, bits);

@@ -2,7 +2,7 @@
 
 const DEFINE = /^\s*#\s*define\s+(\w+)(\(|\s+(\w+)\s*$)?/;
 const DIRECTIVE = /^\s*#/;
-const MOST_LINES = 1000; // that one call may span: an unclosed one must not swallow the file
+const MAX_LINES = 1000; // that one call may span: an unclosed one must not swallow the file
 
 /** Lines of code, comments blanked and ASCII only, with each macro call on one line; as many lines.
  *  @param {string[]} codes @returns {string[]} */
@@ -33,7 +33,7 @@ function join(codes, index, pattern) {
   let taken = joined; // as far as calls are whole
   let end = index;
   for (let last = index + 1, open = openAtEnd(joined, pattern); open !== "no"; last++) {
-    if (last >= codes.length || last - index > MOST_LINES || DIRECTIVE.test(codes[last])) break;
+    if (last >= codes.length || last - index > MAX_LINES || DIRECTIVE.test(codes[last])) break;
     const code = codes[last].trim();
     if (open === "maybe" && code && !code.startsWith("(")) break;
     if (code) joined += ` ${code}`;

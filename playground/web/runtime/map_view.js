@@ -8,7 +8,7 @@ import { fill, measured } from "./words.js";
 /** @typedef {{size: [number, number], channels: number, data: ArrayLike<number>}} Texels */
 /** @typedef {{path: string, output: string, label: string, height: boolean}} Texture */
 
-const LARGEST = 2048; // pixels of a side of a map
+const MAX_MAP_SIDE = 2048; // pixels of a side of a map
 const CLOSEST = 64; // pixels of the screen a texel may have
 
 /** Where a map lies in its room: its place in the middle (shares, y down), how much it is enlarged.
@@ -28,7 +28,7 @@ export function followsFrame(sketch, path) {
 /** The size at which a map of a texture is drawn: a pixel a texel, where that is not too many.
  *  @param {[number, number]} texels @returns {[number, number]} */
 export function sheetOf(texels) {
-  const less = Math.min(1, LARGEST / Math.max(...texels));
+  const less = Math.min(1, MAX_MAP_SIDE / Math.max(...texels));
   return [Math.max(Math.round(texels[0] * less), 1), Math.max(Math.round(texels[1] * less), 1)];
 }
 

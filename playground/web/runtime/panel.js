@@ -20,7 +20,7 @@ import { fill } from "./words.js";
  *  @property {() => Map<string, number>} repeats     iterations in all, by path */
 
 const FOUND = 150; // rows that a search shows
-const FEW = 12; // inner rows that are all shown at once
+const MAX_ROWS_OPEN = 12; // inner rows that are all shown at once
 
 /** Make the panel of a session. @param {Session} session @param {PanelOptions} options */
 export function createPanel(session, { words, link, copied, say, fitMap, repeats }) {
@@ -79,7 +79,7 @@ export function createPanel(session, { words, link, copied, say, fitMap, repeats
   function section(/** @type {string} */ pass, /** @type {Shown[]} */ items, /** @type {boolean} */ open) {
     const outer = items.filter((row) => row.exported), inner = items.filter((row) => !row.exported);
     const choice = session.sketch.choices.find((one) => one.pass === pass);
-    const few = inner.length < FEW;
+    const few = inner.length < MAX_ROWS_OPEN;
     const inside = () =>
       [...grouped(inner, ({ path }) => path.slice(0, path.lastIndexOf(".")))].map(([path, some]) =>
         fold(path.slice(path.indexOf(".") + 1), few, () => rows.groups(some), "inner"));

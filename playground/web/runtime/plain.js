@@ -11,7 +11,7 @@ import { createShapes } from "./shapes.js";
 /** @typedef {import("./kernels.js").Job} Job */
 /** @typedef {import("./schema.js").Sampling} Sampling */
 
-const MOST_LEVELS = 12; // of a pyramid of another tool
+const MAX_LEVELS = 12; // of a pyramid of another tool
 const VALUE = "value: ", DEPTH = "depth: ", SIZES = "sizes: ";
 
 /** The shapes of samplers and the components of other uniforms, by WebGL's number of the type.
@@ -77,7 +77,7 @@ export const createPlain = (context, textures, images, binder, kernels) => {
     if (meaning.startsWith(VALUE)) return [Number(meaning.slice(VALUE.length))];
     if (meaning.startsWith(DEPTH)) {
       const halved = Number(meaning.slice(DEPTH.length)), digits = 32 - Math.clz32(Math.min(...step.size));
-      return [Math.min(Math.max(digits + halved - 2, 0), MOST_LEVELS)];
+      return [Math.min(Math.max(digits + halved - 2, 0), MAX_LEVELS)];
     }
     if (meaning === "iteration") return [around ? around.number : 0];
     if (meaning === "iterations") return [around ? around.whole : 1];

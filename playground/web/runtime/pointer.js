@@ -5,7 +5,7 @@
 
 /** Meanings of usual uniforms that the pointer changes: _MOUSE of sketch/traits.py. */
 const POINTED = new Set(["mouse", "hover", "hover_share", "drag", "buttons"]);
-const LONGEST = 1; // [s] between two pictures: more was a pause
+const MAX_PAUSE = 1; // [s] between two pictures: more was a pause
 
 /** Whether a shader of a sketch reads the pointer. @param {Sketch} sketch */
 export const readsPointer = ({ kernels }) =>
@@ -66,7 +66,7 @@ export function followPointer(element, changed) {
         found.mouse = [...pixels(at), x, y];
         found.drag = [...pixels(at), down || clicked ? x : -x, clicked ? y : -y];
       }
-      if (playing && delta < LONGEST) found.delta = delta;
+      if (playing && delta < MAX_PAUSE) found.delta = delta;
       told = clicked;
       return found;
     },

@@ -25,7 +25,7 @@ import { fill } from "./words.js";
 
 /** @typedef {ReturnType<typeof createRecovery>} Recovery */
 
-const MOST_LOSSES = 3;
+const MAX_LOSSES = 3;
 const PATIENCE = 6_000; // [ms] a browser that blocks a page after a crash never gives its context back
 const SOON = 60_000; // [ms] losses that follow so closely are counted together
 
@@ -69,7 +69,7 @@ export function createRecovery(host, { words, poster, guard = () => undefined, r
       lastLoss = now;
       blamed = guard()?.left ?? blamed;
       poster(true);
-      if (losses > MOST_LOSSES) return say(fill(words.gone, { count: losses }));
+      if (losses > MAX_LOSSES) return say(fill(words.gone, { count: losses }));
       event.preventDefault(); // or it never comes back
       say(words.lost);
       clearTimeout(late);

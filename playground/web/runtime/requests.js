@@ -1,7 +1,7 @@
 // requests.js -- what a plan is made for besides its sketch, and checks of it: engine/plan_request.py.
 
 import { planError } from "./expressions.js";
-import { LARGEST_SIDE } from "./sizes.js";
+import { MAX_SIDE } from "./sizes.js";
 import { isSame, leavesOf } from "./values.js";
 
 /** @typedef {import("./schema.js").Sketch} Sketch */
@@ -33,9 +33,9 @@ export function checkedTime(time) {
 
 /** @param {[number, number]} frame @returns {[number, number]} */
 export function checkedFrame([width, height]) {
-  const fits = [width, height].every((side) => Number.isInteger(side) && side >= 1 && side <= LARGEST_SIDE);
+  const fits = [width, height].every((side) => Number.isInteger(side) && side >= 1 && side <= MAX_SIDE);
   if (fits) return [width, height];
-  throw planError(`a picture of ${width} x ${height} pixels; 1 to ${LARGEST_SIDE} a side were expected`, "");
+  throw planError(`a picture of ${width} x ${height} pixels; 1 to ${MAX_SIDE} a side were expected`, "");
 }
 
 /** @param {Sketch} sketch @param {State} state @returns {Metres} */
@@ -45,8 +45,8 @@ export function terrainOf(sketch, state) {
   const check = (fits, name, value, wanted) => {
     if (!fits) throw planError(`${name} = '${[value].flat().join("x")}': expected ${wanted}`, "");
   };
-  const sides = size.every((side) => Number.isInteger(side) && side >= 1 && side <= LARGEST_SIDE);
-  check(sides, "size", size, `1 to ${LARGEST_SIDE} texels a side, as 513 or 513x257`);
+  const sides = size.every((side) => Number.isInteger(side) && side >= 1 && side <= MAX_SIDE);
+  check(sides, "size", size, `1 to ${MAX_SIDE} texels a side, as 513 or 513x257`);
   const own = sketch.terrain, unset = !extent || isSame(extent, own.extent);
   const metres = !unset ? extent : own.extentFollows ? withSides(own.extent[0], size) : own.extent;
   const above0 = metres.every((side) => side > 0 && side < 1e9);

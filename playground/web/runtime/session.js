@@ -14,7 +14,7 @@ import { fits } from "./value_text.js";
 
 const TERRAIN = ["size", "extent", "relief", "base_elevation"];
 const AT_ONCE = 800; // [ms] changes of one row that follow each other so closely are undone together
-const LONGEST = 500; // steps that can be undone
+const MAX_UNDO_STEPS = 500; // steps that can be undone
 
 /** Rows for the terrain itself, like those of parameters: its size, extent, relief, base elevation.
  *  @param {Sketch} sketch @returns {Shown[]} */
@@ -107,7 +107,7 @@ export function createSession(sketches, first = 0) {
   function go(/** @type {Step} */ step, group = "") {
     const moment = Date.now();
     if (!group || group !== changing || moment - changedAt > AT_ONCE)
-      before = [...before, now].slice(-LONGEST);
+      before = [...before, now].slice(-MAX_UNDO_STEPS);
     [changing, changedAt, after] = [group, moment, []];
     tell(take(step));
   }

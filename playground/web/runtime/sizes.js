@@ -10,10 +10,10 @@ import { givenTo, leavesOf, numberOf } from "./values.js";
 /** @typedef {[number, number]} Size */
 /** @typedef {import("./expressions.js").Names} Names */
 
-export const LARGEST_SIDE = 16384;
+export const MAX_SIDE = 16384;
 export const MAX_REPEAT = 1_000_000;
 const MAX_BOUND = 2 ** 31 - 1; // of a repeat that ends by itself: what GLSL counts
-const MOST_COUNTED = 1024; // iterations of a loop of which each may have its own sizes: each is planned
+const MAX_COUNTED = 1024; // iterations of a loop of which each may have its own sizes: each is planned
 const FRAME_RATE = 60;
 
 /** How many frames have run at a time [s], that of second 0 included: n / 60 is frame n, however rounded.
@@ -133,8 +133,8 @@ export function measure(sketch, shared, now) {
     if (before !== undefined) return before;
     const { repeat, counting, where } = passes[loop];
     const found = within(outer, () => counted(/** @type {any} */ (repeat), nameOf(loop), where, names));
-    if (counting && found > MOST_COUNTED) {
-      const message = `repeat '${textOf(/** @type {any} */ (repeat))}' gives ${found}; 0 to ${MOST_COUNTED}`;
+    if (counting && found > MAX_COUNTED) {
+      const message = `repeat '${textOf(/** @type {any} */ (repeat))}' gives ${found}; 0 to ${MAX_COUNTED}`;
       const why = "were expected where a size or a repeat inside names the iteration";
       throw planError(`pass '${nameOf(loop)}': ${message} ${why}`, where);
     }
@@ -193,9 +193,9 @@ export function measure(sketch, shared, now) {
 
   /** @param {string} path @param {(number | bigint)[]} sides @param {string} where @returns {Size} */
   function checked(path, sides, where) {
-    if (sides.every((side) => side >= 1 && side <= LARGEST_SIDE)) return [Number(sides[0]), Number(sides[1])];
+    if (sides.every((side) => side >= 1 && side <= MAX_SIDE)) return [Number(sides[0]), Number(sides[1])];
     const when = at.size ? ` in iteration ${[...at.values()].pop()}` : "";
-    const message = `size ${sides[0]} x ${sides[1]}${when}; 1 to ${LARGEST_SIDE} a side were expected`;
+    const message = `size ${sides[0]} x ${sides[1]}${when}; 1 to ${MAX_SIDE} a side were expected`;
     throw planError(`pass '${nameOf(path)}': ${message}`, where);
   }
 

@@ -20,9 +20,9 @@ const BLANKED = new RegExp(
 const IS_SPACE = new RegExp(SPACE);
 const NOT_TAB = /[^\t]/gu;
 const NOT_ASCII = /[^\t -~]/gu;
-const MOST_DEPTH = 32;
-const MOST_LINES = 200_000;
-const MOST_INCLUDES = 4096;
+const MAX_DEPTH = 32;
+const MAX_LINES = 200_000;
+const MAX_INCLUDES = 4096;
 
 /** Reads a file and everything that it includes.
  *
@@ -53,8 +53,8 @@ export function flatten(shared, file, texts = {}, { once = false } = {}) {
       for (let more = 1; more < count; more++) {
         lines.push({ code: "", file: at, line: line + more, raw: physical[index + more] });
       }
-      if (lines.length > MOST_LINES) {
-        throw errorAt(at, line, `more than ${MOST_LINES} lines with its includes; `
+      if (lines.length > MAX_LINES) {
+        throw errorAt(at, line, `more than ${MAX_LINES} lines with its includes; `
           + "is something included over and over?");
       }
       if (include) follow(include, at, line, stack);
@@ -69,8 +69,8 @@ export function flatten(shared, file, texts = {}, { once = false } = {}) {
       throw errorAt(at, line,
         '#include needs one file name in quotes, as #include "noise/hash.glsl"');
     }
-    if (++includes > MOST_INCLUDES) {
-      throw errorAt(at, line, `more than ${MOST_INCLUDES} includes; is something included over and over?`);
+    if (++includes > MAX_INCLUDES) {
+      throw errorAt(at, line, `more than ${MAX_INCLUDES} includes; is something included over and over?`);
     }
     const target = placesOf(shared, at, name).find((place) => textOf(place) !== undefined);
     if (target === undefined) throw errorAt(at, line, `no file '${name}' to include`);
@@ -79,7 +79,7 @@ export function flatten(shared, file, texts = {}, { once = false } = {}) {
       const cycle = [...stack.slice(stack.indexOf(target)), target];
       throw errorAt(at, line, `include cycle: ${cycle.join(" → ")}`);
     }
-    if (stack.length >= MOST_DEPTH) throw errorAt(at, line, `includes nested more than ${MOST_DEPTH} deep`);
+    if (stack.length >= MAX_DEPTH) throw errorAt(at, line, `includes nested more than ${MAX_DEPTH} deep`);
     read.add(target);
     add(target, [...stack, target]);
   };

@@ -7,7 +7,7 @@ import { fill } from "./words.js";
 /** @typedef {import("./figure.js").Figure} Figure */
 /** @typedef {import("./schema.js").Sketch} Sketch */
 
-const USUAL = 10; // [s] that the bar of a sketch without keyframes shows at least
+const DEFAULT_DURATION = 10; // [s] that the bar of a sketch without keyframes shows at least
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 10];
 const FPS = 30; // frames of a film, as capture/film.py
 const EPSILON = 1e-6;
@@ -18,8 +18,8 @@ const marksOf = (sketch) =>
 
 /** The last time on the bar, which begins at 0. @param {Sketch} sketch @param {number} time */
 function spanOf(sketch, time) {
-  const last = sketch.duration || USUAL;
-  return time <= last ? last : Math.ceil(time / USUAL) * USUAL;
+  const last = sketch.duration || DEFAULT_DURATION;
+  return time <= last ? last : Math.ceil(time / DEFAULT_DURATION) * DEFAULT_DURATION;
 }
 
 /** The time of the film's frame before or after. @param {number} time @param {number} frames */

@@ -6,7 +6,7 @@ import { general, isWhole, lengthOf, rangeOf } from "./numbers.js";
 /** @typedef {import("./schema.js").Shown} Shown */
 /** @typedef {import("./schema.js").Value} Value */
 
-const LARGEST = 1e9; // [m] of the terrain
+const MAX_METRES = 1e9; // [m] of the terrain
 
 /** Six digits where they say the same, else all there are.
  *  @param {number} number */
@@ -59,8 +59,8 @@ export function read(one, text) {
  *  @param {Shown} one @param {number} part @returns {[number, number]} */
 function limits(one, part) {
   if (one.widget === "direction") return part ? [-90, 90] : [-720, 720];
-  if (one.path === "relief") return [0, LARGEST];
-  if (one.path === "extent") return [Number.MIN_VALUE, LARGEST];
+  if (one.path === "relief") return [0, MAX_METRES];
+  if (one.path === "extent") return [Number.MIN_VALUE, MAX_METRES];
   const [low, high] = rangeOf(one, part) ?? [-Infinity, Infinity];
   const slack = 1e-6 * Math.max(Math.abs(low), Math.abs(high));
   if (!isWhole(one.type)) return low === -Infinity ? [low, high] : [low - slack, high + slack];

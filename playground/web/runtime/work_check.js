@@ -21,7 +21,7 @@ import { leavesOf } from "./values.js";
  *             differs?: Shot}} Outcome  sizes: width, height, channels */
 
 const SIDE = 240; // pixels of the longer side of the pictures that are compared
-const MOST = 0.6; // of all that differs lies in a third of a picture, to say that it lies there
+const MIN_FRACTION = 0.6; // of all that differs lies in a third of a picture, to say that it lies there
 const BRIGHTER = 1; // level of 255, in the mean, from which a picture is called brighter or darker
 
 /** Judge works for an exercise; the answer is drawn once.
@@ -168,7 +168,7 @@ function named(amount, total, names) {
   let from = 0;
   for (const [third, name] of names.entries()) {
     const to = from + Math.floor(amount.length / 3) + Number(third < amount.length % 3);
-    if (amount.slice(from, to).reduce((sum, one) => sum + one, 0) / total > MOST) return name;
+    if (amount.slice(from, to).reduce((sum, one) => sum + one, 0) / total > MIN_FRACTION) return name;
     from = to;
   }
   return null;

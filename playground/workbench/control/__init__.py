@@ -4,7 +4,7 @@
     described.py        what there is to control, as JSON
     controls.py         sets values, time, presets; undoes; takes the picture
     addresses.py        an address of OSC → a parameter, or one part of it
-    shares.py           a share of a widget's range ↔ a value
+    shares.py           a fraction of a widget's range ↔ a value
     controllers.py      knobs and buttons of MIDI devices → values, learned
     controller_file.py  the file that remembers them
     changes.py          what has changed since the last look, for those who listen

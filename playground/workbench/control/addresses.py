@@ -20,7 +20,7 @@ from playground.workbench.control.items import items_of, values_of
 
 OWN = "/playground/"
 """What addresses begin with that are no parameter's."""
-_REPORTED = 20  # addresses that are named; for more, one sentence
+_REPORTED = 20  # addresses that are named; for more, one message
 
 Message = tuple[str, list[Any]]
 """An address and its arguments."""
@@ -56,7 +56,7 @@ class Addresses:
         self._reported.discard(address)
         return answer
 
-    def told(self, changed: Mapping[str, Value]) -> list[Message]:
+    def messages_for(self, changed: Mapping[str, Value]) -> list[Message]:
         """Return the messages that tell of new values, but for those that were just received."""
         items = items_of(self.controls.session)
         news = {p: v for p, v in changed.items() if p in items and self._received.pop(p, None) != v}
@@ -90,17 +90,17 @@ class Addresses:
         for target in find_targets(graph, head)[:1] if head else ():
             if last in part_names(target.parameter):
                 return head, part_names(target.parameter).index(last)
-        found: dict[str, tuple[str, int | None]] = {}
+        addresses: dict[str, tuple[str, int | None]] = {}
         items = items_of(self.controls.session)
         for path, item in items.items():
             if path.endswith(f".{name}"):
-                found[address_of(path)] = path, None
+                addresses[address_of(path)] = path, None
             elif head and path.endswith(f".{head}") and last in part_names(item.parameter):
-                found[f"{address_of(path)}/{last}"] = path, part_names(item.parameter).index(last)
-        if len(found) > 1:
-            raise ParameterError(f"it may be {' or '.join(found)}; write one of them")
-        if found:
-            return next(iter(found.values()))
+                addresses[f"{address_of(path)}/{last}"] = path, part_names(item.parameter).index(last)
+        if len(addresses) > 1:
+            raise ParameterError(f"it may be {' or '.join(addresses)}; write one of them")
+        if addresses:
+            return next(iter(addresses.values()))
         every = [address_of(path) for path in items]
         every += [
             f"{address_of(p)}/{part}" for p, item in items.items() for part in part_names(item.parameter)
@@ -116,38 +116,38 @@ class Addresses:
 
     def _act(self, address: str, arguments: Sequence[Any]) -> None:
         """Do what is no parameter's: time, presets, undo."""
-        name, given = address.removeprefix(OWN), arguments[0] if arguments else True
+        name, argument = address.removeprefix(OWN), arguments[0] if arguments else True
         names = [name for name in self.controls.names if name not in ("set", "reset")]
         if name not in names:
-            raise ParameterError(f"no such address{nearest(address, [OWN + one for one in names])}")
-        is_number = isinstance(given, int | float)
-        if name in ("undo", "redo") and not given:
+            raise ParameterError(f"no such address{nearest(address, [OWN + name for name in names])}")
+        is_number = isinstance(argument, int | float)
+        if name in ("undo", "redo") and not argument:
             return  # the button is let go
         if name == "playing" and is_number:
-            given = bool(given)
+            argument = bool(argument)
         sketch = self.controls.session.sketch
         presets = sketch.presets if sketch is not None else ()
-        if name == "preset" and is_number and 0 <= given < len(presets):
-            given = presets[int(given)].name
-        self.controls.do({name: tidied(given) if isinstance(given, float) else given})
+        if name == "preset" and is_number and 0 <= argument < len(presets):
+            argument = presets[int(argument)].name
+        self.controls.do({name: tidied(argument) if isinstance(argument, float) else argument})
 
     def _set(self, address: str, arguments: Sequence[Any]) -> list[Message]:
         path, part = self.find(address)
         if path in TERRAIN_KEYS:
-            self.controls.set({path: [_plain(one) for one in arguments]})
+            self.controls.set({path: [_plain(argument) for argument in arguments]})
             return []
         parameter = find_targets(self._graph, path)[0].parameter
         if not arguments:
             return [_message(path, parameter, self.controls.value(path))]
-        given = _given(parameter, arguments)
+        numbers_given = _given(parameter, arguments)
         if part is not None:
             value = self.controls.value(path)
             numbers: list[Any] = list(value) if isinstance(value, tuple) else [value]
             if len(arguments) != 1:
                 raise ParameterError(f"expected one number, found {len(arguments)} arguments")
-            numbers[part] = given
-            given = numbers
-        self.controls.set({path: given})
+            numbers[part] = numbers_given
+            numbers_given = numbers
+        self.controls.set({path: numbers_given})
         self._received[path] = self.controls.value(path)
         return []
 
@@ -158,15 +158,18 @@ def _given(parameter: Parameter, arguments: Sequence[Any]) -> Any:
         return bool(arguments[0])
     if parameter.widget.kind == "colour" and len(arguments) == 1 and type(arguments[0]) is int:
         return f"#{arguments[0] >> 8 & 0xFFFFFF:06x}"  # OSC's own type of colours: 8 bits each of r, g, b, a
-    found = [_plain(one) for one in arguments]
+    names = [_plain(argument) for argument in arguments]
     if is_whole(parameter.type) and parameter.widget.kind != "menu":
-        found = [round(one) if isinstance(one, float) and abs(one) < 2**31 else one for one in found]
-    return found[0] if len(found) == 1 else found
+        names = [
+            round(argument) if isinstance(argument, float) and abs(argument) < 2**31 else argument
+            for argument in names
+        ]
+    return names[0] if len(names) == 1 else names
 
 
-def _plain(given: Any) -> Any:
+def _plain(argument: Any) -> Any:
     """Return an argument; a number in the fewest digits that say it, as OSC has single precision."""
-    return tidied(given) if isinstance(given, float) else given
+    return tidied(argument) if isinstance(argument, float) else argument
 
 
 def _message(path: str, parameter: Parameter, value: Value) -> Message:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from playground.sketch.model import Value
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.control.described import errors_of, plain
 from playground.workbench.control.items import items_of, values_of
 
@@ -15,7 +15,7 @@ _JUMP = 0.5  # [s] that time may differ from what its speed makes of it before t
 class Changes:
     """Looks at a session after each frame; the first look finds nothing new."""
 
-    def __init__(self, bench: Bench) -> None:
+    def __init__(self, bench: Workbench) -> None:
         self._bench = bench
         self.values: dict[str, Value] = {}  # as they were at the last look, by path
         self.changed: dict[str, Value] = {}  # those that were otherwise at the look before
@@ -26,14 +26,14 @@ class Changes:
         self._at = 0.0
         self._reload: object = None
         self._errors: object = None
-        self.begun = False  # whether there was a look before the last
+        self.started = False  # whether there was a look before the last
         self._looked = False
 
     def look(self) -> list[dict[str, Any]]:
         """Return what is new, as events for JSON; ``changed`` has the new values."""
         events = [*self._sketch_or_values(), *self._time_events(), *self._saves()]
-        self.begun, self._looked = self._looked, True
-        return events if self.begun else []
+        self.started, self._looked = self._looked, True
+        return events if self.started else []
 
     def _sketch_or_values(self) -> list[dict[str, Any]]:
         session = self._bench.session

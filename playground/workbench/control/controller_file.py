@@ -18,7 +18,7 @@ from playground.sketch.toml_table import FORMAT, TomlFile
 
 ENDING = ".controllers"
 KINDS = ("control", "note")
-_MOST = 2**16  # [bytes]
+_MAX_BYTES = 2**16  # [bytes]
 _KEYS = ("parameter", "part", "channel", *KINDS, "fine")
 
 
@@ -62,8 +62,8 @@ def read_bindings(path: Path) -> tuple[Binding, ...]:
         size = path.stat().st_size
     except OSError as error:
         raise SketchError(f"cannot be read: {error.strerror or error}", file=path) from None
-    if size > _MOST:
-        raise SketchError(f"larger than {_MOST // 1024} KiB: no list of controllers is", file=path)
+    if size > _MAX_BYTES:
+        raise SketchError(f"larger than {_MAX_BYTES // 1024} KiB: no list of controllers is", file=path)
     file = TomlFile(path, path.parent)
     file.only(file.table, ("format", "controller"))
     file.version(required=False)
@@ -90,24 +90,24 @@ def _text(binding: Binding) -> str:
 
 
 def _binding(file: TomlFile, table: dict[str, Any], at: int) -> Binding:
-    place = "controller", at
-    file.only(table, _KEYS, *place)
-    path = file.take(table, "parameter", str, "", *place)
+    key_path = "controller", at
+    file.only(table, _KEYS, *key_path)
+    path = file.take(table, "parameter", str, "", *key_path)
     if not path:
-        raise file.error('a controller has a parameter, as parameter = "light.sun"', *place)
+        raise file.error('a controller has a parameter, as parameter = "light.sun"', *key_path)
     kinds = [kind for kind in KINDS if kind in table]
     if len(kinds) != 1:
-        raise file.error("a controller has a control or a note, as control = 21", *place)
+        raise file.error("a controller has a control or a note, as control = 21", *key_path)
     number = _within(file, table, kinds[0], 0, 127, at)
-    fine = file.take(table, "fine", bool, False, *place)
+    fine = file.take(table, "fine", bool, False, *key_path)
     if fine and not (kinds[0] == "control" and number < 32):
-        raise file.error("fine = true: only the controls 0 to 31 have 14 bits", *place, "fine")
+        raise file.error("fine = true: only the controls 0 to 31 have 14 bits", *key_path, "fine")
     source = Source(_within(file, table, "channel", 1, 16, at), kinds[0], number)
-    return Binding(path, file.take(table, "part", str, "", *place), source, fine)
+    return Binding(path, file.take(table, "part", str, "", *key_path), source, fine)
 
 
 def _within(file: TomlFile, table: dict[str, Any], key: str, low: int, high: int, at: int) -> int:
-    found: int = file.take(table, key, int, low if key == "channel" else None, "controller", at)
-    if not low <= found <= high:
-        raise file.error(f"{key} = {found}: expected {low} to {high}", "controller", at, key)
-    return found
+    number: int = file.take(table, key, int, low if key == "channel" else None, "controller", at)
+    if not low <= number <= high:
+        raise file.error(f"{key} = {number}: expected {low} to {high}", "controller", at, key)
+    return number

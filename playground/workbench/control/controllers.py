@@ -161,7 +161,7 @@ class Controllers:
         try:
             write_bindings(file_of(path), bindings)
         except (PlaygroundError, OSError) as error:
-            self._notices.say(f"MIDI: what is learned lasts until the window is closed: {error}")
+            self._notices.say(f"MIDI: learned bindings last until the window is closed: {error}")
 
     # ── moves ────────────────────────────────────────────────────────────────
 
@@ -192,11 +192,11 @@ class Controllers:
 
     def _turn(self, binding: Binding) -> None:
         """Set a parameter as a knob says, once the knob has taken it over."""
-        found = self._value(binding)
+        value_now = self._value(binding)
         share = self._share(binding)
-        if found is None or share is None:
+        if value_now is None or share is None:
             return
-        parameter, value, part = found
+        parameter, value, part = value_now
         knob = self._knobs.setdefault(binding, _Knob())
         before, knob.at = knob.at, share
         if parameter.widget.kind == "button":
@@ -214,10 +214,10 @@ class Controllers:
             knob.made = after[1]
 
     def _strike(self, binding: Binding, strength: int) -> None:
-        found = self._value(binding)
-        if found is None or not strength:
+        value_now = self._value(binding)
+        if value_now is None or not strength:
             return
-        parameter, value, part = found
+        parameter, value, part = value_now
         if parameter.type == "bool":
             self._set(binding, parameter.widget.kind == "button" or not value)
         elif parameter.widget.kind == "menu" and isinstance(value, int):

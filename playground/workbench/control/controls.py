@@ -17,11 +17,11 @@ from playground.errors import ContextError, ParameterError, PlaygroundError, Ske
 from playground.shader.parameter import spell
 from playground.sketch.assign import check_value, find_targets, value_of, values_of
 from playground.sketch.model import Sketch, Value
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.control.described import parameters_of, state_of
 from playground.workbench.edits import Draft, leaves
 
-LARGEST_PICTURE = 4096
+MAX_REMOTE_SIDE = 4096
 """Pixels that a side of a picture for a remote may have."""
 FASTEST = 100.0
 """Seconds of the sketch in a second that a remote may ask for, forward or back."""
@@ -35,7 +35,7 @@ class Behind(SketchError):
 class Controls:
     """What a remote may do to one session."""
 
-    def __init__(self, bench: Bench) -> None:
+    def __init__(self, bench: Workbench) -> None:
         self.bench = bench
         self.session = bench.session
         self._waiting: dict[str, Value] = {}  # checked, and not done yet
@@ -78,8 +78,8 @@ class Controls:
         draft = self._shown()
         if not isinstance(values, Mapping):
             raise ParameterError(f"set = {spell(values)}: expected values by path, as light.sun: [135, 25]")
-        found = {path: _checked(draft, path, given) for path, given in values.items()}
-        for path, value in self.session.without_buttons(found).items():
+        values_checked = {path: _checked(draft, path, value) for path, value in values.items()}
+        for path, value in self.session.without_buttons(values_checked).items():
             self._waiting.pop(path, None)  # what is set last comes last, and wins
             self._waiting[path] = value
 
@@ -99,13 +99,13 @@ class Controls:
     def reset(self, paths: object) -> None:
         """Reset parameters to the file's values: one path, or a list of them."""
         draft = self._shown()
-        wanted = [paths] if isinstance(paths, str) else paths
-        if not isinstance(wanted, list | tuple):
+        paths_reset = [paths] if isinstance(paths, str) else paths
+        if not isinstance(paths_reset, list | tuple):
             raise ParameterError(f"reset = {spell(paths)}: expected a parameter's path, or a list of them")
-        for path in wanted:
+        for path in paths_reset:
             check_free(draft, existing(draft.sketch, str(path)))
         self.flush()
-        self.session.drafts.unset(*map(str, wanted))
+        self.session.drafts.unset(*map(str, paths_reset))
 
     def preset(self, name: object) -> None:
         """Set a preset's values as one step; raise ``ParameterError`` where there is none of that name."""
@@ -165,12 +165,12 @@ class Controls:
         self.flush()
         session, sketch = self.session, self.session.sketch
         if session.catch_up.behind is not None:
-            done, wanted = session.catch_up.behind
+            done, total = session.catch_up.behind
             source = session.catch_up.source
             what = (
-                f"makes {source}, {done:,} of {wanted:,}"
+                f"makes {source}, {done:,} of {total:,}"
                 if source
-                else f"computes frame {done:,} of {wanted:,}"
+                else f"computes frame {done:,} of {total:,}"
             )
             raise Behind(f"there is no picture yet: the window {what}")
         if size is None or sketch is None:
@@ -178,9 +178,9 @@ class Controls:
             if frame is None:
                 raise SketchError("there is no picture yet")
             return frame
-        if not all(1 <= side <= LARGEST_PICTURE for side in size):
+        if not all(1 <= side <= MAX_REMOTE_SIDE for side in size):
             raise ParameterError(
-                f"size = {size[0]}x{size[1]}: expected width and height, 1 to {LARGEST_PICTURE} pixels"
+                f"size = {size[0]}x{size[1]}: expected width and height, 1 to {MAX_REMOTE_SIDE} pixels"
             )
         if session.awaits_data:
             raise SketchError("a file that the sketch reads has changed and is being checked")
@@ -219,15 +219,15 @@ def check_free(draft: Draft, path: str) -> None:
         raise ParameterError(f"{path} is locked in the window, so only its own row there sets it")
 
 
-def number_of(name: str, given: object, low: float, high: float) -> float:
+def number_of(name: str, value: object, low: float, high: float) -> float:
     """Return a number between two bounds; raise ``ParameterError``."""
-    if not isinstance(given, int | float) or isinstance(given, bool) or not low <= given <= high:
-        raise ParameterError(f"{name} = {spell(given)}: expected a number from {low:g} to {high:g}")
-    return float(given)
+    if not isinstance(value, int | float) or isinstance(value, bool) or not low <= value <= high:
+        raise ParameterError(f"{name} = {spell(value)}: expected a number from {low:g} to {high:g}")
+    return float(value)
 
 
-def _checked(draft: Draft, path: str, given: object) -> Value:
-    value = check_value(draft.base, path, given)
+def _checked(draft: Draft, path: str, raw: object) -> Value:
+    value = check_value(draft.base, path, raw)
     check_free(draft, path)
     targets = find_targets(draft.base.graph, path)
     if targets and targets[0].parameter.widget.kind == "file":

@@ -8,7 +8,7 @@ from playground.shader.parameter import expected, shortest, write
 from playground.sketch.assign import Shown
 from playground.sketch.catalogue import described, range_of
 from playground.sketch.model import Parameter, Value
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.control.items import items_of, values_of
 from playground.workbench.parameter_list import Item, Values
 from playground.workbench.problems import Problems
@@ -29,11 +29,11 @@ def plain(parameter: Parameter, value: Value) -> Any:
         text = write(parameter, value)
         if parameter.widget.kind == "menu" or text.startswith("#"):
             return text
-    found = shortest(value)
-    return list(found) if isinstance(found, tuple) else found
+    shortest_value = shortest(value)
+    return list(shortest_value) if isinstance(shortest_value, tuple) else shortest_value
 
 
-def state_of(bench: Bench) -> dict[str, Any]:
+def state_of(bench: Workbench) -> dict[str, Any]:
     """Return what is shown, its time, its presets and what is wrong with it."""
     session, clock = bench.session, bench.session.clock
     sketch = session.sketch

@@ -1,4 +1,4 @@
-"""Map a share of a widget's range, from 0 to 1, to a value and back: what a knob or a fader says.
+"""Map a fraction of a widget's range, from 0 to 1, to a value and back: what a knob or a fader says.
 
 Linear over the range, logarithmic for a ``log_slider``, in equal stretches for a menu, from the
 half on for a checkbox. A colour's channels are display-encoded, as the panel shows them. A
@@ -34,7 +34,7 @@ def is_switch(parameter: Parameter) -> bool:
 
 
 def share_of(parameter: Parameter, value: Value, part: int = 0) -> float:
-    """Return which share of its range a value, or a part of it, is at: 0 to 1."""
+    """Return which fraction of its range a value, or a part of it, is at: 0 to 1."""
     widget = parameter.widget
     if parameter.type == "bool":
         return 1.0 if value else 0.0
@@ -56,7 +56,7 @@ def share_of(parameter: Parameter, value: Value, part: int = 0) -> float:
 
 
 def with_share(parameter: Parameter, value: Value, share: float, part: int = 0) -> Value:
-    """Return a value with one part, or all of a scalar, at a share of its range: 0 to 1."""
+    """Return a value with one part, or all of a scalar, at a fraction of its range: 0 to 1."""
     widget, share = parameter.widget, min(max(share, 0.0), 1.0)
     if parameter.type == "bool":
         return share >= HALF

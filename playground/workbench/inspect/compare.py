@@ -149,10 +149,10 @@ class Compare:
         session = self.session
         if session.shown is None or session.plan is None:
             return False
-        known, file = self._recalled, session.shown.file
-        if known is None or known[0] is not compared or known[1].file is not file:
-            known = self._recalled = compared, first_draft(file, StoredEdits(compared.edits))[0]
-        draft = known[1]
+        recalled, file = self._recalled, session.shown.file
+        if recalled is None or recalled[0] is not compared or recalled[1].file is not file:
+            recalled = self._recalled = compared, first_draft(file, StoredEdits(compared.edits))[0]
+        draft = recalled[1]
         report = session.drafts.check_aside(draft.sketch)
         if report is None:
             return False
@@ -208,17 +208,17 @@ class Compare:
         if self._picture is None:
             self._painter = Painter(session.engine.ctx)
             self._picture = Picture(self._painter)
-        wanted = self._wanted(stored, plan, picture.size)
+        key = self._wanted(stored, plan, picture.size)
         if self._drawn is None and stored.draft is session.shown and stored.steps == session.view.steps:
             with session.engine.borrowed():
                 self._picture.copy(picture)
-            self._drawn, self._is_preview = wanted, session.is_preview
+            self._drawn, self._is_preview = key, session.is_preview
         elif self._is_preview and not session.is_preview:
             self._draw(stored, plan, picture.size, preview=False)
-            self._drawn = wanted
-        elif wanted != self._drawn:
+            self._drawn = key
+        elif key != self._drawn:
             self._draw(stored, plan, picture.size, preview=session.engine.info.software)
-            self._drawn = wanted
+            self._drawn = key
 
     def release(self) -> None:
         """Release what was made in the engine's context; it is drawn again where it is needed."""
@@ -297,9 +297,9 @@ def _drawn(engine: Engine, sketch: Sketch, plan: Plan, steps: Mapping[str, int])
 
 def _files_of(plan: Plan) -> list[Path]:
     """Return the images and heightmaps that a picture was made from."""
-    found = []
+    files = []
     for step in plan.walk():
         for parameter in step.kernel.parameters:
             if parameter.widget.kind == "file" and step.values.get(parameter.name):
-                found.append(Path(str(step.values[parameter.name])))
-    return found
+                files.append(Path(str(step.values[parameter.name])))
+    return files

@@ -1,7 +1,7 @@
 """How the numbers of a texture are spread: read and counted a bounded piece a frame, so that no frame waits.
 
-A texture of up to ``MOST`` texels is read whole; of a larger one rows are left out, evenly,
-and it says so. The count goes twice over its numbers: once for the least, the greatest,
+A texture of up to ``MAX_TEXELS_READ`` texels is read whole; of a larger one rows are left out, evenly,
+and it reports it. The count goes twice over its numbers: once for the least, the greatest,
 the mean and what is no number, once to count them into bins between the two.
 """
 
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 BINS = 128
 PIECE = 2**17
 """Texels that a frame reads, or counts, at most; but a row at least."""
-MOST = 2**22
+MAX_TEXELS_READ = 2**22
 
 
 @dataclass(frozen=True)
-class Channel:
+class ChannelHistogram:
     """One channel's numbers; those that are not finite are only counted."""
 
     count: int  # finite ones
@@ -50,7 +50,7 @@ class Histogram:
     read: int  # texels
     low: float  # of all channels together: where the first bin begins, where the last one ends
     high: float
-    channels: tuple[Channel, ...]
+    channels: tuple[ChannelHistogram, ...]
 
     @property
     def whole(self) -> bool:
@@ -67,7 +67,9 @@ class Histogram:
         return self.low + first * width, self.low + (last + 1) * width
 
 
-def count(texture: moderngl.Texture, piece: int = PIECE, most: int = MOST) -> Iterator[Histogram | None]:
+def count(
+    texture: moderngl.Texture, piece: int = PIECE, most: int = MAX_TEXELS_READ
+) -> Iterator[Histogram | None]:
     """Yield None after each piece of work, the histogram at the end.
 
     The context is the caller's to make current for each piece; the texture must stay as it is.
@@ -88,9 +90,9 @@ def count(texture: moderngl.Texture, piece: int = PIECE, most: int = MOST) -> It
         if done + len(block) > piece:
             done = 0
             yield None
-    known = [sum_ for sum_ in sums if sum_.count]
-    low = min((sum_.lowest for sum_ in known), default=0.0)
-    high = max((sum_.highest for sum_ in known), default=0.0)
+    sums_counted = [sum_ for sum_ in sums if sum_.count]
+    low = min((sum_.lowest for sum_ in sums_counted), default=0.0)
+    high = max((sum_.highest for sum_ in sums_counted), default=0.0)
     bins = np.zeros((texture.components, BINS), np.int64)
     done = 0
     for block in blocks:
@@ -133,11 +135,13 @@ class _Sums:
         self.mean += apart * count / total
         self.count = total
 
-    def channel(self, bins: NDArray[np.int64]) -> Channel:
+    def channel(self, bins: NDArray[np.int64]) -> ChannelHistogram:
         if not self.count:
-            return Channel(0, self.nans, self.infinities, math.nan, math.nan, math.nan, math.nan, bins)
+            return ChannelHistogram(
+                0, self.nans, self.infinities, math.nan, math.nan, math.nan, math.nan, bins
+            )
         deviation = math.sqrt(self.squares / self.count)
-        return Channel(
+        return ChannelHistogram(
             self.count, self.nans, self.infinities, self.lowest, self.highest, self.mean, deviation, bins
         )
 
@@ -174,11 +178,11 @@ class Counter:
 
     def go_on(self) -> None:
         """Count one more piece; restart where another texture, or a new version of it, is shown."""
-        found = self._shown()
-        if found is None:
+        result = self._shown()
+        if result is None:
             self.stop()
             return
-        texture, of = found
+        texture, of = result
         if of != self._of:
             if self.latest is not None and of[:2] != self._counted_name():
                 self.latest = None
@@ -199,5 +203,5 @@ class Counter:
 
     def _shown(self) -> tuple[moderngl.Texture, tuple[object, ...]] | None:
         shown = self.session.view.map
-        found = result_of(self.session, shown.ref) if shown is not None else None
-        return (found[0], (shown.ref, *found[1])) if shown is not None and found is not None else None
+        result = result_of(self.session, shown.ref) if shown is not None else None
+        return (result[0], (shown.ref, *result[1])) if shown is not None and result is not None else None

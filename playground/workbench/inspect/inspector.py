@@ -114,8 +114,8 @@ class Inspector:
             return PixelReport(pixel, bytes_, None, ())
         if self._ground is None or self._ground.ctx is not session.engine.ctx:
             self._ground = Ground(session.engine.ctx)
-        place = (pixel[0] + 0.5) / picture.size[0], (pixel[1] + 0.5) / picture.size[1]
-        hit = self._ground.under(plan.eye, place, heights, extent, relief)
+        share = (pixel[0] + 0.5) / picture.size[0], (pixel[1] + 0.5) / picture.size[1]
+        hit = self._ground.under(plan.eye, share, heights, extent, relief)
         if hit is None:
             return PixelReport(pixel, bytes_, None, ())
         samples, missing = self._samples(plan, hit[:2])
@@ -141,14 +141,14 @@ class Inspector:
 
     def _samples(self, plan: Plan, share: tuple[float, float]) -> tuple[tuple[Sample, ...], tuple[str, ...]]:
         """Return every pass's number at the node of its own that is nearest to a place of the terrain."""
-        found, missing = [], []
+        samples, missing = [], []
         for name in names_of(plan, inner=self.inner):
             texture = self._texture(name)
             if texture is None:
                 missing.append(name)
             else:
-                found.append(self._sample(plan, name, texture, _node(share, texture.size)))
-        return tuple(found), tuple(missing)
+                samples.append(self._sample(plan, name, texture, _node(share, texture.size)))
+        return tuple(samples), tuple(missing)
 
     def _sample(self, plan: Plan, name: str, texture: moderngl.Texture, texel: tuple[int, int]) -> Sample:
         values = tuple(read_texels(texture, texel, (1, 1))[0, 0].tolist())
@@ -157,17 +157,17 @@ class Inspector:
         return Sample(name, texel, values, values[0] * relief if is_height and relief is not None else None)
 
     def _texture(self, name: str) -> moderngl.Texture | None:
-        found = result_of(self.session, name)
-        return found[0] if found is not None else None
+        result = result_of(self.session, name)
+        return result[0] if result is not None else None
 
 
 def names_of(plan: Plan, *, inner: bool) -> list[str]:
     """Return the textures of the sketch's own passes as "pass:output", those inside them too on request."""
-    found = []
+    names = []
     for path, outputs in plan.flat.outputs.items():
         if path.partition(".")[0] != "view" and (inner or "." not in path):
-            found += [f"{path}:{output}" for output in outputs]
-    return found
+            names += [f"{path}:{output}" for output in outputs]
+    return names
 
 
 def texel_of_map(pixel: Pixel, size: tuple[int, int], shown: tuple[int, int]) -> tuple[int, int] | None:
@@ -178,10 +178,10 @@ def texel_of_map(pixel: Pixel, size: tuple[int, int], shown: tuple[int, int]) ->
     whole, texels = np.array(size, np.float32), np.array(shown, np.float32)
     worst = (texels / whole).max()
     half = np.float32(0.5)
-    place = (np.array(pixel, np.float32) + half - half * whole) * worst + half * texels
-    if (place < 0).any() or (place >= texels).any():
+    texel = (np.array(pixel, np.float32) + half - half * whole) * worst + half * texels
+    if (texel < 0).any() or (texel >= texels).any():
         return None
-    return int(place[0]), int(place[1])
+    return int(texel[0]), int(texel[1])
 
 
 def ground_point_of(plan: Plan, heights: moderngl.Texture, hit: tuple[float, float, float]) -> GroundPoint:
@@ -215,6 +215,6 @@ def ground_point_of(plan: Plan, heights: moderngl.Texture, hit: tuple[float, flo
 
 
 def _node(share: tuple[float, float], size: tuple[int, int]) -> tuple[int, int]:
-    """Return the node nearest to a place, in shares of the terrain's sides."""
+    """Return the node nearest to a place, in fractions of the terrain's sides."""
     x, y = (min(max(round(s * (n - 1)), 0), n - 1) for s, n in zip(share, size, strict=True))
     return x, y

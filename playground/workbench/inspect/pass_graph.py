@@ -43,7 +43,7 @@ def wiring_of(sketch: Sketch, *, inner: bool) -> Wiring:
             giver = giver if inner else giver.partition(".")[0]
             if giver and giver != node and not isinstance(source, Fed):
                 edges[giver, node] = None
-    return Wiring(refs, tuple(edges), placed(tuple(refs), tuple(edges)))
+    return Wiring(refs, tuple(edges), node_grid(tuple(refs), tuple(edges)))
 
 
 def cost_of(session: Session, node: str) -> tuple[str, bool, float | None]:
@@ -58,7 +58,7 @@ def cost_of(session: Session, node: str) -> tuple[str, bool, float | None]:
     return runs, any(path in inside for path in engine.record.ran), sum(spent) if spent else None
 
 
-def placed(nodes: Sequence[str], edges: Sequence[Edge]) -> dict[str, tuple[int, int]]:
+def node_grid(nodes: Sequence[str], edges: Sequence[Edge]) -> dict[str, tuple[int, int]]:
     """Return a column and a row for each node; every edge goes to the right, no two nodes share a place.
 
     The nodes are in an order in which each comes after those that it reads.

@@ -25,21 +25,21 @@ class Ground(TexelShader):
     def under(
         self,
         eye: Eye,
-        place: tuple[float, float],
+        position: tuple[float, float],
         heights: moderngl.Texture,
         extent: tuple[float, float],
         relief: float,
     ) -> tuple[float, float, float] | None:
         """Return where on the terrain a place of the picture lies, and its height; None where there is sky.
 
-        As ``terrain.pick.ground_under``: the place in shares of the picture from its lower left,
-        the answer in shares of the terrain's sides, east and north; the height as the texture has it.
+        As ``terrain.pick.ground_under``: the place in fractions of the picture from its lower left,
+        the answer in fractions of the terrain's sides, east and north; the height as the texture has it.
         The context is the caller's to make current and to leave as it was.
         """
-        found = ray_over(eye, place, heights.size, extent)
-        if found is None:
+        result = ray_over(eye, position, heights.size, extent)
+        if result is None:
             return None
-        origin, way, entry, leave, steps = found
+        origin, way, entry, leave, steps = result
         texels = self.compute(
             {"height": heights},
             start=tuple((origin + entry * way).tolist()),

@@ -41,18 +41,18 @@ class Thumbnails:
 
     def is_current(self, name: str) -> bool:
         """Return whether the last picture was made from this very texture."""
-        found, cached = self._source(name), self._cached.get(name)
-        return found is not None and cached is not None and cached[0] == found[1]
+        source, cached = self._source(name), self._cached.get(name)
+        return source is not None and cached is not None and cached[0] == source[1]
 
     def refresh(self, names: Iterable[str], now: float) -> bool:
         """Draw the first that is stale, unless another was drawn a moment ago; return whether more are stale.
 
         ``now``: seconds of any clock. What has another name is released.
         """
-        wanted = list(names)
-        for name in [name for name in self._cached if name not in wanted]:
+        names_shown = list(names)
+        for name in [name for name in self._cached if name not in names_shown]:
             self._cached.pop(name)[1].release()
-        stale = [n for n in wanted if self._source(n) is not None and not self.is_current(n)]
+        stale = [n for n in names_shown if self._source(n) is not None and not self.is_current(n)]
         if stale and now - self._last >= APART and not self.session.awaits_data:
             self._last = now
             self._draw(stale.pop(0))
@@ -68,9 +68,9 @@ class Thumbnails:
             shrink.release()
 
     def _draw(self, name: str) -> None:
-        found = self._source(name)
-        assert found is not None
-        texture, of = found
+        source = self._source(name)
+        assert source is not None
+        texture, of = source
         engine = self.session.engine
         if self._shrink is not None and self._shrink.ctx is not engine.ctx:
             self._shrink, self._cached = None, {}  # they went with a context that was lost

@@ -8,7 +8,7 @@ from playground.capture.film import FPS
 from playground.sketch.model import Sketch
 from playground.workbench.clock import Clock
 
-USUAL = 10.0
+DEFAULT_DURATION = 10.0
 """[s] that the bar of a sketch without keyframes shows at least, and that its loop is long."""
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0)
 _EPSILON = 1e-6
@@ -16,10 +16,10 @@ _EPSILON = 1e-6
 
 def span_of(sketch: Sketch, clock: Clock) -> float:
     """Return the last time [s] on the bar, which begins at 0."""
-    last = sketch.duration or USUAL
+    last = sketch.duration or DEFAULT_DURATION
     if clock.loop is not None:
         last = max(last, clock.loop[1])
-    return last if clock.time <= last else math.ceil(clock.time / USUAL) * USUAL
+    return last if clock.time <= last else math.ceil(clock.time / DEFAULT_DURATION) * DEFAULT_DURATION
 
 
 def marks_of(sketch: Sketch) -> tuple[float, ...]:

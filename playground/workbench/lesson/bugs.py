@@ -98,7 +98,7 @@ class Bugs:
         if not self._to_check or block is None or block.scene is None or self.figure.busy:
             return False
         self._to_check = False
-        if session.error is not None or session.plan is None or not session.rests:
+        if session.error is not None or session.plan is None or not session.is_idle:
             return True
         path = file_of(block)
         text = self.copies.text_of(path)

@@ -83,8 +83,8 @@ class FigureView:
         undo, session = self.undo, self.session
         path, texts = path_of(scene), texts or {}
         try:
-            known = session.shown if session.path == path and not session.drafts.opening else None
-            file = known.file if known is not None else load(path)
+            draft_shown = session.shown if session.path == path and not session.drafts.opening else None
+            file = draft_shown.file if draft_shown is not None else load(path)
             edits, steps = edits_of(scene, file), steps_of(scene)
         except PlaygroundError as error:
             undo.notices.say(str(error))
@@ -92,7 +92,7 @@ class FigureView:
         self._begin()
         self.compared_with.end()
         self._first = None
-        if known is None:
+        if draft_shown is None:
             self._leave()
             history, before = self._histories.get(path, (History(), edits))
             _record_change(history, before, edits, undo.notices.now())
@@ -200,7 +200,7 @@ class FigureView:
 
 
 def _record_change(history: History, before: Edits, after: Edits, now: float) -> None:
-    """Record in a sketch's history that a lesson sets it anew, so that undo restores what was there."""
+    """Record in a sketch's history that a lesson sets it again, so that undo restores what was there."""
     was, comes = changes_between(before, after)
     if was:
         history.record(was, comes, "Lesson", now=now)

@@ -25,7 +25,7 @@ class Judging:
     """What the process is asked by one reader, and what has come of it."""
 
     notices: Notices
-    rests: Callable[[], bool]  # whether the picture in view rests
+    is_idle: Callable[[], bool]  # whether the picture in view rests
     received: Callable[[str, Verdict], None]  # called with a block's name and its verdict
     process: JudgeProcess = field(default_factory=JudgeProcess)
     verdicts: dict[str, Verdict] = field(default_factory=dict)  # by block
@@ -64,8 +64,8 @@ class Judging:
     def forget(self) -> None:
         """Forget all, and expect nothing more of the process."""
         self.at, self._sent, self._work = "", "", None
-        for known in (self.verdicts, self.judged, self.ends, self._wanted):
-            known.clear()
+        for table in (self.verdicts, self.judged, self.ends, self._wanted):
+            table.clear()
 
     def close(self) -> None:
         """End the process; it starts again where it is needed."""
@@ -79,28 +79,28 @@ class Judging:
             (block, work), self._work = self._work, None
             self._sent, self._at_work = block.name, work
             self.process.submit(block, work)
-        elif self._wanted and self.rests():
+        elif self._wanted and self.is_idle():
             challenge = self._wanted.pop(0)
             self._sent = challenge.name
             self.process.submit(challenge, None, SIDE)
 
     def _receive(self) -> bool:
-        name, found = self._sent, None
+        name, answer = self._sent, None
         if not name:
             return False
         try:
-            found = self.process.poll()
+            answer = self.process.poll()
         except PlaygroundError as error:
             self.notices.say(str(error))
         else:
-            if found is None:
+            if answer is None:
                 return False
         self._sent = ""
         if name == self.at and self._work is None:
             self.at = ""
-        if isinstance(found, Ends):
-            self.ends[name] = found
-        elif isinstance(found, Verdict):
-            self.verdicts[name], self.judged[name] = found, self._at_work
-            self.received(name, found)
+        if isinstance(answer, Ends):
+            self.ends[name] = answer
+        elif isinstance(answer, Verdict):
+            self.verdicts[name], self.judged[name] = answer, self._at_work
+            self.received(name, answer)
         return True

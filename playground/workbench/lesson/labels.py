@@ -59,7 +59,7 @@ _ENGLISH = {
     "start_note": "Your own copy, drawn in the view; what you type is kept",
     "to_the_text": "To the text",
     "check": "Check",
-    "check_note": "Compare with what is asked for, at hidden values too",
+    "check_note": "Compare with the expected picture, at hidden values too",
     "checking": "Checking…",
     "again": "Begin again",
     "again_note": "The starter; yours can be brought back",

@@ -24,12 +24,12 @@ def follow(reader: Reader, address: str) -> None:
     elif kind == "thesis":
         reader.bench.notices.say(labels_in(reader.language)["thesis_section"].format(name))
     elif kind == "term":
-        reader.bench.notices.say(described(reader, address))
+        reader.bench.notices.say(link_text(reader, address))
     elif kind in ("https", "http") and not webbrowser.open(address):
         reader.bench.notices.say(address)
 
 
-def described(reader: Reader, address: str) -> str:
+def link_text(reader: Reader, address: str) -> str:
     """Return what is shown of a link under the mouse: of a term its definition, else its address."""
     term = linked_term(address)
     language = reader.lesson.language if reader.lesson else reader.language

@@ -76,7 +76,7 @@ class PresentedPictures:
         self.shown = still
         if isinstance(block, Break):
             self._bug(block, still)
-        elif isinstance(block, Exercise) and still.begun:
+        elif isinstance(block, Exercise) and still.started:
             self._begun(block)
         elif isinstance(block, Compare):
             reader.choose(block, still.index)
@@ -96,15 +96,15 @@ class PresentedPictures:
             return []
         values = self._listing.values(draft)
         items = {item.leaf: item for section in self._listing.sections(draft) for item in section.items}
-        found = []
+        rows = []
         for path in beat.sliders:
             try:
                 item = items.get(resolve(draft.base.graph, path)[0].path)
             except ParameterError:
                 item = None
             if item is not None:
-                found.append(Row(item.path, item.title, item.parameter, values.of[item.path]))
-        return found
+                rows.append(Row(item.path, item.title, item.parameter, values.of[item.path]))
+        return rows
 
     def slide(self, row: Row, by: float) -> None:
         """Move a slider by presses of an arrow, or turns of a wheel; a menu by its choices."""
@@ -145,7 +145,7 @@ class PresentedPictures:
 
 
 def _step(parameter: Parameter) -> float:
-    """Return the share of a slider's range that one press moves it by."""
+    """Return the fraction of a slider's range that one press moves it by."""
     low, high = range_of(parameter) or (0.0, 1.0)
     if is_whole(parameter.type) and high > low:
         return max(round((high - low) / _PARTS), 1) / (high - low)

@@ -33,7 +33,7 @@ class TalkClock:
         self._since = self.now()
 
     @property
-    def begun(self) -> float:
+    def started_at(self) -> float:
         """The moment that it would have begun at, without a pause [s]; it stays while it runs."""
         return self._since - self._before
 
@@ -91,8 +91,8 @@ class Presenter:
         self.helps = self.laser = self.pen = False
         self.on, self.slider = True, -1
         self.clock = TalkClock(self.now)
-        wanted = first_of_page(beats, page) if beat is None else beat
-        self.at = min(max(wanted, 0), len(beats) - 1)
+        first_beat = first_of_page(beats, page) if beat is None else beat
+        self.at = min(max(first_beat, 0), len(beats) - 1)
         self.show(self.beat)
 
     def end(self) -> None:
@@ -123,10 +123,10 @@ class Presenter:
 
     def go(self, beat: int) -> None:
         """Go to a beat, from 0; at the ends it stays there."""
-        wanted = min(max(beat, 0), len(self.beats) - 1)
+        beat_index = min(max(beat, 0), len(self.beats) - 1)
         self.blank, self.helps, self.typed, self.notice = "", False, "", ""
-        if wanted != self.at:
-            self.at, self.slider = wanted, -1
+        if beat_index != self.at:
+            self.at, self.slider = beat_index, -1
             self.show(self.beat)
 
     def _turn(self, by: int) -> None:
@@ -160,9 +160,9 @@ class Presenter:
             self.typed = ""
         self.typed, self._typed_at = (self.typed + digit)[-4:], self.now()
         if len(self.typed) == 1 and digit != "0":
-            wanted = int(digit) - 1
-            if wanted < len(self.beat.sliders):
-                self.slider = wanted
+            slider_index = int(digit) - 1
+            if slider_index < len(self.beat.sliders):
+                self.slider = slider_index
 
     def enter(self) -> str:
         """Go to the beat whose number was typed; return why not, as a key of the labels, or ""."""
@@ -194,15 +194,15 @@ class Presenter:
         """Take the pen, or put it down."""
         self.pen, self.laser = not self.pen, False
 
-    def press(self, place: Point) -> None:
+    def press(self, position: Point) -> None:
         """Begin a stroke of this beat."""
-        self.strokes.setdefault(self.at, []).append([place])
+        self.strokes.setdefault(self.at, []).append([position])
 
-    def draw(self, place: Point) -> None:
+    def draw(self, position: Point) -> None:
         """Draw on to a place."""
         mine = self.strokes.get(self.at)
-        if mine and mine[-1][-1] != place:
-            mine[-1].append(place)
+        if mine and mine[-1][-1] != position:
+            mine[-1].append(position)
 
     def erase(self) -> None:
         """Erase all that was drawn on this beat."""

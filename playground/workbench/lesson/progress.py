@@ -24,8 +24,8 @@ from playground.workbench.unread import set_aside
 FORMAT = 1
 WIDTH = 420.0
 """Of the panel at first, in units of scale 1."""
-NARROWEST, WIDEST = 300.0, 760.0
-_LARGEST = 2**24  # [bytes]
+MIN_WIDTH, MAX_WIDTH = 300.0, 760.0
+_MAX_BYTES = 2**24  # [bytes]
 _UNREADABLE = OSError, ValueError, TypeError, KeyError, AttributeError, ArithmeticError
 
 
@@ -68,7 +68,7 @@ def read_progress(path: Path) -> Progress:
 
 
 def open_progress(path: Path) -> tuple[Progress, str]:
-    """Return what is remembered, to be written again, and a sentence if the file cannot be used.
+    """Return what is remembered, to be written again, and a message if the file cannot be used.
 
     It is then set aside: what a student wrote may still be in it.
     """
@@ -81,7 +81,7 @@ def open_progress(path: Path) -> tuple[Progress, str]:
 
 
 def write_progress(progress: Progress, path: Path) -> str:
-    """Write it; return a sentence where that cannot be done, else nothing."""
+    """Write it; return a message where that cannot be done, else nothing."""
     table = asdict(replace(progress, attempts=_done(progress.attempts)))
     text = json.dumps({"format": FORMAT, **table}, indent=1, ensure_ascii=False)
     try:
@@ -99,8 +99,8 @@ def _done(attempts: dict[str, Attempt]) -> dict[str, Attempt]:
 
 
 def _whole(path: Path) -> Progress:
-    if path.stat().st_size > _LARGEST:
-        raise ValueError(f"it is larger than {_LARGEST // 2**20} MiB")
+    if path.stat().st_size > _MAX_BYTES:
+        raise ValueError(f"it is larger than {_MAX_BYTES // 2**20} MiB")
     return _read(read_json(read_regular(path).decode()))
 
 
@@ -112,7 +112,7 @@ def _read(table: Any) -> Progress:
         str(table["lesson"]),
         str(table["language"]),
         bool(table["shown"]),
-        min(max(width, NARROWEST), WIDEST) if width == width else WIDTH,
+        min(max(width, MIN_WIDTH), MAX_WIDTH) if width == width else WIDTH,
         {str(name): max(int(at), 0) for name, at in table["sections"].items()},
         [str(name) for name in table["done"]],
         dict(_attempts(table.get("attempts", {}))),
@@ -121,9 +121,9 @@ def _read(table: Any) -> Progress:
 
 def _attempts(table: Any) -> Iterator[tuple[str, Attempt]]:
     """Yield the attempts that can be read: a damaged one takes no other with it."""
-    for name, found in table.items():
+    for name, attempt in table.items():
         with suppress(ValueError, TypeError, KeyError, AttributeError, IndexError):
-            yield str(name), _attempt(found)
+            yield str(name), _attempt(attempt)
 
 
 def _attempt(table: Any) -> Attempt:

@@ -27,7 +27,7 @@ from playground.lessons.model import (
 )
 from playground.lessons.scenes import comparable
 from playground.lessons.tasks.texts import answer_text, path_of
-from playground.workbench.bench import Bench
+from playground.workbench.bench import Workbench
 from playground.workbench.lesson.bugs import Bugs
 from playground.workbench.lesson.catalogue import Catalogue
 from playground.workbench.lesson.figure_state import steps_of
@@ -55,7 +55,7 @@ FigureBlock = Steps | Slider | Compare | Figure | Exercise | Challenge
 class Reader:
     """The lesson, the page and the figure of one reader."""
 
-    bench: Bench
+    bench: Workbench
     progress: Progress
     file: Path = field(default_factory=progress_file)  # where the progress is remembered
     begins: Callable[[], None] = lambda: None  # called before a lesson shows its first figure
@@ -124,7 +124,7 @@ class Reader:
 
         By default the one read last, or the first. ``show``: its figure is shown.
         """
-        names = [one.name for one in self.summaries]
+        names = [summary.name for summary in self.summaries]
         name = name or (self.progress.lesson if self.progress.lesson in names else next(iter(names), ""))
         if language:
             self.progress.language = language
@@ -143,7 +143,7 @@ class Reader:
         self.go(self.progress.sections.get(name, 0) if page is None else page, show=show)
         return True
 
-    def speak(self, language: str) -> None:
+    def set_language(self, language: str) -> None:
         """Switch to another language."""
         if self.lesson is not None:
             self.open(self.lesson.name, language=language, show=False)

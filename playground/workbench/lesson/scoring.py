@@ -44,17 +44,17 @@ class Scoring:
         self._stale = not coming and (block.name, drawn) != self._of
         if not self._stale or now < self._due or session.plan is None:
             return False
-        self._of, begun = (block.name, drawn), self.notices.now()
+        self._of, started = (block.name, drawn), self.notices.now()
         try:
             with as_before(session.engine, session.plan):
-                found = match(session.engine, block, drawn, ends, SIDE)
+                result = match(session.engine, block, drawn, ends, SIDE)
         except PlaygroundError as error:
             self.notices.say(str(error))
             return True
-        took = self.notices.now() - begun
-        self._due = begun + took + max(_PAUSE, _SHARE * took)
-        self.matches[block.name] = found
-        self.scored(block, found)
+        took = self.notices.now() - started
+        self._due = started + took + max(_PAUSE, _SHARE * took)
+        self.matches[block.name] = result
+        self.scored(block, result)
         return True
 
     def rest(self) -> None:
@@ -68,5 +68,5 @@ class Scoring:
     def forget(self, name: str = "") -> None:
         """Forget the score of a block, or of all: it was of a work that is no more."""
         self._of = None
-        for known in [name] if name else list(self.matches):
-            self.matches.pop(known, None)
+        for block_name in [name] if name else list(self.matches):
+            self.matches.pop(block_name, None)

@@ -57,7 +57,7 @@ class Tasks:
 
     def __post_init__(self) -> None:
         self.judging = Judging(
-            notices=self.notices, rests=lambda: self.session.rests, received=self._received
+            notices=self.notices, is_idle=lambda: self.session.is_idle, received=self._received
         )
         self.scoring = Scoring(session=self.session, notices=self.notices, scored=self._scored)
         self._on: Task | None = None  # the task that was begun
@@ -209,10 +209,10 @@ class Tasks:
         attempt.points, attempt.of = max(attempt.points, verdict.points), verdict.of
         self.remember()
 
-    def _scored(self, block: Challenge, found: Match) -> None:
+    def _scored(self, block: Challenge, match: Match) -> None:
         attempt = self.attempt(block)
-        if found.score > attempt.score:
-            attempt.score = found.score
+        if match.score > attempt.score:
+            attempt.score = match.score
             self._keep(block, self.work(block))
 
     def _text_of(self, block: Task) -> str | None:
@@ -273,9 +273,9 @@ class Tasks:
 def _own(block: Task, work: Work) -> tuple[str, dict[str, Value]]:
     """Return what is a student's own of a work: the text where it is not the starter, the values likewise."""
     text = "" if not block.file or work.text == starter_text(block) else work.text or ""
-    begun = _values(block.begin.sketch, block.sliders) if block.begin is not None else {}
+    values_at_start = _values(block.begin.sketch, block.sliders) if block.begin is not None else {}
     values = dict(work.values)
-    return text, {} if values == begun else values
+    return text, {} if values == values_at_start else values
 
 
 def _set(scene: Scene, path: str, value: Value) -> Scene:
@@ -288,14 +288,14 @@ def _set(scene: Scene, path: str, value: Value) -> Scene:
 
 def _parameters(sketch: Sketch, path: Path) -> list[str]:
     """Return the parameters of the kernels that a file makes."""
-    found = [(where, kernel) for where, kernel in kernels_of(sketch.graph) if Path(kernel.path) == path]
-    return [f"{where}.{parameter.name}" for where, kernel in found for parameter in kernel.parameters]
+    kernel_read = [(where, kernel) for where, kernel in kernels_of(sketch.graph) if Path(kernel.path) == path]
+    return [f"{where}.{parameter.name}" for where, kernel in kernel_read for parameter in kernel.parameters]
 
 
 def _values(sketch: Sketch, sliders: tuple[str, ...]) -> dict[str, Value]:
     """Return the values of parameters; without those that a kernel of the student's has no more."""
-    found, values = values_of(sketch), dict[str, Value]()
+    result, values = values_of(sketch), dict[str, Value]()
     for slider in sliders:
         with suppress(PlaygroundError):
-            values[slider] = value_of(sketch, slider, found)
+            values[slider] = value_of(sketch, slider, result)
     return values

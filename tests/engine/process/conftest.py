@@ -124,9 +124,9 @@ def soon() -> Callable[[Callable[[], object]], bool]:
 
     def wait(holds: Callable[[], object], patience: float = 60.0) -> bool:
         end = time.monotonic() + patience
-        while not (found := bool(holds())) and time.monotonic() < end:
+        while not (result := bool(holds())) and time.monotonic() < end:
             time.sleep(0.005)
-        return found
+        return result
 
     return wait
 

@@ -20,7 +20,7 @@ needs_counts = pytest.mark.skipif(
 
 
 class Time:
-    """Stands in for the clock, and for how long a process has waited for a processor."""
+    """Replaces the clock, and for how long a process has waited for a processor."""
 
     def __init__(self) -> None:
         self.now = 1000.0
@@ -142,9 +142,9 @@ def test_processes_that_share_one_processor_work_in_turn():
         real_time.sleep(3.0)
         passed = real_time.monotonic() - start
         now = [times_of(process.pid) for process in busy]
-        found = [worked(passed, b, n) for b, n in zip(before, now, strict=True)]
-        assert sum(found) <= passed * 1.3 + 0.1, "other processes may have had the rest"
-        assert max(found) < 0.7 * passed
+        result = [worked(passed, b, n) for b, n in zip(before, now, strict=True)]
+        assert sum(result) <= passed * 1.3 + 0.1, "other processes may have had the rest"
+        assert max(result) < 0.7 * passed
     finally:
         for process in busy:
             process.kill()

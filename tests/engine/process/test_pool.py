@@ -48,7 +48,7 @@ def test_it_is_warm_answers_and_ends_by_itself(pool: Pool, alive: Alive, monkeyp
     ends: list[Outcome] = []
     real = child_module.ChildProcess.end
     monkeypatch.setattr(
-        child_module.ChildProcess, "end", lambda *given: ends.append(real(*given)) or ends[-1]
+        child_module.ChildProcess, "end", lambda *arguments: ends.append(real(*arguments)) or ends[-1]
     )
     monkeypatch.setattr(pool_module, "_PATIENCE", 60.0)
     pool.shutdown()
@@ -153,7 +153,7 @@ def test_memory_has_a_limit_and_is_not_lost(handler: str):
 
 def test_half_a_frame_is_a_crash_and_no_frame_is_quoted(pool: Pool):
     assert pool.run(("half a frame",)).ending == "ended with status 3"
-    assert pool.run(("no frame",)).ending == "sent what is no answer: b'libEGL warning: '"
+    assert pool.run(("no frame",)).ending == "sent an invalid answer: b'libEGL warning: '"
 
 
 def test_a_process_that_dies_at_start_says_why(handler: str):
@@ -226,7 +226,7 @@ def test_closing_while_it_is_busy_kills_it(handler: str, alive: Alive, soon: Soo
     pool.shutdown(cancel_futures=True)
     assert not alive(pid)
     assert time.monotonic() - start < 5.0, "it did not wait for it"
-    assert all(isinstance(one.result().error, Cancelled) for one in (task, waiting))
+    assert all(isinstance(task.result().error, Cancelled) for task in (task, waiting))
 
 
 def test_ctrl_c_leaves_no_process_and_no_answer_for_the_next(
@@ -361,13 +361,13 @@ def test_what_it_waits_for_a_processor_does_not_count_but_for_a_fraction(
     time.sleep(0.3)
     assert task.seconds == 0.0
     waited["1"] = 40_000_000_000  # while it started
-    begun = time.monotonic()
+    started = time.monotonic()
     (tmp_path / "now").touch()
     assert soon(lambda: task.progress)
     time.sleep(0.4)
     assert 0.3 < task.seconds
     waited["1"] += 350_000_000
-    assert task.seconds <= time.monotonic() - begun - 0.35, "however slow this machine is"
+    assert task.seconds <= time.monotonic() - started - 0.35, "however slow this machine is"
     waited["1"] += 100_000_000_000
     assert task.seconds >= 0.4 / 8, "a fraction counts, however long it waited"
     pool.shutdown(cancel_futures=True)

@@ -133,5 +133,5 @@ def test_it_agrees_with_the_preprocessor_of_c():
         ran = subprocess.run(
             ["cpp", "-P", "-w", "-DA=1", "-DB=0"], input=text, capture_output=True, text=True, check=True
         )
-        found = [line for line in live(text, A="1", B="0") if not line.startswith("#define")]
-        assert found == ran.stdout.split(), text
+        lines = [line for line in live(text, A="1", B="0") if not line.startswith("#define")]
+        assert lines == ran.stdout.split(), text

@@ -13,9 +13,9 @@ def codes(tmp_path):
     def rewrite(text: str) -> list[str]:
         path = tmp_path / "a.frag"
         path.write_text(text)
-        found = rewritten(read_source_and_origin(path, (tmp_path,), foreign=True)[0])
-        assert [line.text for line in found.source.lines] == text.split("\n")
-        return [line.code for line in found.source.lines]
+        result = rewritten(read_source_and_origin(path, (tmp_path,), foreign=True)[0])
+        assert [line.text for line in result.source.lines] == text.split("\n")
+        return [line.code for line in result.source.lines]
 
     return rewrite
 
@@ -104,9 +104,9 @@ def test_a_version_from_330_on_stays_with_its_extensions(tmp_path):
     path = tmp_path / "a.frag"
     path.write_text("#version 430 core\n#extension GL_ARB_x : enable\nvarying vec2 a;\n")
     source, _ = read_source_and_origin(path, (tmp_path,), foreign=True)
-    found = rewritten(source)
-    assert version_of(source) == 430 and found.prelude == ("#extension GL_ARB_x : enable",)
-    assert [line.code for line in found.source.lines[:3]] == ["#version 430 core", "", "in      vec2 a;"]
+    result = rewritten(source)
+    assert version_of(source) == 430 and result.prelude == ("#extension GL_ARB_x : enable",)
+    assert [line.code for line in result.source.lines[:3]] == ["#version 430 core", "", "in      vec2 a;"]
 
 
 def test_colour_and_data_go_to_one_output(codes):

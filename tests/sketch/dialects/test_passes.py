@@ -8,7 +8,7 @@ from playground.errors import ShaderError
 from playground.paths import GLSL
 from playground.shader.dialects import shadertoy
 from playground.shader.dialects.es import rewritten
-from playground.shader.dialects.foreign import Channel, Shader
+from playground.shader.dialects.foreign import Shader, ShaderChannel
 from playground.shader.dialects.passes import graph_of_shaders
 from playground.shader.source import read_source_and_origin
 from playground.sketch.techniques import Techniques
@@ -21,13 +21,13 @@ PLAIN = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, iTime, 1.0); }\n"
 @pytest.fixture
 def graph(folder):
     def made(*shaders):
-        found = []
+        result = []
         for number, (name, text, more) in enumerate(shaders):
             source = read_source_and_origin(
                 folder.write(f"{number}.frag", text), (folder.path,), {}, foreign=True
             )[0]
-            found.append(Shader(name, rewritten(source), shadertoy.RULES, **more))
-        graph = graph_of_shaders("toy", found, Techniques().read, GLSL)
+            result.append(Shader(name, rewritten(source), shadertoy.RULES, **more))
+        graph = graph_of_shaders("toy", result, Techniques().read, GLSL)
         check_graph(graph)
         check_graph(graph.passes[-1].technique)
         return graph
@@ -36,24 +36,24 @@ def graph(folder):
 
 
 def reads(target):
-    return {"channels": {"iChannel0": Channel(target=target)}}
+    return {"channels": {"iChannel0": ShaderChannel(target=target)}}
 
 
 def test_a_pass_reads_what_an_earlier_one_writes_in_this_frame(graph):
-    found = graph(("a", PLAIN, {"target": "A"}), ("image", TOY.format("float", "iChannel0"), reads("A")))
-    view = found.passes[-1]
-    assert [spec.name for spec in found.passes] == ["view"]
+    result = graph(("a", PLAIN, {"target": "A"}), ("image", TOY.format("float", "iChannel0"), reads("A")))
+    view = result.passes[-1]
+    assert [spec.name for spec in result.passes] == ["view"]
     assert dict(view.technique.passes[1].inputs) == {"iChannel0": "a"}
     assert (view.repeat, view.feedback) == ("", ())
 
 
 @pytest.mark.parametrize("keeps", [True, False])
 def test_what_it_or_a_later_one_writes_is_of_the_frame_before_where_that_is_kept(graph, keeps):
-    found = graph(
+    result = graph(
         ("a", TOY.format("float", "iChannel0"), {"target": "A", "keeps": keeps, **reads("A")}),
         ("image", TOY.format("float", "iChannel0"), reads("A")),
     )
-    view = found.passes[-1]
+    view = result.passes[-1]
     assert view.repeat == ("frames" if keeps else "")
     assert view.feedback == ((("before_A", "A"),) if keeps else ())
     assert [e.targets for e in view.technique.inputs] == ([("a.iChannel0",)] if keeps else [])
@@ -63,14 +63,14 @@ def test_what_it_or_a_later_one_writes_is_of_the_frame_before_where_that_is_kept
 
 def test_of_two_that_write_one_target_the_latest_before_counts(graph):
     text = TOY.format("float", "iChannel0")
-    found = graph(
+    result = graph(
         ("a", PLAIN, {"target": "A", "keeps": True}),
         ("b", text, {"target": "A", "keeps": True, **reads("A")}),
         ("image", text, reads("A")),
     )
-    wires = [dict(spec.inputs) for spec in found.passes[-1].technique.passes]
+    wires = [dict(spec.inputs) for spec in result.passes[-1].technique.passes]
     assert wires == [{}, {"iChannel0": "a"}, {"iChannel0": "b"}]
-    assert not found.passes[-1].repeat
+    assert not result.passes[-1].repeat
 
 
 def test_parameters_of_one_name_are_one_and_of_two_types_two(graph):
@@ -92,7 +92,7 @@ def test_channels_that_are_fed_alike_are_one_input_and_others_two(graph):
     alike = graph(("a", text, {"target": "A"}), ("image", text, {}))
     assert [spec.name for spec in alike.passes] == ["iChannel0", "view"]
     assert alike.passes[-1].technique.inputs[0].targets == ("a.iChannel0", "image.iChannel0")
-    picture = Channel(use="foreign/picture", values=(("number", 3),))
+    picture = ShaderChannel(use="foreign/picture", values=(("number", 3),))
     unlike = graph(("a", text, {"target": "A"}), ("image", text, {"channels": {"iChannel0": picture}}))
     assert [(spec.name, spec.use) for spec in unlike.passes[:-1]] == [
         ("a_iChannel0", "foreign/noise"),

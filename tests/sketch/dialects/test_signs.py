@@ -46,8 +46,8 @@ from playground.sketch.model import PlainFragment
     ],
 )
 def test_the_sign_of_a_dialect(text, name):
-    found = dialect_of(text)
-    assert (found.name if found else None) == name
+    dialect = dialect_of(text)
+    assert (dialect.name if dialect else None) == name
 
 
 @pytest.mark.parametrize("version", ["330", "330 core", "430"])
@@ -73,8 +73,8 @@ def test_the_same_files_give_the_same_kernel(tmp_path):
 def test_uniforms_of_several_lines_and_names_are_found():
     code = "uniform float a, b[3];uniform vec2\n  c = vec2(1.0, 2.0), d;\n"
     code += "layout(location = 1) uniform highp int e;\n"
-    found = uniforms(f"{code}void f(vec2 g) {{ vec2 h; }}\n")
-    assert {n: (d.type, d.is_array) for n, d in found.items()} == {
+    result = uniforms(f"{code}void f(vec2 g) {{ vec2 h; }}\n")
+    assert {n: (d.type, d.is_array) for n, d in result.items()} == {
         "a": ("float", False),
         "b": ("float", True),
         "c": ("vec2", False),
@@ -123,8 +123,8 @@ def test_what_a_vertex_shader_gives():
 def test_uniforms_with_the_array_at_their_type_and_images_are_found():
     code = "uniform float[3] a;\nlayout(r32ui) uniform coherent restrict uimage2D [2] b;\n"
     code += "uniform lowp sampler2D[4] maps, more;uniform vec2\tc;\n"
-    found = uniforms(code)
-    assert {n: (d.type, d.is_array, d.line, d.written.strip()) for n, d in found.items()} == {
+    result = uniforms(code)
+    assert {n: (d.type, d.is_array, d.line, d.written.strip()) for n, d in result.items()} == {
         "a": ("float", True, 0, "a[3]"),
         "b": ("uimage2D", True, 1, "b[2]"),
         "maps": ("sampler2D", True, 2, "maps[4]"),

@@ -1,4 +1,4 @@
-"""Whatever a remote asks ends well or in a sentence: wrong types, names and nestings, by chance."""
+"""Whatever a remote asks ends well or in a message: wrong types, names and nestings, by chance."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from playground.errors import PlaygroundError
 from playground.workbench.control.addresses import Addresses
 from playground.workbench.control.controls import Behind, Controls
 
-from ...remote.desk import Desk, write_sketch
+from ...remote.desk import Harness, write_sketch
 
 PATHS = [
     "height.level",
@@ -41,8 +41,8 @@ PATHS += [
 
 
 @pytest.fixture
-def desk(tmp_path: Path, any_engine: Engine) -> Iterator[Desk]:
-    made = Desk(any_engine, write_sketch(tmp_path / "hills"))
+def harness(tmp_path: Path, any_engine: Engine) -> Iterator[Harness]:
+    made = Harness(any_engine, write_sketch(tmp_path / "hills"))
     yield made
     made.close()
 
@@ -77,17 +77,17 @@ def anything(chance: random.Random, depth: int = 0) -> Any:
 
 @pytest.mark.always
 @pytest.mark.parametrize("seed", range(4))
-def test_what_is_asked_by_chance_ends_in_a_sentence_at_worst(desk: Desk, seed: int):
-    chance, controls = random.Random(seed), Controls(desk.bench)
+def test_what_is_asked_by_chance_ends_in_a_sentence_at_worst(harness: Harness, seed: int):
+    chance, controls = random.Random(seed), Controls(harness.bench)
     addresses = Addresses(controls)
     refused = 0
     for _ in range(400):
         name = chance.choice([*controls.names, "set", "set", "st"])
-        given = anything(chance)
+        value = anything(chance)
         if name == "set" and chance.random() < 0.8:
-            given = {chance.choice(PATHS): anything(chance) for _ in range(chance.randrange(3))}
+            value = {chance.choice(PATHS): anything(chance) for _ in range(chance.randrange(3))}
         try:
-            controls.do({name: given})
+            controls.do({name: value})
         except PlaygroundError as error:
             refused += 1
             assert "\n" not in str(error) and len(str(error)) < 2000
@@ -95,17 +95,17 @@ def test_what_is_asked_by_chance_ends_in_a_sentence_at_worst(desk: Desk, seed: i
         words = chance.choice([*PATHS, "playground.time", "playground.preset", "playground.x"])
         addresses.receive("/" + words.replace(".", "/"), arguments)
     controls.reset("height.grass")  # it may name a file that is not there, as in the panel
-    desk.frame()
-    assert refused > 50 and desk.session.error is None and controls.parameters()
+    harness.frame()
+    assert refused > 50 and harness.session.error is None and controls.parameters()
 
 
 @pytest.mark.parametrize(
     ("source", "what"),
     [("", "computes frame 5 of 36,001"), ("height", "makes height, 5 of 36,001")],
 )
-def test_a_picture_that_is_not_there_yet_is_said_once(desk: Desk, source: str, what: str):
-    desk.frame()
-    desk.session.catch_up.behind, desk.session.catch_up.source = (5, 36_001), source
+def test_a_picture_that_is_not_there_yet_is_said_once(harness: Harness, source: str, what: str):
+    harness.frame()
+    harness.session.catch_up.behind, harness.session.catch_up.source = (5, 36_001), source
     with pytest.raises(Behind) as met:
-        Controls(desk.bench).picture()
+        Controls(harness.bench).picture()
     assert str(met.value) == f"there is no picture yet: the window {what}"

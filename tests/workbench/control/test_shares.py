@@ -32,7 +32,7 @@ ALL: list[tuple[Parameter, Value]] = [
 ]
 
 
-@pytest.mark.parametrize(("parameter", "value"), ALL, ids=lambda one: getattr(one, "type", ""))
+@pytest.mark.parametrize(("parameter", "value"), ALL, ids=lambda item: getattr(item, "type", ""))
 def test_every_share_gives_a_value_that_the_parameter_takes_and_that_is_at_that_share(
     parameter: Parameter, value: Value
 ):
