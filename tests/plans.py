@@ -14,11 +14,11 @@ from playground.sketch.model import Sketch
 def plans_made_whole(monkeypatch: pytest.MonkeyPatch) -> list[Sketch]:
     """Return a list that grows by the sketch of each plan that is made from nothing."""
     sketches: list[Sketch] = []
-    whole = planner._Planning.whole
+    build = planner._Planning.build
 
     def noted(self: planner._Planning, refused: Mapping[str, str]) -> Plan:
         sketches.append(self.sketch)
-        return whole(self, refused)
+        return build(self, refused)
 
-    monkeypatch.setattr(planner._Planning, "whole", noted)
+    monkeypatch.setattr(planner._Planning, "build", noted)
     return sketches

@@ -216,8 +216,8 @@ def test_one_engine_draws_many_sketches_and_each_thread_has_its_own(any_engine):
     expected = {name: any_engine.render(sketch, size=(48, 27)).array for name, sketch in sketches.items()}
     results: list[Any] = [None, None]
 
-    def run(index: int) -> None:
-        results[index] = drawn()
+    def run(place: int) -> None:
+        results[place] = drawn()
 
     threads = [threading.Thread(target=run, args=(index,)) for index in range(2)]
     for thread in threads:

@@ -6,7 +6,8 @@
 //   source   brightness: ITU-R BT.709-6, table 3, item 3.2
 //   tested   tests/glsl/test_foreign_terrain.py, against the picture's own numbers
 //
-// Another tool's picture that a kernel reads keeps 32-bit floats, so that slopes have no steps. Where it has another size, each texel takes the nearest one.
+// Another tool's picture that a kernel reads keeps 32-bit floats, so that slopes have no steps.
+// Where it has another size, each texel takes the nearest one.
 #include "colour/luminance.glsl"
 #pragma kernel(output = "height:r32f")
 

@@ -15,7 +15,7 @@ bytes; writing is done here, since a PNG without adaptive filters is four chunks
 (W3C PNG specification, third edition, 2025, clauses 5, 9 and 11).
 
 WebP and TIFF lose nothing. JPEG has no alpha and loses a little; its colours keep their full
-resolution. Files of numbers are `playground.data.image_files` and `playground.capture.export`.
+resolution. Files of numbers are `playground.data.values` and `playground.capture.export`.
 """
 
 from __future__ import annotations

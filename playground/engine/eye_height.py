@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import moderngl
 
 CLEARANCE = (
-    0.002  # above the ground, as a fraction of the eye's distance from its target: see ``terrain.camera``
+    0.002  # above the ground, as a fraction of the eye's distance from its target: see ``engine.camera``
 )
 _MAX_ELEVATION = 89.0  # [degrees] of elevation, at most
 

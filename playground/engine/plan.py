@@ -38,14 +38,14 @@ class PlanRequest:
     time: float = 0.0  # [s]
     variants: Collection[str] = ()
     steps: Mapping[str, int] = field(default_factory=dict)
-    wanted: str = ""  # a texture, ``pass[.inner…][:output]``; "" for the picture
+    ref: str = ""  # a texture, ``pass[.inner…][:output]``; "" for the picture
     interpolated: bool | None = None
     largest: int = MAX_SIDE
 
     @property
     def fills(self) -> bool:
         """Whether what a stopped pass has not computed is interpolated."""
-        return not self.wanted if self.interpolated is None else self.interpolated
+        return not self.ref if self.interpolated is None else self.interpolated
 
     def steps_of(self, path: str, whole: int) -> int:
         """Return how many of a repeat's iterations run."""

@@ -27,7 +27,7 @@ from playground.sketch.model import (
     TexelKernel,
     kernels_of,
 )
-from playground.sketch.variants import INSIDE
+from playground.sketch.variants import INSIDE, canonical_path
 from playground.sketch.warnings import unheeded, warnings_of_kernel, warnings_of_sketch
 
 
@@ -164,7 +164,7 @@ def _conditions(flat: Flat, step: Step) -> list[tuple[str, str, dict[str, Number
 
     Where a fast variant runs, which has only some of the parameters, they are those of the technique.
     """
-    technique = flat.specs[step.path.partition(f".{INSIDE}.")[0]].technique
+    technique = flat.specs[canonical_path(step.path)].technique
     is_variant = isinstance(step.kernel, ComputeVariant) or f".{INSIDE}." in step.path
     if not is_variant:
         technique = step.kernel

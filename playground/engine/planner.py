@@ -69,7 +69,7 @@ def planned(sketch: Sketch, request: PlanRequest) -> Plan:
     request = _checked(sketch, request)
     where = sketch.size, sketch.extent, sketch.relief, sketch.base_elevation
     variants, steps = tuple(request.variants), tuple(request.steps.items())
-    asked = request.frame_size, variants, steps, request.wanted, request.fills, _varies(sketch)
+    asked = request.frame_size, variants, steps, request.ref, request.fills, _varies(sketch)
     key = (planned, id(sketch.graph), sketch.folder, sketch.plain, where, asked)
     return PLANS.put(key, _made(sketch, request, PLANS.get(key)), 1, sketch.graph)  # type: ignore[no-any-return]
 
@@ -122,7 +122,7 @@ def _made(sketch: Sketch, request: PlanRequest, last: Plan | None) -> Plan:
         return substitute_variants(
             flatten(sketch),
             () if sketch.plain else request.variants,
-            text=request.wanted,
+            ref=request.ref,
             stopped=tuple(request.steps),
             refused=tuple(refused),
         )

@@ -160,7 +160,7 @@ class Renderer:
         size: tuple[int, int],
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
-        text: str = "",
+        ref: str = "",
         largest: int = MAX_SIDE,
         interpolated: bool | None = None,
         *,
@@ -174,9 +174,7 @@ class Renderer:
         opened_sketch = opened(sketch)
         samples = 0 if in_parts else min(opened_sketch.samples, self._info.max_samples)
         kinds = self.plain_forms.kinds if samples == 1 else self.plain_forms.kinds_without_draws
-        return planned(
-            opened_sketch, PlanRequest(size, time, kinds, steps or {}, text, interpolated, largest)
-        )
+        return planned(opened_sketch, PlanRequest(size, time, kinds, steps or {}, ref, interpolated, largest))
 
     def draw_window(
         self,

@@ -83,7 +83,7 @@ def moment_of_sound(values: Mapping[str, Value], now: Now) -> int:
 def make_sound(
     values: Mapping[str, Value], size: tuple[int, int], moment: Any = None
 ) -> dict[str, NDArray[np.uint8]]:
-    """Return what is shown of a sound before a sample: see ``media.analysis``."""
+    """Return what is shown of a sound before a sample: see ``data.media``."""
     heard = _sound(values).heard(moment, max(analysis.SPAN, size[0]), loop=bool(values["loop"]))
     return {OUTPUT: shown_of(heard, int(values["content"]), size)}  # type: ignore[arg-type]
 

@@ -215,7 +215,7 @@ def _number(sketch: Sketch, path: str, leaves: dict[str, Value]) -> float:
 
 
 def _size(sketch: Sketch, engine: Engine, name: str) -> tuple[int, int]:
-    plan = engine.plan(sketch, (1, 1), text=name)
+    plan = engine.plan(sketch, (1, 1), ref=name)
     try:
         step = plan.step(plan.flat.ref(name, sketch.name).path)
     except PlaygroundError as error:

@@ -80,7 +80,7 @@ class Outdoors:
         sketch = self._sketch.with_values({self._plot.hour: hour}) if self._plot.hour else self._sketch
         if self._plot.trees is not None and hour != self._table_hour:
             self._take_table(sketch, hour)
-        plan = self._engine.plan(sketch, size, text=_PASS)
+        plan = self._engine.plan(sketch, size, ref=_PASS)
         plan = replace(plan, eye=_eye_at(self.over_tile(eye, seconds), lens))
         sky = self._engine.texture_of(plan, plan.flat.ref(_PASS, sketch.name))
 

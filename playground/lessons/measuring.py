@@ -112,7 +112,7 @@ def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
     # Of the plain form: a fast variant has other iterations than the text that the lesson shows.
     plan = make_plan(
         scene.sketch,
-        PlanRequest(frame_size=scene.pixels, time=scene.time, steps=at["steps"], wanted=measure.of),
+        PlanRequest(frame_size=scene.pixels, time=scene.time, steps=at["steps"], ref=measure.of),
     )
     nodes = needed(plan.nodes, plan.flat.ref(measure.of, scene.sketch.name))
     if measure.what == "iterations":

@@ -167,7 +167,7 @@ class Kernel:
 
     @property
     def registry(self) -> str:
-        """Name of a source, a row of ``terrain.sources``; "" for all other kinds."""
+        """Name of a source, a row of ``engine.sources``; "" for all other kinds."""
         return ""
 
     @property

@@ -50,7 +50,7 @@ class Coordinates:
     height_units: str = ""  # the unit of the numbers, as it is named
 
     def arrays(self) -> dict[str, Any]:
-        """Return what an ``.npz`` says of it, as ``terrain.arrays`` reads it."""
+        """Return what an ``.npz`` says of it, as ``data.arrays`` reads it."""
         arrays: dict[str, Any] = {"height_units": self.height_units} if self.height_units else {}
         if self.step is None or self.x is None or self.y is None:
             return arrays

@@ -96,12 +96,12 @@ def load(name: str | Path = "", *, dialect: str = "") -> Sketch:
     return load_with(Techniques(check_name(dialect)), name)
 
 
-@looking_once()
 def opened(sketch: Sketch | str | Path) -> Sketch:
     """Return the sketch itself, or the one of that name or path."""
     return sketch if isinstance(sketch, Sketch) else load(sketch)
 
 
+@looking_once()
 def load_with(techniques: Techniques, name: str | Path = "", text: str | None = None) -> Sketch:
     """Load a sketch as ``load`` does, but read again no technique that these techniques have read.
 

@@ -36,23 +36,23 @@ def substitute_variants(
     flat: Flat,
     kinds: Collection[str],
     *,
-    text: str = "",
+    ref: str = "",
     stopped: tuple[str, ...] = (),
     refused: tuple[str, ...] = (),
 ) -> Flat:
     """Return a canonical flat sketch with verified fast variants of some ``kinds`` in place of techniques.
 
-    None replaces a technique around the pass that is ``text`` or around one that is ``stopped``, nor
+    None replaces a technique around the pass that is ``ref`` or around one that is ``stopped``, nor
     one that is ``stopped`` or ``refused`` itself.
     """
     if not kinds:
         return flat
-    limits = _Limits(frozenset(kinds), text.partition(":")[0], stopped, refused, flat.set_inside)
+    limits = _Limits(frozenset(kinds), ref.partition(":")[0], stopped, refused, flat.set_inside)
     shape = _substituted(flat.shape, limits)
     values = flat.values
     if plain := {path for path, name, default in shape.lacking if values[join(path, name)] != default}:
         more = (*refused, *sorted(plain))
-        return substitute_variants(flat, kinds, text=text, stopped=stopped, refused=more)
+        return substitute_variants(flat, kinds, ref=ref, stopped=stopped, refused=more)
     if shape.constants:
         values = values | shape.constants | {path: values[source] for path, source in shape.copied.items()}
     return replace(flat, shape=shape, values=values)
@@ -73,7 +73,7 @@ class _Limits(NamedTuple):
     """What bars fast variants: see ``substitute_variants``."""
 
     kinds: frozenset[str]
-    wanted: str
+    ref: str
     stopped: tuple[str, ...]
     refused: tuple[str, ...]
     set_inside: tuple[str, ...]
@@ -135,7 +135,7 @@ class _Substitution:
             return "it is stopped early"
         outputs = {*self.found.outputs[path].values()}
         read = (s for reader, s in self.reads if _is_at(s.path, path) and not _is_at(reader, path))
-        if self.limits.wanted.startswith(f"{path}.") or not outputs.issuperset(read):
+        if self.limits.ref.startswith(f"{path}.") or not outputs.issuperset(read):
             return "a pass inside is read"
         if any("." in name for name in wires):
             return "something is wired to a pass inside"

@@ -204,6 +204,12 @@ def any_variants(technique: Technique) -> bool:
 INSIDE = "fast"
 """Name of the place, inside a technique, that the passes of its fast variant are in."""
 
+
+def canonical_path(path: str) -> str:
+    """Return the path of the technique that a pass of a fast variant runs for; else the path itself."""
+    return path.partition(f".{INSIDE}.")[0]
+
+
 _HELD = {1: ("float", "vec4"), 2: ("vec2", "vec4"), 4: ("vec4",)}  # types of a buffer that is an output
 
 

@@ -333,7 +333,7 @@ def _runs(engine: Engine, site: VariantUse, fast: Sketch, ref: str) -> bool:
 
     A file of both forms tells nothing, so what each runs at the place is compared; nothing is drawn.
     """
-    plans = (engine.plan(s, DEFAULT_PICTURE, text=ref) for s in (fast, fast.plainly()))
+    plans = (engine.plan(s, DEFAULT_PICTURE, ref=ref) for s in (fast, fast.plainly()))
     left, other = (
         {
             (step.path, step.kernel.path, step.size, step.repeat, repr(sorted(step.values.items())))

@@ -17,7 +17,7 @@ from playground.shader.expressions import names_in
 from playground.sketch.flat import Fed, Leaf, Loop, Ref, Source
 from playground.sketch.flatten import is_exported
 from playground.sketch.model import CpuSource, Graph
-from playground.sketch.variants import INSIDE
+from playground.sketch.variants import INSIDE, canonical_path
 
 _METRES = {
     "extent": ("extent", "spacing"),
@@ -42,9 +42,7 @@ class Locks:
         for path in self.sources:
             if not self._own[path]:
                 self._note(path, path, set())
-        self._replaced = {
-            path.partition(f".{INSIDE}.")[0] for path in self.flat.specs if f".{INSIDE}." in f"{path}."
-        }
+        self._replaced = {canonical_path(path) for path in self.flat.specs if f".{INSIDE}." in f"{path}."}
 
     def own_size(self, path: str) -> bool:
         """Return whether a leaf has a size of its own, as a film has."""

@@ -20,6 +20,7 @@ from playground.engine.runner import Runner
 from playground.engine.unfinished import PassesUnfinished
 from playground.sketch.model import Sketch, kernels_of
 from playground.sketch.traits import traits_of
+from playground.sketch.variants import canonical_path
 from playground.workbench.catch_up import CatchUp
 from playground.workbench.framing import framed
 from playground.workbench.last_frame import Painter, Picture
@@ -120,7 +121,7 @@ class ShownPicture:
             # What a new text runs is asked below, of the preview alone: a plan less.
             is_new = coming and _has_new_text(engine.record.plan, sketch)
             changed = None if is_new else self._changed(engine, sketch, view, size, at)
-            faster |= frozenset(changed or () if moves else ())
+            faster |= {canonical_path(path) for path in changed or () if moves}
         chosen = as_preview(sketch, faster=faster) if previews else sketch
         if sized:
             if changed != [] or self.texture is None or self.texture.size != size:

@@ -341,7 +341,7 @@ def test_overviews_next_to_a_file_are_read(tmp_path):
     with rasterio.Env(TIFF_USE_OVR=True), rasterio.open(path, "r+") as file:
         file.build_overviews([2, 4], Resampling.average)
     assert (tmp_path / "a.tif.ovr").exists()
-    assert [rows.shape for rows in open_elevation(path).found.overviews] == [(320, 400), (160, 200)]
+    assert [rows.shape for rows in open_elevation(path).grid.overviews] == [(320, 400), (160, 200)]
 
 
 def test_a_mosaic_is_read_as_one(tmp_path, monkeypatch):

@@ -88,9 +88,9 @@ def nested(scale, deep):
 
 @pytest.fixture
 def read(tmp_path):
-    def read_(result, name="a.gltf"):
+    def read_(found, name="a.gltf"):
         path = tmp_path / name
-        path.write_bytes(result if isinstance(result, bytes) else json.dumps(result).encode())
+        path.write_bytes(found if isinstance(found, bytes) else json.dumps(found).encode())
         return read_model(path)
 
     return read_

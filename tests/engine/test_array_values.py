@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rasterio.crs import CRS
 
 import playground
 from playground.engine.sources import SOURCES
@@ -24,7 +25,7 @@ from playground.web.page_data import page_data
 # Every corner differs, and no row is another backwards.
 HEIGHTS = np.array([[0, 1, 2, 3, 4], [9, 8, 7, 5, 6], [10, 12, 11, 14, 13], [15, 18, 17, 16, 19]], np.float32)
 SHARES = HEIGHTS / np.float32(19)
-UTM = 'PROJCS["WGS 84 / UTM zone 33N",GEOGCS["WGS 84"],UNIT["metre",1],AUTHORITY["EPSG","32633"]]'
+UTM = CRS.from_epsg(32633).to_wkt()
 
 
 @dataclass

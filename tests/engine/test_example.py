@@ -303,7 +303,7 @@ def test_it_reports_how_far_it_is_and_can_be_stopped(example):
     class Stop(Exception):
         pass
 
-    def stop(done, total):
+    def stop(done, wanted):
         raise Stop
 
     with pytest.raises(Stop):
@@ -316,10 +316,10 @@ def slow_order(strength):
     waiting = set(product(*map(range, strength.shape)))
     border = set()
 
-    def rank(position):
-        beside = sum((position[0] + dj, position[1] + di) not in waiting for dj, di in sides)
-        strong = float(strength[position]) if strength[position] > weak else 0.0
-        return strong, beside, (-position[0], -position[1])
+    def rank(place):
+        beside = sum((place[0] + dj, place[1] + di) not in waiting for dj, di in sides)
+        strong = float(strength[place]) if strength[place] > weak else 0.0
+        return strong, beside, (-place[0], -place[1])
 
     while waiting:
         strong = [position for position in border if strength[position] > weak]
@@ -345,7 +345,7 @@ def calls(order, strength):
     """Return how many calls an order of all places makes."""
     count = 0
 
-    def note(frame, event, value):
+    def note(frame, event, given):
         nonlocal count
         count += event in ("call", "c_call")
 

@@ -55,7 +55,7 @@ def test_it_says_how_far_it_is_and_stops_where_it_is_told_to():
 
     for last in range(len(seen)):
 
-        def stop(done, total, last=last):
+        def stop(done, wanted, last=last):
             if done == last:
                 raise Stop
 

@@ -167,11 +167,11 @@ def lit(make_sketch: Callable[..., Sketch]) -> Callable[..., Sketch]:
         extent: object = 1000.0,
         relief: float = 100.0,
         light_size: str = "",
-        value: dict[str, object] | None = None,
+        given: dict[str, object] | None = None,
         **values: object,
     ) -> Sketch:
         values = {"sun": list(sun), **{k: v for k, v in values.items() if v is not None}}
-        settings = ["".join(f"{k} = {toml_value(v)}\n" for k, v in s.items()) for s in (value or {}, values)]
+        settings = ["".join(f"{k} = {toml_value(v)}\n" for k, v in s.items()) for s in (given or {}, values)]
         at = f"size = {light_size}\n" if light_size else ""
         passes = (
             f'[[pass]]\nname = "height"\nuse = "./terrain"\n[pass.set]\n{settings[0]}'

@@ -22,11 +22,11 @@ SIZE = (97, 61)
 def picture(make_sketch):
     """Give a function that makes a sketch of a light, and a view that is made of it."""
 
-    def make(light, view, value="", more=""):
+    def make(light, view, given="", more=""):
         body = f'[[pass]]\nname = "light"\nuse = "./light"\nsize = [{SIZE[0]}, {SIZE[1]}]\n{more}'
         wired = "initial" if "antialias" in view else "picture"
         body += f'[view]\nuse = "{view}"\ninputs = {{ {wired} = "light" }}\n'
-        return make_sketch(f"{body}set = {{ {value} }}\n", light=LIGHT.format(light))
+        return make_sketch(f"{body}set = {{ {given} }}\n", light=LIGHT.format(light))
 
     return make
 

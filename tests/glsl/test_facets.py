@@ -14,8 +14,8 @@ PASSES = (
 
 @pytest.fixture
 def sketch_of(make_sketch):
-    def make(value=""):
-        sketch = make_sketch(PASSES + value + " }\n", size=5, extent=SIDE, relief=RELIEF)
+    def make(given=""):
+        sketch = make_sketch(PASSES + given + " }\n", size=5, extent=SIDE, relief=RELIEF)
         return sketch.with_camera(Camera(azimuth=160.0, elevation=75.0))
 
     return make

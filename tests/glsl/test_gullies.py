@@ -136,11 +136,11 @@ float kernel(ivec2 texel) { return (texel.x ^ texel.y) % 3 == 0 ? 1e4 * float(te
 def gullied(engine, make_sketch):
     """Give what draws gullies on a terrain: (heights before [m], after [m], the mask)."""
 
-    def draw(base=HILLS, size=(65, 65), spacing=(METRES, METRES), value="", **values):
+    def draw(base=HILLS, size=(65, 65), spacing=(METRES, METRES), given="", **values):
         text = ", ".join(f"{k} = {str(v).lower()}" for k, v in values.items())
         extent = [max(n - 1, 1) * metres for n, metres in zip(size, spacing, strict=True)]
         sketch = make_sketch(
-            f'[[pass]]\nname = "raw"\nuse = "./base"\nset = {{ {value} }}\n'
+            f'[[pass]]\nname = "raw"\nuse = "./base"\nset = {{ {given} }}\n'
             f'[[pass]]\nname = "made"\nuse = "erosion/gullies"\ninputs = {{ height = "raw" }}\n'
             f"set = {{ {text} }}\n",
             size=list(size), extent=extent, relief=RELIEF, base=base,

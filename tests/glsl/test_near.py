@@ -155,11 +155,11 @@ def test_rock_is_pushed_by_the_slopes_of_its_heights(on_gpu):
     call = "cliff_at(p, 1.0, 1.0, 0.0, Layer(0.0, 0.0, 0.0), 1e-4, 10.0).push"
     result = on_gpu("scene/near/cliff.glsl", call, p=places).astype(float)
 
-    def height(position):
+    def height(place):
         total = 0.0
         for k in range(2, RUNGS):
             cell = COARSEST / 2.0**k
-            at = (position * [1, 1, 2.0 if cell < 4 else 0.45] / cell) @ turn.T + 0.618034 * k
+            at = (place * [1, 1, 2.0 if cell < 4 else 0.45] / cell) @ turn.T + 0.618034 * k
             noise = solid(at, lattice_seed(0x4F396EA5, k))
             rough = 0.24 + (0.12 - 0.24) * k / RUNGS
             part = np.clip(2 - cell / 10.0, 0, 1)
@@ -389,8 +389,8 @@ PASSES = '[[pass]]\nname = "height"\nuse = "./land"\n[[pass]]\nname = "colour"\n
 def from_above(any_engine, make_sketch):
     """Give a function that shades a plane of 2 km seen from a height, and what is set."""
 
-    def read(value, distance=40.0, extra="", wide=2000.0, rise=1.0, **files):
-        view = f'[view]\nuse = "scene/terrain"\nset = {{ grid = 33, antialias = false, {value} }}\n'
+    def read(given, distance=40.0, extra="", wide=2000.0, rise=1.0, **files):
+        view = f'[view]\nuse = "scene/terrain"\nset = {{ grid = 33, antialias = false, {given} }}\n'
         sketch = make_sketch(
             PASSES + extra + view,
             size=[33, 21],

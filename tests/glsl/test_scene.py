@@ -34,9 +34,9 @@ TINTED = (
 def scene(make_sketch):
     """Give a function that makes a sketch of a height and a colour, and what else its text has."""
 
-    def make(height=PLANE, colour=TINTED, view="scene/terrain", value="", passes="", wired="", **more):
-        value = ", ".join(filter(None, [value, "antialias = false" if view.startswith("scene") else ""]))
-        set_ = f"set = {{ grid = 65{', ' if value else ''}{value} }}"
+    def make(height=PLANE, colour=TINTED, view="scene/terrain", given="", passes="", wired="", **more):
+        given = ", ".join(filter(None, [given, "antialias = false" if view.startswith("scene") else ""]))
+        set_ = f"set = {{ grid = 65{', ' if given else ''}{given} }}"
         inputs = f"inputs = {{ {wired} }}\n" if wired else ""
         text = f'{PASSES}{passes}[view]\nuse = "{view}"\nsamples = 1\n{inputs}{set_}\n'
         size = {"size": [65, 41], "extent": list(EXTENT), "relief": RELIEF} | more

@@ -37,7 +37,7 @@ def scene(make_sketch):
     def make(
         height=PLANE,
         colour="vec4(0.5)",
-        value=CALM,
+        given=CALM,
         level=LEVEL,
         water="water/sea",
         size=(65, 41),
@@ -45,7 +45,7 @@ def scene(make_sketch):
         wired="",
     ):
         sea = f'[[pass]]\nname = "water"\nuse = "{water}"\nsize = 1\nset = {{ sea_level = {level} }}\n'
-        set_ = f"set = {{ antialias = false, grid = 65, {value} }}"
+        set_ = f"set = {{ antialias = false, grid = 65, {given} }}"
         inputs = f"inputs = {{ {wired} }}\n" if wired else ""
         text = f'{PASSES}{sea}{passes}[view]\nuse = "scene/terrain"\nsamples = 1\n{inputs}{set_}\n'
         files = {"terrain": HEIGHT.format(height), "cover": COLOUR.format(colour), "grey": GREY}

@@ -18,9 +18,9 @@ PATH = '[[pass]]\nname = "cover"\nuse = "texturing/alpha_map/path"\nset = {{ {} 
 def cover(any_engine, make_sketch):
     """Give the covers of a rule on terrain of a formula, row 0 south."""
 
-    def read(value, terrain="0.0", **more):
+    def read(given, terrain="0.0", **more):
         return any_engine.read(
-            make_sketch(RULE.format(value), terrain=HEIGHT.format(terrain), **more), "cover"
+            make_sketch(RULE.format(given), terrain=HEIGHT.format(terrain), **more), "cover"
         ).astype(float)
 
     return read

@@ -36,8 +36,8 @@ CAMERA = Camera(azimuth=180.0, elevation=35.0, distance=500.0, target=(500.0, 40
 
 @pytest.fixture
 def terrain(make_sketch):
-    def make(value="", *, wired=True, height="0.0", cover=COVER, fine="fine"):
-        common = "grid = 33" + value
+    def make(given="", *, wired=True, height="0.0", cover=COVER, fine="fine"):
+        common = "grid = 33" + given
         wires = 'inputs = { detail_image = "detail" }' if wired else ""
         files = {"terrain": HEIGHT.format(height), "cover": PLAIN.format(cover), "fine": FINE}
         files["flat"] = PLAIN.format("vec3(0.07)")
@@ -165,8 +165,8 @@ def test_terrain_that_is_not_a_number_shows(any_engine, terrain):
 
 @pytest.fixture
 def tile(make_sketch):
-    def make(size=256, value=""):
-        text = f'[[pass]]\nname = "detail"\nuse = "texturing/detail"\nset = {{ {value} }}\n'
+    def make(size=256, given=""):
+        text = f'[[pass]]\nname = "detail"\nuse = "texturing/detail"\nset = {{ {given} }}\n'
         return make_sketch(text, size=size)
 
     return make

@@ -17,11 +17,11 @@ COLOURS = {
 
 @pytest.fixture
 def sketch(make_sketch):
-    def make(value="", size=(256, 3), ramp=EASTWARD, colour_size=""):
-        colours = ", ".join(f"{name} = {value}" for name, value in COLOURS.items())
+    def make(given="", size=(256, 3), ramp=EASTWARD, colour_size=""):
+        colours = ", ".join(f"{name} = {given}" for name, given in COLOURS.items())
         text = '[[pass]]\nname = "height"\nuse = "./ramp"\n'
         text += '[[pass]]\nname = "colour"\nuse = "texturing/height_colour"\n'
-        return make_sketch(f"{text}{colour_size}set = {{ {colours}{value} }}\n", size=list(size), ramp=ramp)
+        return make_sketch(f"{text}{colour_size}set = {{ {colours}{given} }}\n", size=list(size), ramp=ramp)
 
     return make
 

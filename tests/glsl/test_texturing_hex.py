@@ -61,10 +61,10 @@ def test_a_mixture_of_three_that_share_nothing_has_the_mean_and_the_variance_of_
 def laid(make_sketch):
     """Give ``laid(technique, settings, image)``: an image over a terrain of 8 x 8 tiles of 64 texels."""
 
-    def make(technique, value, image="rock", size=SIZE):
+    def make(technique, given, image="rock", size=SIZE):
         tile = f'[[pass]]\nname = "tile"\nuse = "texturing/{image}"\nsize = 256\n'
         cover = f'[[pass]]\nname = "c"\nuse = "texturing/{technique}"\ninputs = {{ colour = "tile" }}\n'
-        return make_sketch(f"{tile}{cover}set = {{ repeats = {REPEATS}, {value} }}\n", size=size)
+        return make_sketch(f"{tile}{cover}set = {{ repeats = {REPEATS}, {given} }}\n", size=size)
 
     return make
 

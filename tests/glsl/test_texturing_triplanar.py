@@ -21,7 +21,7 @@ SIZE, METRES, RELIEF = 513, 1000.0, 1000.0
 def plane(make_sketch):
     """Give ``plane(technique, angle, azimuth)``: a plane that faces so far clockwise from north."""
 
-    def make(technique, angle, azimuth=90.0, value="", repeats=2):
+    def make(technique, angle, azimuth=90.0, given="", repeats=2):
         rise = np.tan(np.radians(angle)) * METRES / RELIEF / (SIZE - 1)
         east, north = -rise * np.sin(np.radians(azimuth)), -rise * np.cos(np.radians(azimuth))
         height = HEIGHT.format(f"0.5 + {east:.9f} * float(texel.x) + {north:.9f} * float(texel.y)")
@@ -30,7 +30,7 @@ def plane(make_sketch):
             '[[pass]]\nname = "even"\nuse = "./even"\nsize = 256\n'
             f'[[pass]]\nname = "c"\nuse = "texturing/{technique}"\ninputs = {{ colour = "even" }}\n'
         )
-        more = f"set = {{ repeats = {repeats}{value} }}\n"
+        more = f"set = {{ repeats = {repeats}{given} }}\n"
         return make_sketch(text + more, size=SIZE, extent=METRES, relief=RELIEF, terrain=height, even=EVEN)
 
     return make

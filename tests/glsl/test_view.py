@@ -19,8 +19,8 @@ MAGENTA = (255, 0, 255)
 
 @pytest.fixture
 def terrain(make_sketch):
-    def make(height="0.0", colour="vec4(1.0)", size=33, value="", **more):
-        view = f'[view]\nuse = "view/terrain"\nsamples = 1\nset = {{ {value or "grid = 33"} }}\n'
+    def make(height="0.0", colour="vec4(1.0)", size=33, given="", **more):
+        view = f'[view]\nuse = "view/terrain"\nsamples = 1\nset = {{ {given or "grid = 33"} }}\n'
         files = {"terrain": HEIGHT.format(height), "cover": COLOUR.format(colour)}
         return make_sketch(PASSES + view, size=size, **files, **more)
 
@@ -284,8 +284,8 @@ def encoded(linear):
 def presented(make_sketch):
     ramp = COLOUR.replace("16f", "32f").format("vec4(float(texel.x) / 63.0 * vec3(1.0, 0.1, 2.0), 0.25)")
 
-    def make(value):
-        view = f'[view]\nuse = "view/present"\ninputs = {{ picture = "ramp" }}\nset = {{ {value} }}\n'
+    def make(given):
+        view = f'[view]\nuse = "view/present"\ninputs = {{ picture = "ramp" }}\nset = {{ {given} }}\n'
         return make_sketch(f'[[pass]]\nname = "ramp"\nuse = "./ramp"\n{view}', size=[64, 4], ramp=ramp)
 
     return make
@@ -313,8 +313,8 @@ def test_a_tone_curve_keeps_order_and_brings_bright_light_in(engine, presented, 
 
 @pytest.fixture
 def shown(make_sketch):
-    def make(height, size, value='channel = "red"'):
-        view = f'[view]\nuse = "view/map"\ninputs = {{ shown = "height" }}\nset = {{ {value} }}\n'
+    def make(height, size, given='channel = "red"'):
+        view = f'[view]\nuse = "view/map"\ninputs = {{ shown = "height" }}\nset = {{ {given} }}\n'
         passes = '[[pass]]\nname = "height"\nuse = "./terrain"\n'
         return make_sketch(passes + view, size=size, terrain=HEIGHT.format(height))
 

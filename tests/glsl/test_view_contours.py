@@ -17,9 +17,9 @@ EASTWARD = "float(texel.x) / float(size.x - 1)"
 def cover(make_sketch):
     """Give how much of each texel lines cover, row 0 south."""
 
-    def read(engine, terrain, value, more="", **sketch):
+    def read(engine, terrain, given, more="", **sketch):
         files = {"terrain": HEIGHT.format(terrain)}
-        result = engine.read(make_sketch(PASSES.format("", value, more), **files, **sketch), "lines")
+        result = engine.read(make_sketch(PASSES.format("", given, more), **files, **sketch), "lines")
         return 1.0 - result[..., 0].astype(float)
 
     return read

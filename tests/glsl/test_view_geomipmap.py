@@ -54,9 +54,9 @@ def engine(any_engine):
 
 @pytest.fixture
 def shown(make_sketch):
-    def make(text=ROUGH, size=129, relief=250.0, detail="geomipmap", value=SKY):
-        value = f'detail = "{detail}", earth = "#00ff00", {value}'
-        view = VIEW + f"set = {{ {value} }}\n"
+    def make(text=ROUGH, size=129, relief=250.0, detail="geomipmap", given=SKY):
+        given = f'detail = "{detail}", earth = "#00ff00", {given}'
+        view = VIEW + f"set = {{ {given} }}\n"
         return make_sketch(view, size=size, relief=relief, terrain=terrain(text), green=GREEN)
 
     return make
@@ -147,11 +147,11 @@ def test_an_error_is_the_largest_height_between_a_level_s_triangles_and_the_terr
     any_engine, errors_of, text, size
 ):
     heights, spans, errors = errors_of(any_engine, text, size)
-    lod = tiles_of(nodes_of(heights))
+    tiles = tiles_of(nodes_of(heights))
     truth = np.stack([true_errors(heights, level) for level in range(1, 5)], axis=-1)
     np.testing.assert_allclose(errors, np.maximum.accumulate(truth, axis=-1), atol=3e-6)
-    np.testing.assert_allclose(spans[..., 0], lod.min(axis=-1), atol=1e-6)
-    np.testing.assert_allclose(spans[..., 1], lod.max(axis=-1), atol=1e-6)
+    np.testing.assert_allclose(spans[..., 0], tiles.min(axis=-1), atol=1e-6)
+    np.testing.assert_allclose(spans[..., 1], tiles.max(axis=-1), atol=1e-6)
     assert true_errors(heights, 0).max() < 1e-12
     ends = [places_of(n)[16::16] / (n - 1) for n in heights.shape]
     np.testing.assert_allclose(spans[..., 2], np.broadcast_to(ends[1], spans.shape[:2]), atol=1e-7)
@@ -301,7 +301,7 @@ def test_a_change_of_level_keeps_the_tolerance(engine, shown, tolerance, size):
     sketch = shown(size=size)
     tables = tables_of(engine, sketch)
     heights = engine.read(sketch, "height")
-    lod = tiles_of(nodes_of(heights))
+    tiles = tiles_of(nodes_of(heights))
     cameras = list(flight(40))[:20]
     changed, worst, before = 0, 0.0, None
 
@@ -314,7 +314,7 @@ def test_a_change_of_level_keeps_the_tolerance(engine, shown, tolerance, size):
         levels = lod.levels_of(tables["errors"], boxes, view, tolerance)
         now = surfaces(levels, lod.coarser_of(levels), heights)
         # In both pictures a place is as far from the terrain as is allowed, whatever the level.
-        away = np.linalg.norm(where(now, view) - where(lod, view), axis=-1)
+        away = np.linalg.norm(where(now, view) - where(tiles, view), axis=-1)
         assert np.nanmax(away) <= tolerance * 1.0001
         if before is not None:
             old_levels, old, old_view = before

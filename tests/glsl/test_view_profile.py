@@ -138,8 +138,8 @@ class Section:
 
 @pytest.fixture
 def section(make_sketch):
-    def read(engine, terrain, value="start = [0.0, 0.5], finish = [1.0, 0.5]", **more) -> Section:
-        sketch: Sketch = make_sketch(PASSES.format("", value), terrain=HEIGHT.format(terrain), **more)
+    def read(engine, terrain, given="start = [0.0, 0.5], finish = [1.0, 0.5]", **more) -> Section:
+        sketch: Sketch = make_sketch(PASSES.format("", given), terrain=HEIGHT.format(terrain), **more)
         return Section(engine.render(sketch, size=SIZE).array)
 
     return read

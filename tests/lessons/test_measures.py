@@ -147,7 +147,7 @@ def test_numbers_of_the_engine_s_own(make_lesson, engine):
             engine, make_lesson(('what    = "spread"', f'of = "{of}"\nwhat = "{what}"')).named["spread"]
         )
 
-    assert number("turns").value == 5
+    assert number("iterations").value == 5
     assert number("texels").value == 5 * 5 * 5
     assert number("texture_bytes").value == 5 * 5 * 4
     assert number("milliseconds").value > 0

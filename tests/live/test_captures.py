@@ -141,9 +141,9 @@ def test_numbered_pictures_a_film_and_a_sheet(bench: Workbench) -> None:
     capture_settings = CaptureSettings(PICTURES, seconds=0.2, fps=10, start=1.0)
     with headless() as engine:
 
-        def made(capture_settings: CaptureSettings) -> Path:
+        def made(wish: CaptureSettings) -> Path:
             progress.clear()
-            job = wishing(bench, capture_settings).job()
+            job = wishing(bench, wish).job()
             return do(job, engine, lambda done, of: progress.append((done, of)), lambda _: None)
 
         folder = made(capture_settings)

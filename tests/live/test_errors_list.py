@@ -338,8 +338,8 @@ def test_notices_leave_the_close_button_free(
 ) -> None:
     plates: list[tuple[imgui.ImVec2, imgui.ImVec2]] = []
 
-    def noted(paint: object, text: str, position: tuple[float, float], **more: Any) -> imgui.ImVec2:
-        corner = plate(paint, text, position, **more)  # type: ignore[arg-type]
+    def noted(paint: object, text: str, place: tuple[float, float], **more: Any) -> imgui.ImVec2:
+        corner = plate(paint, text, place, **more)  # type: ignore[arg-type]
         plates.append((corner - plate_size(text, more["padding"], more["wrap"]), corner))
         return corner
 

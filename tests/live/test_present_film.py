@@ -40,10 +40,10 @@ def test_a_lesson_is_filmed_with_its_notes_as_subtitles(folder: Path, any_engine
         assert count >= round(seconds_of(beat) * FPS) and count >= 3 * FPS
     edge = film.sizes.picture[1]
 
-    def change(first: int, other: int, *, strip: bool) -> float:
+    def change(one: int, other: int, *, strip: bool) -> float:
         pair = [
             pictures[n].astype(int)[edge + 4 :] if strip else pictures[n].astype(int)[:edge]
-            for n in (first, other)
+            for n in (one, other)
         ]
         return float(np.abs(pair[0] - pair[1]).mean())
 

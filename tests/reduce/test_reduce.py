@@ -259,8 +259,8 @@ def test_where_a_fast_variant_disagrees_only_its_defect_stays(sketch, worker, tm
 def test_a_difference_is_of_the_same_kind_where_it_is_as_large():
     failure = Differs((Side(), Side()), ("one", "other"))
 
-    def found(first, other):
-        return failure.finding(results(first) + results(other))
+    def found(one, other):
+        return failure.finding(results(one) + results(other))
 
     wide, last = found([[1, 2]], [[1, 2.5]]), found([[1, 2]], [[1, 2.0000002]])
     assert wide is not None

@@ -369,20 +369,20 @@ def test_a_fast_variant_steps_back_where_something_is_wired_to_what_is_inside(do
 def test_a_fast_variant_steps_back_for_a_path_that_is_wanted(doubled):
     sketch = doubled(passes("h h", "t around", "l light"))
     assert "t.f" in wires(sketch, variants=VARIANTS) and "t.f.a" not in wires(sketch, variants=VARIANTS)
-    assert wires(sketch, variants=VARIANTS, wanted="t.f.a") == wires(sketch)
+    assert wires(sketch, variants=VARIANTS, ref="t.f.a") == wires(sketch)
     assert (
-        str(substitute_variants(flatten(sketch), VARIANTS, text="t.f.b:water").ref("t.f.b:water", "s"))
+        str(substitute_variants(flatten(sketch), VARIANTS, ref="t.f.b:water").ref("t.f.b:water", "s"))
         == "t.f.b:water"
     )
     for expected in ("t.f", "h", "nothing.there"):
-        assert "t.f" in wires(sketch, variants=VARIANTS, wanted=expected)
+        assert "t.f" in wires(sketch, variants=VARIANTS, ref=expected)
 
 
 @pytest.mark.parametrize(
     ("body", "options", "reason"),
     [
         ("t fast; inputs = { 'b.height' = 'h' }", {}, "something is wired to a pass inside"),
-        ("t fast", {"wanted": "t.a"}, "a pass inside is read"),
+        ("t fast", {"ref": "t.a"}, "a pass inside is read"),
         ("t fast", {"stopped": ("t.b",)}, "it is stopped early"),
         ("t fast", {"refused": ("t",)}, "the plan refuses it"),
         ("t fast", {"kinds": ("draws",)}, "there are no compute shaders here"),
@@ -394,7 +394,7 @@ def test_a_fast_variant_that_does_not_run_has_a_reason(doubled, body, options, r
     (omission,) = substitute_variants(flat, kinds, **options).shape.omitted
     sentence = f"t: fast.comp is left out, the plain form runs: {reason}"
     assert (str(omission), omission.is_news) == (sentence, False)
-    assert substitute_variants(flat, VARIANTS).shape.omitted == () or "wanted" not in options
+    assert substitute_variants(flat, VARIANTS).shape.omitted == () or "ref" not in options
 
 
 def test_a_fast_variant_with_a_parameter_of_its_own_is_refused(make, doubled):

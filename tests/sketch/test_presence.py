@@ -281,7 +281,10 @@ def test_the_scene_offers_every_parameter_of_every_pass_once():
     """In each of its forms; all combinations of what may be wired are whole."""
     scene = read_technique("scene/terrain", GLSL, GLSL)
     deciding = deciding_inputs(scene)
-    assert set(deciding) == {"dome", "density", "rocks", "tufts", "water", "sky_picture"}
+    assert set(deciding) == {
+        *("dome", "density", "rocks", "tufts", "water", "sky_picture"),
+        *("cloud", "weights", "wetness"),
+    }
     others = set(input_names(scene)) - set(deciding)
     for chosen in product((True, False), repeat=len(deciding)):
         wired = set(compress(deciding, chosen))

@@ -365,7 +365,7 @@ def test_a_map_takes_the_place_of_the_view(node: Node, shared: SharedData, name:
     }"""
     picture, nodes = node.run(script, data, images, state)
     of = Map(texture["ref"]).of(sketch)
-    plan = make_plan(of, PlanRequest(frame_size=(64, 36), variants=KINDS, wanted=texture["ref"]))
+    plan = make_plan(of, PlanRequest(frame_size=(64, 36), variants=KINDS, ref=texture["ref"]))
     expected = [node.path for node in needed(plan.nodes, plan.picture)]
     assert picture["path"] == nodes[-1][0] == "#map" and nodes[-1][1] == [64, 36]
     assert [path for path, _ in nodes[:-1]] == expected[:-1]

@@ -23,7 +23,6 @@ uniform sampler2D ground;   //! input("linear", "mipmap")
 uniform sampler2D bumps;    //! input
 uniform sampler2D wetness;  //! input
 #include "lighting/parameters/sun.glsl"
-#include "lighting/parameters/sunlight.glsl"
 #include "lighting/parameters/skylight.glsl"
 
 const float MIN_RISE = 0.02;  // of mirrored rays: bumps do not mirror the ground
@@ -32,7 +31,7 @@ vec4 kernel(ivec2 texel) {
     vec4 shown = texelFetch(lit, texel, 0);
     vec4 bump = texelFetch(bumps, texel, 0);
     vec4 at = texelFetch(seen, texel, 0);
-    if (bump.w <= 0.0 || !is_top(at.w)) return shown;
+    if (!wired_wetness || bump.w <= 0.0 || !is_top(at.w)) return shown;
     if (skips_rest()) return vec4(0.0);
     PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
     float pixel = distance(eye, at.xyz) * length(ray.up) / length(ray.ahead);

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from playground.engine.engine import Engine
+from playground.engine.plain_forms import silent
 from playground.errors import ContextError, SketchError, nearest
 from playground.shots.compare import Comparison, compare
 from playground.shots.judge import Judgement, Perceived
@@ -163,7 +164,12 @@ class MutantRunner:
                 sketch = broken(mutant, self.sketch.for_shot(shot))
             except DoesNotApply as reason:
                 return MutantResult(mutant=mutant, shot=shot.name, why_not=str(reason))
-            rendered = self._take(sketch, shot, shot.time + mutant.later)
+            forms = self.engine.plain_forms
+            notice, forms.notice = forms.notice, silent  # what has a broken text has no fast variant
+            try:
+                rendered = self._take(sketch, shot, shot.time + mutant.later)
+            finally:
+                forms.notice = notice
         else:
             rendered = replace(expected, array=mutant.change(expected.array))
         tiers = judged(rendered, expected, self.engine.info, rule_of(ShotCase(self.sketch, shot), expected))

@@ -1,4 +1,4 @@
-// settling.js -- finds out whether a step of a repeat changed any texel: playground/engine/settling.py.
+// settling.js -- finds out whether a step of a repeat changed any texel: playground/engine/kernels.py.
 //
 // After n steps the next comparison is about √n steps away, since its answer is waited for.
 

@@ -8,7 +8,7 @@ import { finished } from "./waiting.js";
 /** @typedef {ReturnType<typeof createClock>} Clock */
 
 const PROBE = 64 * 1024; // texels that are drawn first of what was never measured
-const MAX_CALL_MILLISECONDS = 500; // [ms] that one call may take where nothing waits: watchdogs act after 2000
+const MAX_CALL_TIME = 500; // [ms] of one call where nothing waits: watchdogs act after 2000
 
 /** What kernels took, by their texts: milliseconds a texel. */
 export const createClock = () => {
@@ -45,7 +45,7 @@ export const createClock = () => {
      *  @param {KernelText} text @param {number} width @param {number} height
      *  @param {number} budget [ms] 0: none */
     rows: (text, width, height, budget) => {
-      const known = costs.get(text.identity), limit = budget || MAX_CALL_MILLISECONDS;
+      const known = costs.get(text.identity), limit = budget || MAX_CALL_TIME;
       if (known === undefined) return budget && width * height > 4 * PROBE ? PROBE / width : height;
       return known * width * height > limit ? Math.max(limit / (known * width), 1) : height;
     },
