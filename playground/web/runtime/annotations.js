@@ -1,5 +1,5 @@
 // annotations.js -- reads what a text says of its parameters behind //!: rows as Python makes them, of texts
-// that are edited in a page. See sketch/annotation.py and sketch/uniforms.py.
+// that are edited in a page. See playground/shader/header.py and playground/shader/declarations.py.
 
 import { labelOf } from "./labels.js";
 import { lengthOf } from "./numbers.js";
@@ -17,7 +17,7 @@ import { fits } from "./value_text.js";
 /** @typedef {{uniform: Uniform, facts: Facts, line: Line}} Written */
 
 const NUMBERS = /^(?:float|u?int|[iu]?vec[234])$/;
-/** What widgets are for and what they take in brackets: sketch/widgets.py.
+/** What widgets are for and what they take in brackets: WIDGETS of shader/parameter.py.
  *  @type {Object<string, {types: RegExp, takes?: "range" | "some range" | "ranges" | "raw" | "choices",
  *                         range?: [number, number], unit?: string}>} */
 const WIDGETS = {

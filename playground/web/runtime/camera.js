@@ -1,4 +1,4 @@
-// camera.js -- turns a camera that orbits the terrain into matrices: terrain/camera.py.
+// camera.js -- turns a camera that orbits the terrain into matrices: engine/camera.py.
 //
 // World space: metres of the terrain, x east, y north, z up from height 0; the south-west corner is the
 // origin. Matrices here have 16 numbers, row after row, and act on columns; those of an eye are as WebGL

@@ -1,4 +1,4 @@
-// detail.js -- chooses what to draw of a mesh of which only a part is drawn: CHOOSERS of terrain/lod.py.
+// detail.js -- chooses what to draw of a mesh of which only a part is drawn: CHOOSERS of engine/lod.py.
 
 import { geomipmap } from "./geomipmap.js";
 import { morph } from "./morph.js";

@@ -1,4 +1,4 @@
-// directions.js -- turns directions on the terrain into vectors: terrain/directions.py.
+// directions.js -- turns directions on the terrain into vectors: engine/camera.py.
 //
 // Sums and products alone, in the order of Python's: no two libraries of mathematics agree on the last bit
 // of a sine.

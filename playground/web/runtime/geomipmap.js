@@ -1,4 +1,4 @@
-// geomipmap.js -- gives each tile the coarsest level whose error, in pixels, is allowed: terrain/lod.py.
+// geomipmap.js -- gives each tile the coarsest level whose error, in pixels, is allowed: engine/lod.py.
 //
 // Levels of neighbours differ by one at most; tiles outside the view are left out.
 

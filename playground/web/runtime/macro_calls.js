@@ -1,4 +1,4 @@
-// macro_calls.js -- joins calls of function-like macros that span lines: sketch/macro_calls.py.
+// macro_calls.js -- joins calls of function-like macros that span lines: shader/source.py.
 
 const DEFINE = /^\s*#\s*define\s+(\w+)(\(|\s+(\w+)\s*$)?/;
 const DIRECTIVE = /^\s*#/;

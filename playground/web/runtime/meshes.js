@@ -1,4 +1,4 @@
-// meshes.js -- builds the meshes that draws may ask for, by name: terrain/meshes.py.
+// meshes.js -- builds the meshes that draws may ask for, by name: engine/meshes.py.
 
 import { pieces, vertices } from "./tiles.js";
 

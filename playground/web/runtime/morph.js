@@ -1,4 +1,4 @@
-// morph.js -- chooses tiles that morph: squares of tiles, cut in four where they are near: terrain/morph.py.
+// morph.js -- chooses tiles that morph: squares of tiles, cut in four where they are near: engine/lod.py.
 //
 // Every square is drawn by the same triangles, whose vertices slide into those of the next level as the
 // distance grows (view/vertices.glsl). The distance of each level is one number for the whole terrain.

@@ -1,4 +1,4 @@
-// requests.js -- what a plan is made for besides its sketch, and checks of it: playground/engine/plan.py.
+// requests.js -- what a plan is made for besides its sketch, and checks of it: engine/plan.py.
 
 import { planError } from "./expressions.js";
 import { MAX_SIDE } from "./sizes.js";

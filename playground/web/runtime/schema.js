@@ -36,7 +36,7 @@
 /** @typedef {{name: string, sampling: Sampling, fallback: "" | "white" | "black" | "zero",
  *             shape: "" | "cube" | "volume" | "layers" | "line"}} Input */
 
-/** How the text of a stage is made of a kernel's flat text (gpu/wrap.py as data): the lines of `before`,
+/** How the text of a stage is made of a kernel's flat text (shader/stage_recipe.py): the lines of `before`,
  *  of which one with names stands only where the text names one of them; the kernel's lines, a function
  *  blanked (`without`) or names replaced (`replace`, where `replaceIf` holds); then `after`.
  *  `text` is a whole stage instead, made of no file.
@@ -116,7 +116,7 @@
  *  @property {string} pass                         the sketch's own pass
  *  @property {string} label
  *  @property {string} type                         GLSL
- *  @property {string} widget                       a row of sketch/widgets.py
+ *  @property {string} widget                       a row of WIDGETS in shader/parameter.py
  *  @property {string} unit
  *  @property {string} group
  *  @property {string} description
@@ -131,7 +131,7 @@
  *  @property {Value} value                         at first
  *  @property {string[]} targets                    paths in `Sketch.values` */
 
-/** A camera that orbits a point: terrain/camera.py.
+/** A camera that orbits a point: engine/camera.py.
  *  @typedef {{azimuth: number, elevation: number, distance: number,
  *             target: [number, number, number] | null, field_of_view: number}} Camera */
 

@@ -1,4 +1,4 @@
-// shapes.js -- copies textures of two dimensions into cubes, volumes, arrays and lines: gpu/shapes.py.
+// shapes.js -- copies textures of two dimensions into cubes, volumes, arrays and lines: engine/textures.py.
 //
 // WebGL has no textures of one dimension: a line is one row, which the text reads at its middle (lines.js).
 

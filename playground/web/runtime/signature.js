@@ -1,4 +1,4 @@
-// signature.js -- finds a kernel's function that has not the form its header asks for: gpu/wrap.py.
+// signature.js -- finds a kernel's function that has not the form its header asks for: shader/wrap.py.
 //
 // A driver would complain of the lines that call it, which no author has written.
 

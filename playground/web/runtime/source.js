@@ -1,4 +1,4 @@
-// source.js -- flattens a GLSL file's includes, so that each line knows its file and line: sketch/source.py.
+// source.js -- flattens a GLSL file's includes, so that each line knows its file and line: shader/source.py.
 //
 // The driver is given `code`: comments, #include, #line and the project's pragmas are blanked, lines stay. A
 // backslash at a line's end joins it to the next; the joined line is in the first one's place.

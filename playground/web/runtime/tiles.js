@@ -1,4 +1,4 @@
-// tiles.js -- makes the tile that all terrain in tiles is drawn with, and how to join it: terrain/tiles.py.
+// tiles.js -- makes the tile that all terrain in tiles is drawn with, and how to join it: engine/lod.py.
 //
 // A tile is 16 by 16 cells. One set of 17 by 17 vertices serves every tile at every level; each level has a
 // list of indices for each set of neighbours that are one level coarser.

@@ -1,4 +1,4 @@
-// uniforms.js -- reads the uniforms that a flat text declares, with their initial values: sketch/uniforms.py.
+// uniforms.js -- reads the uniforms that a flat text declares, with their initial values: shader/declarations.py.
 
 /** @typedef {import("./schema.js").Value} Value */
 /** @typedef {import("./source.js").Line} Line */

@@ -19,14 +19,14 @@ const TEMPO = 2; // beats a second, of a sound that is not there
 const IDENTITY = (/** @type {number} */ side) =>
   Array.from({ length: side * side }, (_, at) => (at % (side + 1) ? 0 : 1));
 
-/** What never changes, by meaning: NEUTRAL of sketch/reserved_names.py.
+/** What never changes, by meaning: NEUTRAL of shader/reserved_names.py.
  *  @type {Object<string, number[]>} */
 const NEUTRAL = {
   frame_rate: [60], sample_rate: [44100], forward: [0, 0, 1], none: [0], one: [1, 1, 1, 1],
   identity3: IDENTITY(3), identity4: IDENTITY(4),
 };
 
-/** How strong low, middle and high tones are at a time [s], each from 0 to 1: media/bands.py.
+/** How strong low, middle and high tones are at a time [s], each from 0 to 1: data/media.py.
  *  @param {number} time */
 function bandsAt(time) {
   const since = (time * TEMPO) % 1;

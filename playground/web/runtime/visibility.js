@@ -1,4 +1,4 @@
-// visibility.js -- finds which boxes around tiles a view sees, and how deep they lie: terrain/visibility.py.
+// visibility.js -- finds which boxes around tiles a view sees, and how deep they lie: engine/lod.py.
 
 export const FAR = 1e30;
 

@@ -1,4 +1,4 @@
-// wrap.js -- makes the text of a shader stage from a kernel's flat text: gpu/stage_recipe.py.
+// wrap.js -- makes the text of a shader stage from a kernel's flat text: shader/stage_recipe.py.
 
 /** @typedef {import("./schema.js").Stage} Stage */
 /** @typedef {import("./source.js").Flat} Flat */
