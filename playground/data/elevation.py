@@ -241,7 +241,7 @@ def open_elevation(
     files -32768 is no data.
 
     Raises:
-        DataError: a file that is missing, damaged, too large (`images.bounds`),
+        DataError: a file that is missing, damaged, too large (`data.bounds`),
             not numbers, not a grid of at least 2 x 2, infinite somewhere or without
             any data; an unknown ending, packing or edge.
     """

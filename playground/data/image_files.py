@@ -1,21 +1,18 @@
 """Picture files in and out: NumPy arrays from PNG, JPEG, WebP, TIFF and EXR, and back.
 
-Those of 8 bits and fewer, with palettes and other colour spaces, are Pillow's. Source: TIFF 6.0 (Adobe 1992),
-sections 8 and 18 for photometry and alpha, tag 274 for the orientation.
-
 Pictures have their top (north) row first, in the file and in the array. A file is written whole or
-not at all: a temporary file in the same folder takes the name only when it is complete.
+not at all: a temporary file in the same folder takes the name only when it is complete. Nothing here decodes
+sRGB (`playground.shader.parameter` does), applies ICC profiles, or knows of metres
+(`playground.data.elevation` does). Other files of numbers are read by `playground.data.arrays` and
+written by `playground.data.values`.
 
-It does not decode sRGB (`playground.shader.parameter` does), does not apply ICC
-profiles, and knows nothing of metres (`playground.data.elevation` does).
+16-bit PNG: Pillow keeps the precision of grey but not of colour. Reading colour therefore asks Pillow's
+decoder for the high bytes, then for the low bytes; writing is done here, since a PNG without adaptive filters
+is four chunks (W3C PNG specification, third edition, 2025, clauses 5, 9 and 11). TIFFs of 16 bits, or of
+numbers, are tifffile's; those of 8 bits and fewer, with palettes and other colour spaces, are Pillow's.
+Source: TIFF 6.0 (Adobe 1992), sections 8 and 18 for photometry and alpha, tag 274 for the orientation.
 
-16-bit PNG: Pillow keeps the precision of grey but not of colour. Reading colour
-therefore asks Pillow's decoder for the high bytes, then for the low
-bytes; writing is done here, since a PNG without adaptive filters is four chunks
-(W3C PNG specification, third edition, 2025, clauses 5, 9 and 11).
-
-WebP and TIFF lose nothing. JPEG has no alpha and loses a little; its colours keep their full
-resolution. Files of numbers are `playground.data.values` and `playground.capture.export`.
+WebP and TIFF lose nothing. JPEG has no alpha and loses a little; its colours keep their full resolution.
 """
 
 from __future__ import annotations

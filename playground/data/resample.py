@@ -1,10 +1,10 @@
-"""Bring terrain to another size, corners on corners; a large one in one go through its rows.
+"""Bring terrain to another size, corners on corners: an array, or a large file in one pass over its rows.
 
 Source: Keys 1981, "Cubic Convolution Interpolation for Digital Image Processing", IEEE
 Transactions on Acoustics, Speech and Signal Processing 29, 6: the kernel with a = -1/2.
 
-The kernel is that of `resample`, and so are the results, but for the rounding of sums. Where texels
-have no data, no kernel with negative weights will do: there the known ones around are averaged, each
+``decimate`` has the kernel of ``resample``, and its results, but for the rounding of sums. Where texels
+have no data, no kernel with negative weights will do: there the texels with data around are averaged, each
 counting less the further it is from the node, and a node with none around has no data.
 """
 

@@ -1,23 +1,18 @@
-"""Terrain that looks like a piece of real terrain: pieces laid side by side, or its ranked heights.
+"""Terrain by example: pieces of real terrain quilted along a guide's features, or its ranked heights.
 
-Mirrored in its edges a field has no step there, and its transform is made of cosines: edges are free.
-The transforms are NumPy's own.
+Pieces of the example are placed along the guide's features, from the strongest on, and then between them:
+squares from random positions, in eight orientations, their heights about their mean, since a piece may be
+placed higher or lower than it was (``quilted``). Where two overlap they are cut along the line on which they
+differ least. Of the pieces their slopes are used: of all terrain that has these, as closely as it can, the
+result has the guide's wide hills, by a screened Poisson equation (``integrated``). Mirrored in its edges a
+field has no step there, and its transform is made of cosines: edges are free.
 
-Squares of it at random places, turned and mirrored: eight orientations. The heights of each are about
-their mean, since a piece may be put higher or lower than it was.
+Sources: Zhou, Sun, Turk and Rehg 2007, "Terrain Synthesis from Digital Elevation Models" (IEEE TVCG 13, 4);
+Efros and Freeman 2001, "Image Quilting for Texture Synthesis and Transfer" (SIGGRAPH).
 
-After Zhou, Sun, Turk and Rehg 2007, "Terrain Synthesis from Digital Elevation Models" (IEEE TVCG 13, 4):
-pieces follow the sketched features, from the strongest on, then what is between them is filled; and Efros
-and Freeman 2001, "Image Quilting for Texture Synthesis and Transfer" (SIGGRAPH): where two pieces overlap
-they are cut along the line on which they differ least.
-
-Pieces of the example are laid along the guide's features and then between them (``quilt``). What is kept of
-them are their slopes; of all terrain that has these, as closely as it can, the one is found whose wide hills
-are the guide's: a screened Poisson equation (``mirrored.integrated``).
-
-Heitz and Neyret 2018, "High-Performance By-Example Noise using a Histogram-Preserving Blending Operator"
-(Proc. ACM CGIT 1, 2): blended as the numbers of a normal distribution that have their ranks, and brought
-back by the sorted heights, heights keep their histogram.
+``rank_heights``, after Heitz and Neyret 2018, "High-Performance By-Example Noise using a Histogram-Preserving
+Blending Operator" (Proc. ACM CGIT 1, 2): blended as the numbers of a normal distribution that have their
+ranks, and brought back by the sorted heights, heights keep their histogram.
 """
 
 from __future__ import annotations

@@ -1,13 +1,11 @@
 """Cameras: directions on the terrain, matrices of an orbit, the ground under a pixel.
 
-Sums and products alone, in a fixed order: no two libraries of mathematics agree on the last bit of
-a sine, and a web page must see what the engine sees (directions.js, tested for equality).
-
 World space: metres of the terrain, x east, y north, z up from height 0; the south-west
 corner is the origin.
 
-Sums, products, quotients and roots alone, in a fixed order, so that every machine and every
-browser (camera.js) gets the same matrices to the last bit.
+Sums, products, quotients and roots alone, in a fixed order, so that every machine and every browser gets the
+same directions and matrices to the last bit: no two libraries of mathematics agree on that of a sine. The
+page runtime has the same in directions.js and camera.js, tested for equality.
 """
 
 from __future__ import annotations

@@ -23,9 +23,7 @@ from playground.sketch.model import Camera
 if TYPE_CHECKING:
     import moderngl
 
-CLEARANCE = (
-    0.002  # above the ground, as a fraction of the eye's distance from its target: see ``engine.camera``
-)
+CLEARANCE = 0.002  # above the ground, as a fraction of the eye's distance from its target: see ``camera``
 _MAX_ELEVATION = 89.0  # [degrees] of elevation, at most
 
 

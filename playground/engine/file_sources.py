@@ -1,17 +1,14 @@
 """Sources that read a file: elevations, masks, painted numbers, models, vectors.
 
-A large file is read at that size, a part at a time, and never has all of its texels in memory.
-
-An image's numbers are taken as they are, not as colours: nothing is decoded. Without an alpha
-channel the fourth weight is 0.
-
-What was written is read again bit by bit, at the size it was written in.
-
-Texel by texel from the south-west, row by row: the three corners of the first triangle, of the second, and so
-on, ``CORNERS`` in a row. The fourth number of a place is 1 where there is a corner, 0 after the last.
-
-Where the terrain lies is what an elevation file says; shapes in another reference system are brought into
-that one by GDAL. The datums WGS 84, NAD 83 and ETRS 89 are taken for one: they differ by two metres at most.
+* Elevations: one of over ``LARGE`` texels is read at the requested size, a part at a time, and never has all
+  of its texels in memory.
+* Masks: an image's numbers are taken as they are, not as colours: nothing is decoded. Without an alpha
+  channel the fourth weight is 0.
+* Painted numbers: what was written is read again bit by bit, at the size it was written in.
+* Models: texel by texel from the south-west, row by row, ``CORNERS`` in a row: the three corners of the first
+  triangle, of the second, and so on. The fourth number of a texel is 1 where there is a corner, else 0.
+* Vectors: an elevation file says where the terrain lies; GDAL brings shapes in another reference system into
+  that one. The datums WGS 84, NAD 83 and ETRS 89 are taken for one: they differ by two metres at most.
 """
 
 from __future__ import annotations

@@ -74,7 +74,7 @@ def triangles(values: Mapping[str, int]) -> Mesh:
 
 
 def terrain(values: Mapping[str, int]) -> Mesh:
-    """Return a grid, or, where ``detail`` is not 0, one tile with every list of indices of ``tiles``.
+    """Return a grid, or, where ``detail`` is not 0, one tile with every list of indices of ``lod``.
 
     Attribute ``corner`` of a tile: nodes east and north, 0..16, and 0 on top or 1 at the skirt's foot.
     """

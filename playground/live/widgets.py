@@ -1,7 +1,7 @@
 """Draw a parameter as its annotation says, and give back what the user makes of it.
 
-One function a widget, found by its name in ``CONTROLS``: a new widget is a new entry here
-and a row of ``sketch/widgets.py``. Each returns the new value, or None while nothing changed.
+One function a widget, by its name in ``CONTROLS``, which has an entry for each row of ``WIDGETS`` in
+``shader/parameter.py``. Each returns the new value, or None while nothing changed.
 """
 
 from __future__ import annotations

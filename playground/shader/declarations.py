@@ -1,9 +1,10 @@
-"""What a GLSL text declares: variables from its tokens, uniforms, and varyings.
+"""What a GLSL text declares: variables and functions, uniforms with their initial values, varyings.
 
-GLSL is easy here: a statement that begins with qualifiers, a type and a name declares something. What is no
-declaration, or one with a mistake, is passed over.
+``Declarations`` reads tokens: a statement that begins with qualifiers, a type and a name declares something.
+What is no declaration, or one with a mistake, is passed over.
 
-Text only, by statements: comments are blanked already, and so are branches that are off.
+``uniforms``, ``declared_names`` and ``vertex_outputs`` read the statements of a text whose comments are
+blanked already, and so are its branches that are off.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """A kernel's header: its pragma, its parameters with ``//!`` annotations, its inputs.
 
-``slider(0, 1) step(0.01) The tooltip`` becomes calls with their arguments, and a tooltip.
-Which calls there are, and what their arguments mean, is known elsewhere.
+All of it is read from the text, never from the driver, where a uniform that is optimised away vanishes.
 
-They are read from the text, never from the driver, where a uniform that is optimised
-away vanishes.
+An annotation as ``slider(0, 1) step(0.01) The tooltip`` is split into calls with their arguments, and a
+tooltip. The widgets are the rows of ``WIDGETS`` in ``parameter``, the options of a pragma those of the kernel
+classes in ``kernel``.
 """
 
 from __future__ import annotations

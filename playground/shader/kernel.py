@@ -525,7 +525,7 @@ class VertexShader:
 class ForeignShader(PlainFragment):
     """A fragment shader of another tool."""
 
-    dialect: str = ""  # the name of a row of sketch/dialects
+    dialect: str = ""  # the name of a row of shader/dialects
     prelude: tuple[str, ...] = ()  # lines that the driver gets before the file's
     epilogue: str = ""  # the file of shader/shaders that follows the file's lines
     helpers: tuple[str, ...] = ()  # files of shader/shaders between the prelude and its lines
@@ -646,7 +646,7 @@ class Graph:
 
     @property
     def dialect(self) -> str:
-        """Of another tool's shader the name of a row of sketch/dialects, of a TOML none."""
+        """Of another tool's shader the name of a row of shader/dialects, of a TOML none."""
         if self.path.endswith(".toml"):
             return ""
         last = self.kernels[-1][1]

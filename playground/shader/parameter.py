@@ -1,18 +1,16 @@
-"""Parameters: widgets, colours, and values read from TOML, the command line, and Python.
+"""Parameters: their widgets, colours, and values read from TOML, the command line, and Python.
 
-How it is drawn is another table, in ``live/widgets.py``; a test compares the two.
+``WIDGETS`` has a row for each widget: types, arguments, range, unit. How the window draws it is another
+table, ``CONTROLS`` in ``live/widgets.py``; a test compares the two.
 
-Every colour is linear inside the playground; encoded ones live only in files,
-in TOML and on the screen. There is no other colour space here, and no tone
-mapping (that is `view/present`).
+``coerce`` makes any value Python's own type for the parameter's GLSL type, checked against the range that
+its annotation gives.
 
-Source: IEC 61966-2-1:1999 with Amendment 1 (2003), clause 5.2: the exact
-piecewise curve, not the power 2.2. Its printed thresholds (0.04045 and
-0.0031308) leave a step of less than 1e-7 between the pieces, far below the
-1/255 of a byte.
-
-Every value ends as Python's own type for the parameter's GLSL type, checked
-against the range its annotation gives.
+Every colour is linear inside the playground; encoded ones live only in files, in TOML and on the screen.
+There is no other colour space here, and no tone mapping (that is `view/present`).
+Source: IEC 61966-2-1:1999 with Amendment 1 (2003), clause 5.2: the exact piecewise curve, not the power 2.2.
+Its printed thresholds (0.04045 and 0.0031308) leave a step of less than 1e-7 between the pieces, far below
+the 1/255 of a byte.
 """
 
 from __future__ import annotations
@@ -164,7 +162,7 @@ MAX_SIDE = 16_384
 class Widget:
     """How a parameter is shown and what it may be."""
 
-    kind: str = "number"  # a row of sketch/widgets.py
+    kind: str = "number"  # a row of WIDGETS
     low: float | None = None  # None: unbounded
     high: float | None = None
     choices: tuple[str, ...] = ()  # of a menu

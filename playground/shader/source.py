@@ -1,15 +1,13 @@
 """Read GLSL files and flatten their includes, so that each flat line knows its file and line.
 
-Mesa's preprocessor (22.3) forgets the line ends inside such a call, so that every later error
-names a line too early. A joined call is on its first line; the lines it took stay, empty.
+The driver is given ``SourceText.code``: comments, ``#include`` and the project's pragmas are blanked
+(quotes and anything beyond ASCII are outside GLSL 3.30), and lines stay. ``#line`` is never used, because
+drivers treat it differently; one in a file is left out.
 
-The driver is given ``SourceText.code``: comments, ``#include`` and the project's
-pragmas are blanked (quotes and anything beyond ASCII are outside GLSL 3.30), lines
-are kept, and ``#line`` is never used, because drivers treat it differently;
-one in a file is left out. A macro's call that spans lines is joined: see ``macro_calls``.
-
-A backslash at a line's end joins it to the next, comments included, as GLSL 4.20 has it;
-the driver gets the joined line in the first one's place, since 3.30 knows no such thing.
+A backslash at a line's end joins it to the next, comments included, as GLSL 4.20 has it; the driver gets the
+joined line in the first one's place, since 3.30 knows no such thing. A macro's call that spans lines is
+joined as well (``with_calls_joined``): Mesa's preprocessor (22.3) forgets the line ends inside such a call,
+so that every later error names a line too early. The lines that a joined call took stay, empty.
 """
 
 from __future__ import annotations

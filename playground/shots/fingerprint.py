@@ -9,8 +9,8 @@ means for that:
     vendor                GL's word for who wrote the driver. Shown, but no part of a build: between two
                           versions Mesa changed it from "Mesa/X.org" to "Mesa".
     mesa, llvm            read out of the two strings, for people; they decide nothing twice.
-    cpu, simd             of a renderer that draws on the processor, part of the build: `gpu.build` says
-                          why. Where a graphics card draws, they say nothing, and are left out of the
+    cpu, simd             of a renderer that draws on the processor, part of the build: `engine.context`
+                          says why. Where a graphics card draws, they say nothing, and are left out of the
                           comparison.
     drawn                 hash of what was drawn: sketch, shot, kernels, values, sizes, wiring,
                           files (see ``engine.picture_hash``). It never makes a comparison less strict:

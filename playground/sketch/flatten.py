@@ -1,9 +1,5 @@
 """Flatten a sketch's nested techniques into passes and loops, wired and in order.
 
-A loop that counts frames shows each of its frames what it reads as it was then: a film has another
-picture, a kernel another time. Outside of the loop they would be what they are at the end, in all its
-frames, and each new moment would start the loop again.
-
 The result names no sizes and no pixels: ``engine.plan`` adds those. Wiring follows one
 rule at every level: an input takes what its pass wires, else what the technique's own
 caller wires through ``[inputs]``, else the latest earlier pass of its name, else the
@@ -12,6 +8,10 @@ are there (see ``presence``). What is wired to a path inside a technique
 wins over what is wired to its export.
 
 Every technique is in its canonical form; ``substitution`` puts fast variants in place of some.
+
+What a loop that counts frames reads and what changes with the time moves into the loop, so that each of its
+frames reads it as it was then: a film has another picture, a kernel another time. Outside of the loop it
+would be what it is at the end, in all frames, and each new moment would start the loop again.
 
 The shape of the result depends on the graph alone and is computed once for each; a slider
 only puts new values into it.

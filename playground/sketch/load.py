@@ -1,10 +1,9 @@
-"""Load a sketch: the way in.
+"""Load a sketch from a TOML, a folder, a shader or an elevation file.
 
-It is a text, so that it can be saved as it is and edited. What the file tells, the sketch leaves to it: the
-extent, the relief, the height above the sea.
+A sketch is data: nothing in it is run, and the files it names lie in its own folder or in ``glsl/``.
 
-A sketch is data: nothing in it is run, and the files it names lie in its own folder or
-in ``glsl/``.
+Around an elevation file a sketch is made as a text, so that it can be saved as it is and edited. Extent,
+relief and base elevation are not in that text: they come from the file.
 """
 
 from __future__ import annotations

@@ -1,12 +1,16 @@
-"""What a shot says of differences that are meant to pass: how much, and why.
+"""A sketch as a value: graph, terrain, view, shots, presets, keyframes, and the tolerances of shots.
 
-rounding   3 levels of 255, at 0.5 % of the pixels: what another build of a renderer may differ by
+All of it is frozen: what changes a sketch returns a new one. The classes of kernels, graphs and parameters
+are in ``shader.kernel`` and ``shader.parameter``, keyframes in ``keyframes``; they can be imported from here
+as well.
+
+Tiers of tolerance have names:
+
+    rounding   3 levels of 255, at 0.5 % of the pixels: what another build of a renderer may differ by
     edges      any number of levels, at 0.5 % of the pixels: single pixels that fall the other way
     noise      8 levels at any pixel: grain and dithering that are different in each run
 
 How they are applied, and what no tolerance lets pass, is in `playground.shots.tolerated`.
-
-Its parts are in ``parameter``, ``technique`` and ``keyframes``; all of them can be imported from here.
 """
 
 from __future__ import annotations

@@ -1,10 +1,8 @@
 """Fill a pass of a sketch with another technique, or a shader with another text.
 
-What the texts declare takes the place of the kernels that were made of those files.
-
-A technique fits a pass if its outputs have the same names as those of the technique
-it replaces, and if each of its inputs can be wired. Whether the terrain's size suits it is
-found out by drawing.
+``with_texts`` puts texts in place of shaders' files: kernels are parsed again from them. ``with_technique``
+fills a pass with another technique. One fits if its outputs have the names of those that it replaces, and
+if each of its inputs can be wired. Whether the terrain's size suits it, only drawing tells.
 """
 
 from __future__ import annotations

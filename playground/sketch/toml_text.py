@@ -1,12 +1,11 @@
 """A TOML text: the line of each key, the span of each value, and changes of single values.
 
 The standard reader gives a line for a syntax error only; a wrong value deserves one too, and a value
-that is saved is written over in its place. Any text is read, also one that is not TOML: what was
-found before its first mistake is there.
+that is saved is overwritten at its position. ``TomlPlaces`` reads any text, also one that is not TOML: what
+comes before its first mistake has positions.
 
-``toml_places`` locates its keys and values; the text is changed only there: comments, order,
-spaces, line endings and the way that tables are written stay.
-It must be TOML already; nothing is checked here.
+``put``, ``drop`` and ``append`` change the text only there: comments, order, spaces, line endings and the
+way that tables are written stay. They take a text that is TOML already; nothing is checked here.
 """
 
 from __future__ import annotations

@@ -1,19 +1,17 @@
-"""Fast variants: which may run in place of a technique, what they must share, and their record.
+"""Fast variants: which may run in place of a technique, the interface they must have, and their record.
 
-The text of a kernel counts as the compiler takes it: with its includes, without comments,
-with any white space. Of a technique of several passes each pass counts, and how they are
-wired. What a person reads besides (titles, labels, tooltips, units) does not; nor do names of
-files, nor fast variants.
+A technique's canonical form is its plain text. A fast variant of it, a ``.comp`` or the passes of a
+``.fast.toml``, runs only while both texts are those that were verified to agree: their hashes
+(``content_of``) are in a record. Techniques are compared as they are in memory, so a text that replaces a
+file's counts as well.
 
-A technique's canonical form is its plain text. A fast variant of it, a ``.comp`` or the
-passes of a ``.fast.toml``, runs only while both texts are those that were found to agree:
-their contents (see ``canonical``) are in a record (see ``variant_record``). Techniques are
-compared as they are in memory, so a text that replaces a file's counts as well.
+A kernel's text is hashed as the compiler takes it: with its includes, without comments, with any white
+space. Of a technique of several passes each pass counts, and their wiring. Titles, labels, tooltips, units,
+names of files and fast variants do not count.
 
-One generated file, ``glsl/fast_variants.json``, is for all that ships; a user's own variants
-have one in their folder. It holds the contents of both forms (see ``canonical``) by the variant's
-path from the record's folder. ``playground variants renew`` writes it, after the two forms were
-drawn and compared; nothing else does.
+One generated file, ``glsl/fast_variants.json``, is the record of all that ships; a user's own variants have
+one in their folder. It has the hashes of both forms by the variant's path from the record's folder.
+``playground variants renew`` writes it, after the two forms were drawn and compared; nothing else does.
 """
 
 from __future__ import annotations

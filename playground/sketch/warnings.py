@@ -1,6 +1,11 @@
 """Warn of what has no effect in a sketch's texts, another effect than its author can see, or a trap.
 
-Someone who edits such a default in a kernel sees nothing change.
+* A default in a kernel's file that a sketch's file or the panel overrides: who edits it sees nothing change.
+* In a kernel: loose ends of its header, divisions of whole numbers with a remainder, variables that are read
+  before they are written, declarations that nothing reads, inputs of passes that nothing wires.
+
+A warning of a text is a function that returns diagnostics, called by ``warnings_of_kernel`` or
+``warnings_of_sketch``.
 """
 
 from __future__ import annotations

@@ -1,11 +1,12 @@
 """Shadertoy: one file with ``mainImage``, its passes, their channels and directives.
 
-Shadertoy declares its channels by what a user puts there, which a file alone does not say. A lookup does: a
-cube map is read at three coordinates, a volume by texels of three. So does a function that a channel is
-handed to. Types are followed by name, not by a compiler.
+Shadertoy declares its channels by what a user puts there, which a file alone does not say. Its lookups do:
+a cube map is read at three coordinates, a volume by texels of three. So does a function that a channel is
+passed to. Types are followed by name, not by a compiler.
 
-A driver is given a uniform in the place of ``#iUniform`` and nothing in that of the others; that the
-keyboard is asked for stays as a pragma, which ``rewritten`` takes away.
+Directives are those of the VS Code extension: ``#iChannel0 "…"``, ``#iUniform`` and the like. The driver
+gets a uniform in place of ``#iUniform`` and an empty line in place of the others; ``#iKeyboard`` stays as a
+pragma, which ``rewritten`` removes.
 """
 
 from __future__ import annotations

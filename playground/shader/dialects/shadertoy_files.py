@@ -1,10 +1,11 @@
 """Shadertoy's passes on disk: an export as JSON, or a folder of files.
 
-Its passes are texts in strings. A line of one is named by the file, the pass and its own number.
+The passes of an export are texts in its strings. A line of one is named by the file, the pass and its own
+number.
 
-Each is a file, ``.glsl`` or ``.frag``, with a space or ``_`` in its name or without, in capitals or not. What
-a channel reads says a line as ``#iChannel0 "file://Buffer A.glsl"`` or a comment as
-``// iChannel0: Buffer A``; else channel 0 reads Buffer A, 1 Buffer B and so on, of those that are there.
+In a folder each pass is a file, ``.glsl`` or ``.frag``, as "Buffer A", with a space, ``_`` or neither, in
+any case. A line as ``#iChannel0 "file://Buffer A.glsl"`` or a comment as ``// iChannel0: Buffer A`` says what a
+channel reads; without one, channel 0 reads Buffer A, 1 Buffer B and so on, of those that are there.
 """
 
 from __future__ import annotations

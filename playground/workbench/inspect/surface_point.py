@@ -1,6 +1,6 @@
 """Find the place of the terrain under a pixel on the graphics card, so that its heights stay there.
 
-The ray march is that of ``terrain.pick``: along the pixel's ray in steps of a texel, then the
+The ray march is that of ``engine.camera``: along the pixel's ray in steps of a texel, then the
 step that goes below the ground is halved. One fragment does it, and four numbers come back.
 """
 
@@ -32,7 +32,7 @@ class Ground(TexelShader):
     ) -> tuple[float, float, float] | None:
         """Return where on the terrain a place of the picture lies, and its height; None where there is sky.
 
-        As ``terrain.pick.ground_under``: the place in fractions of the picture from its lower left,
+        As ``engine.camera.ground_under``: the place in fractions of the picture from its lower left,
         the answer in fractions of the terrain's sides, east and north; the height as the texture has it.
         The context is the caller's to make current and to leave as it was.
         """
