@@ -4,8 +4,8 @@ The passes of an export are texts in its strings. A line of one is named by the 
 number.
 
 In a folder each pass is a file, ``.glsl`` or ``.frag``, as "Buffer A", with a space, ``_`` or neither, in
-any case. A line as ``#iChannel0 "file://Buffer A.glsl"`` or a comment as ``// iChannel0: Buffer A`` says what a
-channel reads; without one, channel 0 reads Buffer A, 1 Buffer B and so on, of those that are there.
+any case. A line as ``#iChannel0 "file://Buffer A.glsl"`` or a comment as ``// iChannel0: Buffer A`` says
+what a channel reads; without one, channel 0 reads Buffer A, 1 Buffer B and so on, of those that are there.
 """
 
 from __future__ import annotations
