@@ -160,7 +160,7 @@ def read_raster(path: Path, packing: Packing = "grey") -> RasterFile:
         no_data, overviews = raster.nodata, len(raster.overviews(1))
         pictures = len(raster.subdatasets) if driver == "GTiff" else 0
         masked = any(flag.name == "per_dataset" for flag in raster.mask_flag_enums[0])
-        position, south_first, notes = _place(raster, crs, path)
+        georeference, south_first, notes = _place(raster, crs, path)
         block_rows = raster.block_shapes[0][0]
     if not (math.isfinite(scale) and math.isfinite(offset) and scale):
         raise DataError("says that its numbers have a scale or an offset that is no number", file=path)
@@ -170,7 +170,7 @@ def read_raster(path: Path, packing: Packing = "grey") -> RasterFile:
         raise DataError(what, file=path)
     code_range = {"u1": EIGHT_BIT, "u2": SIXTEEN_BIT}.get(dtype.str[1:])
     coloured = not packed and code_range is not None and bands >= 3
-    has_meaning = position is not None or crs.facts.kind or unit or (scale, offset) != (1.0, 0.0)
+    has_meaning = georeference is not None or crs.facts.kind or unit or (scale, offset) != (1.0, 0.0)
     in_metres = code_range is None or bool(not packed and has_meaning)
     if masked or packed:
         dtype = np.promote_types(dtype, np.float32)
@@ -183,18 +183,20 @@ def read_raster(path: Path, packing: Packing = "grey") -> RasterFile:
     rows = GdalRows(path, name, driver, shape, dtype, block_rows, packed, coloured, masked)
     result = RasterFile(
         rows,
-        None if position is None else position.spacing[0],
+        None if georeference is None else georeference.spacing[0],
         in_metres=in_metres,
         code_range=None if in_metres else PACKED if packed else code_range,
         no_data=no_data,
-        place=position,
+        place=georeference,
         south_first=south_first,
         overviews=tuple(_overview(rows, number) for number in range(overviews)),
         notes=notes,
     )
     if not in_metres:
         return result
-    return replace(result, scale=scale, offset=offset).in_unit(position.crs if position else crs, unit)
+    return replace(result, scale=scale, offset=offset).in_unit(
+        georeference.crs if georeference else crs, unit
+    )
 
 
 def _open(name: str, driver: str, overview: int | None = None) -> rasterio.io.DatasetReader:
@@ -315,9 +317,9 @@ def _is_sparse(raster: rasterio.io.DatasetReader) -> bool:
 def _check_neighbours(path: Path) -> None:
     """Raise ``DataError`` where GDAL would be led to what is no file of this raster."""
     ending = path.suffix.lower()
-    for position in sidecar_places(path):
-        if what := irregularity(position):
-            raise DataError(what, file=position)
+    for sidecar in sidecar_places(path):
+        if what := irregularity(sidecar):
+            raise DataError(what, file=sidecar)
     beside = sidecars(path)
     if ending in (".bil", ".flt") and not any(file.suffix.lower() == ".hdr" for file in beside):
         raise DataError(f"needs {path.with_suffix('.hdr').name} next to it, which says its size", file=path)
@@ -346,8 +348,8 @@ def _check_vrt(path: Path) -> None:
     for element in root.iter():
         text, kind = element.text or "", element.get("subClass", "VRTSourcedRasterBand")
         parts = [element.tag, *element.keys(), f"{element.tag} {kind}", element.get("domain", "")]
-        existing = (_VRT_TAGS, *[_VRT_KEYS] * len(element.keys()), _VRT_CLASSES, ("", "IMAGE_STRUCTURE"))
-        odd = [part for part, names in zip(parts, existing, strict=True) if part not in names]
+        allowed = (_VRT_TAGS, *[_VRT_KEYS] * len(element.keys()), _VRT_CLASSES, ("", "IMAGE_STRUCTURE"))
+        odd = [part for part, names in zip(parts, allowed, strict=True) if part not in names]
         if element.tag.endswith(("SRS", "CRS")) and not _SYSTEM.match(text):
             odd.append(text)
         if odd:

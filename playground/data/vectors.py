@@ -270,12 +270,12 @@ def _geometry(blob: bytes, at: int, shapes: list[VectorShape]) -> int:
 
 
 def _counted(blob: bytes, at: int, order: str, lines: int) -> tuple[tuple[Line, ...], int]:
-    pictures = []
+    lines_read = []
     for _ in range(lines):
         (count,) = struct.unpack_from(f"{order}I", blob, at)
         line, at = _points(blob, at + 4, order, count)
-        pictures.append(line)
-    return tuple(pictures), at
+        lines_read.append(line)
+    return tuple(lines_read), at
 
 
 def _points(blob: bytes, at: int, order: str, count: int) -> tuple[Line, int]:

@@ -369,7 +369,7 @@ _CAUSES = (
 
 def complaint(message: str) -> Complaint | None:
     """Return the entry of the table that a message belongs to, or None."""
-    return next((existing for existing in COMPLAINTS if existing.matches(message)), None)
+    return next((row for row in COMPLAINTS if row.matches(message)), None)
 
 
 def advice(message: str, platform: str, environ: Mapping[str, str]) -> str:
@@ -380,13 +380,11 @@ def advice(message: str, platform: str, environ: Mapping[str, str]) -> str:
     `os.environ`. An unknown message gets the advice that helps most often.
     """
     system = platform if platform in _ANYWHERE else "linux"
-    complaint_of = complaint(message)
-    if complaint_of is None:
+    match = complaint(message)
+    if match is None:
         return f"OpenGL did not start, for a reason that is not known here. {_ANYWHERE[system]}"
     likely = (
-        [c.advice for c in _CAUSES if complaint_of.name in c.of and c.holds(environ)]
-        if system == "linux"
-        else []
+        [c.advice for c in _CAUSES if match.name in c.of and c.holds(environ)] if system == "linux" else []
     )
-    own = {"linux": complaint_of.linux, "darwin": complaint_of.darwin, "win32": complaint_of.win32}[system]
-    return " ".join([complaint_of.means, *likely, own or _ANYWHERE[system]])
+    own = {"linux": match.linux, "darwin": match.darwin, "win32": match.win32}[system]
+    return " ".join([match.means, *likely, own or _ANYWHERE[system]])

@@ -67,8 +67,8 @@ class Settling:
         program.set("k_block", _BLOCK)
         with self._query:
             for output in now.outputs:
-                for name, result, unit_of in (("k_now", now, unit), ("k_before", before, unit + 1)):
-                    self.binder.texture(program, name, unit_of, result.textures[output.name], Sampling())
+                for name, result, texture_unit in (("k_now", now, unit), ("k_before", before, unit + 1)):
+                    self.binder.texture(program, name, texture_unit, result.textures[output.name], Sampling())
                 program.fill()
         self.pool.give(target)
         return self._query

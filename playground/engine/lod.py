@@ -249,9 +249,9 @@ class Boxes:
         return replace(self, up=np.stack([np.minimum(self.up[0], -max(view.extent)), self.up[1]]))
 
 
-def _dot(left: Sequence[float], other: Sequence[float]) -> float:
+def _dot(a: Sequence[float], b: Sequence[float]) -> float:
     """Return the product of the first three numbers of each."""
-    return left[0] * other[0] + left[1] * other[1] + left[2] * other[2]
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def _length(east: Floats, north: Floats, up: Floats) -> Floats:

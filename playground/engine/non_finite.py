@@ -165,13 +165,13 @@ class FiniteCheck:
         return replace(step, kernel=self._widened(kernel, form)), inputs
 
     def _widened(self, kernel: Kernel, form: str) -> Kernel:
-        program = self._wide.get((id(kernel), form))
-        if program is None:
+        entry = self._wide.get((id(kernel), form))
+        if entry is None:
             outputs = tuple(replace(o, format=_widened(o.format, form)) for o in kernel.outputs)
-            program = self._wide[id(kernel), form] = kernel, replace(kernel, outputs=outputs)
+            entry = self._wide[id(kernel), form] = kernel, replace(kernel, outputs=outputs)
             while len(self._wide) > 64:
                 self._wide.pop(next(iter(self._wide)))
-        return program[1]
+        return entry[1]
 
 
 def _not_finite(texture: moderngl.Texture) -> NotFinite | None:

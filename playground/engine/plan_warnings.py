@@ -139,19 +139,19 @@ def _assumptions(plan: Plan) -> dict[str, tuple[str, ...]]:
         if step is None:
             continue
         try:
-            existing = kind.describe(step.values)
+            facts = kind.describe(step.values)
         except DataError:  # the file has gone since; drawing reports it
             return {}
-        if existing == Terrain():
+        if facts == Terrain():
             continue
         name, messages = Path(str(step.values[kind.files[0]])).name, list[str]()
         assert terrain.relief is not None and terrain.base_elevation is not None and terrain.extent
-        if sketch.relief is None and existing.relief is None:
+        if sketch.relief is None and facts.relief is None:
             low, high = terrain.base_elevation, terrain.base_elevation + terrain.relief
             messages.append(f"{name}: its heights have no unit and are stretched to {low:g}..{high:g} m")
-        elif sketch.relief is None and existing.assumed:
-            messages.append(f"{name}: {existing.assumed}")
-        if sketch.extent is None and existing.extent is None and existing.size and not existing.place:
+        elif sketch.relief is None and facts.assumed:
+            messages.append(f"{name}: {facts.assumed}")
+        if sketch.extent is None and facts.extent is None and facts.size and not facts.place:
             messages.append(
                 f"{name}: nothing says how large it is; a width of {terrain.extent[0]:g} m is assumed"
             )

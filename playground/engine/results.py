@@ -257,29 +257,29 @@ class Pool:
         return result
 
     def _take(self, size: tuple[int, int], outputs: Sequence[Output]) -> Result:
-        formats = tuple(outputs)
+        outputs = tuple(outputs)
         self._taken += 1
-        if alike := self._alike.get(_shape(size, formats)) or self._given(size, formats):
+        if alike := self._alike.get(_shape(size, outputs)) or self._given(size, outputs):
             spare = alike.pop()
             del self._spare[id(spare)]
             self._bytes -= spare.bytes
-            textures = dict(zip([o.name for o in formats], spare.textures.values(), strict=True))
-            result = Result(size, formats, textures, number=self._taken, own_bytes=spare.own_bytes)
+            textures = dict(zip([o.name for o in outputs], spare.textures.values(), strict=True))
+            result = Result(size, outputs, textures, number=self._taken, own_bytes=spare.own_bytes)
             result._framebuffer, result.target = spare._framebuffer, spare.target
             if spare.with_levels:
-                pairs = zip(formats, spare.outputs, strict=True)
+                pairs = zip(outputs, spare.outputs, strict=True)
                 result.with_levels = {now.name for now, before in pairs if before.name in spare.with_levels}
             return result
         self.made += 1
         made: dict[str, moderngl.Texture] = {}
         try:
-            for output in formats:
+            for output in outputs:
                 made[output.name] = make_texture(self.ctx, size, output.format)
         except Exception:
             for texture in made.values():
                 texture.release()
             raise
-        return Result(size, formats, made, number=self._taken)
+        return Result(size, outputs, made, number=self._taken)
 
     def _given(self, size: tuple[int, int], outputs: Sequence[Output]) -> list[Result]:
         """Return the spare results of a shape of which there was none, once others have made room."""

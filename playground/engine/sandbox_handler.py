@@ -126,11 +126,11 @@ def _draw_some_frames(engine: Engine, sketch: Sketch, request: TrySketch) -> Non
 
 def _refuse(engine: Engine, what: str) -> None:
     """Raise ``ShaderError`` at the first pass that gives a number that is not finite, or nothing else."""
-    for number in engine.not_finite_by_pass():
-        if number is None or engine.record.plan is None:
+    for not_finite in engine.not_finite_by_pass():
+        if not_finite is None or engine.record.plan is None:
             continue
-        width, height = number.size
-        throughout = number.count == width * height
-        step = engine.record.plan.step(number.path)
+        width, height = not_finite.size
+        throughout = not_finite.count == width * height
+        step = engine.record.plan.step(not_finite.path)
         if step is not None and (throughout or what == "any"):
-            raise step.kernel.error(number.everywhere() if throughout else str(number))
+            raise step.kernel.error(not_finite.everywhere() if throughout else str(not_finite))

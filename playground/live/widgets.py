@@ -105,19 +105,19 @@ def _menu(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
 
 def _colour(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
     # Linear inside unless it is raw, display-encoded for the eye; alpha is not a light and stays as it is.
-    linear, raw_one = _as_list(value), parameter.widget.raw
+    linear, raw = _as_list(value), parameter.widget.raw
     flags = imgui.ColorEditFlags_.display_hex | imgui.ColorEditFlags_.picker_hue_wheel
     held = [min(max(c, 0.0), 1.0) for c in linear[:3]]
-    seen = [*(held if raw_one else linear_to_srgb(held).tolist()), *linear[3:]]
+    seen = [*(held if raw else linear_to_srgb(held).tolist()), *linear[3:]]
     if len(linear) == 4:
-        changed, raw = imgui.color_edit4(slot.label, seen, flags | imgui.ColorEditFlags_.alpha_bar)
+        changed, edited = imgui.color_edit4(slot.label, seen, flags | imgui.ColorEditFlags_.alpha_bar)
     else:
-        changed, raw = imgui.color_edit3(slot.label, seen, flags)
+        changed, edited = imgui.color_edit3(slot.label, seen, flags)
     # Eight bits a channel, as the field shows it and a file can say it.
-    picked = [round(c * 255) / 255 for c in _as_list(raw)]
+    picked = [round(c * 255) / 255 for c in _as_list(edited)]
     if not changed:
         return None
-    return tuple(picked) if raw_one else (*srgb_to_linear(picked[:3]).tolist(), *picked[3:])
+    return tuple(picked) if raw else (*srgb_to_linear(picked[:3]).tolist(), *picked[3:])
 
 
 def _direction(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
@@ -226,28 +226,28 @@ def _pad(slot: WidgetSlot) -> tuple[ImVec2, float, float, tuple[float, float] | 
 _PATH = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.elide_left  # its end is the name
 
 
-def _file(parameter: Parameter, value: Value, path: WidgetSlot) -> Value | None:
+def _file(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
     """Draw a path to type, and a list of the images and elevation files in the sketch's folder."""
     text = str(value)
     button = imgui.get_frame_height()
     imgui.set_next_item_width(max(imgui.calc_item_width() - button, button))
-    changed, typed = imgui.input_text(path.label, text, _PATH)
+    changed, typed = imgui.input_text(slot.label, text, _PATH)
     if not changed and imgui.is_item_deactivated_after_edit():
         changed = True
     if text and imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
-        imgui.set_tooltip(_whole_path(text, parameter, path))
+        imgui.set_tooltip(_whole_path(text, parameter, slot))
     imgui.same_line(0, 0)
     chosen: str | None = None
     imgui.set_next_item_width(button)
     if imgui.begin_combo(
-        f"{path.label}-files", "", imgui.ComboFlags_.no_preview | imgui.ComboFlags_.popup_align_left
+        f"{slot.label}-files", "", imgui.ComboFlags_.no_preview | imgui.ComboFlags_.popup_align_left
     ):
-        names = _files_in(path.folder, path.endings)
+        names = _files_in(slot.folder, slot.endings)
         for name in names:
             if imgui.selectable(name, name == text)[0]:
                 chosen = name
         if not names:
-            none = "images or elevation files" if path.endings == IMAGES else ", ".join(path.endings)
+            none = "images or elevation files" if slot.endings == IMAGES else ", ".join(slot.endings)
             imgui.text_disabled(f"no {none} next to the sketch")
         imgui.end_combo()
     if chosen is not None:

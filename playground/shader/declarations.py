@@ -248,8 +248,8 @@ class Declarations:
         ):
             number = self.count(tuple(self._texts[variable.end + 2 : variable.close]))
             if number is not None:  # one of two with a name counts for none of them
-                text_known = self.numbers.setdefault(variable.name, str(number))
-                self.numbers[variable.name] = text_known if text_known == str(number) else variable.name
+                first = self.numbers.setdefault(variable.name, str(number))
+                self.numbers[variable.name] = first if first == str(number) else variable.name
 
     def _function(self, type_: Type, at: int) -> int | None:
         closing = self.closing(at + 1)
@@ -426,11 +426,11 @@ def expanded(code: str) -> str:
     return "\n".join(lines)
 
 
-def takes(kind: str, kind_given: str) -> bool:
+def takes(kind: str, other: str) -> bool:
     """Return whether a uniform of a type can be given what another type is given."""
     kinds = [
         next((n for n, sign in _KINDS.items() if sign.fullmatch(type_name.partition("[")[0])), type_name)
-        for type_name in (kind, kind_given)
+        for type_name in (kind, other)
     ]
     return kinds[0] == kinds[1]
 

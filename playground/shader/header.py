@@ -689,25 +689,25 @@ def _texts(kind: type[Kernel], text: str, line: Line) -> dict[str, str]:
     pragma, text, rows = f"#pragma {kind.kind}", text.strip(), options_of(kind)
     if not text.startswith("(") or not text.endswith(")"):
         raise line.error(f"{pragma} needs its options in brackets, as {pragma}{kind.example}")
-    plan: dict[str, str] = {}
+    texts: dict[str, str] = {}
     for key, value in arguments(text[1:-1], line):
         if not key:
-            key = next((name for name, row in rows.items() if row.positional and name not in plan), "")
+            key = next((name for name, row in rows.items() if row.positional and name not in texts), "")
         if key not in rows:
             what = f"has no option '{key}'" if key else f"cannot tell what '{value}' is for"
             raise line.error(f"{pragma} {what}{nearest(key, rows)}")
-        if key in plan:
+        if key in texts:
             raise line.error(f"{pragma} gives '{key}' twice")
-        plan[key] = value
+        texts[key] = value
     for name, row in rows.items():
-        for other in row.excludes if name in plan else ():
-            if other in plan:
+        for other in row.excludes if name in texts else ():
+            if other in texts:
                 raise line.error(f"{name} and {other}: a kernel has one or the other; leave {other} out")
-        if row.required and not plan.get(name):
+        if row.required and not texts.get(name):
             raise line.error(f"{pragma} needs {row.required}")
         if not row.attribute and row.default:
-            plan.setdefault(name, row.default)
-    return plan
+            texts.setdefault(name, row.default)
+    return texts
 
 
 def _with_names_replaced(

@@ -546,13 +546,13 @@ class ForeignShader(PlainFragment):
         vertex = self.vertex_source.files if self.vertex_source else ()
         return tuple(dict.fromkeys((*super().files, *vertex)))
 
-    def reads(self, text: str) -> bool:
+    def reads(self, name: str) -> bool:
         """Return whether one of its texts names something."""
-        return super().reads(text) or (self.vertex_source is not None and text in self.vertex_source.names)
+        return super().reads(name) or (self.vertex_source is not None and name in self.vertex_source.names)
 
 
 PRAGMAS: Mapping[str, type[Kernel]] = {
-    texel_kernel.kind: texel_kernel for texel_kernel in (TexelKernel, CpuSource, Draw, ComputeVariant)
+    kernel.kind: kernel for kernel in (TexelKernel, CpuSource, Draw, ComputeVariant)
 }
 """Word behind ``#pragma`` → kind of kernel."""
 

@@ -278,8 +278,8 @@ def is_whole(glsl_type: str) -> bool:
     return glsl_type in ("int", "uint") or glsl_type.startswith(("ivec", "uvec"))
 
 
-def coerce(parameter: Parameter, direction: object, path: str = "") -> Value:
-    """Return ``direction`` as a value of the parameter.
+def coerce(parameter: Parameter, value: object, path: str = "") -> Value:
+    """Return ``value`` as a value of the parameter.
 
     Takes numbers, sequences, arrays, ``{azimuth, elevation}``, ``"#rrggbb"`` (sRGB, becomes
     linear), menu names, and text as on the command line (``"135,25"``). Raises
@@ -287,44 +287,42 @@ def coerce(parameter: Parameter, direction: object, path: str = "") -> Value:
     """
     name = path or parameter.name
     kind = parameter.widget.kind
-    if hasattr(direction, "tolist"):  # a NumPy scalar or array
-        direction = direction.tolist()
+    if hasattr(value, "tolist"):  # a NumPy scalar or array
+        value = value.tolist()
     if kind == "file" or parameter.type == "sampler2D":
-        if isinstance(direction, os.PathLike):
-            direction = os.fspath(direction)
-        if isinstance(direction, str) and "\0" not in direction:
-            return direction
-        raise _wrong(name, direction, WIDGETS["file"].expects)
+        if isinstance(value, os.PathLike):
+            value = os.fspath(value)
+        if isinstance(value, str) and "\0" not in value:
+            return value
+        raise _wrong(name, value, WIDGETS["file"].expects)
     if kind == "menu":
-        return _menu(parameter, direction, name)
+        return _menu(parameter, value, name)
     if parameter.type == "bool":
-        if isinstance(direction, bool):
-            return direction
-        if isinstance(direction, str) and direction.strip().lower() in _TRUE:
-            return _TRUE[direction.strip().lower()]
-        raise _wrong(name, direction, WIDGETS["checkbox"].expects)
-    if kind == "direction" and isinstance(direction, Mapping):
-        direction = _direction(direction, name)
-    if kind == "colour" and isinstance(direction, str) and direction.strip().startswith("#"):
+        if isinstance(value, bool):
+            return value
+        if isinstance(value, str) and value.strip().lower() in _TRUE:
+            return _TRUE[value.strip().lower()]
+        raise _wrong(name, value, WIDGETS["checkbox"].expects)
+    if kind == "direction" and isinstance(value, Mapping):
+        value = _direction(value, name)
+    if kind == "colour" and isinstance(value, str) and value.strip().startswith("#"):
         try:
-            direction = (*parse_hex(direction.strip(), raw=parameter.widget.raw), 1.0)[
-                : length_of(parameter.type)
-            ]
+            value = (*parse_hex(value.strip(), raw=parameter.widget.raw), 1.0)[: length_of(parameter.type)]
         except DataError as error:
             raise ParameterError(f"{name}: {error}") from None
-    if isinstance(direction, str):
-        direction = _numbers(direction, name, expected(parameter))
+    if isinstance(value, str):
+        value = _numbers(value, name, expected(parameter))
     count = length_of(parameter.type)
     if count == 1:
-        if isinstance(direction, Sequence) and len(direction) == 1:
-            direction = direction[0]
-        value: Value = _number(parameter, direction, name)
+        if isinstance(value, Sequence) and len(value) == 1:
+            value = value[0]
+        result: Value = _number(parameter, value, name)
     else:
-        if not isinstance(direction, Sequence) or isinstance(direction, str) or len(direction) != count:
-            raise _wrong(name, direction, expected(parameter))
-        value = tuple(_number(parameter, item, name) for item in direction)
-    _check_range(parameter, value, name)
-    return value
+        if not isinstance(value, Sequence) or isinstance(value, str) or len(value) != count:
+            raise _wrong(name, value, expected(parameter))
+        result = tuple(_number(parameter, item, name) for item in value)
+    _check_range(parameter, result, name)
+    return result
 
 
 def expected(parameter: Parameter) -> str:
@@ -448,11 +446,11 @@ def _direction(angles: Mapping[str, object], name: str) -> list[object]:
     return [angles["azimuth"], angles["elevation"]]
 
 
-def _numbers(text: str, name: str, names_needed: str) -> list[float]:
+def _numbers(text: str, name: str, expected: str) -> list[float]:
     try:
         return [float(part) for part in text.split(",")]
     except ValueError:
-        raise _wrong(name, text, names_needed) from None
+        raise _wrong(name, text, expected) from None
 
 
 def _number(parameter: Parameter, value: object, name: str) -> float | int:

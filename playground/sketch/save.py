@@ -451,22 +451,22 @@ def save_keyframes(file: Sketch, keyframes: Sequence[Keyframe]) -> None:
     They are written by time. Raises ``ReadOnlySketch`` and ``SketchError`` as ``save.save``
     does; of times that are the same, and of keyframes that do not fit each other, too.
     """
-    frames = tuple(sorted(keyframes, key=lambda keyframe: keyframe.time))
-    for frame, other in pairwise(frames):
-        if frame.time == other.time:
-            raise SketchError(f"there is a keyframe at {frame.time:g} s already", file=shown(file.file))
+    in_order = tuple(sorted(keyframes, key=lambda keyframe: keyframe.time))
+    for earlier, later in pairwise(in_order):
+        if earlier.time == later.time:
+            raise SketchError(f"there is a keyframe at {earlier.time:g} s already", file=shown(file.file))
     says_the_rest = says_same_as(file)
 
     def is_right(reloaded: Sketch) -> bool:
         shots = [replace(shot, line=0) for shot in file.shots]
         return (
-            _plain(reloaded.keyframes) == _plain(frames)
+            _plain(reloaded.keyframes) == _plain(in_order)
             and says_the_rest(reloaded)
             and reloaded.presets == file.presets
             and [replace(shot, line=0) for shot in reloaded.shots] == shots
         )
 
-    write_over(Path(file.file), file, lambda text: with_keyframes(text, file, frames), is_right)
+    write_over(Path(file.file), file, lambda text: with_keyframes(text, file, in_order), is_right)
 
 
 def with_keyframes(text: str, file: Sketch, keyframes: Sequence[Keyframe]) -> str:

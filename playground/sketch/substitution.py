@@ -160,16 +160,16 @@ class _Substitution:
             self.replaced[path] = [leaf_of(fast, spec, path, wires)]
             now = {name: Ref(path, name) for name in before}
         else:
-            text = join(path, INSIDE)
-            result.specs[text] = PassSpec(INSIDE, spec.use, fast, file=spec.file, line=spec.line)
-            nodes = self.replaced[path] = result.expand(fast, text, wires)
-            now = result.outputs_of(fast, text)
+            inner = join(path, INSIDE)
+            result.specs[inner] = PassSpec(INSIDE, spec.use, fast, file=spec.file, line=spec.line)
+            nodes = self.replaced[path] = result.expand(fast, inner, wires)
+            now = result.outputs_of(fast, inner)
             self.leaves |= {leaf.path: leaf for leaf in leaves_of(nodes)}
             self.reads += _reads(nodes)
-            self.constants |= {join(text, name): value for name, value in effective_values(fast).items()}
+            self.constants |= {join(inner, name): value for name, value in effective_values(fast).items()}
             for export in fast.parameters:
                 for target in resolve(fast, export.name):
-                    self.copied[join(text, target.path)] = _own(technique, path, export.name)
+                    self.copied[join(inner, target.path)] = _own(technique, path, export.name)
         self.renamed |= {old: now[name] for name, old in before.items() if old != now[name]}
         for inside in [spec for spec in result.specs if spec.startswith(f"{join(path, INSIDE)}.")]:
             self.consider(inside)

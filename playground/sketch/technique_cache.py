@@ -48,7 +48,7 @@ class _Entry:
         """Return whether a file that was read has the same text."""
         read = [(any_encoding, self.texts.get((path, any_encoding))) for any_encoding in (False, True)]
         try:
-            same = [read_text(path, any_encoding=way) == text for way, text in read if text is not None]
+            same = [read_text(path, any_encoding=flag) == text for flag, text in read if text is not None]
         except PlaygroundError:  # it cannot be read any more
             return False
         return bool(same) and all(same)

@@ -201,11 +201,11 @@ def _time(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, before: l
 
 
 def _camera(
-    file: TomlFile, table: Mapping[str, Any], target_point: KeyPath
+    file: TomlFile, table: Mapping[str, Any], key_path: KeyPath
 ) -> tuple[tuple[str, float | tuple[float, ...]], ...]:
     if "camera" not in table:
         return ()
-    camera = read_camera(file, table, Camera(), target_point)
+    camera = read_camera(file, table, Camera(), key_path)
     return tuple((name, getattr(camera, name)) for name in table["camera"])
 
 

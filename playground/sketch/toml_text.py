@@ -276,16 +276,14 @@ def put(text: str, table: KeyPath, key: str, value: str) -> str:
 def drop(text: str, table: KeyPath, key: str) -> str:
     """Return the text without a key of a table; as it is where there is no such key."""
     places = TomlPlaces(text)
-    folder_path = places.find(table, key)
-    if folder_path is None:
+    key_path = places.find(table, key)
+    if key_path is None:
         return text
-    pair = places.pairs[folder_path]
+    pair = places.pairs[key_path]
     if not pair.inline:
         start, end = text.rfind("\n", 0, pair.key) + 1, text.find("\n", pair.end)
         return text[:start] + (text[end + 1 :] if end >= 0 else "")
-    braces = next(
-        folder_path[:n] for n in range(len(folder_path) - 1, 0, -1) if folder_path[:n] in places.pairs
-    )
+    braces = next(key_path[:n] for n in range(len(key_path) - 1, 0, -1) if key_path[:n] in places.pairs)
     row = places.inside(braces)
     index = row.index(pair)
     if len(row) == 1:

@@ -35,7 +35,7 @@ def test_no_tree_pops_along_a_flight_of_240_frames(ctx: moderngl.Context) -> Non
             east, north, up = camera.target
             moved = replace(camera, target=(east - STEP * frame, north, up))
             now = sketch.with_camera(moved)
-            plan = engine.plan(now, (96, 54), text="view.place:tree")
+            plan = engine.plan(now, (96, 54), ref="view.place:tree")
             ground = plan.terrain
             assert ground.extent is not None and ground.relief is not None
             eye = np.array(look(moved, ground.extent, ground.relief, (96, 54)).position)

@@ -352,7 +352,7 @@ def test_a_uniform_that_a_reader_writes_has_a_slider(page):
     plain = picture(page, "third")
     starter = page.run(f"return {area}.value")
     own = starter.replace("\nfloat kernel", f"\n{OWN}\nfloat kernel").replace(
-        "? corner(texel)", "? corner(texel) + lift"
+        "return corner(texel);", "return corner(texel) + lift;"
     )
     assert own.count("lift") == 2
     page.run(put, own)

@@ -148,10 +148,10 @@ class Decoder:
 
 class _Pickler(pickle.Pickler):
     def __init__(
-        self, stream: io.BytesIO, existing: dict[int, tuple[str, Kernel]], names: Iterator[int]
+        self, stream: io.BytesIO, known: dict[int, tuple[str, Kernel]], names: Iterator[int]
     ) -> None:
         super().__init__(stream, pickle.HIGHEST_PROTOCOL)
-        self._known, self._names = existing, names
+        self._known, self._names = known, names
         self.used: dict[int, tuple[str, Kernel]] = {}
         self.news: dict[str, Kernel] = {}
 

@@ -441,8 +441,8 @@ class Files:
         source, origin = read_source_and_origin(path or self.path, (self.root,), self.instead, foreign=True)
         self._origins.append(origin)
         for line, file in commented_files(source):
-            for position in places_of(file, line, self.root):
-                self.is_there(position)
+            for path in places_of(file, line, self.root):
+                self.is_there(path)
         return source
 
     def part(self, label: str, text: str) -> SourceText:

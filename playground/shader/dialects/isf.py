@@ -383,7 +383,7 @@ def _long(declared: _Declared, inputs: Inputs) -> None:
     inputs.parameters.append(declared.parameter("int", chosen, menu))
 
 
-def _point(declared: _Declared, point_picked: Inputs) -> None:
+def _point(declared: _Declared, inputs: Inputs) -> None:
     low, high, default = (numbers_of(declared.table.get(key), 2) for key in ("MIN", "MAX", "DEFAULT"))
     least, most = low or (0.0, 0.0), high or (1.0, 1.0)
     axes = [_ordered(a, b) for a, b in zip(least, most, strict=True)]
@@ -391,7 +391,7 @@ def _point(declared: _Declared, point_picked: Inputs) -> None:
     if low is None and high is None:  # the author bounds nothing: places in pixels, as in version 1
         axes = [(min(a, n), max(b, n)) for (a, b), n in zip(axes, value, strict=True)]
     held = tuple(min(max(n, a), b) for n, (a, b) in zip(value, axes, strict=True))
-    point_picked.parameters.append(declared.parameter("vec2", held, with_axes("point", axes)))
+    inputs.parameters.append(declared.parameter("vec2", held, with_axes("point", axes)))
 
 
 def _color(declared: _Declared, inputs: Inputs) -> None:
