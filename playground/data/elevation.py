@@ -357,20 +357,20 @@ def _filled(heights: Heights) -> Heights:
     # Solve Laplace's equation in the gaps (free at the edges of the terrain), coarse to fine: the
     # pull and push of Gortler et al. 1996, "The Lumigraph", section 3.4, starts each level, a few
     # Gauss-Seidel sweeps finish it: the cascade of Bornemann and Deuflhard 1996.
-    is_known = ~np.isnan(heights)
+    has_data = ~np.isnan(heights)
     with np.errstate(all="ignore"):
-        level = np.where(is_known, heights, np.float32(0.0)).astype(np.float64)
-        middle = level.sum() / np.count_nonzero(is_known)
-        level[is_known] -= middle
-        levels = [(level, is_known)]
-        while not is_known.all():
-            level, is_known = _halved(level, is_known)
-            levels.append((level, is_known))
+        level = np.where(has_data, heights, np.float32(0.0)).astype(np.float64)
+        middle = level.sum() / np.count_nonzero(has_data)
+        level[has_data] -= middle
+        levels = [(level, has_data)]
+        while not has_data.all():
+            level, has_data = _halved(level, has_data)
+            levels.append((level, has_data))
         coarse = levels.pop()[0]
         while levels:
-            level, is_known = levels.pop()
-            gaps = np.argwhere(~is_known)
-            level[~is_known] = _interpolated(coarse, gaps)
+            level, has_data = levels.pop()
+            gaps = np.argwhere(~has_data)
+            level[~has_data] = _interpolated(coarse, gaps)
             _relax(level, gaps)
             coarse = level
         result = heights.copy()
@@ -380,11 +380,11 @@ def _filled(heights: Heights) -> Heights:
 
 
 def _halved(
-    level: NDArray[np.float64], is_known: NDArray[np.bool_]
+    level: NDArray[np.float64], has_data: NDArray[np.bool_]
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     # Means of the known among each 2 x 2; level is 0 where unknown.
     pad = [(0, n % 2) for n in level.shape]
-    total, count = np.pad(level, pad), np.pad(is_known, pad).astype(np.uint8)
+    total, count = np.pad(level, pad), np.pad(has_data, pad).astype(np.uint8)
     total = total[::2] + total[1::2]
     total = total[:, ::2] + total[:, 1::2]
     count = count[::2] + count[1::2]

@@ -322,7 +322,7 @@ def _film(path: str, content: str) -> Film:
 
 
 def film_of(path: Path) -> Film:
-    """Return an open film, again where its file has changed. Raises ``DataError`` as ``Film`` does."""
+    """Return an open film, opened again where its file has changed. Raises ``DataError`` as ``Film`` does."""
     return _film(str(path), content_key(path))
 
 
@@ -414,7 +414,7 @@ def _sound(path: str, content: str) -> Sound:
 
 
 def sound_of(path: Path) -> Sound:
-    """Return an open sound, again where its file has changed. Raises ``DataError`` as ``Sound`` does."""
+    """Return an open sound, opened again where its file changed. Raises ``DataError`` as ``Sound`` does."""
     return _sound(str(path), content_key(path))
 
 

@@ -54,7 +54,7 @@ class Model:
 
 
 class _Wrong(Exception):
-    """What is wrong with a file, as text that follow its name."""
+    """What is wrong with a file, as text that follows its name."""
 
 
 def read_model(path: Path) -> Model:

@@ -417,8 +417,8 @@ def made_like(
     ways = _ways(example, spacing_of_example, spacing)
     side = _side(wishes, spacing, ways, example)
     report(1, _STEPS)
-    existing = _features(example, spacing_of_example, spacing, side)
-    pieces = Candidates(ways, side, _count(wishes, side), rng, existing)
+    of_example = _features(example, spacing_of_example, spacing, side)
+    pieces = Candidates(ways, side, _count(wishes, side), rng, of_example)
     report(2, _STEPS)
     hills = _guide(guide, size)
     features = features_of(hills, side / 6) if hills is not None and wishes.follow > 0 else None

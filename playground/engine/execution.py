@@ -274,7 +274,7 @@ class Execution:
     def _input(self, step: Step, name: str, source: Source | None, fed: Mapping[Fed, Wired]) -> Wired:
         """Return what an input reads; of what is fed back, before the first iteration, perhaps zeros.
 
-        Zeros of the size of what is fed back are for other tools' shaders, and for an input that reports it.
+        Zeros of the size of what is fed back are for other tools' shaders, and for inputs that ask for zeros.
         """
         wired = self._wired(source, fed)
         if wired.texture is not None or not isinstance(source, Fed):

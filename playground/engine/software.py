@@ -589,10 +589,10 @@ class _Uses:
         self._in_macros = in_macros = set(re.findall(r"[A-Za-z_]\w*", of_macros))
         takers = {name for name, taken in self._takes.items() if taken}
         # Each sampler that the text declares is a uniform, or an argument of a function that is known.
-        existing = sum(len(_SAMPLER.findall(function.signature)) for function in self._functions)
-        existing += len(_UNIFORM.findall(self._code))
+        declared_samplers = sum(len(_SAMPLER.findall(function.signature)) for function in self._functions)
+        declared_samplers += len(_UNIFORM.findall(self._code))
         self.is_unclear = bool(
-            existing != len(_SAMPLERS.findall(self._code))
+            declared_samplers != len(_SAMPLERS.findall(self._code))
             or in_macros & {"sampler2D", *_ASKED, *names, *takers}
             or _ASKED & self._takes.keys()
         )

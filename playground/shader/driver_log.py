@@ -421,7 +421,7 @@ def folded(message: str) -> str:
 
 
 def hint(message: str) -> str:
-    """Return in one message what a message usually means, or "" where nothing useful is known."""
+    """Return what a message usually means, or "" where nothing useful is known."""
     head = message.split("\n", 1)[0][:600]
     for pattern, sentence in HINTS:
         match = pattern.search(head)
@@ -658,8 +658,8 @@ def guess(
     if files:
         which = " or ".join(f'`#include "{file}"`' for file in files[:3])
         return GUESSES["library"].format(name, which)
-    existing = {*functions, *names, *(GLSL_WORDS if called else variables)}
-    near = _nearest(name, existing - {name})
+    candidates = {*functions, *names, *(GLSL_WORDS if called else variables)}
+    near = _nearest(name, candidates - {name})
     return GUESSES["near"].format(name, near) if near else ""
 
 

@@ -389,17 +389,17 @@ def _parameter(
 
 def _parts(name: str, glsl_type: str, kind: str, calls: Calls, line: Line) -> tuple[str, ...]:
     """Return the names of a vector's components, one each."""
-    parts_given = tuple(calls.get("parts", ()))
+    parts = tuple(calls.get("parts", ()))
     count = values.length_of(glsl_type)
-    if not parts_given:
+    if not parts:
         return ()
     if kind not in ("slider", "number"):
         raise line.error(f"parts is for a vector of numbers; '{name}' is a {kind}")
-    if count == 1 or len(parts_given) != count or len(set(parts_given)) < count or not all(parts_given):
+    if count == 1 or len(parts) != count or len(set(parts)) < count or not all(parts):
         example = ", ".join(f'"{part}"' for part in ("west", "east", "south", "north")[:count])
         expected = f"{count} different names, as parts({example})" if count > 1 else "a vector"
         raise line.error(f"parts of '{name}', a {glsl_type}: expected {expected}")
-    return parts_given
+    return parts
 
 
 def _preview(parameter: Parameter, calls: Calls, line: Line) -> Value | None:
@@ -509,8 +509,8 @@ def _literal(name: str, glsl_type: str, initial: str | None, line: Line) -> Valu
     if len(parts) != length or any(number is None for number in numbers):
         expected = "" if fractions else "whole "
         raise line.error(f"the initialiser of '{name}' must be a {expected}literal, found {text}", column)
-    numbers_read = [math.trunc(n) if values.is_whole(glsl_type) else n for n in numbers if n is not None]
-    return numbers_read if length > 1 else numbers_read[0]
+    components = [math.trunc(n) if values.is_whole(glsl_type) else n for n in numbers if n is not None]
+    return components if length > 1 else components[0]
 
 
 def _number(text: str, *, fractions: bool) -> float | int | None:

@@ -688,7 +688,7 @@ class Variant:
 
     technique: ComputeVariant | Graph  # of a .fast.toml
     verified: tuple[str, str] | None = None  # contents that were found to agree: canonical, its own
-    record: str = ""  # absolute path of the user's file that reports it; "" where there is none
+    record: str = ""  # absolute path of the record of what was verified; "" where there is none
 
     @property
     def kind(self) -> str:

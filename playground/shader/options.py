@@ -100,13 +100,13 @@ def expression(
     """Declare an option with ``count`` expressions of sizes, parameters, ``names``, and parts of inputs."""
 
     def parse(name: str, text: str, scope: Scope) -> str:
-        existing = (
+        allowed = (
             *SIZE,
             *names,
             *scope.numbers,
             *(f"{item}{part}" for item in scope.inputs for part in of_inputs),
         )
-        check_expression(name, text, existing, count)
+        check_expression(name, text, allowed, count)
         if expressions.counts_frames(text) and "frames" in names and "frames" in scope.numbers:
             raise ValueError(f"{name} '{text}': 'frames' {expressions.TWO_FRAMES}")
         return text

@@ -44,7 +44,7 @@ class Kind:
     takes: str = ""
     """In brackets: "" nothing, range, "range or nothing", ranges, "raw or nothing", choices, sampling."""
     range: tuple[float, float] | None = None  # of each number, where the brackets give none
-    expects: str = ""  # a value, as text; "": numbers of the type, in the range
+    expects: str = ""  # a value, in words; "": numbers of the type, in the range
     listed: str = ""  # a value, in a word or two of a table; "": its range
     unit: str = ""  # where the annotation gives none
 

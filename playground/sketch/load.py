@@ -85,7 +85,7 @@ def load(name: str | Path = "", *, dialect: str = "") -> Sketch:
     A path is a TOML, a folder that holds ``sketch.toml``, a shader, or an elevation file, around which a
     sketch is made. A technique alone, a kernel or a TOML of several passes, takes the place of the pass
     with its outputs in the sketch ``jacksboro``; a plain shader is the whole picture, and so is another
-    tool's shader, whose ``dialect`` goes by its text unless it is named.
+    tool's shader, whose ``dialect`` its text decides unless it is named.
 
         sketch = playground.load("l_dot_n")
         print(sketch.title, sketch.size)

@@ -95,8 +95,6 @@ class TechniqueCache(Techniques):
         texts = {key: in_load[key] for key in keys if key in in_load}
         rested = 0 if os.name == "nt" else began - RESTED * 1e9
         unproven = frozenset(
-            path
-            for path, _ in texts
-            if (signature_known := places[path]) is None or signature_known.latest >= rested
+            path for path, _ in texts if (signature := places[path]) is None or signature.latest >= rested
         )
         return self._cached.put(name, _Entry(technique, places, texts, unproven, depth))

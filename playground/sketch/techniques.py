@@ -139,7 +139,7 @@ class Techniques:
     def shader(self, path: Path, folder: Path, dialect: str = "") -> Technique | None:
         """Return a shader file's kernel, or the passes of another tool's shader; None for a library file.
 
-        ``dialect`` is that of another tool, or "" to depend on the text.
+        ``dialect`` is that of another tool, or "", where the text decides.
         """
         path, kernel = _followed(path), None
         wrong: ShaderError | EncodingError | None = None

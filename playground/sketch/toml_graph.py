@@ -219,10 +219,10 @@ def _read_values(
 
 
 def _set_lines(
-    file: TomlFile, key_path: KeyPath, values_given: Mapping[str, Any], technique: Technique
+    file: TomlFile, key_path: KeyPath, table: Mapping[str, Any], technique: Technique
 ) -> tuple[tuple[str, int], ...]:
     """Return the line of each path that a pass's ``set`` has."""
-    return tuple((path, file.line(*key_path, "set", path)) for path in flat_values(technique, values_given))
+    return tuple((path, file.line(*key_path, "set", path)) for path in flat_values(technique, table))
 
 
 def read_set(

@@ -50,15 +50,13 @@ _FARTHEST = 1e9  # [m] of a camera's target from the origin
 
 def read_camera(file: TomlFile, table: Mapping[str, Any], default: Camera, key_path: KeyPath) -> Camera:
     """Return what a table's ``camera`` says, and of the rest what ``default`` has; raise ``SketchError``."""
-    table_given = file.take(table, "camera", dict, None, *key_path)
-    if table_given is None:
+    camera = file.take(table, "camera", dict, None, *key_path)
+    if camera is None:
         return default
     here = (*key_path, "camera")
-    file.only(table_given, CAMERA, *here)
-    numbers = {key: file.take(table_given, key, float, None, *here) for key in _LIMITS if key in table_given}
-    return camera_of(
-        {**table_given, **numbers}, default, lambda key, message: file.error(message, *here, key)
-    )
+    file.only(camera, CAMERA, *here)
+    numbers = {key: file.take(camera, key, float, None, *here) for key in _LIMITS if key in camera}
+    return camera_of({**camera, **numbers}, default, lambda key, message: file.error(message, *here, key))
 
 
 def camera_of(

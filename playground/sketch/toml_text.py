@@ -218,9 +218,9 @@ class TomlPlaces:
         return self._behind()
 
 
-def _split(index: KeyPath) -> KeyPath:
+def _split(key_path: KeyPath) -> KeyPath:
     """Return a place with each dotted key split into its parts."""
-    return tuple(part for key in index for part in (key.split(".") if isinstance(key, str) else (key,)))
+    return tuple(part for key in key_path for part in (key.split(".") if isinstance(key, str) else (key,)))
 
 
 def _tokens(text: str) -> list[_Token]:

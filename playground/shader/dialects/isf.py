@@ -321,13 +321,13 @@ class _Declared:
 
 
 def _name(
-    entry: Mapping[str, Any], header: Header, what: str, settings: Inputs, taken: Callable[[str], str]
+    entry: Mapping[str, Any], header: Header, what: str, inputs: Inputs, taken: Callable[[str], str]
 ) -> str:
     name = entry.get("NAME")
     if not isinstance(name, str) or not name.isidentifier() or not name.isascii():
         line = header.line_of_input(name) if isinstance(name, str) else header.line_of("INPUTS")
         raise line.error(f'{what} needs a NAME that GLSL can use, as "NAME": "level"; found {name!r}')
-    already = "two inputs have this name" if name in settings.names else taken(name)
+    already = "two inputs have this name" if name in inputs.names else taken(name)
     if already:
         raise header.line_of_input(name).error(f"{what} cannot be called '{name}': {already}")
     return name
@@ -465,12 +465,12 @@ def _import(name: str, entry: Mapping[str, Any], line: Line, files: Files, input
     inputs.parameters.append(replace(parameter, sampling=IMAGE))
 
 
-def _import_cube(name: str, paths_given: object, line: Line, files: Files, inputs: Inputs) -> None:
+def _import_cube(name: str, value: object, line: Line, files: Files, inputs: Inputs) -> None:
     """Add a cube map of six images: right, left, top, bottom, front, back."""
-    if not isinstance(paths_given, list) or len(paths_given) != len(_FACES):
+    if not isinstance(value, list) or len(value) != len(_FACES):
         message = f"cube '{name}' needs the paths of six images, +X, -X, +Y, -Y, +Z and -Z, as its PATH"
         raise line.error(message)
-    paths = [_path(name, path, line) for path in paths_given]
+    paths = [_path(name, path, line) for path in value]
     wrong = next(filter(None, (_lacking(path, line, files) for path in paths)), "")
     if wrong:
         _add_cube(name, inputs, f"{wrong}, so a sky stands in")

@@ -423,11 +423,11 @@ def shaders(files: Files) -> Sequence[Shader | Made]:
     """Return the passes of a file, none where it lacks nothing that a plain shader is given."""
     whole = files.source()
     version = version_of(whole)
-    existing = {} if version else WEBGL
+    defined = {} if version else WEBGL
     rules = replace(RULES, names=shadertoy.with_sampler_types(NAMES, whole))
-    if shaders_of_text := shaders_of(rewritten(whole), rules, existing):
+    if shaders_of_text := shaders_of(rewritten(whole), rules, defined):
         return shaders_of_text
-    macros = {**existing, **macros_of(_defines(whole))}
+    macros = {**defined, **macros_of(_defines(whole))}
     source = live_source(whole, macros, unknown=None if version else False)
     if not files.named and version >= 330 and not _needs_dialect(source):
         return ()

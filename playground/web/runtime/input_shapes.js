@@ -1,4 +1,4 @@
-// input_shapes.js -- how textures of two dimensions hold cubes, volumes, arrays and lines: engine/textures.py.
+// input_shapes.js -- how 2D textures hold cubes, volumes, arrays and lines: engine/textures.py.
 
 import { planError } from "./expressions.js";
 import { isRef } from "./plan_nodes.js";

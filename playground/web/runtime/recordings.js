@@ -1,4 +1,4 @@
-// recordings.js -- which frame of a film or a sound shows at a time, of those exported: engine/time_sources.py.
+// recordings.js -- which exported frame of a film or a sound shows at a time: engine/time_sources.py.
 
 /** @typedef {import("./schema.js").DataTexture} DataTexture */
 

@@ -1,4 +1,4 @@
-// uniforms.js -- reads the uniforms that a flat text declares, with their initial values: shader/declarations.py.
+// uniforms.js -- reads the uniforms of a flat text, with initial values: shader/declarations.py.
 
 /** @typedef {import("./schema.js").Value} Value */
 /** @typedef {import("./source.js").Line} Line */
