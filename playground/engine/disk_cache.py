@@ -110,7 +110,7 @@ class DiskCache:
     def __init__(self, folder: Path, *, limit: int = LIMIT, made_by: str = "") -> None:
         self.folder = folder
         self.limit = limit  # [bytes]
-        self.trouble = ""  # why files can no longer be written, in a message
+        self.trouble = ""  # why files can no longer be written, as a message
         self._made_by = made_by
         self._waiting: queue.SimpleQueue[tuple[str, CachedTextures] | None] = queue.SimpleQueue()
         self._thread: threading.Thread | None = None

@@ -11,11 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.engine import by_example
-from playground.engine import by_example as example
-from playground.engine import file_sources as elevation
-from playground.engine import file_sources as vector
-from playground.engine import time_sources as live
+from playground.engine import by_example, file_sources, time_sources
 from playground.engine.delaunay import Rules, tables, triangulate
 from playground.engine.file_sources import make_model, read_mask, read_numbers, size_of_model
 from playground.engine.source_kinds import Recording, SourceKind, Terrain
@@ -95,13 +91,13 @@ def _number(values: Mapping[str, Value], name: str) -> float:
 
 SOURCES: dict[str, SourceKind] = {
     "elevation_file": SourceKind(
-        elevation.describe,
-        elevation.make,
+        file_sources.describe,
+        file_sources.make,
         ("elevation",),
         ("elevation", "raw_size", "packing", "no_data", "first_row", "metres"),
         "the elevation file's terrain",
         optional=("longest",),
-        notes=elevation.notes,
+        notes=file_sources.notes,
     ),
     "delaunay": SourceKind(
         lambda _: Terrain(),
@@ -111,14 +107,14 @@ SOURCES: dict[str, SourceKind] = {
         "the triangulation",
     ),
     "example_file": SourceKind(
-        example.describe,
+        by_example.describe,
         None,
         ("elevation",),
-        example.PARAMETERS,
+        by_example.PARAMETERS,
         "the terrain",
-        notes=example.notes,
-        inputs=example.INPUTS,
-        work=example.work,
+        notes=by_example.notes,
+        inputs=by_example.INPUTS,
+        work=by_example.work,
     ),
     "ranked_heights": SourceKind(
         lambda _: Terrain(),
@@ -154,11 +150,11 @@ SOURCES: dict[str, SourceKind] = {
     ),
     "vector_file": SourceKind(
         lambda _: Terrain(),
-        vector.make_mask,
+        file_sources.make_mask,
         ("vectors", "elevation"),
         ("vectors", "elevation", "width", "polygons"),
         "the mask of what the file draws",
-        notes=vector.mask_notes,
+        notes=file_sources.mask_notes,
     ),
     "model_file": SourceKind(
         lambda _: Terrain(),
@@ -194,32 +190,32 @@ SOURCES: dict[str, SourceKind] = {
     ),
     "keyboard": SourceKind(
         lambda _: Terrain(),
-        live.make_keys,
+        time_sources.make_keys,
         (),
         (),
         "the keyboard",
-        moment=live.moment_of_keys,
-        size=live.size_of_keys,
+        moment=time_sources.moment_of_keys,
+        size=time_sources.size_of_keys,
     ),
     "microphone": SourceKind(
         lambda _: Terrain(),
-        live.make_microphone,
+        time_sources.make_microphone,
         (),
         ("content",),
         "the microphone",
-        moment=live.moment_of_microphone,
-        size=live.size_of_microphone,
-        lack=live.lack_of_microphone,
+        moment=time_sources.moment_of_microphone,
+        size=time_sources.size_of_microphone,
+        lack=time_sources.lack_of_microphone,
     ),
     "camera": SourceKind(
         lambda _: Terrain(),
-        live.make_camera,
+        time_sources.make_camera,
         (),
         ("device", "mirror"),
         "the camera",
-        moment=live.moment_of_camera,
-        size=live.size_of_camera,
-        lack=live.lack_of_camera,
+        moment=time_sources.moment_of_camera,
+        size=time_sources.size_of_camera,
+        lack=time_sources.lack_of_camera,
     ),
 }
 """Name → what it does."""

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.data import media
-from playground.data import media as analysis
 from playground.data.live_inputs import CAMERA, KEYS, MICROPHONE, Heard, KeysNow, LiveInputs, Now, Seen
 from playground.data.media import RATE, Film, Sound, as_pixels, film_of, sound_of
 from playground.shader.expressions import FRAME_RATE
@@ -69,7 +68,7 @@ def size_of_sound(values: Mapping[str, Value]) -> tuple[int, int]:
 
 def size_of_content(content: int, channels: int) -> tuple[int, int]:
     """Return the texels of a choice of ``content``, of a sound of so many channels."""
-    width = {_CHANNEL: analysis.SHOWN, _WAVES: analysis.WINDOW, _SPECTRUM: analysis.BINS}[content]
+    width = {_CHANNEL: media.SHOWN, _WAVES: media.WINDOW, _SPECTRUM: media.BINS}[content]
     return width, 2 if content == _CHANNEL else channels
 
 
@@ -77,14 +76,14 @@ def moment_of_sound(values: Mapping[str, Value], now: Now) -> int:
     """Return the sample that is about to be heard; before the first and long after the last it stays."""
     end = max(floor((_number(values, "start") + now.time) * RATE + 1e-6), 0)
     length = None if values["loop"] else _sound(values).length(end)
-    return end if length is None else min(end, length + analysis.SPAN)
+    return end if length is None else min(end, length + media.SPAN)
 
 
 def make_sound(
     values: Mapping[str, Value], size: tuple[int, int], moment: Any = None
 ) -> dict[str, NDArray[np.uint8]]:
     """Return what is shown of a sound before a sample: see ``data.media``."""
-    heard = _sound(values).heard(moment, max(analysis.SPAN, size[0]), loop=bool(values["loop"]))
+    heard = _sound(values).heard(moment, max(media.SPAN, size[0]), loop=bool(values["loop"]))
     return {OUTPUT: shown_of(heard, int(values["content"]), size)}  # type: ignore[arg-type]
 
 
@@ -97,12 +96,12 @@ def frames_of_sound(
     while last is None or number <= last:
         end = floor(number / FRAME_RATE * RATE + 1e-6)
         length = _sound(values).length(end)
-        last = last if length is None else ceil((length + analysis.SPAN) / RATE * FRAME_RATE)
+        last = last if length is None else ceil((length + media.SPAN) / RATE * FRAME_RATE)
         yield number / FRAME_RATE, make_sound(once, size, end)
         number += 1
 
 
-LEAD = analysis.SPAN / RATE
+LEAD = media.SPAN / RATE
 """[s] of a sound in which the silence before it is heard still: from then on each lap is as the next."""
 
 
@@ -125,12 +124,12 @@ def length_of_sound(values: Mapping[str, Value]) -> float:
 def shown_of(heard: NDArray[np.float32], content: int, size: tuple[int, int]) -> NDArray[np.uint8]:
     """Return the texels of what was heard, (channels, samples), as a choice of ``content`` shows it."""
     if content == _WAVES:
-        return analysis.waves(heard, size)
+        return media.waves(heard, size)
     if content == _SPECTRUM:
-        return analysis.spectra(heard, size)
+        return media.spectra(heard, size)
     rows = np.arange(size[1]) * 2 // size[1]
-    columns = np.arange(size[0]) * analysis.SHOWN // size[0]
-    return analysis.channel(heard)[rows[:, None], columns]
+    columns = np.arange(size[0]) * media.SHOWN // size[0]
+    return media.channel(heard)[rows[:, None], columns]
 
 
 def _number(values: Mapping[str, Value], name: str) -> float:

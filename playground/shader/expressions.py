@@ -41,7 +41,7 @@ def evaluate(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -
     """Evaluate an expression to an integer.
 
     ``names`` maps a dotted name to its number, or is a function that does so and
-    raises ``KeyError``. Raises ``ExpressionError`` in a message.
+    raises ``KeyError``. Raises ``ExpressionError``.
     """
     if callable(names):
         return _evaluated(text, names, ())
@@ -72,12 +72,12 @@ def _evaluated(text: str, look_up: Callable[[str], Number], valid: tuple[str, ..
 
 
 def evaluate_number(text: str, names: Mapping[str, Number]) -> float:
-    """Evaluate an expression to a number, whole or not. Raises ``ExpressionError`` in a message."""
+    """Evaluate an expression to a number, whole or not. Raises ``ExpressionError``."""
     return float(_value_of(parsed(text), text, names.__getitem__, tuple(names)))
 
 
 def evaluate_numbers(text: str, names: Mapping[str, Number]) -> list[float]:
-    """Return the numbers of expressions separated by commas. Raises ``ExpressionError`` in a message."""
+    """Return the numbers of expressions separated by commas. Raises ``ExpressionError``."""
     return [evaluate_number(part, names) for part in split_at_commas(text)]
 
 

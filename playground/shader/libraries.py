@@ -80,10 +80,10 @@ def add_library(name: str, folder: str | Path) -> Path:
 
 def remove_library(name: str) -> None:
     """Forget a library; its folder stays. Raises ``ParameterError`` for one that was never named."""
-    known_names = remembered()
-    if name not in known_names:
-        raise ParameterError(f"no library '{name}' was named{nearest(name, known_names)}")
-    _remember({library_name: folder for library_name, folder in known_names.items() if library_name != name})
+    folders = remembered()
+    if name not in folders:
+        raise ParameterError(f"no library '{name}' was named{nearest(name, folders)}")
+    _remember({library_name: folder for library_name, folder in folders.items() if library_name != name})
 
 
 def libraries_of(files: Iterable[str | Path]) -> dict[str, list[Path]]:

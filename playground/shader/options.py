@@ -1,7 +1,7 @@
 """What an option of a pragma is, and how its text is read; ``kernel`` has the table of them, by kind.
 
 Functions that read a text take the option's name, the text, and what it may name; they raise ``ValueError``
-in a message.
+with a message for users.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Option:
 
     help: str  # Markdown
     default: Any = ""
-    # Its name, its text and what that may name → its value; raises ``ValueError`` in a message.
+    # Its name, its text and what that may name → its value; raises ``ValueError``.
     parse: Callable[[str, str, Scope], Any] = lambda name, text, scope: text
     # The kernel with all its options → what is wrong with this one; "" for nothing.
     check: Callable[[Any], str] = lambda kernel: ""

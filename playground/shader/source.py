@@ -265,7 +265,7 @@ class EncodingError(SketchError):
 
 
 def read_text(path: Path, *, any_encoding: bool = False) -> str:
-    """Read a UTF-8 file with any line ends; raise ``SketchError`` in a message if it cannot be read.
+    """Read a UTF-8 file with any line ends; raise ``SketchError`` if it cannot be read.
 
     With ``any_encoding``, a text that is no UTF-8 is taken as Latin-1, where each byte is a character.
     """

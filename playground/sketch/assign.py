@@ -149,8 +149,8 @@ def flat_values(technique: Technique, arguments: Mapping[str, object], prefix: s
     for key, value in arguments.items():
         path = f"{prefix}{key}"
         new = {path: value}
-        is_known = find_targets(technique, path) or why_absent(technique, path)
-        if isinstance(value, Mapping) and not is_known:
+        names_parameter = find_targets(technique, path) or why_absent(technique, path)
+        if isinstance(value, Mapping) and not names_parameter:
             new = flat_values(technique, value, f"{path}.")
         for name in new.keys() & values.keys():
             raise ParameterError(f"'{name}' is set twice")

@@ -79,7 +79,7 @@ def is_pack(path: Path) -> bool:
 
 
 def unpacked(path: Path, cache: Path | None = None) -> Path:
-    """Return the sketch's file of a zip, unpacked into the cache; raise ``DataError`` in a message."""
+    """Return the sketch's file of a zip, unpacked into the cache; raise ``DataError``."""
     pack = read_pack(path)
     home = (cache or cache_folder()) / "packs"
     target = home / pack.digest

@@ -273,8 +273,8 @@ def _around_hidden(shape: GraphShape, prefix: str, path: str) -> Iterator[str]:
 
 def _defaults_of_lacking(technique: Technique, variant: Technique) -> list[tuple[str, Value]]:
     """Return the values that a technique has and its fast variant lacks: paths inside, and defaults."""
-    values, names_known = effective_values(technique), {parameter.name for parameter in variant.parameters}
-    names = [parameter.name for parameter in technique.parameters if parameter.name not in names_known]
+    values, own_names = effective_values(technique), {parameter.name for parameter in variant.parameters}
+    names = [parameter.name for parameter in technique.parameters if parameter.name not in own_names]
     return [(target.path, values[target.path]) for name in names for target in resolve(technique, name)]
 
 

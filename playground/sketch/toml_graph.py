@@ -192,11 +192,11 @@ def _read_values(
     A value that no parameter takes is an error, or, where there is a list ``left_out``, a warning in it.
     """
     try:
-        values_given = flat_values(technique, file.take(table, "set", dict, {}, *key_path))
+        raw_values = flat_values(technique, file.take(table, "set", dict, {}, *key_path))
     except ParameterError as error:
         raise file.error(f"{who}: {error.diagnostics[0].message}", *key_path, "set") from None
     values_read = []
-    for path, raw in values_given.items():
+    for path, raw in raw_values.items():
         if why := why_absent(technique, path):
             file.warn(f"{who}: {path}: {why}", *key_path, "set", path)
             continue

@@ -186,7 +186,7 @@ def translated(text: object, names: Mapping[str, str]) -> str:
     """Return a size in texels, at least 1, as an expression.
 
     ``names`` are the inputs that are numbers, with what they are called here. Raises
-    ``ExpressionError`` in a message for what cannot be one.
+    ``ExpressionError`` for what cannot be one.
     """
     if isinstance(text, bool) or not isinstance(text, str | int | float):
         raise ExpressionError(f'{text!r} is no size; expected a number or a text, as "$WIDTH / 2"')
