@@ -107,7 +107,7 @@ def test_where_no_clouds_are_drawn_they_throw_no_shadows(any_engine, scene):
         np.testing.assert_allclose(added[y, x, :3] / (0.5 * light), left, atol=0.03)
     # The air is lit alike on both sides of the sun's plane, which the clouds' shadows are not.
     towards_sun = scene.with_camera(replace(scene.camera, azimuth=320.0))
-    air = any_engine.read(towards_sun, "view.air:scattered", size=SIZE).astype(np.float64)[..., :3]
+    air = any_engine.read(towards_sun, "view.heaven.air:scattered", size=SIZE).astype(np.float64)[..., :3]
     air = air.reshape(4, 20, 4, 32, 3)
     np.testing.assert_allclose(air, air[:, :, :, ::-1], rtol=0.01)
 

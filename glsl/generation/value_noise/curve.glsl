@@ -24,7 +24,7 @@ vec2 bent(float a) {
 }
 
 float kernel(ivec2 texel) {
-    float place = float(cells) * float(texel.x) / float(size.x - 1);
+    float place = float(cells) * float(texel.x) / float(max(size.x - 1, 1));
     int node = min(int(place), cells - 1);
     float from = random_signed(ivec2(node, 0), seed + SALT);
     float to = random_signed(ivec2(node + 1, 0), seed + SALT);

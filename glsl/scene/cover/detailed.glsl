@@ -66,7 +66,8 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 bumps) {
     albedo.rgb = texelFetch(coloured, texel, 0).rgb;
     if (fine_ground) {
         if (skips_rest()) return;
-        GroundPixel pixel = ground_pixel(ground, at.xyz, texel);
+        PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
+        GroundPixel pixel = ground_pixel(ground, at.xyz, ray, eye, extent);
         vec4 layer = wired_layers ? texelFetch(layers, texel, 0) : vec4(0.0);
         Surface surface = detailed(at.xyz, pixel, albedo.rgb, layer, tufts);
         albedo.rgb = surface.albedo;
@@ -77,7 +78,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 bumps) {
 
 // A number of a map of the terrain.
 float map_of(sampler2D map, vec2 place, Footprint foot) {
-    return draped(map, place, foot).r;
+    return draped(map, place, foot, extent).r;
 }
 
 Surface detailed(vec3 at, GroundPixel pixel, vec3 colour, vec4 layer_shares, bool tufts) {

@@ -22,10 +22,11 @@ uniform sampler2D colour;  //! input("linear", "mipmap", "white")
 vec4 kernel(ivec2 texel) {
     vec4 at = texelFetch(seen, texel, 0);
     if (!is_top(at.w) && !(is_object(at.w) && is_grass(kind_of(at.w)))) return vec4(0.0);
-    Footprint foot = ground_pixel(ground, at.xyz, texel).foot;
-    vec3 shown = draped(colour, at.xy, foot).rgb;
+    PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
+    Footprint foot = ground_pixel(ground, at.xyz, ray, eye, extent).foot;
+    vec3 shown = draped(colour, at.xy, foot, extent).rgb;
     if (wired_detail_image) {
-        vec3 fine = tiled(detail_image, at.xy, foot, detail_repeats);
+        vec3 fine = tiled(detail_image, at.xy, foot, detail_repeats, extent);
         float nearness = detail_nearness(distance(eye, at.xyz), detail_max_distance);
         shown = with_detail(shown, fine, mean_of(detail_image), detail_strength * nearness);
     }

@@ -39,12 +39,13 @@ void kernel(ivec2 texel, out vec4 coloured, out vec4 layers) {
     layers = vec4(0.0);
     if (!is_top(at.w) && !(is_object(at.w) && is_grass(kind_of(at.w)))) return;
     if (skips_rest()) return;
-    GroundPixel pixel = ground_pixel(ground, at.xyz, texel);
-    vec3 one = tiled(grass, at.xy, pixel.foot, grass_repeats);
+    PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
+    GroundPixel pixel = ground_pixel(ground, at.xyz, ray, eye, extent);
+    vec3 one = tiled(grass, at.xy, pixel.foot, grass_repeats, extent);
     vec3 two = tiled_rock(at.xyz, pixel);
-    vec3 three = tiled(snow, at.xy, pixel.foot, snow_repeats);
-    vec3 four = tiled(path, at.xy, pixel.foot, path_repeats);
-    layers = draped(weights, at.xy, pixel.foot);
+    vec3 three = tiled(snow, at.xy, pixel.foot, snow_repeats, extent);
+    vec3 four = tiled(path, at.xy, pixel.foot, path_repeats, extent);
+    layers = draped(weights, at.xy, pixel.foot, extent);
     layers /= layers.x + layers.y + layers.z + layers.w;
     if (blend == 1) {
         vec4 heights = vec4(one.g / mean_of(grass).g, two.g / mean_of(rock).g,
@@ -56,7 +57,7 @@ void kernel(ivec2 texel, out vec4 coloured, out vec4 layers) {
 
 // The tile of rock, of which upright planes show what a plane seen from above draws out.
 vec3 tiled_rock(vec3 at, GroundPixel pixel) {
-    vec3 above = tiled(rock, at.xy, pixel.foot, rock_repeats);
+    vec3 above = tiled(rock, at.xy, pixel.foot, rock_repeats, extent);
     if (!fine_ground || !triplanar) return above;
     vec3 shares = planes_of(normal_of_slope(pixel.slope), vec2(30.0, 45.0), 4.0);
     Footprint foot = pixel.foot;
@@ -65,7 +66,7 @@ vec3 tiled_rock(vec3 at, GroundPixel pixel) {
     Footprint north = Footprint(vec2(foot.right.x, rise.x), vec2(foot.up.x, rise.y));
     // Moved, or all three would show the same piece along the lines where they meet.
     float width = extent.x / rock_repeats;
-    vec3 facing_east = tiled(rock, at.yz + vec2(0.37 * width, 0.0), east, rock_repeats);
-    vec3 facing_north = tiled(rock, at.xz + vec2(0.71 * width, 0.0), north, rock_repeats);
+    vec3 facing_east = tiled(rock, at.yz + vec2(0.37 * width, 0.0), east, rock_repeats, extent);
+    vec3 facing_north = tiled(rock, at.xz + vec2(0.71 * width, 0.0), north, rock_repeats, extent);
     return mixed_with_contrast(shares, facing_east, facing_north, above, mean_of(rock));
 }
