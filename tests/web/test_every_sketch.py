@@ -76,7 +76,7 @@ def every(begun: Callable[..., Pages]) -> Pages:
 
 
 def approximates(technique: Technique) -> bool:
-    """Return whether a variant of passes may be 1e-5 from its canonical form: then a level may round apart."""
+    """Return whether a variant of passes may be 1e-5 from its canonical form: a level may round apart."""
     fast = [variant.technique for variant in technique.variants if isinstance(variant.technique, Graph)]
     inner = [spec.technique for spec in technique.passes] if isinstance(technique, Graph) else []
     return any(bound.most >= 1e-5 for graph in fast for bound in graph.agrees) or any(
