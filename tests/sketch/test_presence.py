@@ -283,7 +283,7 @@ def test_the_scene_offers_every_parameter_of_every_pass_once():
     deciding = deciding_inputs(scene)
     assert set(deciding) == {
         *("dome", "density", "rocks", "tufts", "water", "sky_picture"),
-        *("cloud", "weights", "wetness"),
+        *("cloud", "drift", "weights", "wetness"),
     }
     others = set(input_names(scene)) - set(deciding)
     for chosen in product((True, False), repeat=len(deciding)):
