@@ -38,6 +38,6 @@ float noise(vec2 place) {
 }
 
 float kernel(ivec2 texel) {
-    return noise(float(cells) * vec2(texel) / vec2(size - 1));
+    return noise(float(cells) * vec2(texel) / vec2(max(size - 1, 1)));
 }
 // end: noise
