@@ -31,7 +31,7 @@ float noise(vec2 place) {
 
 // anchor: octaves
 float kernel(ivec2 texel) {
-    vec2 place = 4.0 * vec2(texel) / vec2(max(size - 1, 1));
+    vec2 place = 4.0 * vec2(texel) / vec2(size - 1);
     float height = 0.0;
     float weight = 0.5;
     for (int k = 0; k < 5; k++) {
