@@ -6,8 +6,6 @@ from collections.abc import Sequence
 
 from playground.bench.results import Results
 
-ALLOWED = 1.3
-
 
 def growth(results: Results, sizes: Sequence[int], clock: str = "wall") -> list[tuple[str, float]]:
     """Return the cost of a texel at the largest size over that at the smallest, of each row that has both."""

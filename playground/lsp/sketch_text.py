@@ -14,7 +14,7 @@ from playground.errors import PlaygroundError
 from playground.lsp.documents import Document
 from playground.sketch.assign import find_targets
 from playground.sketch.load import load_with
-from playground.sketch.model import Graph, Parameter, Sketch, Technique
+from playground.sketch.model import Parameter, Sketch, Technique
 from playground.sketch.techniques import Techniques
 from playground.sketch.toml_sketch import DEFAULT_VIEW
 from playground.sketch.toml_table import LISTS
@@ -22,7 +22,6 @@ from playground.sketch.toml_text import KeyPath, Pair, TomlPlaces
 
 _KEY = re.compile(r"[\w.-]|\"")
 _TEXT = re.compile(r"\"((?:[^\"\\\n]|\\.)*)\"|'([^'\n]*)'")
-_PAIR = re.compile(r"\s*((?:\"[^\"]*\"|[\w.-])+)\s*=\s*(.*)$", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,11 +182,6 @@ class SketchText:
                 rest = key_path[size:]
                 if len(rest) >= 2 and rest[0] == "set":
                     yield key_path[:size], ".".join(map(str, rest[1:])), pair
-
-
-def inner_passes(technique: Technique) -> list[str]:
-    """Return the names of the passes in a technique."""
-    return [spec.name for spec in technique.passes] if isinstance(technique, Graph) else []
 
 
 def own_techniques(folder: Path) -> list[str]:

@@ -23,7 +23,6 @@ SHOT = "reduced"
 
 _CAMERA = Camera()
 _DECLARED = re.compile(r"^\s*uniform\s+\w+\s+(\w+)", re.MULTILINE)
-_OUTPUT = re.compile(r"^\s*#pragma.*\)", re.MULTILINE)
 _REPEATS = re.compile(r"^\s*#pragma\s+(?:draw\b|kernel\b.*\brepeat\s*=)", re.MULTILINE)
 
 

@@ -107,7 +107,12 @@ def task(make_lesson):
         (KERNEL, "between = [0.81, 0.83]", "", "a measure needs between"),
         (KERNEL, '"spread"', '"spraed"', "there is no such measure; did you mean 'spread'?"),
         (KERNEL, "points = 3", "points = 0", "points = 0: expected 1 to 100"),
-        (KERNEL, "[[check]]\n\n[[check]]\nof", "[[check]]\ntolerance = 2.0\n\n[[check]]\nof", "a fraction of"),
+        (
+            KERNEL,
+            "[[check]]\n\n[[check]]\nof",
+            "[[check]]\ntolerance = 2.0\n\n[[check]]\nof",
+            "a fraction of",
+        ),
         (KERNEL, 'sketch = "diamond_square_steps"\n', "", 'needs sketch = "…"'),
         (
             VALUES,
