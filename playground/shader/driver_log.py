@@ -32,11 +32,13 @@ from __future__ import annotations
 
 import difflib
 import re
+import tomllib
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cache
-from typing import Literal
+from pathlib import Path
+from typing import Any, Literal
 
 from playground.paths import GLSL, SKETCHES, shown
 from playground.shader.kernel import ForeignShader, Kernel, PlainFragment, PlainShader
@@ -81,55 +83,37 @@ def split_moderngl(text: str) -> tuple[str, str]:
     return (wrapped["title"] or "").removesuffix("_shader"), wrapped["log"].strip()
 
 
-# ---- the formats ---------------------------------------------------------------------------
+# ---- the data --------------------------------------------------------------------------------
 
-_NUMBER = r"[0-9]{1,9}"
-_KIND = r"(?P<kind>(?:preprocessor |fatal |internal )?(?:error|warning)|note|info)"
-FORMATS = tuple(
-    re.compile(pattern)
-    for pattern in (
-        # Mesa, Intel on Linux        0:12(8): preprocessor error: message
-        rf"{_NUMBER}:(?P<line>{_NUMBER})\((?P<column>{_NUMBER})\): {_KIND}: ?(?P<message>.*)",
-        # NVIDIA                      0(12) : error C1503: message
-        rf"[^\s():]*\((?P<line>{_NUMBER})\) ?: {_KIND}(?: (?P<code>[A-Z][0-9]+))?: ?(?P<message>.*)",
-        # ANGLE on Direct3D           C:\fakepath(249,9-30): error X3004: message
-        rf"[^\s()]*\({_NUMBER},[-0-9]{{1,19}}\): {_KIND}(?: X[0-9]+)?: ?(?P<message>.*)",
-        # Intel, AMD, Apple, ANGLE    ERROR: 0:12: message, AMD's with error(#143) before it
-        rf"(?P<kind>ERROR|WARNING|NOTE|INFO): [^\s:]*:(?P<line>-?{_NUMBER}):(?:(?P<column>{_NUMBER}):)?"
-        r"\s*(?:(?:error|warning)\(#[0-9]+\)\s*)?(?P<message>.*)",
-        # glslc                       file.vert:12: error: message
-        rf"[^\s:()]+:(?P<line>{_NUMBER}):(?:(?P<column>{_NUMBER}):)? ?{_KIND}: ?(?P<message>.*)",
-        # Mali                        0:12: L0003: message
-        rf"{_NUMBER}:(?P<line>{_NUMBER}): (?P<code>[A-Z][0-9]{{4}}): ?(?P<message>.*)",
-        # no place: linkers           error: message, ERROR: error(#280) message
-        r"(?P<kind>(?:fatal |internal )?(?:error|warning)|ERROR|WARNING|Error|Warning|Internal error):"
-        r"\s*(?:(?:error|warning)\(#[0-9]+\)\s*)?(?P<message>.*)",
-    )
+
+def _pattern(text: str | list[str]) -> re.Pattern[str]:
+    """Return a pattern of the data, its parts and flags in place."""
+    text = text if isinstance(text, str) else "".join(text)
+    for name, part in _PARTS.items():
+        text = text.replace(f"%{name}%", part)
+    inside = re.match(r"\(\?([im]+)\)", text)
+    flags = [re.MULTILINE if flag == "m" else re.IGNORECASE for flag in inside[1]] if inside else []
+    return re.compile(text[inside.end() :] if inside else text, sum(flags))
+
+
+_DATA: dict[str, Any] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+_PARTS = {name: "".join(part) for name, part in _DATA["parts"].items()}
+FORMATS = tuple(map(_pattern, _DATA["formats"].values()))
+PATTERNS = {name: _pattern(text) for name, text in _DATA["patterns"].items()}
+HINTS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
+    (_pattern(["(?i)", *hint["pattern"]]), hint["message"]) for hint in _DATA["hints"]
 )
+"""Patterns and what they mean, the first found counts: {0} is its group, {1} that in lower case."""
+BASES: dict[str, str] = _DATA["bases"]
+MISFITS: dict[str, str] = _DATA["misfits"]
+GUESSES: dict[str, str] = _DATA["guesses"]
+WHEREABOUTS: dict[str, str] = _DATA["whereabouts"]
+ELSEWHERE: dict[str, str] = _DATA["elsewhere"]
 
-# Lines that say that nothing is wrong.
-BENIGN = re.compile(r"No errors\.?|.{0,80} was successfully compiled to run on hardware\.?|Success\.?", re.I)
+_ASSEMBLY = "-- internal assembly text --"  # NVIDIA: a dump of thousands of lines follows
 
-# Lines that only frame others.
-FRAME = re.compile(r"[-=^~]{2,}|\^|[\w ()]{1,40} info|-- error message --", re.I)
 
-# Summaries: worth showing only when there is nothing else.
-SUMMARY = re.compile(
-    r"compilation terminated\.?"
-    r"|[0-9]+ compilation errors?\. *No code generated\.?"
-    r"|(?:[0-9]+ (?:errors?|warnings?)(?: and )?){1,2} generated\.?"
-    r"|.{0,40}shader failed to compile with the following errors:?"
-    r"|(?:[\w ]{0,40}shader\(s\) (?:failed to link|(?:was |were )?linked)[,.]? ?){1,6}"
-    r"|[\w ]{0,40}link error: INVALID_OPERATION\.?"
-    r"|.{0,40}shader\(s\) were not successfully compiled before glLinkProgram\(\) was called\..*"
-    r"|One or more attached shaders not successfully compiled\.?"
-    r"|linking with uncompiled/unspecialized shader"
-    r"|LINK_ERROR",
-    re.I,
-)
-
-ASSEMBLY = "-- internal assembly text --"  # NVIDIA: a dump of thousands of lines follows
-UNBROKEN = re.compile(r"(?<=\))(?=(?:error|warning): )")  # Mesa: two link errors on one line
+# ---- entries -----------------------------------------------------------------------------------
 
 
 @dataclass(slots=True)
@@ -159,13 +143,13 @@ def parse_log(log: str) -> tuple[LogEntry, ...]:
     entry of line 0, and so does a log that is not understood at all. Never raises.
     """
     text = log.replace("\0", "").replace("\r\n", "\n").replace("\r", "\n")
-    text = UNBROKEN.sub("\n", text.split(ASSEMBLY)[0])
+    text = PATTERNS["unbroken"].sub("\n", text.split(_ASSEMBLY)[0])
     drafts: list[_Draft] = []
     for raw in text.split("\n"):
         line = raw.strip()
-        if line and not BENIGN.fullmatch(line) and not FRAME.fullmatch(line):
+        if line and not PATTERNS["benign"].fullmatch(line) and not PATTERNS["frame"].fullmatch(line):
             _take(drafts, line, indented=raw[0].isspace())
-    entries = [draft for draft in drafts if not SUMMARY.fullmatch(draft.head)] or drafts
+    entries = [draft for draft in drafts if not PATTERNS["summary"].fullmatch(draft.head)] or drafts
     return tuple(dict.fromkeys(draft.entry() for draft in entries))
 
 
@@ -175,9 +159,9 @@ def _take(drafts: list[_Draft], line: str, indented: bool) -> None:
     draft = _recognise(line)
     if draft is None:
         head = _clean(line)
-        if last is None or (last.recognised and not indented) or SUMMARY.fullmatch(head):
+        if last is None or (last.recognised and not indented) or PATTERNS["summary"].fullmatch(head):
             drafts.append(_Draft(0, 0, "error", head, recognised=False))
-        elif SUMMARY.fullmatch(last.head):
+        elif PATTERNS["summary"].fullmatch(last.head):
             drafts.append(_Draft(0, 0, "error", head, recognised=False))
         else:
             last.more.append(head)
@@ -240,183 +224,16 @@ def source_column(line: str, column: int) -> int:
 
 # ---- hints -----------------------------------------------------------------------------------
 
-_Q = "[`'\"]"
-
-# Keywords that people use as names. Mesa names some only by an upper-case token.
-_TOKENS = "SAMPLE|SMOOTH|FLAT|PATCH|BUFFER|SHARED|CENTROID|INVARIANT|PRECISE|RESOURCE|SUBROUTINE"
-_WORDS = (
-    "active|buffer|cast|class|common|external|filter|fixed|flat|half|input|output|partition|patch"
-    "|sample|shared|smooth|this|union"
-)
-
-_OLD_LOOKUP = r"(?:texture|shadow)(?:[123]D|Cube)\w*"
-_UNKNOWN = r"(?:undeclared|undefined|no function|no matching|not known|removed|deprecated)"
-
-# (pattern, sentence): the first pattern found gives the sentence; {0} is its group, {1} that in lower case.
-# More telling mistakes come first: `texture2D` is also an undeclared identifier.
-HINTS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
-    (re.compile(pattern, re.IGNORECASE), sentence)
-    for pattern, sentence in (
-        (
-            rf"^(?=.*{_UNKNOWN}).*?\b({_OLD_LOOKUP})\b",
-            "`{0}` is not in core GLSL: call `texture`, or `textureLod` and `texelFetch` in a kernel.",
-        ),
-        (
-            rf"^(?=.*{_UNKNOWN}).*?\b(gl_Frag(?:Color|Data))\b",
-            "`{0}` is not in core GLSL: declare an `out vec4` of your own and write to that.",
-        ),
-        (rf"{_Q}(attribute|varying){_Q}", "`{0}` is not in core GLSL: write `in` or `out`."),
-        (
-            r"#version must|#version (?:is )?required|only valid for function parameters in GLSL"
-            r"|requires \"?#version",
-            "The text needs a newer `#version` on its very first line, such as `#version 330`.",
-        ),
-        (
-            r"(?:GLSL|version|version number) '?([0-9.]+)'? (?:is )?not supported"
-            r"|unsupported version ([0-9]+)",
-            "This driver has no GLSL `{0}`: ask for a lower `#version`.",
-        ),
-        (
-            rf"extension:? {_Q}?(\w+){_Q}? ?:? ?.*(?:unsupported|not supported)"
-            rf"|{_Q}(\w+){_Q} ?:.*extension.*not supported",
-            "This driver lacks the extension `{0}`: do without it, or guard it with `#ifdef {0}`.",
-        ),
-        (r"#extension (\w+)", "This needs an extension: add `#extension {0} : enable` below `#version`."),
-        (
-            r"not supported for this version|unrecognized layout identifier|Unknown identifier .* in layout"
-            r"|(?:only )?(?:available|allowed|supported) (?:only )?in (?:GLSL|version)|GLSL .* required",
-            "The `#version` at the top is too old for this: raise it, or add the right `#extension`.",
-        ),
-        (
-            rf"(?:reserved word:? {_Q}?|keyword {_Q})(\w+)|{_Q}(\w+){_Q} ?:.*reserved word",
-            "`{0}` is a reserved word of GLSL: choose another name.",
-        ),
-        (
-            rf"(?-i:unexpected ({_TOKENS})\b|(?:at token|Syntax error:) \"({_WORDS})\""
-            rf"|{_Q}({_WORDS}){_Q} ?: syntax error)",
-            "`{1}` is a reserved word of GLSL: choose another name.",
-        ),
-        (r"(?-i:unexpected ERROR_TOK)", ""),  # Mesa gives the reason in the entry before
-        (
-            rf"{_Q}(gl_\w*){_Q}.*(?:reserved|prefix|redeclared)",
-            "Names that begin with `gl_` belong to GLSL: choose another name.",
-        ),
-        (
-            r"unexpected (?:end of file|\$end|\$undefined|EOF)|at token \"<EOF>\"|premature end",
-            "The text ends too soon: a `{{`, a `(` or a `;` is missing its partner somewhere above.",
-        ),
-        (
-            r"unexpected '\}', expecting end of file|unexpected '\}' at token|extraneous",
-            "There is one closing brace too many here or above.",
-        ),
-        (
-            r"(?-i:syntax error.*expecting[^a-z]*(?:','|';'|COMMA|SEMICOLON))",
-            "A `;` is missing, usually at the end of the line above, or a type name is misspelt.",
-        ),
-        (
-            r"unexpected NEW_IDENTIFIER|undeclared type|typename expected",
-            "A word that GLSL does not know is where a type should be: check its spelling.",
-        ),
-        (
-            r"\b(?:syntax|parse) error|Syntax error",
-            "GLSL cannot read this: look for a missing `;`, comma or bracket here and on the line above.",
-        ),
-        (
-            r"of operator % must be an integer|operands to \"%\" must be integral|'%' ?:.*\bfloat\b",
-            "`%` is for whole numbers: write `mod(a, b)` for floats.",
-        ),
-        (
-            r"(?:if-statement|loop) condition must be scalar boolean|boolean expression expected",
-            "A condition is a bool: compare a number, as in `x > 0.0`.",
-        ),
-        (r"recursion|recursive function", "GLSL has no recursion: write a loop."),
-        (r"C-style initialization", "Braces do not fill an array here: write `float[](1.0, 2.0)`."),
-        (
-            r"swizzle|field selection|cannot access field|unknown field|no such field",
-            "These components do not exist here: a `vec3` has x y z (or r g b), a scalar has none, "
-            "and the two sets do not mix.",
-        ),
-        (
-            r"read-only|l-?value required|can(?:'t|not) modify|non-lvalue|assignment to const",
-            "This cannot be written to: `uniform`, `const` and `in` are read-only, so copy it into a local "
-            "variable first.",
-        ),
-        (
-            r"no return statement|does not return a value|missing return|not all .*paths? return"
-            r"|`?return'? with no value",
-            "A function that promises a value must end in `return` with one on every path.",
-        ),
-        (
-            r"redeclar|redefin|already (?:defined|declared|has a body)|conflicts with previous declaration",
-            "This name is taken already in the same scope or by an included file: rename one of the two, "
-            "or drop the repetition.",
-        ),
-        (
-            r"too few components to construct|too little data in type constructor|not enough data"
-            r"|too few arguments.*construct",
-            "The constructor gets too few components: a `vec4` takes four numbers in all, or a single one.",
-        ),
-        (
-            r"too many parameters to .*constructor|too much data in type constructor"
-            r"|too many arguments.*construct|constructor.*too many arguments",
-            "The constructor gets too many components: count those of its arguments together.",
-        ),
-        (
-            rf"no function with name {_Q}(\w+)|invalid call of (?:undeclared identifier )?{_Q}(\w+)"
-            rf"|{_Q}(\w+){_Q} ?: function is not known",
-            "No function `{0}` is known here: check its spelling, the `#include` that brings it and the "
-            "`#version`, and that no variable has the same name.",
-        ),
-        (
-            rf"{_Q}(\w+){_Q} ?:? ?undeclared"
-            rf"|(?:undefined variable|undeclared (?:identifier|variable)):? {_Q}?(\w+)",
-            "`{0}` is not declared at this point: check its spelling, and that its declaration or `#include` "
-            "is above.",
-        ),
-    )
-)
-
-CALLED = re.compile(r"call to [`'\"]([^`'\"]+)['\"]")
-MAX_CANDIDATES = 3
-
-MISFIT = re.compile(
-    r"no matching|could not implicitly convert|cannot be assigned to variable|cannot convert|wrong operand"
-    r"|does not operate on|incompatible type|implicit (?:cast|narrowing)|invalid operands|overloaded function"
-    r"|with wrong type|size mismatch|dimension mismatch|non-matching types|must be (?:an )?integer"
-    r"|wrong type",
-    re.I,
-)
-CALL = re.compile(
-    rf"(?:call to|overloaded function(?: found:| reference)?) {_Q}?(?!found\b|reference\b)(\w+)"
-    r"(?:\(([^()]*)\))?"
-    rf"|{_Q}(\w+){_Q} ?: no matching"
-)
-TYPE = re.compile(
-    r"(?:(?P<size>[234])-component vector of )?(?:(?:low|medium|high)p )?"
-    r"\b(?P<word>float|double|unsigned int|uint|int|bool|[biud]?vec[234]|[d]?mat[234](?:x[234])?)\b"
-)
-BASES = {"f": "float", "d": "float", "v": "float", "m": "float", "i": "int", "u": "uint", "b": "bool"}
-
-# What is wrong with types that do not fit → the sentence; {0} is a function, {1} what it was given.
-MISFITS = {
-    "whole call": "No form of `{0}` takes ({1}): most built-in functions want floats, so write 2.0 for 2, or "
-    "float(...).",
-    "call": "No form of `{0}` takes these arguments: check its spelling, their number, order and types.",
-    "bool": "A bool is not a number: compare to get one, or convert with float(...) or int(...).",
-    "float": "Whole and decimal numbers do not mix: write 2.0 for 2, or convert with float(...) or int(...).",
-    "sign": "Signed and unsigned do not mix: write 2u for 2, or convert with uint(...) or int(...).",
-    "size": "The two sides differ in size: pick components with a swizzle such as .xyz, or build the vector.",
-    "types": "The types on the two sides do not fit: convert one of them, as in float(...) or vec3(...).",
-}
+_MAX_CANDIDATES = 3
 
 
 def folded(message: str) -> str:
     """Return a message that lists what might have been called with the few that are most like the call."""
     head, *rest = message.split("\n")
-    if not head.endswith("candidates are:") or len(rest) <= MAX_CANDIDATES:
+    if not head.endswith("candidates are:") or len(rest) <= _MAX_CANDIDATES:
         return message
-    call = CALLED.search(head)
-    near = difflib.get_close_matches(call[1] if call else head, rest, MAX_CANDIDATES, 0.0)
+    call = PATTERNS["called"].search(head)
+    near = difflib.get_close_matches(call[1] if call else head, rest, _MAX_CANDIDATES, 0.0)
     return "\n".join([head, *near, f"    and {len(rest) - len(near)} more"])
 
 
@@ -429,14 +246,14 @@ def hint(message: str) -> str:
             name = next((group for group in match.groups() if group), "")
             return sentence.format(name, name.lower())
     # Mesa's type "error" marks what follows from a mistake already reported.
-    if MISFIT.search(head) and not re.search(r"\berror\b", head):
+    if PATTERNS["misfit"].search(head) and not re.search(r"\berror\b", head):
         return _misfit(head)
     return ""
 
 
 def _misfit(head: str) -> str:
     """Explain types that do not fit together."""
-    call = CALL.search(head)
+    call = PATTERNS["call"].search(head)
     if call is not None:
         name, type_name = call[1] or call[3], call[2] or ""
         if any(base in ("int", "uint") for base, _ in _types(type_name)):
@@ -456,7 +273,7 @@ def _misfit(head: str) -> str:
 def _types(text: str) -> list[tuple[str, str]]:
     """Find the types named in a text, as (kind of number, size)."""
     types: list[tuple[str, str]] = []
-    for match in TYPE.finditer(text):
+    for match in PATTERNS["type"].finditer(text):
         word = match["word"]
         if "mat" in word:
             size = word[word.index("mat") :]
@@ -468,54 +285,9 @@ def _types(text: str) -> list[tuple[str, str]]:
     return types
 
 
-UNKNOWN = re.compile(
-    rf"no function with name {_Q}(\w+)|invalid call of (?:undeclared identifier )?{_Q}(\w+)"
-    rf"|{_Q}(\w+){_Q} ?: function is not known|{_Q}(\w+){_Q} ?: no matching overloaded function found"
-    rf"|{_Q}(\w+){_Q} ?:? ?undeclared"
-    rf"|(?:undefined variable|undeclared (?:identifier|variable)):? {_Q}?(\w+)",
-    re.IGNORECASE,
-)
-TYPE_NAME = r"(?:void|bool|u?int|float|double|[biud]?vec[234]|d?mat[234](?:x[234])?|[iu]?sampler\w+|[A-Z]\w*)"
-FUNCTION = re.compile(rf"\b{TYPE_NAME}\s+(\w+)\s*\(")
-DEFINITION = re.compile(rf"^{TYPE_NAME}\s+(\w+)\s*\(", re.MULTILINE)
-VARIABLE = re.compile(rf"\b{TYPE_NAME}\s+(\w+)\s*(?:\[[^\]]*\])?\s*(?=[=;,)])")
-DEFINE = re.compile(r"^\s*#\s*define\s+(\w+)(\()?", re.MULTILINE)
-RUNS = re.compile(r"^\s*#\s*(?:pragma\s+(?:kernel|source|draw|compute)\b|version\b)", re.MULTILINE)
-FOLLOWS = re.compile(
-    r"\berror\b|numeric|mismatch|no matching|cannot|can't|could not|wrong|incompatible|invalid|does not"
-    r"|must be|non-vector|swizzle|field|unable to find",
-    re.IGNORECASE,
-)
-"""What drivers say of an expression around a name that they do not know."""
-UNFIT = re.compile(r"no matching|unable to find compatible", re.IGNORECASE)
-UNREAD = re.compile(
-    r"syntax error|parse error|NEW_IDENTIFIER|undeclared type|typename expected", re.IGNORECASE
-)
-CAST = re.compile(r"(?<![\w)\]])\(\s*(float|int|uint|bool|[iub]?vec[234])\s*\)\s*[\w(.]")
 TYPES = (*"float int uint bool void vec2 vec3 vec4 ivec2 ivec3 ivec4 uvec2 uvec3 uvec4".split(),
           *"bvec2 bvec3 bvec4 mat2 mat3 mat4 sampler2D const uniform return struct".split())  # fmt: skip
 NEAR = 0.75  # of difflib's ratio
-
-ELSEWHERE = {
-    "lerp": "mix", "frac": "fract", "fmod": "mod", "rsqrt": "inversesqrt", "ddx": "dFdx", "ddy": "dFdy",
-    "atan2": "atan", "tex2D": "texture", "tex2Dlod": "textureLod", "float2": "vec2", "float3": "vec3",
-    "float4": "vec4", "int2": "ivec2", "int3": "ivec3", "int4": "ivec4", "float4x4": "mat4",
-    "fabs": "abs", "fabsf": "abs", "sinf": "sin", "cosf": "cos", "sqrtf": "sqrt", "floorf": "floor",
-    "powf": "pow", "fmin": "min", "fmax": "max", "fminf": "min", "fmaxf": "max", "ln": "log",
-}  # fmt: skip
-"""Names of HLSL and C, with GLSL's for the same."""
-
-GUESSES = {
-    "elsewhere": "GLSL knows no `{0}`: its name for that is `{1}`.",
-    "saturate": "GLSL knows no `saturate`: write `clamp(x, 0.0, 1.0)`.",
-    "instead": "`{0}` is given to plain shaders; a kernel is given `{1}`.",
-    "library": "`{0}` is in the library: add {1} above.",
-    "near": "`{0}` is not declared; did you mean `{1}`?",
-    "cast": "GLSL has no casts like ({0}): write {0}(...).",
-    "type": "GLSL knows no `{0}`; did you mean `{1}`?",
-    "below": "`{0}` is defined further down, at {1}: GLSL reads from above, so move it up.",
-}
-"""Kind of guess → its sentence."""
 
 
 def without_consequences(entries: Iterable[LogEntry]) -> Iterator[LogEntry]:
@@ -527,9 +299,9 @@ def without_consequences(entries: Iterable[LogEntry]) -> Iterator[LogEntry]:
     cause = (0, 0)  # line and column
     for entry in entries:
         head, position = _head(entry.message), (entry.line, entry.column)
-        follows = 0 < entry.line and position <= cause and FOLLOWS.search(head) is not None
+        follows = 0 < entry.line and position <= cause and PATTERNS["follows"].search(head) is not None
         name = "" if follows else _unknown(head)
-        if name or (UNFIT.search(head) and not follows):
+        if name or (PATTERNS["unfit"].search(head) and not follows):
             cause = position
         if entry.severity != "error" or not (follows or name in seen):
             yield entry
@@ -541,7 +313,7 @@ def names_given(kernel: Kernel) -> frozenset[str]:
     """Return the names that a kernel, or the tool of another shader, is given without declaring them."""
     if isinstance(kernel, ForeignShader):
         helpers = "\n".join(own_part(part) for part in kernel.helpers)
-        matches = [*FUNCTION.finditer(helpers), *DEFINE.finditer(helpers)]
+        matches = [*PATTERNS["function"].finditer(helpers), *PATTERNS["define"].finditer(helpers)]
         return frozenset({*(name for name, _ in kernel.tool_names), *(match[1] for match in matches)})
     return frozenset(GIVEN) if _is_own(kernel) else frozenset()
 
@@ -607,17 +379,9 @@ def _head(message: str) -> str:
 
 def _unknown(message: str) -> str:
     """Return the name that a message calls unknown; "" for any other."""
-    match = UNKNOWN.search(_head(message))
+    match = PATTERNS["unknown"].search(_head(message))
     return next(group for group in match.groups() if group) if match else ""
 
-
-WHEREABOUTS = {
-    "block": "`{0}` is declared at {1}, in a block or a function of its own: it exists only there.",
-    "undeclared": "`{0}` is given where it is declared: add `uniform {1} {0};` above.",
-    "same": "`{0}` is not given here; `{1}` is the same.",
-    "kernels": "`{0}` is given to kernels, and this file is none: take it as an argument, or declare it.",
-}
-"""Where a name is known, or to whom → its sentence."""
 
 _MEANINGS = {"time": "time", "size": "resolution"}  # of names that a kernel is given
 _ALIKE = {
@@ -640,7 +404,7 @@ def guess(
     """
     name = _unknown(message)
     if not name:
-        return _unread(source, line) if line is not None and UNREAD.search(_head(message)) else ""
+        return _unread(source, line) if line is not None and PATTERNS["unread"].search(_head(message)) else ""
     called = bool(re.search(rf"\b{name}\s*\(", line.code if line is not None else source.code))
     functions, variables = _declared(source)
     if name in functions or name in variables:
@@ -665,7 +429,7 @@ def guess(
 
 def _unread(source: SourceText, line: Line) -> str:
     """Report what a line that GLSL cannot read has of other languages, or which word of it is misspelt."""
-    if cast := CAST.search(line.code):
+    if cast := PATTERNS["cast"].search(line.code):
         return GUESSES["cast"].format(cast[1])
     functions, variables = _declared(source)
     for word in re.findall(r"[A-Za-z_]\w*", line.code):
@@ -690,9 +454,9 @@ def library() -> dict[str, tuple[str, ...]]:
             text = path.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError):
             continue
-        if RUNS.search(text):
+        if PATTERNS["runs"].search(text):
             continue
-        for name in {match[1] for match in DEFINITION.finditer(text)}:
+        for name in {match[1] for match in PATTERNS["definition"].finditer(text)}:
             files.setdefault(name, []).append(path.relative_to(GLSL).as_posix())
     return {name: tuple(files) for name, files in files.items()}
 
@@ -704,10 +468,10 @@ def _declared(source: SourceText) -> tuple[dict[str, Line], set[str]]:
     for line in source.lines:
         if not line.code.strip():
             continue
-        for match in FUNCTION.finditer(line.code):
+        for match in PATTERNS["function"].finditer(line.code):
             functions.setdefault(match[1], line)
-        variables |= {match[1] for match in VARIABLE.finditer(line.code)}
-        if macro := DEFINE.match(line.code):
+        variables |= {match[1] for match in PATTERNS["variable"].finditer(line.code)}
+        if macro := PATTERNS["define"].match(line.code):
             if macro[2]:
                 functions.setdefault(macro[1], line)
             else:
