@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from playground.commands.entries import Choice, Entry
+from playground.commands.entries import techniques as listed
 from playground.paths import GLSL
-from playground.sketch.catalogue import Choice, Entry
-from playground.sketch.catalogue import techniques as listed
 from playground.sketch.model import Graph, Kernel, Technique, Variant, kernels_of
 from playground.sketch.presence import deciding_inputs, form_of
 from playground.sketch.techniques import Techniques

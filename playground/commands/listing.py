@@ -12,7 +12,7 @@ from playground.errors import SketchError
 from playground.terminal import note, painted, print_indented, print_json, print_rows, print_table
 
 if TYPE_CHECKING:
-    from playground.sketch.catalogue import Choice, Entry
+    from playground.commands.entries import Choice, Entry
 
 
 HELP = help_text(
@@ -31,16 +31,16 @@ def list_(
     as_json: options.Json = False,
 ) -> None:
     """List sketches, techniques, parameters."""
-    from playground.sketch import catalogue
+    from playground.commands import entries
 
-    sketches = catalogue.sketches() if what in ("", "sketches") else []
-    techniques = catalogue.techniques() if what in ("", "techniques") else []
-    named = catalogue.entries_named(what) if what not in ("", "sketches", "techniques") else []
+    sketches = entries.sketches() if what in ("", "sketches") else []
+    techniques = entries.techniques() if what in ("", "techniques") else []
+    named = entries.entries_named(what) if what not in ("", "sketches", "techniques") else []
     if as_json:
         groups = {"sketches": sketches, "techniques": techniques}
         for entry in named:
             groups["sketches" if entry.kind == "sketch" else "techniques"].append(entry)
-        table = {group: [entry.as_json() for entry in entries] for group, entries in groups.items()}
+        table = {group: [entry.as_json() for entry in items] for group, items in groups.items()}
         print_json(table)
         return
     if len(named) == 1:

@@ -71,13 +71,14 @@ def complete_language(incomplete: str) -> list[str]:
 
 def complete_setting(ctx: typer.Context, incomplete: str) -> list[str]:
     """Return the parameters, as ``path=``, that complete a word."""
-    from playground.sketch.catalogue import settable
+    from playground.sketch.assign import TERRAIN_KEYS, shown_parameters
     from playground.sketch.load import load
 
     try:
-        paths = settable(load(ctx.params.get("sketch") or ""))
+        sketch = load(ctx.params.get("sketch") or "")
     except PlaygroundError:
         return []
+    paths = [*(shown.path for shown in shown_parameters(sketch)), *TERRAIN_KEYS]
     return [f"{path}=" for path in paths if path.startswith(incomplete)]
 
 

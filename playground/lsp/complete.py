@@ -12,13 +12,14 @@ from playground.engine.meshes import MESHES
 from playground.engine.sources import SOURCES
 from playground.lsp import describe
 from playground.lsp.documents import Document, Documents, Text
+from playground.lsp.names import locals_of
 from playground.lsp.shader import Shader, is_code, library_declared, shader_of, word_at
 from playground.paths import GLSL, SKETCHES
 from playground.shader.header import FALLBACKS, MODIFIERS
 from playground.shader.kernel import PRAGMAS, options_of
 from playground.shader.libraries import libraries
 from playground.shader.options import FORMATS, Option
-from playground.shader.outline import code_of, locals_of
+from playground.shader.outline import code_of
 from playground.shader.parameter import WIDGETS
 from playground.shader.reserved_names import GLSL_WORDS
 

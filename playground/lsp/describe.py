@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from playground.commands.entries import Choice
 from playground.paths import shown
 from playground.shader.outline import Declared
 from playground.shader.parameter import expected, write
-from playground.sketch.catalogue import Choice
 from playground.sketch.model import Kernel, Parameter, Technique
 from playground.sketch.wiring import input_names, output_names
 

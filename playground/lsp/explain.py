@@ -10,11 +10,12 @@ from lsprotocol import types
 from playground.errors import PlaygroundError
 from playground.lsp import describe
 from playground.lsp.documents import Document, Documents, Text
+from playground.lsp.names import local_at, locals_of
 from playground.lsp.shader import include_at, is_code, library_declared, shader_of, word_at
 from playground.lsp.sketch_text import SketchText
 from playground.paths import GLSL, shown
 from playground.shader.header import title_of
-from playground.shader.outline import local_at, locals_of, outline
+from playground.shader.outline import outline
 from playground.shader.reserved_names import DRIVER_BOUND, RESERVED
 from playground.shader.source import find_include, read_source, read_text
 from playground.sketch import toml_table

@@ -19,20 +19,12 @@ from lsprotocol import types
 from playground.allowed_files import FAST, SHADERS, is_file, names_below, reading_unsaved
 from playground.errors import PlaygroundError
 from playground.lsp.documents import Document, Documents, root_for
+from playground.lsp.names import has_branches, local_at, locals_of, macros_of, words
 from playground.lsp.rename_toml import Edit, edits_in_toml
 from playground.lsp.shader import Shader, is_code, shader_at, shader_of, word_at
 from playground.paths import shown
 from playground.shader.header import is_given, parse_kernel
-from playground.shader.outline import (
-    Declared,
-    code_of,
-    has_branches,
-    local_at,
-    locals_of,
-    macros_of,
-    outline,
-    words,
-)
+from playground.shader.outline import Declared, code_of, outline
 from playground.shader.reserved_names import GLSL_WORDS, MATCHES, PREFIX, TOWARDS, WIRED
 from playground.shader.source import read_source, read_text
 from playground.sketch.load import load_with

@@ -13,10 +13,11 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError
 from playground.lsp.documents import Document, Documents
+from playground.lsp.names import identifiers, local_at, locals_of
 from playground.paths import GLSL
 from playground.shader.driver_log import library
 from playground.shader.header import parse_kernel, read_uniforms
-from playground.shader.outline import Declared, code_of, identifiers, local_at, locals_of, outline
+from playground.shader.outline import Declared, code_of, outline
 from playground.shader.reserved_names import GIVEN, MATCHES, SKIPS, TOWARDS, WIRED
 from playground.shader.source import SourceText, find_include, read_source, read_text
 from playground.sketch.model import Input, Kernel, Parameter, TexelKernel

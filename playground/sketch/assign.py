@@ -1,4 +1,4 @@
-"""Find parameters by path and set them.
+"""Find parameters by path, set them, and describe each as panels, remotes and pages show it.
 
 A path is ``pass[.inner…].parameter``. A name that a technique exports means its
 targets inside; every inner parameter can be reached as well.
@@ -9,12 +9,12 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 from playground.errors import ParameterError, nearest
 from playground.memo import GRAPHS
 from playground.shader.kernel import Export, Graph, Kernel, Technique
-from playground.shader.parameter import MAX_SIDE, Parameter, Value, coerce, spell
+from playground.shader.parameter import MAX_SIDE, WIDGETS, Parameter, Value, coerce, length_of, spell
 
 # How many numbers at most, which, and what a message expects.
 _TERRAIN: dict[str, tuple[int, Callable[[float], bool], str]] = {
@@ -29,6 +29,8 @@ _TERRAIN: dict[str, tuple[int, Callable[[float], bool], str]] = {
 }
 TERRAIN_KEYS = tuple(_TERRAIN)
 """What belongs to the sketch itself, and may be set like a parameter."""
+
+_DIRECTION = ((0.0, 360.0), (0.0, 90.0))  # [degrees] azimuth, elevation: the sky
 
 
 class Settable(Protocol):
@@ -138,6 +140,48 @@ def shown_parameters(sketch: Settable) -> Iterator[Shown]:
         for path, parameter in technique.leaf_parameters.items():
             if path not in covered:
                 yield Shown(f"{spec.name}.{path}", parameter, False)
+
+
+def described(shown: Shown) -> dict[str, Any]:
+    """Return what is true of a parameter whatever its value is; ``ranges`` has one for each number."""
+    parameter = shown.parameter
+    names = part_names(parameter)
+    return {
+        "path": shown.path,
+        "label": parameter.title,
+        "pass": shown.path.partition(".")[0],
+        "group": parameter.group,
+        "description": parameter.tooltip,
+        "widget": parameter.widget.kind,
+        "type": parameter.type,
+        "ranges": [range_of(parameter, part) for part in range(max(len(names), 1))],
+        "step": parameter.step,
+        "unit": parameter.unit or WIDGETS[parameter.widget.kind].unit,
+        "choices": list(parameter.widget.choices),
+        "parts": list(names),
+        "exported": shown.exported,
+    }
+
+
+def part_names(parameter: Parameter) -> tuple[str, ...]:
+    """Return what the parts of a vector are called; nothing for a scalar."""
+    if length_of(parameter.type) == 1 or parameter.widget.kind == "file":
+        return ()
+    if parameter.parts:
+        return parameter.parts
+    if parameter.widget.kind == "direction":
+        return ("azimuth", "elevation")
+    return tuple(("rgba" if parameter.widget.kind == "colour" else "xyzw")[: length_of(parameter.type)])
+
+
+def range_of(parameter: Parameter, part: int = 0) -> tuple[float, float] | None:
+    """Return the range of a parameter's number, or of one of its parts; None where it has none."""
+    if parameter.widget.kind == "direction":
+        return _DIRECTION[part]
+    low, high = parameter.widget.ends(part)
+    if low is not None and high is not None:
+        return low, high
+    return WIDGETS[parameter.widget.kind].range
 
 
 def flat_values(technique: Technique, arguments: Mapping[str, object], prefix: str = "") -> dict[str, object]:

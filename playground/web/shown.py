@@ -6,8 +6,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import asdict
 from typing import Any
 
-from playground.sketch.assign import Shown, check_value, find_targets, resolve, shown_parameters
-from playground.sketch.catalogue import described
+from playground.sketch.assign import Shown, check_value, described, find_targets, resolve, shown_parameters
 from playground.sketch.flat import Flat
 from playground.sketch.keyframes import Track, tracks_of
 from playground.sketch.model import Sketch, Value

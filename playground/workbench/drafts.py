@@ -31,7 +31,6 @@ from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.replace_technique import with_texts
 from playground.sketch.substitution import omitted
-from playground.sketch.technique_cache import TechniqueCache
 from playground.sketch.warnings import newly_shadowed
 from playground.workbench.checks import Checks, DrawnState
 from playground.workbench.dependencies import watched
@@ -41,6 +40,7 @@ from playground.workbench.pending import Change, Choice, choice_of
 from playground.workbench.reload_stages import ReloadStage, Sandbox, explained, missing_file_error, refusal
 from playground.workbench.resume import StoredEdits, first_draft, stored
 from playground.workbench.sun_drag import suns_of, turned
+from playground.workbench.technique_cache import TechniqueCache
 
 _NAMED = 2  # files that are named of those saved at once
 

@@ -26,7 +26,7 @@ from rich.table import Table
 
 import playground
 from playground.engine.engine import Engine
-from playground.sketch.catalogue import load
+from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.web.page_data import page_data
 

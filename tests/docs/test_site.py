@@ -14,7 +14,7 @@ from threading import Thread
 import pytest
 
 import playground
-from playground.sketch.catalogue import techniques as listed
+from playground.commands.entries import techniques as listed
 
 from ..report.browser import MISSING, Browser
 

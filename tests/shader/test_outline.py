@@ -6,7 +6,7 @@ import pytest
 
 from playground.paths import GLSL
 from playground.shader.driver_log import library
-from playground.shader.outline import code_of, locals_of, outline, words
+from playground.shader.outline import outline
 
 TEXT = """// A file. float no(int comment);
 #ifndef GUARD
@@ -48,25 +48,6 @@ def test_each_declaration_has_its_kind_its_signature_and_its_comment() -> None:
     for item in result.values():
         assert TEXT[item.at :].startswith(item.name)
     assert TEXT[result["steep"].body] == "{" and TEXT[result["steep"].end - 1] == "}"
-
-
-def test_a_function_knows_its_arguments_and_all_that_it_declares() -> None:
-    steep = next(item for item in outline(TEXT) if item.name == "steep")
-    result = locals_of(TEXT, steep)
-    assert [item.name for item in result] == ["slope", "march", "first", "second", "step", "far"]
-    assert all(TEXT[item.at :].startswith(item.name) for item in result)
-
-
-def test_words_are_those_of_the_code() -> None:
-    result = {word for word, _ in words('#include "a/b.glsl"\n' + TEXT)}
-    assert result >= {"steep", "TWICE", "march", "far"}
-    assert not result & {"no", "comment", "hidden", "Not", "glsl", "colour"}
-    assert len(code_of(TEXT)) == len(TEXT)
-
-
-def test_letters_of_numbers_are_no_names() -> None:
-    text = "float a = 1e-3 + 2.0f + 3.e5 + .5e3f + 0xFFu + 0Xe1 + 1u + 4.f - e; vec2 b = v1e3.xy * 1E+2;\n"
-    assert [word for word, _ in words(text)] == ["float", "a", "e", "vec2", "b", "v1e3", "xy"]
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,10 @@ from itertools import compress, product
 import numpy as np
 import pytest
 
+from playground.commands.entries import entries_named
 from playground.errors import ParameterError, SketchError
 from playground.paths import GLSL
 from playground.sketch.assign import shown_parameters
-from playground.sketch.catalogue import entries_named
 from playground.sketch.flatten import flatten
 from playground.sketch.presence import as_wired, deciding_inputs, form_of, missing_input
 from playground.sketch.techniques import read_technique

@@ -14,7 +14,7 @@ from playground.engine.plan import PlanRequest
 from playground.engine.planner import make_plan
 from playground.engine.sources import source_kind
 from playground.errors import PlaygroundError
-from playground.sketch.catalogue import shipped_sketches
+from playground.sketch.find import shipped_sketches
 from playground.sketch.model import Graph, Sketch, Technique
 from playground.web.page_data import page_data
 from playground.web.plan import KINDS

@@ -12,7 +12,7 @@ import pytest
 from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundWarning
-from playground.sketch.catalogue import SKETCHES
+from playground.paths import SKETCHES
 from playground.web.page_data import page_data
 
 from ..dialect_texts import TEXTS

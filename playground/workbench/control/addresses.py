@@ -12,8 +12,7 @@ from typing import Any
 
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
 from playground.shader.parameter import is_whole, tidied
-from playground.sketch.assign import TERRAIN_KEYS, find_targets
-from playground.sketch.catalogue import part_names
+from playground.sketch.assign import TERRAIN_KEYS, find_targets, part_names
 from playground.sketch.model import Graph, Parameter, Value
 from playground.workbench.control.controls import Controls
 from playground.workbench.control.items import items_of, values_of

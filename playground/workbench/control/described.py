@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from playground.shader.parameter import expected, shortest, write
-from playground.sketch.assign import Shown
-from playground.sketch.catalogue import described, range_of
+from playground.sketch.assign import Shown, described, range_of
 from playground.sketch.model import Parameter, Value
 from playground.workbench.bench import Workbench
 from playground.workbench.control.items import items_of, values_of

@@ -11,7 +11,7 @@ import math
 
 from playground.errors import ParameterError
 from playground.shader.parameter import is_whole, linear_to_srgb, srgb_to_linear
-from playground.sketch.catalogue import range_of
+from playground.sketch.assign import range_of
 from playground.sketch.model import Parameter, Value
 from playground.workbench.number_format import decimals
 

@@ -10,8 +10,7 @@ from playground.lessons.model import Break, Compare, Exercise, Slider, Steps
 from playground.lessons.present.beat import Beat, Still
 from playground.lessons.tasks.texts import path_of, starter_text
 from playground.shader.parameter import is_whole, write
-from playground.sketch.assign import resolve
-from playground.sketch.catalogue import range_of
+from playground.sketch.assign import range_of, resolve
 from playground.sketch.model import Parameter, Value
 from playground.workbench.control.shares import share_of, with_share
 from playground.workbench.lesson.bugs import file_of

@@ -8,7 +8,7 @@ import pytest
 
 from playground.errors import ParameterError
 from playground.shader.parameter import Widget, coerce
-from playground.sketch.catalogue import part_names, range_of
+from playground.sketch.assign import part_names, range_of
 from playground.sketch.model import Parameter, Value
 from playground.workbench.control.shares import check_shares, share_of, with_share
 

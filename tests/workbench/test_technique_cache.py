@@ -13,7 +13,7 @@ from playground.allowed_files import noting_places
 from playground.errors import PlaygroundError, SketchError
 from playground.sketch.load import load, load_with
 from playground.sketch.model import kernels_of
-from playground.sketch.technique_cache import TechniqueCache
+from playground.workbench.technique_cache import TechniqueCache
 
 KERNEL = """#include "part.glsl"
 #pragma kernel(output = "height:r32f")

@@ -1,8 +1,5 @@
 """List sketches, techniques, and the parameters of each, as plain data.
 
-What a remote's page, a controller and a web page show of a parameter comes from here: its label, its
-parts, the range of each, what it chooses from.
-
 Reads text only. A file that is wrong is listed too, with its error, so that one
 mistake does not hide the rest.
 """
@@ -11,68 +8,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any
 
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, SKETCHES
-from playground.shader.parameter import WIDGETS, length_of, write
-from playground.sketch.assign import (
-    TERRAIN_KEYS,
-    Settable,
-    Shown,
-    shown_parameters,
-    value_of,
-    values_of,
-)
+from playground.shader.parameter import WIDGETS, write
+from playground.sketch.assign import Settable, Shown, shown_parameters, value_of, values_of
 from playground.sketch.find import is_part, shipped_names, shipped_sketches
 from playground.sketch.load import load, load_with
 from playground.sketch.model import Graph, Kernel, Parameter, PassSpec, Sketch, Technique, Value
 from playground.sketch.techniques import Techniques, read_technique
 from playground.sketch.wiring import input_names, output_names
-
-_DIRECTION = ((0.0, 360.0), (0.0, 90.0))  # [degrees] azimuth, elevation: the sky
-
-
-def described(shown: Shown) -> dict[str, Any]:
-    """Return what is true of a parameter whatever its value is; ``ranges`` has one for each number."""
-    parameter = shown.parameter
-    names = part_names(parameter)
-    return {
-        "path": shown.path,
-        "label": parameter.title,
-        "pass": shown.path.partition(".")[0],
-        "group": parameter.group,
-        "description": parameter.tooltip,
-        "widget": parameter.widget.kind,
-        "type": parameter.type,
-        "ranges": [range_of(parameter, part) for part in range(max(len(names), 1))],
-        "step": parameter.step,
-        "unit": parameter.unit or WIDGETS[parameter.widget.kind].unit,
-        "choices": list(parameter.widget.choices),
-        "parts": list(names),
-        "exported": shown.exported,
-    }
-
-
-def part_names(parameter: Parameter) -> tuple[str, ...]:
-    """Return what the parts of a vector are called; nothing for a scalar."""
-    if length_of(parameter.type) == 1 or parameter.widget.kind == "file":
-        return ()
-    if parameter.parts:
-        return parameter.parts
-    if parameter.widget.kind == "direction":
-        return ("azimuth", "elevation")
-    return tuple(("rgba" if parameter.widget.kind == "colour" else "xyzw")[: length_of(parameter.type)])
-
-
-def range_of(parameter: Parameter, part: int = 0) -> tuple[float, float] | None:
-    """Return the range of a parameter's number, or of one of its parts; None where it has none."""
-    if parameter.widget.kind == "direction":
-        return _DIRECTION[part]
-    low, high = parameter.widget.ends(part)
-    if low is not None and high is not None:
-        return low, high
-    return WIDGETS[parameter.widget.kind].range
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,11 +137,6 @@ def entries_named(name: str) -> list[Entry]:
     folders = {entry.rpartition("/")[0] for entry in names}
     names += [*shipped_sketches(), *folders, "sketches", "techniques"]
     raise SketchError(f"there is no sketch and no technique '{name}'{nearest(name, names)}")
-
-
-def settable(sketch: Sketch) -> list[str]:
-    """List every path that ``--set`` shows for a sketch."""
-    return [*(shown.path for shown in shown_parameters(sketch)), *TERRAIN_KEYS]
 
 
 def _of_sketch(name: str, sketch: Sketch) -> Entry:
