@@ -212,7 +212,7 @@ def write_output(moment: Moment, output: Output, renderer: Renderer) -> None:
 
 def _note_hidden_defaults(sketch: Sketch) -> None:
     """Note which defaults of the sketch's own kernels have no effect, because its own files override them."""
-    from playground.sketch.warnings import shadowed_by_files
+    from playground.verify.warnings import shadowed_by_files
 
     hidden = shadowed_by_files(sketch)
     for warning in hidden[:_MAX_LISTED]:

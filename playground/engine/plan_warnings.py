@@ -28,7 +28,7 @@ from playground.sketch.model import (
     kernels_of,
 )
 from playground.sketch.variants import INSIDE, canonical_path
-from playground.sketch.warnings import unheeded, warnings_of_kernel, warnings_of_sketch
+from playground.sketch.warnings import unheeded, warnings_of_sketch
 
 
 class PlanWarnings:
@@ -50,7 +50,7 @@ class PlanWarnings:
         warnings += source_warnings(plan, self.inputs())
         if plan.sketch.graph is not self._graph:
             self._graph = plan.sketch.graph
-            warnings += kernel_warnings(plan.sketch.graph, unheeded)
+            warnings += [w for kernel in own_kernels(plan.sketch.graph) for w in unheeded(kernel)]
         for warning in warnings:
             self.once(warning, warning.message)
         for path, warning in _stops_past_the_end(plan):
@@ -80,12 +80,9 @@ def _stops_past_the_end(plan: Plan) -> list[tuple[str, Diagnostic]]:
     return stops
 
 
-def kernel_warnings(
-    graph: Graph, of: Callable[[Kernel], tuple[Diagnostic, ...]] = warnings_of_kernel
-) -> list[Diagnostic]:
-    """Return the warnings of a sketch's own kernels; those that ship are left out."""
-    own = [kernel for _, kernel in kernels_of(graph) if not Path(kernel.path).is_relative_to(GLSL)]
-    return list(dict.fromkeys(warning for kernel in own for warning in of(kernel)))
+def own_kernels(graph: Graph) -> list[Kernel]:
+    """Return a sketch's own kernels; those that ship are left out."""
+    return [kernel for _, kernel in graph.kernels if not Path(kernel.path).is_relative_to(GLSL)]
 
 
 def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagnostic, ...]:

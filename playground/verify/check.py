@@ -21,7 +21,7 @@ from tempfile import TemporaryDirectory
 
 from playground.allowed_files import TEXTS, is_elevation, is_variant, named_root, root_of, unsaved_texts
 from playground.engine.plan import PlanRequest, located_at
-from playground.engine.plan_warnings import kernel_warnings, source_warnings
+from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import make_plan
 from playground.engine.sandbox import Request, Sandbox, SandboxReport, TryLibrary, TrySketch
 from playground.engine.standalone import free_name, standalone_sketch, with_pictures
@@ -70,7 +70,8 @@ from playground.sketch.variants import (
     why_not,
     without_variants,
 )
-from playground.sketch.warnings import shadowed_by_files, warnings_of_kernel, warnings_of_sketch
+from playground.sketch.warnings import warnings_of_sketch
+from playground.verify.warnings import kernel_warnings, shadowed_by_files, warnings_of_kernel
 
 BOTH = (FRAGMENT, COMPUTE)
 _FRAME = (64, 36)  # pixels

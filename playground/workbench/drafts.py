@@ -31,7 +31,7 @@ from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.replace_technique import with_texts
 from playground.sketch.substitution import omitted
-from playground.sketch.warnings import newly_shadowed
+from playground.verify.warnings import newly_shadowed
 from playground.workbench.checks import Checks, DrawnState
 from playground.workbench.dependencies import watched
 from playground.workbench.edits import Draft, Edits, reload_draft, taken

@@ -20,7 +20,8 @@ from playground.paths import GLSL, without_part
 from playground.regular_file import read_regular
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.techniques import Techniques
-from playground.sketch.warnings import warnings_of_kernel, warnings_of_sketch
+from playground.sketch.warnings import warnings_of_sketch
+from playground.verify.warnings import warnings_of_kernel
 from playground.workbench.dependencies import path_named
 
 AROUND = 2

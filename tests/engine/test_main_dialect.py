@@ -15,7 +15,7 @@ from playground.reduce.inline import inline_sketch
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.model import ForeignShader, kernels_of
 from playground.sketch.replace_technique import with_texts
-from playground.sketch.warnings import warnings_of_kernel
+from playground.verify.warnings import warnings_of_kernel
 from tests.dialect_texts import with_mistake
 from tests.engine.test_dialects import DEPRECATED
 from tests.main_dialect_texts import MAIN_TEXTS, STATEFUL

@@ -7,7 +7,7 @@ import pytest
 
 from playground.data.image_files import write_png
 from playground.errors import PlaygroundError, ShaderError
-from playground.sketch.warnings import warnings_of_kernel
+from playground.verify.warnings import warnings_of_kernel
 
 from ..loading import load
 

@@ -12,7 +12,8 @@ from playground.engine.plan import PlanRequest
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import make_plan
 from playground.errors import ShaderError
-from playground.sketch.warnings import warnings_of_kernel, warnings_of_sketch
+from playground.sketch.warnings import warnings_of_sketch
+from playground.verify.warnings import warnings_of_kernel
 
 from ..loading import load
 

@@ -9,7 +9,7 @@ import pytest
 
 from playground.sketch.load import load
 from playground.sketch.model import Keyframe
-from playground.sketch.warnings import newly_shadowed, shadowed_by_files
+from playground.verify.warnings import newly_shadowed, shadowed_by_files
 
 KERNEL = """#pragma kernel(output = "height:r32f")
 uniform float rise = 2.0;  //! slider(0, 10)
