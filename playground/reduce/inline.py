@@ -6,6 +6,7 @@ import json
 import re
 from pathlib import Path
 
+from playground.capture.shader_export.declarations import without_guards
 from playground.engine.plan import LoopStep, Plan, PlanNode, PlanRequest, Step
 from playground.engine.planner import make_plan
 from playground.errors import SketchError
@@ -15,7 +16,7 @@ from playground.reduce.tokens import tidy
 from playground.shader.dialects.isf import read_header
 from playground.shader.header import note_at
 from playground.shader.reserved_names import MATCHES, WIRED
-from playground.shader.source import SourceText, read_source_and_origin, without_guards
+from playground.shader.source import SourceText, read_source_and_origin
 from playground.sketch.flat import Ref, Source
 from playground.sketch.model import ForeignShader, Kernel, PlainFragment, PlainShader, Sketch, Value
 from playground.sketch.variants import active_variant

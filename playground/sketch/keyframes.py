@@ -106,18 +106,14 @@ def at(
     keyframes: tuple[Keyframe, ...], graph: Graph, time: float
 ) -> tuple[dict[str, Any], tuple[tuple[str, Value], ...]]:
     """Return what keyframes say of the camera's fields and of a graph's parameters at a time in seconds."""
-    cameras, tracks = tracks_of(keyframes, graph)
+    cameras, tracks = tracks_of(graph, keyframes)
     camera = {name: track.at(time) for name, track in cameras.items()}
     return camera, tuple((path, track.at(time)) for path, track in tracks.items())
 
 
-def tracks_of(keyframes: tuple[Keyframe, ...], graph: Graph) -> tuple[dict[str, Track], dict[str, Track]]:
-    """Return the tracks of the camera's fields, by name, and of the parameters, by path."""
-    return _tracks(graph, keyframes)
-
-
 @GRAPHS.cached(identities=1)
-def _tracks(graph: Graph, keyframes: tuple[Keyframe, ...]) -> tuple[dict[str, Track], dict[str, Track]]:
+def tracks_of(graph: Graph, keyframes: tuple[Keyframe, ...]) -> tuple[dict[str, Track], dict[str, Track]]:
+    """Return the tracks of the camera's fields, by name, and of the parameters, by path."""
     names = dict.fromkeys(name for keyframe in keyframes for name, _ in keyframe.camera)
     cameras = {
         name: _track(keyframes, "camera", name, angles=(0,) if name == "azimuth" else ()) for name in names

@@ -21,16 +21,12 @@ from playground.sketch.assign import find_targets
 from playground.sketch.wiring import check_graph, input_names, output_names, takes_input
 
 
+@GRAPHS.cached(identities=1)
 def as_wired(sketch: Graph) -> Graph:
     """Return the passes of a sketch, the techniques in them in the forms that its wiring gives them.
 
     Raises ``SketchError`` at a pass whose technique has no output without an input that is not wired.
     """
-    return _as_wired(sketch)
-
-
-@GRAPHS.cached(identities=1)
-def _as_wired(sketch: Graph) -> Graph:
     if not is_conditional(sketch):
         return sketch
     passes: list[PassSpec] = []

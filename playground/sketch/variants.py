@@ -55,13 +55,9 @@ _TOKEN = re.compile(
 )
 
 
+@GRAPHS.cached(identities=1)
 def content_of(technique: Technique) -> str:
     """Return the hash of a technique's canonical text; worked out once for each object."""
-    return _content_of(technique)
-
-
-@GRAPHS.cached(identities=1)
-def _content_of(technique: Technique) -> str:
     parts = _of_graph(technique) if isinstance(technique, Graph) else _of_kernel(technique)
     return hashlib.blake2b(repr(parts).encode(), digest_size=16).hexdigest()
 

@@ -71,7 +71,7 @@ def presets_data(
 
 def tracks_data(sketch: Sketch, locked: Locked, written: Written) -> tuple[list[dict[str, Any]], list[str]]:
     """Return the keyframes' tracks, but for what is set over them, and a message for each left out."""
-    cameras, tracks = tracks_of(sketch.keyframes, sketch.graph)
+    cameras, tracks = tracks_of(sketch.graph, sketch.keyframes)
     result = [_track("camera", name, (), track, list(track.values)) for name, track in cameras.items()]
     over = {t.path for path, _ in sketch.overrides for t in resolve(sketch.graph, path)}
     notes = []
