@@ -96,7 +96,7 @@ def strips(
     in parts, before anything of it is drawn.
     """
     opened_sketch = opened(sketch)
-    times = opened_sketch.supersample
+    times = opened_sketch.picture.supersample
     whole = drawn_size(opened_sketch, size, MAX_PICTURE_SIDE)
     for row in tiles_of(whole, uncut(tile, times)):
         strip = np.empty((row[0].size[1], whole[0], 4), np.uint8)

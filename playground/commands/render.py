@@ -183,7 +183,7 @@ def render(
     )
     renderer: Renderer = ctx.obj.or_else(software, device)
     if times is not None:
-        moment = replace(moment, sketch=replace(moment.sketch, supersample=times))
+        moment = replace(moment, sketch=moment.sketch.with_picture(supersample=times))
     if series.many:
         _note_hidden_defaults(moment.sketch)
         make_series(SeriesJob(series, moment, output, pixels, renderer, runs_by))
@@ -277,7 +277,7 @@ def _draw_large(engine: Engine, moment: Moment, size: tuple[int, int], target: P
     from playground.engine.plan import drawn_size
 
     whole = drawn_size(moment.sketch, size, MAX_PICTURE_SIDE)
-    tiles = count_tiles(whole, uncut(TILE, moment.sketch.supersample))
+    tiles = count_tiles(whole, uncut(TILE, moment.sketch.picture.supersample))
     with progress(f"rendering {moment.sketch.name} in parts", tiles) as done:
         at: dict[str, Any] = {"time": moment.time, "steps": moment.steps, "done": done}
         if target.name == "-":

@@ -130,7 +130,8 @@ class Engine(Renderer):
         opened_sketch = opened(sketch)
         size = drawn_size(opened_sketch, size)
         texture = self.draw(opened_sketch, size=size, time=time, steps=steps, interpolated=interpolated)
-        return Frame(reduced(read_picture(texture), opened_sketch.supersample), opened_sketch.name, time)
+        pixels = reduced(read_picture(texture), opened_sketch.picture.supersample)
+        return Frame(pixels, opened_sketch.name, time)
 
     def draw(
         self,

@@ -90,7 +90,7 @@ def _place_of(plan: Plan) -> tuple[float, float] | None:
 
     None as well where the sketch lets the eye be under the ground.
     """
-    if plan.terrain.extent is None or plan.terrain.relief is None or not plan.sketch.above_ground:
+    if plan.terrain.extent is None or plan.terrain.relief is None or not plan.sketch.picture.above_ground:
         return None
     (east, north, _), (width, height) = plan.eye.position, plan.terrain.extent
     x, y = east / width, north / height

@@ -44,7 +44,7 @@ class PictureHasher:
             return {n: value if n == MOMENT else rounded(value) for n, value in uniforms_of(step).items()}
 
         keys = self._keys.keys_of(plan, driver, smoothed).result(plan.picture.path)
-        times = plan.sketch.supersample
+        times = plan.sketch.picture.supersample
         return keys if times == 1 else f"{keys} reduced {times} times"
 
 

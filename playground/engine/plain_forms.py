@@ -35,7 +35,7 @@ class PlainForms:
 
     def report(self, sketch: Sketch, lacking: Iterable[str] = ()) -> None:
         """Report what is new of a sketch that is drawn; ``lacking`` are sentences of its plan."""
-        kinds = self.kinds if sketch.samples == 1 else self.kinds_without_draws
+        kinds = self.kinds if sketch.picture.samples == 1 else self.kinds_without_draws
         for sentence in (*map(str, unverified(sketch, kinds)), *lacking):
             if sentence not in self._reported:
                 self._reported.add(sentence)

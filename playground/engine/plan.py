@@ -303,7 +303,7 @@ def drawn_size(sketch: Sketch, size: tuple[int, int], largest: int = MAX_SIDE) -
 
     ``largest``: the most that a side may be drawn with.
     """
-    times = sketch.supersample
+    times = sketch.picture.supersample
     width, height = checked_pixels(size, largest // times)
     return width * times, height * times
 

@@ -130,7 +130,7 @@ def _assumptions(plan: Plan) -> dict[str, tuple[str, ...]]:
 
     What the sketch says itself is not assumed.
     """
-    sketch, terrain = plan.sketch, plan.terrain
+    own, terrain = plan.sketch.terrain, plan.terrain
     for leaf in plan.flat.sources:
         kind, step = source_kind(leaf.kernel.registry), plan.step(leaf.path)
         if step is None:
@@ -143,12 +143,12 @@ def _assumptions(plan: Plan) -> dict[str, tuple[str, ...]]:
             continue
         name, messages = Path(str(step.values[kind.files[0]])).name, list[str]()
         assert terrain.relief is not None and terrain.base_elevation is not None and terrain.extent
-        if sketch.relief is None and facts.relief is None:
+        if own.relief is None and facts.relief is None:
             low, high = terrain.base_elevation, terrain.base_elevation + terrain.relief
             messages.append(f"{name}: its heights have no unit and are stretched to {low:g}..{high:g} m")
-        elif sketch.relief is None and facts.assumed:
+        elif own.relief is None and facts.assumed:
             messages.append(f"{name}: {facts.assumed}")
-        if sketch.extent is None and facts.extent is None and facts.size and not facts.place:
+        if own.extent is None and facts.extent is None and facts.size and not facts.place:
             messages.append(
                 f"{name}: nothing says how large it is; a width of {terrain.extent[0]:g} m is assumed"
             )

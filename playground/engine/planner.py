@@ -67,10 +67,9 @@ def make_plan(sketch: Sketch, request: PlanRequest) -> Plan:
 def planned(sketch: Sketch, request: PlanRequest) -> Plan:
     """Return what ``make_plan`` does, made of the last plan of the same graph as far as that still holds."""
     request = _checked(sketch, request)
-    where = sketch.size, sketch.extent, sketch.relief, sketch.base_elevation
     variants, steps = tuple(request.variants), tuple(request.steps.items())
     asked = request.frame_size, variants, steps, request.ref, request.fills, _varies(sketch)
-    key = (planned, id(sketch.graph), sketch.folder, sketch.plain, where, asked)
+    key = (planned, id(sketch.graph), sketch.folder, sketch.plain, sketch.terrain, asked)
     return PLANS.put(key, _made(sketch, request, PLANS.get(key)), 1, sketch.graph)  # type: ignore[no-any-return]
 
 
@@ -428,20 +427,20 @@ def _known_by_sources(sketch: Sketch, flat: Flat, values: Values) -> Terrain:
 def extent_follows_size(sketch: Sketch, flat: Flat, values: Values) -> bool:
     """Return whether nothing says the terrain's metres: its sides are to each other as its texels are."""
     terrain = _known_by_sources(sketch, flat, values)
-    return sketch.extent is None and terrain.extent is None and terrain.size is None
+    return sketch.terrain.extent is None and terrain.extent is None and terrain.size is None
 
 
 def _terrain_of(sketch: Sketch, flat: Flat, values: Values) -> Terrain:
     """Return the terrain with every field known: by the sketch, else by its first source that knows."""
-    terrain = _known_by_sources(sketch, flat, values)
-    size = sketch.size or flat.accepted(terrain.size or DEFAULT_SIZE)
-    extent = sketch.extent or terrain.extent
+    own, terrain = sketch.terrain, _known_by_sources(sketch, flat, values)
+    size = own.size or flat.accepted(terrain.size or DEFAULT_SIZE)
+    extent = own.extent or terrain.extent
     if extent is None:
         shape = terrain.size or size
         ratio = (shape[1] - 1) / max(shape[0] - 1, 1) or 1.0
         extent = (DEFAULT_EXTENT, DEFAULT_EXTENT * ratio)
-    relief = sketch.relief if sketch.relief is not None else terrain.relief
-    base = sketch.base_elevation if sketch.base_elevation is not None else terrain.base_elevation
+    relief = own.relief if own.relief is not None else terrain.relief
+    base = own.base_elevation if own.base_elevation is not None else terrain.base_elevation
     relief = DEFAULT_RELIEF if relief is None else relief
     return Terrain(size, extent, relief, base or 0.0, terrain.place)
 

@@ -172,7 +172,7 @@ class Renderer:
         """
         self._context.check()
         opened_sketch = opened(sketch)
-        samples = 0 if in_parts else min(opened_sketch.samples, self._info.max_samples)
+        samples = 0 if in_parts else min(opened_sketch.picture.samples, self._info.max_samples)
         kinds = self.plain_forms.kinds if samples == 1 else self.plain_forms.kinds_without_draws
         return planned(opened_sketch, PlanRequest(size, time, kinds, steps or {}, ref, interpolated, largest))
 

@@ -146,7 +146,7 @@ class Runner:
         """Return how many samples a pixel of a draw has here."""
         assert self._plan is not None, "look_at() comes first"
         own = kernel.samples if isinstance(kernel, Draw) else 0
-        return max(min(own or self._plan.sketch.samples, self.info.max_samples), 1)
+        return max(min(own or self._plan.sketch.picture.samples, self.info.max_samples), 1)
 
     def run(
         self,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -78,7 +77,7 @@ class _Handler:
     def _draw(self, request: TrySketch, driver: str) -> None:
         engine = self._engine(driver)
         engine.runner.before_step = partial(self._before_step, driver if len(request.drivers) > 1 else "")
-        small = replace(request.sketch, size=smallest_terrain(request.sketch), samples=1)
+        small = request.sketch.with_values({"size": smallest_terrain(request.sketch)}).with_picture(samples=1)
         drain(engine.ctx)  # what an earlier, failed request left behind
         try:
             _draw_some_frames(engine, small, request)

@@ -58,7 +58,7 @@ class Flight:
         self.sketch = sketch
         self.plot: Plot = plot_of(sketch, engine)
         self.parts = Parts(engine, self.plot, radius)
-        samples_wanted = sketch.samples if samples is None else samples
+        samples_wanted = sketch.picture.samples if samples is None else samples
         self.scene = Scene(engine, self.plot, max(min(samples_wanted, engine.info.max_samples), 1))
         self.craft = self._placed(start)
         self._earlier = self.craft  # whose sky and air are shown

@@ -85,7 +85,7 @@ def run(
         engine = stack.enter_context(Engine(window.ctx, driver=driver, cache_bytes=CACHE_BYTES))
         header = replay.header if replay else Header(name, size, {}, radius or RADIUS)
         # A processor draws four samples in four times the time of one.
-        samples = 1 if context_info(window.ctx).software else sketch.samples
+        samples = 1 if context_info(window.ctx).software else sketch.picture.samples
         flight = stack.enter_context(
             Flight(engine, sketch, radius=header.radius, start=header.start, samples=samples)
         )

@@ -88,7 +88,7 @@ def _parameters(file: Sketch, made: Sketch) -> tuple[tuple[str, str], ...]:
     ]
     paths += [path for path, _ in made.overrides if path not in paths]
     leaves = values_of(made)
-    rows = [("size", " × ".join(map(str, made.size)))] if made.size else []
+    rows = [("size", " × ".join(map(str, made.terrain.size)))] if made.terrain.size else []
     for path in paths:
         parameter = resolve(made.graph, path)[0].parameter
         rows.append((path, write(parameter, value_of(made, path, leaves))))

@@ -62,7 +62,7 @@ def inline_sketch(
         relief=terrain.relief,
         base_elevation=terrain.base_elevation or None,
         camera=sketch.camera,
-        samples=sketch.samples,
+        samples=sketch.picture.samples,
         frame=frame,
         time=time,
         steps=tuple((inliner.name(path), steps) for path, steps in plan.steps.items()),

@@ -34,6 +34,7 @@ from playground.sketch.model import (
     Graph,
     Kernel,
     PassSpec,
+    PictureSettings,
     PlainShader,
     Sketch,
     Technique,
@@ -88,7 +89,7 @@ def load(name: str | Path = "", *, dialect: str = "") -> Sketch:
     tool's shader, whose ``dialect`` its text decides unless it is named.
 
         sketch = playground.load("l_dot_n")
-        print(sketch.title, sketch.size)
+        print(sketch.title, sketch.terrain.size)
 
     Raises ``SketchError`` or ``ShaderError`` naming file, line, what was found and expected.
     """
@@ -167,7 +168,7 @@ def plain_sketch(path: Path, technique: Technique, folder: Path) -> Sketch:
     else:
         view = PassSpec("view", f"./{path.stem}", technique, file=shown(path))
         graph = Graph(path.stem, str(path), (view,), title=title)
-    return Sketch(path.stem, str(path), str(folder), graph, title, samples=1)
+    return Sketch(path.stem, str(path), str(folder), graph, title, picture=PictureSettings(samples=1))
 
 
 def _folder_of(path: Path) -> Path:

@@ -140,6 +140,7 @@ __all__ = [
     "Output",
     "Parameter",
     "PassSpec",
+    "PictureSettings",
     "PlainCompute",
     "PlainFragment",
     "PlainShader",
@@ -148,6 +149,7 @@ __all__ = [
     "Shot",
     "Sketch",
     "Technique",
+    "TerrainSettings",
     "TexelKernel",
     "Value",
     "Variant",
@@ -213,6 +215,25 @@ class Shot:
 
 
 @dataclass(frozen=True, slots=True)
+class TerrainSettings:
+    """What a sketch says of its terrain; None: what the terrain's file says."""
+
+    size: tuple[int, int] | None = None  # texels, x and y
+    extent: tuple[float, float] | None = None  # [m]
+    relief: float | None = None  # [m]
+    base_elevation: float | None = None  # [m] above sea level at height 0
+
+
+@dataclass(frozen=True, slots=True)
+class PictureSettings:
+    """How a sketch's picture is drawn."""
+
+    samples: int = 4  # antialiasing of draws
+    supersample: int = 1  # times as wide and high as a finished picture is drawn; not live
+    above_ground: bool = True  # an eye under the terrain is raised over it
+
+
+@dataclass(frozen=True, slots=True)
 class Preset:
     """Values that go together."""
 
@@ -237,14 +258,9 @@ class Sketch:
     folder: str  # absolute path; its own files stay inside
     graph: Graph  # the passes that are there; the view is the last of them, named "view"
     title: str = ""
-    size: tuple[int, int] | None = None  # texels, x and y; None: from the terrain's file
-    extent: tuple[float, float] | None = None  # [m]
-    relief: float | None = None  # [m]
-    base_elevation: float | None = None  # [m] above sea level at height 0
+    terrain: TerrainSettings = TerrainSettings()
     camera: Camera = Camera()
-    samples: int = 4  # antialiasing of draws
-    supersample: int = 1  # times as wide and high as a finished picture is drawn; not live
-    above_ground: bool = True  # an eye under the terrain is raised over it
+    picture: PictureSettings = PictureSettings()
     shots: tuple[Shot, ...] = ()
     presets: tuple[Preset, ...] = ()
     overrides: tuple[tuple[str, Value], ...] = ()  # parameter path → value, over what the file sets
@@ -309,7 +325,8 @@ class Sketch:
             else:
                 overrides.pop(path, None)  # what is set last comes last, and wins
                 overrides[path] = value
-        return replace(self, overrides=tuple(overrides.items()), **changes)
+        terrain = replace(self.terrain, **changes) if changes else self.terrain
+        return replace(self, overrides=tuple(overrides.items()), terrain=terrain)
 
     def with_inputs(self, arrays: Mapping[str, object]) -> Sketch:
         """Return the sketch with ``arrays`` as the textures of inputs, by ``pass.input``.
@@ -342,6 +359,15 @@ class Sketch:
         """
         keyframes = tuple(replace(keyframe, camera=()) for keyframe in self.keyframes)
         return replace(self, camera=camera, keyframes=keyframes)
+
+    def with_picture(self, **changes: Any) -> Sketch:
+        """Return the sketch with other fields of its ``PictureSettings``.
+
+        For example:
+
+            sketch = playground.load("l_dot_n").with_picture(samples=1)
+        """
+        return replace(self, picture=replace(self.picture, **changes))
 
     def plainly(self, plain: bool = True) -> Sketch:
         """Return the sketch with every technique in its ``plain``, canonical form, or with fast variants.
@@ -401,8 +427,6 @@ class Sketch:
         sketch = sketch.with_values(dict(shot.values))
         if shot.camera is not None:
             sketch = sketch.with_camera(shot.camera)
-        if shot.samples is not None:
-            sketch = replace(sketch, samples=shot.samples)
-        if shot.supersample is not None:
-            sketch = replace(sketch, supersample=shot.supersample)
-        return sketch
+        asked = {"samples": shot.samples, "supersample": shot.supersample}
+        changes = {name: number for name, number in asked.items() if number is not None}
+        return sketch.with_picture(**changes) if changes else sketch

@@ -110,8 +110,8 @@ def saved_text(text: str, file: Sketch, edited: Sketch) -> str:
     ``edited`` is ``file`` with other values over it, another camera, other techniques.
     """
     for key in TERRAIN_KEYS:
-        value = getattr(edited, key)
-        if value is not None and value != getattr(file, key):
+        value = getattr(edited.terrain, key)
+        if value is not None and value != getattr(file.terrain, key):
             text = put(text, (), key, written_terrain_value(value))
     for spec in edited.graph.passes:
         was = file.graph.find(spec.name)
@@ -368,7 +368,7 @@ def says_same_as(edited: Sketch) -> Callable[[Sketch], bool]:
     def parts(sketch: Sketch) -> object:
         values = {path: shortest(value) for path, value in values_of(sketch).items() if path not in files}
         uses = [(spec.name, spec.use, spec.inputs) for spec in sketch.graph.passes]
-        return values, uses, sketch.camera, [getattr(sketch, key) for key in TERRAIN_KEYS]
+        return values, uses, sketch.camera, sketch.terrain
 
     return lambda reloaded: parts(reloaded) == parts(edited)
 

@@ -28,9 +28,11 @@ from playground.sketch.model import (
     Graph,
     Keyframe,
     PassSpec,
+    PictureSettings,
     Preset,
     Shot,
     Sketch,
+    TerrainSettings,
     Tolerance,
     tolerance_of,
 )
@@ -230,25 +232,19 @@ def read_sketch(file: TomlFile, read: Read) -> Sketch:
     file.only(file.table, toml_table.SKETCH)
     file.version(required=True)
     passes = read_passes(file, read)
-    view, camera, samples = _view(file, passes, read)
+    view, camera, picture = _view(file, passes, read)
     name = file.path.parent.name if file.path.name == "sketch.toml" else file.path.stem
     title = file.take(file.table, "title", str, "")
     terrain = {key: _terrain_value(file, key) for key in TERRAIN_KEYS if key in file.table}
-    supersample, above = 1, True
-    if isinstance(table := file.table.get("view"), dict):
-        supersample = _supersample(file, table, 1, ("view",))
-        above = file.take(table, "above_ground", bool, True, "view")
     sketch = Sketch(
         name=name,
         file=str(file.path),
         folder=str(file.path.parent),
         graph=Graph(name, str(file.path), (*passes, view), title=title),
         title=title or name,
+        terrain=TerrainSettings(**terrain),
         camera=camera,
-        samples=samples,
-        supersample=supersample,
-        above_ground=above,
-        **terrain,
+        picture=picture,
     )
     _warn_of_absent(file, sketch, (*passes, view))
     check_graph(sketch.graph)
@@ -283,15 +279,23 @@ def _terrain_value(file: TomlFile, key: str) -> Any:
         raise file.error(error.diagnostics[0].message, key) from None
 
 
-def _view(file: TomlFile, passes: tuple[PassSpec, ...], read: Read) -> tuple[PassSpec, Camera, int]:
+def _view(
+    file: TomlFile, passes: tuple[PassSpec, ...], read: Read
+) -> tuple[PassSpec, Camera, PictureSettings]:
     table = file.take(file.table, "view", dict, None)
     if table is None:
         technique = read(_PLAIN_VIEW, GLSL, GLSL)
         inputs = (("shown", passes[-1].name),)
-        return PassSpec("view", _PLAIN_VIEW, technique, inputs, file=shown(file.path)), Camera(), 4
+        spec = PassSpec("view", _PLAIN_VIEW, technique, inputs, file=shown(file.path))
+        return spec, Camera(), PictureSettings()
     file.only(table, toml_table.VIEW, "view")
     spec = read_pass(file, {"use": DEFAULT_VIEW, **table}, ("view",), "view", read)
-    return spec, read_camera(file, table, Camera(), ("view",)), _samples(file, table, 4, ("view",))
+    picture = PictureSettings(
+        _samples(file, table, 4, ("view",)),
+        _supersample(file, table, 1, ("view",)),
+        file.take(table, "above_ground", bool, True, "view"),
+    )
+    return spec, read_camera(file, table, Camera(), ("view",)), picture
 
 
 def _main(file: TomlFile, sketch: Sketch) -> tuple[str, ...]:
@@ -348,6 +352,7 @@ def _presets(file: TomlFile, sketch: Sketch) -> tuple[Preset, ...]:
 def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
     shots: list[Shot] = []
     presets = [preset.name for preset in sketch.presets]
+    samples = sketch.picture.samples
     for index, table in enumerate(file.tables("shot")):
         key_path = ("shot", index)
         file.only(table, toml_table.SHOT, *key_path)
@@ -375,7 +380,7 @@ def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
                 camera=read_camera(file, table, sketch.camera, key_path) if "camera" in table else None,
                 values=read_set(file, sketch, table, key_path, f"shot '{name}'"),
                 preset=preset,
-                samples=_samples(file, table, sketch.samples, key_path) if "samples" in table else None,
+                samples=_samples(file, table, samples, key_path) if "samples" in table else None,
                 supersample=_supersample(file, table, 1, key_path) if "supersample" in table else None,
                 steps=read_steps(file, sketch, table, key_path),
                 marks=_marks(file, table, key_path),

@@ -34,6 +34,7 @@ from playground.sketch.model import (
     PassSpec,
     Sketch,
     Technique,
+    TerrainSettings,
     TexelKernel,
     Value,
     Variant,
@@ -193,7 +194,7 @@ def _standalone(technique: Technique, seed: int, picture: Path, variant: Variant
     starts |= {n for n in input_names(technique) if n not in inputs and is_optional(technique, n)}
     passes = tuple(spec for spec in made.graph.passes if spec.name not in starts)
     # Where a pixel has more than one sample, no draw has a fast variant.
-    return replace(made, graph=replace(made.graph, passes=passes), samples=1)
+    return replace(made, graph=replace(made.graph, passes=passes)).with_picture(samples=1)
 
 
 def _starts(technique: Technique, name: str) -> bool:
@@ -234,11 +235,11 @@ def _cases(site: VariantUse) -> Iterator[tuple[str, Sketch]]:
     for number, size in enumerate(sizes):
         for order, seed in enumerate(_SEEDS if own else _SEEDS[:1]):
             extent = _EXTENTS[(number + order) % len(_EXTENTS)]
-            sketch = replace(site.sketch, size=size, extent=extent, relief=_RELIEF)
+            sketch = replace(site.sketch, terrain=TerrainSettings(size, extent, _RELIEF))
             values = {path: seed for path in own}
             yield f"{size[0]} x {size[1]} texels, seed {seed}", sketch.with_values(values)
     if site.varied:
-        small = replace(site.sketch, size=sizes[0], extent=_EXTENTS[1], relief=_RELIEF)
+        small = replace(site.sketch, terrain=TerrainSettings(sizes[0], _EXTENTS[1], _RELIEF))
         for path, value in _variations(site):
             yield f"{path.rpartition('.')[2]} = {value}", small.with_values({path: value})
 

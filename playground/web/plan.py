@@ -99,8 +99,8 @@ class _Writing:
             "frame": list(plan.frame_size),
             "time": plan.time,
             "steps": dict(plan.steps),
-            "samples": sketch.samples,
-            "aboveGround": sketch.above_ground,
+            "samples": sketch.picture.samples,
+            "aboveGround": sketch.picture.above_ground,
             "terrain": {
                 "size": list(terrain.size or ()),
                 "extent": list(terrain.extent or ()),

@@ -34,7 +34,7 @@ def file_values(sketch: Sketch, paths: Iterable[str]) -> dict[str, FileValue]:
     values_found = {}
     for path in paths_wanted:
         if path in TERRAIN_KEYS:
-            values_found[path] = FileValue(getattr(sketch, path), True)
+            values_found[path] = FileValue(getattr(sketch.terrain, path), True)
             continue
         try:
             leaf = resolve(sketch.graph, path)[0].path

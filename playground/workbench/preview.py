@@ -54,10 +54,11 @@ def as_preview(
         and (path in faster if parameter.widget.kind == "menu" else fewer)
         and _is_unset(path, parameter, kernel, values)
     ]
-    samples = 1 if traits.draws else sketch.samples
-    if sketch.samples == samples and not coarse and not chosen:
+    samples = 1 if traits.draws else sketch.picture.samples
+    if sketch.picture.samples == samples and not coarse and not chosen:
         return sketch
-    return replace(sketch, samples=samples, overrides=(*sketch.overrides, *coarse, *chosen))
+    sketch = replace(sketch, overrides=(*sketch.overrides, *coarse, *chosen))
+    return sketch.with_picture(samples=samples)
 
 
 def _is_unset(path: str, parameter: Parameter, kernel: Kernel, values: Mapping[str, Value]) -> bool:

@@ -86,7 +86,7 @@ def _text(sketch: Sketch, use: str) -> str:
     title = sketch.graph.title or sketch.name
     lines = ["format = 1", f"title = {text_of(title)}"]
     for key in TERRAIN_KEYS:
-        value = getattr(sketch, key)
+        value = getattr(sketch.terrain, key)
         if value is not None:
             lines.append(f"{key} = {written_terrain_value(value)}")
     *passes, view = sketch.graph.passes
@@ -96,7 +96,7 @@ def _text(sketch: Sketch, use: str) -> str:
         lines += ["", "[[pass]]", f"name = {text_of(spec.name)}"]
         lines += _lines(sketch, spec, use if own else spec.use)
     lines += ["", "[view]", *_lines(sketch, view, use if is_picture else view.use)]
-    lines += [f"samples = {sketch.samples}"]
+    lines += [f"samples = {sketch.picture.samples}"]
     return "\n".join([*lines, ""])
 
 

@@ -97,7 +97,7 @@ def table_of(engine: Engine, name: str, sketch: Sketch, samples: list[int], roun
     headings = ("mesh", "triangles", "fewer", "error [px]", "99 % below")
     for heading in (*headings, *(f"ms, {n} sample{'s' * (n > 1)}" for n in samples)):
         table.add_column(heading)
-    times = {n: frame_times(engine, replace(sketch, samples=n), meshes, rounds) for n in samples}
+    times = {n: frame_times(engine, sketch.with_picture(samples=n), meshes, rounds) for n in samples}
     truth = heights(engine, sketch, {"detail": "geomipmap", "tolerance": 0.0})
     scale = pixels(sketch, truth)
     most = 0
@@ -126,7 +126,7 @@ def with_above(sketch: Sketch, folder: Path) -> Sketch:
     before, view, after = Path(sketch.file).read_text("utf-8").partition("\n[view]")
     path = folder / f"{sketch.name}.toml"
     path.write_text(before + PASSES + view + after, encoding="utf-8")
-    return replace(playground.load(path), size=sketch.size)
+    return playground.load(path).with_values({"size": sketch.terrain.size})
 
 
 def frame_times(

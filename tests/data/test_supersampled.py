@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -76,8 +74,8 @@ def test_a_picture_is_reduced_from_one_that_is_drawn_larger(any_engine, noise):
     thrice = noise("supersample = 3")
     np.testing.assert_array_equal(any_engine.render(thrice, size=(31, 20)).array, expected)
     shot = noise(shot="supersample = 3")
-    assert (shot.supersample, shot.for_shot(shot.shots[0]).supersample) == (1, 3)
-    assert noise("supersample = 3", "supersample = 1").for_shot(thrice.shots[0]).supersample == 3
+    assert (shot.picture.supersample, shot.for_shot(shot.shots[0]).picture.supersample) == (1, 3)
+    assert noise("supersample = 3", "supersample = 1").for_shot(thrice.shots[0]).picture.supersample == 3
     parts = [*strips(any_engine, thrice, (31, 20), tile=(40, 26))]
     np.testing.assert_array_equal(np.concatenate(parts), expected)
 
@@ -85,7 +83,7 @@ def test_a_picture_is_reduced_from_one_that_is_drawn_larger(any_engine, noise):
 def test_how_often_a_picture_is_drawn_is_in_its_fingerprint(any_engine, noise):
     sketch = noise()
     prints = {
-        any_engine.fingerprint(replace(sketch, supersample=n), size=(60 // n, 60 // n)) for n in (1, 2, 3)
+        any_engine.fingerprint(sketch.with_picture(supersample=n), size=(60 // n, 60 // n)) for n in (1, 2, 3)
     }
     assert len(prints) == 3
 

@@ -40,7 +40,7 @@ def pairs(folder):
             body.append(f'[[pass]]\nname = "{name}"\nuse = "./{name}"{wired}')
             value |= {f"{name}.{key}": value for key, value in values.items()}
         sketch = folder.sketch("\n".join(body), size="size = 16")
-        return replace(sketch, samples=samples).with_values(value)
+        return sketch.with_picture(samples=samples).with_values(value)
 
     return make
 

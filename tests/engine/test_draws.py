@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -46,7 +44,7 @@ def plates(folder):
             body.append(f'[[pass]]\nname = "{name}"\nuse = "./{name}"{wired}')
             value |= {f"{name}.{key}": value for key, value in values.items()}
         sketch = folder.sketch("\n".join(body), size=f"size = {size}")
-        return replace(sketch, samples=samples).with_values(value)
+        return sketch.with_picture(samples=samples).with_values(value)
 
     return make
 
@@ -91,7 +89,7 @@ def test_a_start_of_another_format_is_converted(any_engine, folder):
     folder.write("one.glsl", PLATE.replace("{more}", ""))
     wiring = '[[pass]]\nname = "one"\nuse = "./one"\ninputs = { initial = "back" }\nset = { right = 0.0 }'
     sketch = folder.sketch(f'[[pass]]\nname = "back"\nuse = "./back"\n{wiring}', size="size = 16")
-    result = any_engine.read(replace(sketch, samples=1), "one")
+    result = any_engine.read(sketch.with_picture(samples=1), "one")
     np.testing.assert_array_equal(result[:, 8:], np.broadcast_to((0.75, 0.0, 0.0, 1.0), (16, 8, 4)))
 
 
@@ -164,7 +162,7 @@ def test_samples_are_resolved_to_their_mean(any_engine, plates):
     sketch = plates(("one", "", {"right": edge}, ""), samples=4)
     column = any_engine.read(sketch, "one")[:, 8, 0]
     assert np.all((column > 0) & (column < 1))
-    assert np.all(any_engine.read(replace(sketch, samples=1), "one")[:, 8, 0] % 1 == 0)
+    assert np.all(any_engine.read(sketch.with_picture(samples=1), "one")[:, 8, 0] % 1 == 0)
 
 
 def test_a_draw_on_top_does_not_depend_on_what_was_drawn_before_it(ctx, plates):
@@ -180,7 +178,7 @@ def test_a_draw_on_top_does_not_depend_on_what_was_drawn_before_it(ctx, plates):
 def test_the_number_of_samples_makes_draws_stale_and_nothing_else(any_engine, plates):
     sketch = plates(("one", "", {}, "back"), samples=1)
     any_engine.texture(sketch, "one")
-    any_engine.texture(replace(sketch, samples=4), "one")
+    any_engine.texture(sketch.with_picture(samples=4), "one")
     assert any_engine.record.ran == ["one"]
 
 
@@ -320,7 +318,7 @@ def stripes(folder):
         folder.write("rows.glsl", ROWS)
         folder.write("stripes.glsl", STRIPES.replace("{count}", count).replace("{more}", more))
         body = '[[pass]]\nname = "rows"\nuse = "./rows"\n[[pass]]\nname = "a"\nuse = "./stripes"\n'
-        return replace(folder.sketch(body, size="size = 16"), samples=1)
+        return folder.sketch(body, size="size = 16").with_picture(samples=1)
 
     return make
 
@@ -352,7 +350,7 @@ def test_a_draw_may_keep_to_one_sample(any_engine, plates):
     sketch = plates(("one", ", samples = 1", {"right": edge}, ""), samples=4)
     result = any_engine.read(sketch, "one")
     assert np.all(result % 1 == 0)
-    np.testing.assert_array_equal(any_engine.read(replace(sketch, samples=1), "one"), result)
+    np.testing.assert_array_equal(any_engine.read(sketch.with_picture(samples=1), "one"), result)
     assert any_engine.record.ran == [], "the view's samples are nothing to it"
 
 
@@ -423,7 +421,7 @@ set = {{ depth = 0.5, colour = [0.0, 0.0, 1.0, 1.0] }}
 
 @pytest.mark.parametrize("samples", [1, 4])
 def test_a_draw_over_another_is_where_that_has_drawn_and_has_its_depth(any_engine, folder, samples):
-    sketch = replace(over_sketch(folder), samples=samples)
+    sketch = over_sketch(folder).with_picture(samples=samples)
     back = any_engine.read(sketch, "back")
     shaded, far = any_engine.read(sketch, "shaded"), any_engine.read(sketch, "far")
     np.testing.assert_array_equal(shaded[:, :8], np.broadcast_to((1.0, 0.5, 0.0, 1.0), (16, 8, 4)))

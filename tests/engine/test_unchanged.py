@@ -121,7 +121,7 @@ class Frames:
         elif what == "stop":
             self.steps = {} if self.steps else {"repeated": 1}
         elif what == "samples":
-            sketch = replace(sketch, samples=2 if sketch.samples == 1 else 1)
+            sketch = sketch.with_picture(samples=2 if sketch.picture.samples == 1 else 1)
         elif what == "size":
             sketch = sketch.with_values({"size": 8 + number % 9})
         elif what == "extent":
@@ -162,7 +162,7 @@ def test_keys_made_of_the_last_ones_are_those_made_from_nothing(any_engine, many
             PlanRequest(
                 frame_size=frames.size,
                 time=frames.time,
-                variants=forms.kinds if frames.sketch.samples == 1 else forms.kinds_without_draws,
+                variants=forms.kinds if frames.sketch.picture.samples == 1 else forms.kinds_without_draws,
                 steps=frames.steps,
             ),
         )

@@ -139,7 +139,7 @@ def test_it_agrees_in_every_sketch_that_uses_it(ctx, name):
 def test_where_the_plain_form_runs_nothing_is_compared_and_nothing_drawn(ctx):
     """A pixel of several samples is drawn by no fast variant, though both forms of a view share files."""
     sketch = load("fbm")
-    assert sketch.samples > 1
+    assert sketch.picture.samples > 1
     position = next(p for p in places_in(sketch, GLSL) if p.path == "view")
     with Engine(ctx) as engine:
         assert compared(engine, position).drawings == 0

@@ -76,7 +76,7 @@ def test_a_step_is_that_of_the_equations(engine, eroded):
     for size, extent, closed in (((40, 28), (5000.0, 2100.0), False), ((33, 33), 5000.0, True)):
         values = {"rain": 0.08, "capacity": 6.0, "evaporation": 0.03, "repose": 30.0}
         sketch = eroded(hills(size), extent, edges="closed" if closed else "open", **values)
-        spacing = sketch.extent[0] / (size[0] - 1), sketch.extent[1] / (size[1] - 1)
+        spacing = sketch.terrain.extent[0] / (size[0] - 1), sketch.terrain.extent[1] / (size[1] - 1)
         for steps in (1, 6, 60):
             pipes = Pipes(*state(engine, sketch, steps), spacing=spacing, closed=closed, **values)
             before = replace(pipes)

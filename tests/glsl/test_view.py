@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -118,7 +116,7 @@ def test_no_colour_and_no_light_is_white_terrain(any_engine, make_sketch):
 @pytest.mark.parametrize("samples", [1, 4])
 def test_a_hole_in_the_numbers_shows_and_harms_nothing_else(any_engine, terrain, samples):
     hole = f"all(lessThan(abs(texel - 16), ivec2(2))) ? {NAN} : 0.0"
-    whole, broken = (replace(above(terrain(height=h)), samples=samples) for h in ("0.0", hole))
+    whole, broken = (above(terrain(height=h)).with_picture(samples=samples) for h in ("0.0", hole))
     first, other = (any_engine.render(s, size=(160, 120)).array for s in (whole, broken))
     changed = (first != other).any(axis=-1)
     magenta = (other[..., :3] == MAGENTA).all(axis=-1)

@@ -217,9 +217,9 @@ def tables_of(engine, sketch):
 
 
 def view_of(sketch, size=SIZE) -> sight.View:
-    eye = look(sketch.camera, sketch.extent, sketch.relief, size)
+    eye = look(sketch.camera, sketch.terrain.extent, sketch.terrain.relief, size)
     matrix = eye.clip_from_world.astype(np.float64)
-    return sight.View(matrix, eye.position, sketch.extent, sketch.relief, size)
+    return sight.View(matrix, eye.position, sketch.terrain.extent, sketch.terrain.relief, size)
 
 
 PATTERNS = [np.indices((8, 8)).sum(axis=0) % 2, (np.indices((8, 8))[0] // 2 + np.indices((8, 8))[1]) % 2]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -186,7 +184,7 @@ def test_what_the_variant_lacks_has_the_plain_draw_run(any_engine, make_sketch, 
     sketch = make_sketch('[[pass]]\nname = "height"\nuse = "./terrain"\n' + text, terrain=HILLS)
     any_engine.render(sketch.with_values(values), size=(48, 30))
     assert not [step.path for step in any_engine.record.plan.walk() if ".fast." in step.path]
-    any_engine.render(replace(sketch, samples=1), size=(48, 30))  # and back
+    any_engine.render(sketch.with_picture(samples=1), size=(48, 30))  # and back
     paths = [step.path for step in any_engine.record.plan.walk()]
     assert ("view.fast.ground" in paths) == any_engine.info.software
 

@@ -108,7 +108,7 @@ def test_values_come_in_by_address(harness: Harness, surface: Surface):
     surface.send("/height/middle", 0.25, 0.75)
     assert harness.value("height.middle") == (0.25, 0.75)
     surface.send("/relief", 300.0)
-    assert harness.session.sketch is not None and harness.session.sketch.relief == 300.0
+    assert harness.session.sketch is not None and harness.session.sketch.terrain.relief == 300.0
     assert harness.notices == []
 
 

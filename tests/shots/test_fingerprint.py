@@ -296,7 +296,7 @@ def test_the_shots_own_settings_change_the_hash(drawing: Engine, folder: Path) -
     result = [drawn(drawing, folder), drawn(drawing, folder, (25, 16)), drawn(drawing, folder, time=1.0)]
     result.append(drawn(drawing, folder, height=1))
     sketch = load(folder / "hills.toml")
-    drawing.render(replace(sketch, samples=1), size=(24, 16))
+    drawing.render(sketch.with_picture(samples=1), size=(24, 16))
     result.append(drawing.drawn())
     assert len(set(result)) == 5
 

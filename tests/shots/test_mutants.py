@@ -198,7 +198,7 @@ def test_values_are_changed_from_what_the_shot_has(jacksboro: Sketch):
     assert dict(broken(mutant("haze-twice"), evening).overrides)["view.haze"] == pytest.approx(0.24)
     wide = broken(mutant("field-of-view"), evening).camera
     assert wide.field_of_view == pytest.approx(38.0 * 1.01)
-    assert broken(mutant("no-antialiasing"), evening).samples == 1
+    assert broken(mutant("no-antialiasing"), evening).picture.samples == 1
 
 
 def test_wires_are_exchanged(jacksboro: Sketch):

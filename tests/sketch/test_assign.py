@@ -144,7 +144,7 @@ def test_values_come_in_any_form(sketch):
 )
 def test_the_terrain_is_set_like_a_parameter(sketch, arguments, field, value):
     result = sketch.with_values(arguments)
-    assert getattr(result, field) == value and result.overrides == ()
+    assert getattr(result.terrain, field) == value and result.overrides == ()
     hash(result)
 
 
@@ -185,7 +185,7 @@ def test_what_is_no_terrain_is_one_sentence(sketch, key, value):
 
 def test_a_preset_may_change_the_terrain(sketch):
     result = sketch.with_preset("big")
-    assert result.relief == 9.0 and values_of(result)["height.one.fine.gain"] == 7.0
+    assert result.terrain.relief == 9.0 and values_of(result)["height.one.fine.gain"] == 7.0
     with pytest.raises(ParameterError, match="no preset 'bog'; did you mean 'big'"):
         sketch.with_preset("bog")
 

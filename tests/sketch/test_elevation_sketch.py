@@ -10,6 +10,7 @@ from playground.allowed_files import ELEVATIONS
 from playground.errors import SketchError
 from playground.sketch.find import find
 from playground.sketch.load import elevation_text, load
+from playground.sketch.model import TerrainSettings
 
 
 @pytest.fixture
@@ -22,7 +23,7 @@ def dem(tmp_path):
 def test_the_sketch_around_a_file_names_it_and_leaves_the_rest_to_it(dem):
     sketch = load(dem)
     assert (sketch.file, sketch.folder, sketch.name) == (str(dem), str(dem.parent), dem.stem)
-    assert (sketch.size, sketch.extent, sketch.relief, sketch.base_elevation) == (None,) * 4
+    assert sketch.terrain == TerrainSettings()
     height = sketch.graph.find("height")
     assert dict(height.values) == {"elevation": dem.name, "longest": 1025, "no_data": 1}
     assert [spec.name for spec in sketch.graph.passes if spec.name in ("colour", "light", "view")]

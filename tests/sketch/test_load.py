@@ -16,7 +16,7 @@ from playground.paths import SKETCHES
 from playground.shader.parameter import coerce
 from playground.sketch.find import find, shipped_names, shipped_sketches
 from playground.sketch.load import is_technique, load, load_with
-from playground.sketch.model import Camera, Kernel
+from playground.sketch.model import Camera, Kernel, TerrainSettings
 from playground.sketch.techniques import Techniques, WithLibrary, shipped_techniques
 
 from ..cases import each
@@ -69,13 +69,13 @@ camera = { elevation = 80 }
 set = { height.rise = 1.5 }
 """,
     )
-    assert (sketch.name, sketch.title, sketch.size, sketch.extent) == (
+    assert (sketch.name, sketch.title, sketch.terrain.size, sketch.terrain.extent) == (
         "s",
         "A slope",
         (65, 33),
         (1000.0, 1000.0),
     )
-    assert (sketch.relief, sketch.base_elevation, sketch.samples) == (250.5, -10.0, 2)
+    assert (sketch.terrain.relief, sketch.terrain.base_elevation, sketch.picture.samples) == (250.5, -10.0, 2)
     assert sketch.camera == Camera(azimuth=10.0, target=(1.0, 2.0, 3.5))
     height, view = sketch.graph.passes
     assert (height.name, height.size, height.values, height.line) == (
@@ -89,15 +89,15 @@ set = { height.rise = 1.5 }
     assert (shot.size, shot.time, shot.preset, shot.samples) == ((64, 36), 2.0, "steep", 1)
     assert shot.camera == Camera(azimuth=10.0, elevation=80.0, target=(1.0, 2.0, 3.5))
     seen = sketch.for_shot(shot)
-    assert (seen.relief, seen.size, seen.samples) == (900.0, (17, 17), 1)
+    assert (seen.terrain.relief, seen.terrain.size, seen.picture.samples) == (900.0, (17, 17), 1)
     assert dict(seen.overrides) == {"height.rise": 1.5}
     assert [Path(p).name for p in sketch.files] == ["s.toml", "terrain.glsl", "look.glsl"]
 
 
 def test_what_is_absent_has_its_default(folder):
     sketch = folder.sketch()
-    assert (sketch.size, sketch.extent, sketch.relief, sketch.base_elevation) == (None,) * 4
-    assert (sketch.camera, sketch.samples, sketch.shots, sketch.presets) == (Camera(), 4, (), ())
+    assert sketch.terrain == TerrainSettings()
+    assert (sketch.camera, sketch.picture.samples, sketch.shots, sketch.presets) == (Camera(), 4, (), ())
     assert sketch.title == sketch.name == "s"
     plain = folder.sketch(tail="")
     assert plain.graph.passes[-1].use == "view/map"
@@ -259,7 +259,7 @@ def test_a_technique_alone(folder):
 def test_a_plain_shader_is_the_whole_picture(folder):
     path = folder.write("p.frag", "#version 330\n// Plain\nout vec4 c;\nvoid main() { c = vec4(1); }\n")
     result = load(path)
-    assert [p.name for p in result.graph.passes] == ["view"] and result.samples == 1
+    assert [p.name for p in result.graph.passes] == ["view"] and result.picture.samples == 1
 
 
 def test_a_library_file_and_a_lonely_variant_are_sentences(folder):

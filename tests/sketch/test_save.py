@@ -344,7 +344,7 @@ def test_a_shipped_sketch_is_not_written_to_but_copied(tmp_path: Path) -> None:
         assert copy == tmp_path / name / "sketch.toml"
         result = load(copy)
         assert values_of(result) == values_of(expected)
-        assert (result.camera.azimuth, result.relief) == (5.0, 777.0)
+        assert (result.camera.azimuth, result.terrain.relief) == (5.0, 777.0)
         images = {v for v in values_of(result).values() if isinstance(v, str) and v}
         assert images and all((copy.parent / image).is_file() for image in images)
 

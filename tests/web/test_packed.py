@@ -125,8 +125,8 @@ def test_terrain_time_and_steps_are_in_the_toml(node: Node, tmp_path: Path):
         node, tmp_path, page_of("diamond_square"), values=values, time=2.5, steps=[["height.raw", 7]]
     )
     opened_sketch = opened(path, tmp_path)
-    assert (opened_sketch.size, opened_sketch.extent) == ((257, 257), (5000.0, 4000.5))
-    assert (opened_sketch.relief, opened_sketch.base_elevation) == (1234.5, -20.0)
+    assert (opened_sketch.terrain.size, opened_sketch.terrain.extent) == ((257, 257), (5000.0, 4000.5))
+    assert (opened_sketch.terrain.relief, opened_sketch.terrain.base_elevation) == (1234.5, -20.0)
     shot = opened_sketch.shot("page")
     assert (shot.size, shot.time, shot.steps) == ((160, 90), 2.5, (("height.raw", 7),))
 

@@ -134,7 +134,7 @@ def test_a_map_reads_what_the_engine_has_in_its_texture(browser: Browser, drawn:
     texture = browser.run("return document.querySelector('.textures').selectedOptions[0].textContent")
     number = float(drawn.read(sketch, texture)[y, x])
     assert lines[-1] == f"{number:.6g}"
-    assert lines[2].startswith(f"{number * sketch.relief:.2f} m high")
+    assert lines[2].startswith(f"{number * sketch.terrain.relief:.2f} m high")
     if folder := os.environ.get("PAGE_PICTURES"):
         Path(folder, "alive map.png").write_bytes(browser.picture())
 

@@ -199,6 +199,6 @@ def test_what_is_copied_is_what_python_takes(node: Node, exporting: Engine, step
         for values in (names, preset["set"]):
             assert len(values) == len(set(values)) and (count == 0 or len(values) >= 1)
             made = sketch.with_values(values)
-            assert made.relief == 123.5
+            assert made.terrain.relief == 123.5
         seen += count
     assert seen > 60 // step

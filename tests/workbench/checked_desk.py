@@ -129,8 +129,8 @@ class Harness:
 
     @property
     def size(self) -> object:
-        assert self.session.sketch is not None and self.session.sketch.size is not None
-        return self.session.sketch.size[0]
+        assert self.session.sketch is not None and self.session.sketch.terrain.size is not None
+        return self.session.sketch.terrain.size[0]
 
     def file(self, name: str) -> str:
         """The path of a data file of the sketch "one", as it is chosen."""

@@ -287,7 +287,7 @@ def test_the_terrain_s_own_values_are_those_of_the_file(place: Place, locked: bo
     session.frame(SIZE)
     again, _ = place.start()
     assert again.shown.edits == session.shown.edits
-    assert again.sketch.relief == (500.0 if locked else 700.0)
+    assert again.sketch.terrain.relief == (500.0 if locked else 700.0)
 
 
 def test_what_the_command_line_sets_goes_before_all(place: Place) -> None:

@@ -36,9 +36,9 @@ def terrain(tmp_path: Path) -> Sketch:
 
 def test_it_has_one_sample_and_a_coarser_mesh(terrain: Sketch):
     chosen = as_preview(terrain)
-    assert chosen.samples == 1 and values_of(chosen)["view.land.grid"] == GRID
+    assert chosen.picture.samples == 1 and values_of(chosen)["view.land.grid"] == GRID
     assert values_of(chosen) == values_of(terrain) | {"view.land.grid": GRID}
-    assert chosen.size == terrain.size
+    assert chosen.terrain.size == terrain.terrain.size
 
 
 def test_fewer_pixels_have_a_coarser_mesh_still(terrain: Sketch):
@@ -73,21 +73,21 @@ def test_half_of_the_pixels_a_side_jump_no_more_than_stated(any_engine: Engine):
 
 @pytest.mark.parametrize("pixels", [(600, 400), (300, 200), (150, 100)])
 def test_a_preview_has_one_sample_however_few_its_pixels(terrain: Sketch, pixels: tuple[int, int]):
-    assert as_preview(terrain, (600, 400), pixels).samples == 1 < terrain.samples
+    assert as_preview(terrain, (600, 400), pixels).picture.samples == 1 < terrain.picture.samples
 
 
 @pytest.mark.parametrize("grid", [2, 100, 256, 1025])
 def test_a_mesh_that_somebody_set_stays(terrain: Sketch, grid: int):
     chosen = terrain.with_values({"view.grid": grid})
     assert values_of(as_preview(chosen))["view.land.grid"] == grid
-    alone = replace(chosen, samples=1)
+    alone = chosen.with_picture(samples=1)
     assert as_preview(alone) is alone
 
 
 def test_what_draws_no_mesh_is_drawn_as_it_is(tmp_path: Path):
     (tmp_path / "flat.toml").write_text(SKETCH.partition("[view]")[0], encoding="utf-8")
     flat = load(tmp_path / "flat.toml")
-    assert flat.samples > 1 and as_preview(flat) is flat
+    assert flat.picture.samples > 1 and as_preview(flat) is flat
 
 
 def test_draws_that_must_share_a_mesh_still_do():
@@ -137,7 +137,9 @@ def test_a_saved_text_is_planned_as_a_preview_alone(
     planned: list[int] = []
     plan = renderer.planned
     monkeypatch.setattr(
-        renderer, "planned", lambda sketch, request: planned.append(sketch.samples) or plan(sketch, request)
+        renderer,
+        "planned",
+        lambda sketch, request: planned.append(sketch.picture.samples) or plan(sketch, request),
     )
     session = Session(any_engine, file)
     try:

@@ -92,7 +92,7 @@ def test_not_while_something_of_its_group_is_set(path: Path, of_the_group: dict[
 
 
 def test_it_alone_makes_a_preview(path: Path):
-    sketch = replace(load(path), samples=1).with_values({"view.grid": 20})
+    sketch = load(path).with_picture(samples=1).with_values({"view.grid": 20})
     assert as_preview(sketch) is sketch
     chosen = as_preview(sketch, faster={"light.visibility"})
     assert values_of(chosen) == values_of(sketch) | {FORM: 1}

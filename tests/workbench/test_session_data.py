@@ -147,7 +147,7 @@ def test_a_save_during_its_check_does_not_lose_a_file_chosen_by_the_user(
         answer(session, SandboxReport(True))
         assert session.error is None and session.shown is not None
         assert dict(session.shown.edits.values)["height.elevation"] == other
-        assert session.shown.sketch.extent == ((100.0, 100.0) if text == SKETCH else (200.0, 200.0))
+        assert session.shown.sketch.terrain.extent == ((100.0, 100.0) if text == SKETCH else (200.0, 200.0))
 
 
 @pytest.mark.parametrize("when", ["during its check", "after it"])

@@ -236,7 +236,7 @@ def _given(leaving: ExportPlan, argument: ShaderPass, host: Host) -> tuple[list[
     reads_spacing = kernel.reads("spacing")
     if kernel.reads("size") or reads_spacing or argument.previous:
         variable("ivec2", "size", size_of(argument.size, host))
-    free = leaving.follows and leaving.sketch.extent is None and argument.size == (None, None)
+    free = leaving.follows and leaving.sketch.terrain.extent is None and argument.size == (None, None)
     if (kernel.reads("extent") or reads_spacing) and free:
         wide = number(terrain.extent[0])
         ratio = "float(size.y - 1) / float(max(size.x - 1, 1))"

@@ -56,7 +56,7 @@ def broken(mutant: Rendering, sketch: Sketch) -> Sketch:
             sketch = sketch.with_values(dict(mutant.values))
         except ParameterError as error:
             raise DoesNotApply(str(error)) from None
-    return sketch if mutant.samples is None else replace(sketch, samples=mutant.samples)
+    return sketch if mutant.samples is None else sketch.with_picture(samples=mutant.samples)
 
 
 def edited_texts(edits: tuple[Edit, ...], sketch: Sketch, name: str) -> dict[str, str]:
