@@ -56,8 +56,8 @@ def with_clocked_inside(nodes: Sequence[Node]) -> list[Node]:
         if moved:
             body = tuple(node for node in nodes_now[:index] if node.path in moved and isinstance(node, Leaf))
             before = [node for node in nodes_now[:index] if node.path not in moved]
-            after = [node for node in before if _all_reads(node) & moved]
-            while more := [n for n in before if n not in after and _all_reads(n) & {a.path for a in after}]:
+            after = [node for node in before if _reads(node) & moved]
+            while more := [n for n in before if n not in after and _reads(n) & {a.path for a in after}]:
                 after += more
             later = [node for node in before if node in after]
             inside = replace(loop, body=(*body, *loop.body))
@@ -67,18 +67,18 @@ def with_clocked_inside(nodes: Sequence[Node]) -> list[Node]:
 
 def _to_move(earlier: Sequence[Node], loop: Loop) -> set[str]:
     """Return the paths of the leaves to move into a loop."""
-    needed, paths = [], _all_reads(loop)
+    needed, paths = [], _reads(loop)
     for node in reversed(earlier):
         if {leaf.path for leaf in leaves_of([node])} & paths:
             needed.append(node)
-            paths |= _all_reads(node)
+            paths |= _reads(node)
     moved: set[str] = set()
     for node in reversed(needed):
-        if isinstance(node, Leaf) and (_is_clocked(node.kernel) or _all_reads(node) & moved):
+        if isinstance(node, Leaf) and (_is_clocked(node.kernel) or _reads(node) & moved):
             moved.add(node.path)
     staying = [node for node in needed if node.path not in moved]
     while staying:  # what stays before the loop, and all that it reads
-        read = set[str]().union(*(_all_reads(node) for node in staying))
+        read = set[str]().union(*(_reads(node) for node in staying))
         staying = [node for node in needed if node.path in read & moved]
         moved -= {node.path for node in staying}
     return moved
@@ -88,25 +88,6 @@ def _is_clocked(kernel: Kernel) -> bool:
     if follows_time(kernel.repeat):  # what it does of each frame is its own
         return False
     return bool(kernel.depends) or kernel.reads("time") or any(m in CLOCKED for _, m in kernel.usual)
-
-
-def _all_reads(node: Node) -> set[str]:
-    all_reads: set[str] = set()
-    for leaf in leaves_of([node]):
-        all_reads |= {source.path for _, source in leaf.inputs if isinstance(source, Ref)}
-    if isinstance(node, Loop):
-        all_reads |= _first_reads(node)
-        all_reads -= _loop_paths(node)
-    return all_reads
-
-
-def _first_reads(loop: Loop) -> set[str]:
-    paths = {first.path for _, first, _ in loop.feedback if isinstance(first, Ref)}
-    return paths.union(*(_first_reads(node) for node in loop.body if isinstance(node, Loop)))
-
-
-def _loop_paths(loop: Loop) -> set[str]:
-    return {leaf.path for leaf in leaves_of(loop.body)}
 
 
 def flatten(sketch: Sketch) -> Flat:
@@ -327,6 +308,7 @@ def join(prefix: str, name: str) -> str:
 
 
 def _reads(node: Node) -> set[str]:
+    """Return the paths of the leaves that a node reads, those inside a loop apart."""
     paths = {s.path for leaf in leaves_of([node]) for _, s in leaf.inputs if isinstance(s, Ref)}
     if isinstance(node, Loop):
         paths -= {leaf.path for leaf in leaves_of(node.body)}

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -50,51 +51,21 @@ class Dialect:
 
     name: str  # as --dialect takes it
     sign: Callable[[str, str], object]  # of the text, and of its code
-    shaders: Callable[[Files], Sequence[Shader | Made]] | None = None  # None: our own
-    # No shader: the file runs as it is, as a plain shader.
+    reader: str = ""  # module and function that give its passes; "": our own
+    # No passes: the file runs as it is, as a plain shader.
     is_webgl: bool = False  # its branches are judged as WebGL 2 judges them
+    in_folders: bool = False  # a file may be one of several in a folder
 
+    def shaders(self, files: Files) -> Sequence[Shader | Made]:
+        """Return the passes of a file, or of the folder that it is one of several in."""
+        if self.in_folders:
+            from playground.shader.dialects import shadertoy_files
 
-def _isf(files: Files) -> Sequence[Shader]:
-    from playground.shader.dialects import isf
-
-    return isf.shaders(files)
-
-
-def _export(files: Files) -> Sequence[Shader]:
-    from playground.shader.dialects import shadertoy_files
-
-    return shadertoy_files.shaders(files)
-
-
-def _main(files: Files) -> Sequence[Shader | Made]:
-    from playground.shader.dialects import main
-
-    return main.shaders(files)
-
-
-def _shadertoy(files: Files) -> Sequence[Shader]:
-    """Return the passes of a file, and of the folder where it is one of several."""
-    from playground.shader.dialects import shadertoy, shadertoy_files
-
-    if shadertoy_files.has_more(files):
-        return shadertoy_files.folder_passes(files)
-    return shadertoy.shaders(files)
-
-
-def _vscode(files: Files) -> Sequence[Shader]:
-    from playground.shader.dialects import shadertoy_files, vscode
-
-    return shadertoy_files.folder_passes(files) if shadertoy_files.has_more(files) else vscode.shaders(files)
-
-
-def _without_picture(files: Files) -> Sequence[Shader]:
-    """Return the passes of the folder that a file is one of; raise ``ShaderError`` for one alone."""
-    from playground.shader.dialects import shadertoy, shadertoy_files
-
-    return (
-        shadertoy_files.folder_passes(files) if shadertoy_files.has_more(files) else shadertoy.refused(files)
-    )
+            if shadertoy_files.has_more(files):
+                return shadertoy_files.folder_passes(files)
+        module, _, function = self.reader.partition(".")
+        passes: Sequence[Shader | Made] = getattr(import_module(f"{__name__}.{module}"), function)(files)
+        return passes
 
 
 def _is_isf(text: str, code: str) -> bool:
@@ -103,18 +74,19 @@ def _is_isf(text: str, code: str) -> bool:
 
 
 DIALECTS = (
-    Dialect("isf", _is_isf, _isf),
-    Dialect("export", lambda text, code: _EXPORT.match(text), _export),
+    Dialect("isf", _is_isf, "isf.shaders"),
+    Dialect("export", lambda text, code: _EXPORT.match(text), "shadertoy_files.shaders"),
     Dialect(OWN, lambda text, code: _OWN_PRAGMA.search(code)),
-    Dialect("vscode", lambda text, code: _DIRECTIVE.search(code), _vscode),
+    Dialect("vscode", lambda text, code: _DIRECTIVE.search(code), "vscode.shaders", in_folders=True),
     Dialect(
         "shadertoy",
         lambda text, code: _MAIN_IMAGE.search(code) and not _MAIN.search(code),
-        _shadertoy,
+        "shadertoy.shaders",
         is_webgl=True,
+        in_folders=True,
     ),
-    Dialect("main", lambda text, code: _MAIN.search(code), _main),
-    Dialect(_REFUSED, lambda text, code: _SOUND.search(code), _without_picture),
+    Dialect("main", lambda text, code: _MAIN.search(code), "main.shaders"),
+    Dialect(_REFUSED, lambda text, code: _SOUND.search(code), "shadertoy.refused", in_folders=True),
 )
 """The dialects, in the order in which a text is looked at."""
 
@@ -176,7 +148,7 @@ def read_foreign(
     files = Files(path, root, instead or {}, named=bool(dialect))
     text = files.text()
     chosen = next((d for d in DIALECTS if d.name == dialect), None) if dialect else dialect_of(text)
-    if chosen is None or chosen.shaders is None:
+    if chosen is None or not chosen.reader:
         return None
     shaders = chosen.shaders(files)
     graph = graph_of_shaders(name, shaders, read, root) if shaders else None
