@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from playground.errors import PlaygroundError
 from playground.paths import shown
 from playground.sketch.model import Keyframe
-from playground.sketch.save import ReadOnlySketch, save_keyframes
+from playground.sketch.save import ReadOnlySketch
 from playground.workbench.notices import Notices
+from playground.workbench.saved_keyframes import save_keyframes
 from playground.workbench.session import Session
 
 

@@ -11,7 +11,7 @@ import pytest
 from playground.errors import PlaygroundError, SketchError
 from playground.sketch.load import load
 from playground.sketch.model import Keyframe, Sketch
-from playground.sketch.save import _plain, save_keyframes, with_keyframes
+from playground.workbench.saved_keyframes import _without_lines, save_keyframes, with_keyframes
 
 SKETCH = """format = 1  # ours
 size = 33
@@ -59,7 +59,7 @@ def file(tmp_path: Path) -> Path:
 
 def saved(path: Path, *expected: Keyframe) -> str:
     save_keyframes(load(path), expected)
-    assert _plain(load(path).keyframes) == _plain(sorted(expected, key=lambda k: k.time))
+    assert _without_lines(load(path).keyframes) == _without_lines(sorted(expected, key=lambda k: k.time))
     return path.read_text(encoding="utf-8")
 
 
