@@ -13,21 +13,21 @@ from __future__ import annotations
 
 import math
 import re
-from collections import Counter
+from bisect import bisect_left
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from playground.errors import ShaderError, nearest
-from playground.shader.declarations import expanded, is_declared
+from playground.shader.declarations import Declarations, is_declared
 from playground.shader.dialects.es import rewritten
 from playground.shader.dialects.foreign import Files, Names, Rules, Shader, ShaderChannel
 from playground.shader.dialects.passes import VIEW
 from playground.shader.parameter import Parameter, Sampling, Widget, spell
-from playground.shader.preprocessor import WEBGL_2, live_source
+from playground.shader.preprocessor import WEBGL_2, Token, live_source, readings
 from playground.shader.reserved_names import SIZES
 from playground.shader.source import Line, SourceText
 
-_LOOKUP = re.compile(r"\b(texture(?:Lod|Grad|Cube\w*)?)\s*\(\s*(iChannel\d)\s*,")
+_LOOKUP = re.compile(r"texture(?:Lod|Grad|Cube\w*)?")
 _TYPES = {
     "float": 1,
     "int": 1,
@@ -35,22 +35,13 @@ _TYPES = {
     "bool": 1,
     **{f"{k}vec{n}": n for k in ("", "i", "u") for n in (2, 3, 4)},
 }
-_DECLARED = rf"\b({'|'.join(_TYPES)})\s+(?:[A-Za-z_]\w*\s*(?:=[^;,(){{}}]*)?,\s*)*"
+"""GLSL type → its numbers."""
 _CHANNEL = re.compile(r"iChannel\d")
-_TEXELS = re.compile(r"\b(?:texelFetch\s*\(\s*(?=iChannel\d\s*,\s*ivec3\b)|texture3D\w*\s*\(\s*)(iChannel\d)")
-_FUNCTION = re.compile(r"\b[A-Za-z_]\w*\s+([A-Za-z_]\w*)\s*\(([^(){};]*)\)\s*[{;]")
-_BODY = re.compile(r"\b(?!(?:if|for|while|switch)\b)([A-Za-z_]\w*)\s*\([^(){};]*\)\s*\{")
 _MACRO = re.compile(r"^[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)(.*)$", re.MULTILINE)
 _WORD = re.compile(r"[A-Za-z_]\w*")
-_PARAMETER = re.compile(r"\s*(?:(?:const|in|out|inout|lowp|mediump|highp)\s+)*([A-Za-z_]\w*)")
 _SHAPED = {"samplerCube", "sampler3D"}
-_MAX_CALL_LETTERS = 1_000  # characters
-_MAX_LOOKUPS = 4  # of one channel that are looked at
-_NEAR = 4_000  # characters, in which most names are declared
-_BRACKETS = re.compile(r"\([^()]*\)")
-_SWIZZLE = re.compile(r"\.\s*([xyzw]+|[rgba]+|[stpq]+)$")
-_NAME = re.compile(r"[A-Za-z_]\w*$")
-_CALL = re.compile(r"([A-Za-z_]\w*)\s*\($")
+_MAX_TOKENS = 300  # of an expression whose numbers are counted
+_SWIZZLE = re.compile(r"[xyzw]+|[rgba]+|[stpq]+")
 _GIVEN = {"iResolution": 3, "iMouse": 4, "iTime": 1, "fragCoord": 2, "gl_FragCoord": 4}
 _OF_ARGUMENTS = frozenset(
     "abs sign floor ceil fract mod min max clamp mix step smoothstep normalize reflect refract sin cos tan "
@@ -60,20 +51,31 @@ _OF_ARGUMENTS = frozenset(
 
 def sampler_types(code: str) -> dict[str, str]:
     """Return the channels of a text that are no pictures, each with its type in GLSL."""
-    code = expanded(code)
-    threes, twos = _looked_up(code)
-    types: dict[str, set[str]] = {name: {"sampler2D"} for name in twos}
-    for name, kind in (*_handed(code), *((name, "sampler3D") for name in _TEXELS.findall(code))):
-        types.setdefault(name, set()).add(kind)
+    threes, types, unknown = set[str](), dict[str, set[str]](), set[str]()
+    for tokens in readings(code):
+        reading = _Reading(tokens)
+        for name, width in reading.lookups():
+            if width == 3:
+                threes.add(name)
+            elif width:
+                types.setdefault(name, set()).add("sampler2D")
+            else:
+                unknown.add(name)
+        for name, kind in reading.handed():
+            types.setdefault(name, set()).add(kind)
     kinds = {name: kinds.pop() for name, kinds in types.items() if len(kinds) == 1 and kinds < _SHAPED}
-    return {name: "samplerCube" for name in threes - types.keys()} | kinds
+    return {name: "samplerCube" for name in threes - unknown - types.keys()} | kinds
 
 
 def names_reached(code: str, names: Collection[str]) -> set[str]:
     """Return names, with those that the functions and macros of a text of these names name in turn."""
     bodies: dict[str, set[str]] = {}
-    for name, body in (*_bodies(code), *_MACRO.findall(code)):
+    for name, body in _MACRO.findall(code):
         bodies.setdefault(name, set()).update(_WORD.findall(body))
+    for tokens in readings(code):
+        for function in Declarations(tokens).functions:
+            inside = (token.text for token in tokens[function.opens : function.closes])
+            bodies.setdefault(function.name, set()).update(filter(_WORD.fullmatch, inside))
     names_seen, added = set[str](), set(names)
     while added:
         names_seen |= added
@@ -81,140 +83,104 @@ def names_reached(code: str, names: Collection[str]) -> set[str]:
     return names_seen
 
 
-def _bodies(code: str) -> Iterator[tuple[str, str]]:
-    """Yield each function that a text defines, with what is between its braces."""
-    for match in _BODY.finditer(code):
-        depth, end = 1, match.end()
-        while depth and end < len(code):
-            depth += {"{": 1, "}": -1}.get(code[end], 0)
-            end += 1
-        yield match[1], code[match.end() : end]
+class _Reading:
+    """One reading of a text: its calls, and how many numbers its expressions are."""
 
+    def __init__(self, tokens: Sequence[Token]) -> None:
+        self.declared = declared = Declarations(tokens)
+        self.texts = [token.text for token in tokens]
+        self.functions = (*declared.functions, *declared.prototypes)
+        parameters = [parameter for function in self.functions for parameter in function.parameters]
+        places = [(v.at, v.name, v.type.name) for v in (*declared.variables, *parameters)]
+        places += [(function.opens, f"{function.name}(", function.type.name) for function in self.functions]
+        self.widths: dict[str, list[tuple[int, int]]] = {}  # name, with ( a function → where, its numbers
+        for at, name, kind in sorted(places):
+            if kind in _TYPES:
+                self.widths.setdefault(name, []).append((at, _TYPES[kind]))
 
-def _handed(code: str) -> Iterator[tuple[str, str]]:
-    """Yield the channels that functions are called with, each with the type that the function takes."""
-    functions: dict[str, list[list[str]]] = {}
-    for name, parameters in _FUNCTION.findall(code):
-        kinds = [
-            match[1] if (match := _PARAMETER.match(argument)) else "" for argument in parameters.split(",")
-        ]
-        functions.setdefault(name, []).append(kinds)
-    for name, forms in functions.items():
-        if not any(kind.startswith("sampler") for kinds in forms for kind in kinds):
-            continue
-        looked_at = Counter[str]()
-        for call in re.finditer(rf"\b{name}\s*\(", code):
-            arguments = _arguments(code, call.end())
-            channels = " ".join(argument for argument in arguments if _CHANNEL.fullmatch(argument))
-            looked_at[channels] += 1
-            if not channels or looked_at[channels] > _MAX_LOOKUPS:
+    def lookups(self) -> Iterator[tuple[str, int]]:
+        """Yield the channels that are looked up, each with the numbers of its coordinates, 0 for unknown."""
+        for at, arguments in self._calls(_LOOKUP):
+            if len(arguments) > 1 and (name := self._channel(arguments[0])):
+                yield name, 3 if "Cube" in self.texts[at] else self._width(*arguments[1])
+
+    def handed(self) -> Iterator[tuple[str, str]]:
+        """Yield the channels that functions are called with, each with the type that the function takes."""
+        forms: dict[str, list[list[str]]] = {}
+        for function in self.functions:
+            forms.setdefault(function.name, []).append([p.type.name for p in function.parameters])
+        for at, arguments in self._calls(_WORD):
+            channels = [self._channel(argument) for argument in arguments]
+            fitting = [kinds for kinds in forms.get(self.texts[at], ()) if len(kinds) == len(arguments)]
+            if not any(channels):
                 continue
-            fitting = [kinds for kinds in forms if len(kinds) == len(arguments)]
             if len(fitting) > 1:
-                widths = [_width(argument, code[: call.start()]) for argument in arguments]
+                widths = [self._width(*argument) for argument in arguments]
                 fitting = [
                     kinds
                     for kinds in fitting
                     if all(not w or _TYPES.get(k, w) == w for k, w in zip(kinds, widths, strict=True))
                 ]
-            for at, argument in enumerate(arguments):
-                if _CHANNEL.fullmatch(argument):
-                    yield from ((argument, kinds[at]) for kinds in fitting)
+            for kinds in fitting:
+                yield from ((name, kind) for name, kind in zip(channels, kinds, strict=True) if name)
+            called, texel = self.texts[at], [self.texts[start] for start, _ in arguments[1:2]]
+            is_volume = called.startswith("texture3D") or (called == "texelFetch" and texel == ["ivec3"])
+            if channels[0] and is_volume:
+                yield channels[0], "sampler3D"
 
+    def _calls(self, pattern: re.Pattern[str]) -> Iterator[tuple[int, list[tuple[int, int]]]]:
+        """Yield the index of each call's name, and where its arguments begin and end."""
+        for at in range(len(self.texts) - 2):
+            if self.texts[at + 1] == "(" and pattern.fullmatch(self.texts[at]):
+                yield at, self._parts(at + 2, self.declared.closing(at + 1) or at + 2, ",")
 
-def _looked_up(code: str) -> tuple[set[str], set[str]]:
-    """Return the channels that a text reads at three coordinates and nowhere else, and those read at two."""
-    threes, twos, unknown = Counter[str](), set[str](), set[str]()
-    for match in _LOOKUP.finditer(code):
-        name = match.group(2)
-        if name in twos or threes[name] >= _MAX_LOOKUPS:
-            continue
-        arguments = _arguments(code, match.end())
-        width = (
-            3
-            if "Cube" in match.group(1)
-            else _width(arguments[0] if arguments else "", code[: match.start()])
-        )
-        if width == 3:
-            threes[name] += 1
-        else:
-            (twos if width else unknown).add(name)
-    return threes.keys() - twos - unknown, twos
+    def _channel(self, argument: tuple[int, int]) -> str:
+        """Return the channel that an argument is, "" for another."""
+        start, end = argument
+        return self.texts[start] if end == start + 1 and _CHANNEL.fullmatch(self.texts[start]) else ""
 
+    def _parts(self, start: int, end: int, marks: str) -> list[tuple[int, int]]:
+        """Return the parts of some tokens between operators, or commas, that are in no bracket."""
+        parts: list[tuple[int, int]] = []
+        at = start
+        while at < end:
+            if self.texts[at] in marks and at > start:
+                parts.append((start, at))
+                start = at + 1
+            at = max(self.declared.closing(at) or 0, at) + 1
+        return [*parts, (start, end)]
 
-def _arguments(code: str, start: int) -> list[str]:
-    """Return the texts of a call's arguments from one on, up to the call's bracket; none where it is far."""
-    depth, arguments = 0, list[str]()
-    for index in range(start, min(len(code), start + _MAX_CALL_LETTERS)):
-        depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(code[index], 0)
-        if depth < 0 or (depth == 0 and code[index] == ","):
-            arguments.append(code[start:index].strip())
-            start = index + 1
-        if depth < 0:
-            return arguments
-    return []
-
-
-def _width(text: str, before: str) -> int:
-    """Return how many numbers an expression is; 0 where that is not known."""
-    text = text.strip()
-    parts = _split(text)
-    if len(parts) > 1:
-        return max((_width(part, before) for part in parts), default=0)
-    text = text.lstrip("+-! \n\t")
-    if swizzle := _SWIZZLE.search(text):
-        return len(swizzle.group(1))
-    if text.endswith(")"):
-        start = _opening(text)
-        inside = text[start + 1 : -1]
-        call = _CALL.search(text[: start + 1])
-        if call is None:
-            return _width(inside, before) if start == 0 else 0
-        name = call.group(1)
-        if name in _TYPES:
-            return _TYPES[name]
-        if name == "cross":
-            return 3
+    def _width(self, start: int, end: int) -> int:
+        """Return how many numbers an expression is; 0 where that is not known."""
+        if end - start > _MAX_TOKENS:
+            return 0
+        parts = self._parts(start, end, "+-*/")
+        if len(parts) > 1:
+            return max(self._width(*part) for part in parts)
+        while start < end and self.texts[start] in "+-!":
+            start += 1
+        if start >= end:
+            return 0
+        last = self.texts[end - 1]
+        if self.texts[end - 2] == "." and _SWIZZLE.fullmatch(last):
+            return len(last)
+        if end == start + 1:
+            return self._declared(last, start) or _GIVEN.get(last, 0)
+        opens = next((at for at in range(end - 2, start - 1, -1) if self.declared.closing(at) == end - 1), -1)
+        if last != ")" or opens < 0:
+            return 0
+        name = self.texts[opens - 1] if opens > start else ""
+        if not name:
+            return self._width(opens + 1, end - 1)
         if name in _OF_ARGUMENTS:
-            return max((_width(part, before) for part in _split(inside, ",")), default=0)
-        return _declared(rf"{name}\s*\(", before)
-    if _NAME.fullmatch(text):
-        return _declared(rf"{text}\b(?!\s*\()", before) or _GIVEN.get(text, 0)
-    return 0
+            return max(self._width(*part) for part in self._parts(opens + 1, end - 1, ","))
+        return 3 if name == "cross" else _TYPES.get(name, 0) or self._declared(f"{name}(", opens)
 
-
-def _declared(name: str, before: str) -> int:
-    """Return the width of the latest declaration of a name, also behind others with calls in their values."""
-    near = before[-_NEAR:]
-    matches = list(re.finditer(f"{_DECLARED}{name}", near)) or list(re.finditer(f"{_DECLARED}{name}", before))
-    if not matches:
-        flat = before
-        while (inner := _BRACKETS.sub(lambda match: " " * len(match.group()), flat)) != flat:
-            flat = inner
-        matches = list(re.finditer(f"{_DECLARED}{name}", flat))
-    return _TYPES[matches[-1].group(1)] if matches else 0
-
-
-def _split(text: str, at: str = "+-*/") -> list[str]:
-    """Return the parts of an expression between its outer operators, or its commas."""
-    parts, depth, start = list[str](), 0, 0
-    for index, letter in enumerate(text):
-        depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(letter, 0)
-        is_exponent = letter in "+-" and re.search(r"[\d.][eE]$", text[:index])
-        if depth == 0 and letter in at and text[start:index].strip() and not is_exponent:
-            parts.append(text[start:index])
-            start = index + 1
-    return [*parts, text[start:]]
-
-
-def _opening(text: str) -> int:
-    """Return where the bracket opens that a text ends with; -1 where none does."""
-    depth = 0
-    for index in range(len(text) - 1, -1, -1):
-        depth += {")": 1, "(": -1}.get(text[index], 0)
-        if depth == 0:
-            return index
-    return -1
+    def _declared(self, name: str, before: int) -> int:
+        """Return the numbers of the latest declaration of a name before an index; 0 where there is none."""
+        places = self.widths.get(name, [])
+        index = bisect_left(places, (before,))
+        return places[index - 1][1] if index else 0
 
 
 CHANNELS = tuple(f"iChannel{number}" for number in range(4))
