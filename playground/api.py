@@ -6,8 +6,7 @@ import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from playground.engine.context import open_context
-from playground.engine.engine import Engine
+from playground.engine.engine import Engine, open_engine
 from playground.engine.frame import Frame
 from playground.engine.plain_forms import warn
 from playground.engine.renderer import CACHE_BYTES
@@ -39,8 +38,9 @@ def headless(
 
     Raises ``ContextError`` where there is no OpenGL, for another driver, and for one that it lacks.
     """
-    context = open_context(software=software, device=device)
-    engine = Engine(context, driver=driver, cache_bytes=cache_bytes, owns_context=True, notice=notice)
+    engine = open_engine(
+        software=software, device=device, driver=driver, cache_bytes=cache_bytes, notice=notice
+    )
     if notice is warn:
         engine.warnings.report = _warn
     return engine

@@ -14,7 +14,7 @@ from importlib import metadata
 from typing import TYPE_CHECKING
 
 from playground._version import __version__
-from playground.engine.context import ContextInfo, context_info, open_context
+from playground.engine.context import ContextInfo, context_info, open_context, release_context
 from playground.errors import ContextError
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def examine(*, software: bool = False, device: int | None = None) -> Health:
         trouble = f"moderngl cannot be loaded: {error}"
     else:
         info, limits = context_info(ctx), _limits(ctx)
-        ctx.release()
+        release_context(ctx)
     packages = {name: _version(name) for name in PACKAGES}
     system = f"{platform.system()} {platform.release()} {platform.machine()}"
     display = where_to_show(os.environ, sys.platform)

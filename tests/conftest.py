@@ -12,7 +12,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from playground.engine.context import open_context
+from playground.engine.context import open_context, open_contexts, release_context
 from playground.engine.engine import Engine
 
 from .spread import Spread
@@ -100,6 +100,14 @@ def _strict_numbers() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(autouse=True)
+def _released_contexts() -> Iterator[None]:
+    """See that a test releases the contexts that it opens; a dropped one may be collected by any thread."""
+    before = open_contexts()
+    yield
+    assert open_contexts() <= before, "a context that this test opened was not released"
+
+
 @pytest.fixture
 def trusted_variants(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let fast variants run though they are not verified: what is tested is how they run."""
@@ -111,7 +119,7 @@ def shared_context() -> Iterator[moderngl.Context]:
     """Give one headless context for the whole session."""
     ctx = open_context()
     yield ctx
-    ctx.release()
+    release_context(ctx)
 
 
 @pytest.fixture

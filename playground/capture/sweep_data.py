@@ -21,11 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground._version import __version__
-from playground.api import headless
 from playground.capture.export_textures import kind_of
 from playground.capture.extensions import HEIGHT
 from playground.capture.sweep import Sweep, sweep_of, with_one_of_each
-from playground.engine.engine import Engine
+from playground.engine.engine import Engine, open_engine
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Plan, checked_pixels, view_height
 from playground.engine.process.pool import Pool
@@ -255,7 +254,7 @@ class SweepResult:
 
 def open_service(parent: Parent, software: bool) -> Service:
     """Return the service that draws cases, all of them by one engine."""
-    engine = headless(software=software, notice=silent)
+    engine = open_engine(software=software, notice=silent)
 
     def answer(case: Case) -> SweepResult:
         drawn = draw(engine, case)

@@ -164,7 +164,7 @@ def _open_software(device: int | None) -> moderngl.Context:
     if device is not None or context_info(first).software:
         return _software_or_refuse(first)
     renderer = context_info(first).renderer
-    first.release()
+    release_context(first)
     for index in range(_MAX_DEVICES, -1, -1):
         try:
             ctx = _open(index)
@@ -172,7 +172,7 @@ def _open_software(device: int | None) -> moderngl.Context:
             continue
         if context_info(ctx).software:
             return ctx
-        ctx.release()
+        release_context(ctx)
     raise ContextError(
         f"--software was given, but OpenGL gives {renderer} only; is Mesa's llvmpipe installed?"
     )
@@ -182,7 +182,7 @@ def _software_or_refuse(ctx: moderngl.Context) -> moderngl.Context:
     info = context_info(ctx)
     if info.software:
         return ctx
-    ctx.release()
+    release_context(ctx)
     raise ContextError(f"--software was given, but this device is {info.renderer}")
 
 
@@ -230,8 +230,13 @@ def _destroy_when_dropped(ctx: moderngl.Context) -> None:
     _opened[ctx] = finalizer, made
 
 
+def open_contexts() -> set[moderngl.Context]:
+    """Return the contexts of ``open_context`` that were neither released nor collected."""
+    return set(_opened)
+
+
 def release_context(ctx: moderngl.Context) -> None:
-    """Destroy a context; nothing is left to do when it is dropped."""
+    """Destroy a context; one of ``open_context`` that is only released still counts as dropped."""
     if opened := _opened.pop(ctx, None):
         finalizer, made = opened
         finalizer.detach()
@@ -323,7 +328,7 @@ def report_leak(ctx: moderngl.Context) -> None:
 def abandon(ctx: moderngl.Context) -> None:
     """Release a lost context."""
     with suppress(Exception):  # it may no longer respond
-        ctx.release()
+        release_context(ctx)
 
 
 class _Functions:

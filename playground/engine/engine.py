@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from hashlib import blake2b
 from pathlib import Path
@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.engine.context import ContextInfo
+from playground.engine.context import ContextInfo, open_context, release_context
 from playground.engine.frame import Frame
 from playground.engine.non_finite import NotFinite
 from playground.engine.picture_reduction import reduced
+from playground.engine.plain_forms import warn
 from playground.engine.plan import drawn_size, most_iterations
 from playground.engine.planner import repeated_in
-from playground.engine.renderer import Renderer
+from playground.engine.renderer import CACHE_BYTES, Renderer
 from playground.engine.textures import read_picture, read_texture
 from playground.errors import SketchError
 from playground.sketch.load import opened
@@ -316,3 +317,24 @@ class Engine(Renderer):
         """
         self._context.check()
         self.cache.drop_unused()
+
+
+def open_engine(
+    *,
+    software: bool = False,
+    device: int | None = None,
+    driver: str = "auto",
+    cache_bytes: int = CACHE_BYTES,
+    notice: Callable[[str], None] = warn,
+) -> Engine:
+    """Open an engine on a context of its own, which ``release`` destroys.
+
+    ``software`` and ``device`` are those of ``open_context``, the rest those of ``Engine``. Raises
+    ``ContextError`` as both do; no context stays open then.
+    """
+    context = open_context(software=software, device=device)
+    try:
+        return Engine(context, driver=driver, cache_bytes=cache_bytes, owns_context=True, notice=notice)
+    except BaseException:
+        release_context(context)
+        raise

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from functools import partial
 
-from playground.engine.context import ContextInfo, context_info, open_context
-from playground.engine.engine import Engine
+from playground.engine.context import ContextInfo
+from playground.engine.engine import open_engine
 from playground.engine.plain_forms import silent
 from playground.engine.process.pool import OPEN, Limits, Pool, PoolOwner
 from playground.engine.process.worker import Parent, Service
@@ -84,10 +84,9 @@ class RendererProcess(PoolOwner):
 def open_service(parent: Parent, renderer: str) -> Service:
     """Open a context and an engine on it: "software", "any", or "either", the first where it is to be had."""
     try:
-        context = open_context(software=renderer != "any")
+        engine = open_engine(software=renderer != "any", notice=silent)
     except ContextError:
         if renderer != "either":
             raise
-        context = open_context()
-    engine = Engine(context, owns_context=True, notice=silent)
-    return Service(partial(render_shot, engine), context_info(context))
+        engine = open_engine(notice=silent)
+    return Service(partial(render_shot, engine), engine.info)

@@ -13,8 +13,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from playground.engine.context import open_context
-from playground.engine.engine import Engine
+from playground.engine.engine import Engine, open_engine
 from playground.sketch.load import load
 
 SIZES = (257, 513, 1025)
@@ -55,7 +54,7 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("sizes", type=int, nargs="*", default=SIZES, metavar="SIZE", help="texels a side")
-    with Engine(open_context(), owns_context=True) as engine, tempfile.TemporaryDirectory() as name:
+    with open_engine() as engine, tempfile.TemporaryDirectory() as name:
         print(engine.info.renderer)
         for size in parser.parse_args().sizes:
             gullies = cost(engine, Path(name), "erosion/gullies", "height", size, 10240.0)

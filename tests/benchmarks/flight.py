@@ -11,8 +11,7 @@ import statistics
 import sys
 import time
 
-from playground.engine.context import open_context
-from playground.engine.engine import Engine
+from playground.engine.engine import open_engine
 from playground.flight.craft import Controls
 from playground.flight.flight import CACHE_BYTES, Flight
 from playground.sketch.load import load
@@ -36,8 +35,7 @@ def main() -> int:
     parser.add_argument("--size", type=int, nargs=2, default=SIZE, metavar=("W", "H"), help="pixels")
     width, height = parser.parse_args().size
     size = width, height
-    ctx = open_context()
-    with Engine(ctx, cache_bytes=CACHE_BYTES, owns_context=True) as engine:
+    with open_engine(cache_bytes=CACHE_BYTES) as engine:
         print(f"{engine.info.renderer}; pictures of {width} x {height}, 1 sample")
         with Flight(engine, load("flight"), samples=1) as flight:
             first = milliseconds(lambda: flight.parts.tend(1), engine)

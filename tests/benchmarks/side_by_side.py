@@ -21,7 +21,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from playground.engine.context import open_context
+from playground.engine.context import open_context, release_context
 from playground.engine.engine import Engine
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
@@ -151,7 +151,7 @@ class Bench:
     def __exit__(self, *error: object) -> None:
         for engine in self.engines.values():
             engine.release()
-        self.ctx.release()
+        release_context(self.ctx)
         shutil.rmtree(self.folder)
 
     def sketch(self, text: str) -> Sketch:

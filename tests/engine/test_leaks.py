@@ -21,8 +21,9 @@ from numpy.typing import NDArray
 
 from playground.api import headless
 from playground.data.image_files import write_png
-from playground.engine.context import open_context
+from playground.engine.context import open_context, open_contexts, release_context
 from playground.engine.engine import Engine
+from playground.errors import ContextError
 
 from ..sketch_texts import passes
 
@@ -171,6 +172,7 @@ import moderngl
 import numpy as np
 import playground
 from playground.engine.engine import Engine
+from playground.errors import ContextError
 from playground.engine.context import open_context
 sketch = playground.load(sys.argv[1])
 one = playground.headless()
@@ -222,7 +224,7 @@ def other() -> Iterator[Textures]:
     """Give textures and buffers in a second context, which is current."""
     ctx = open_context()
     yield Textures(ctx)
-    ctx.release()
+    release_context(ctx)
 
 
 def dropped(engine: Engine) -> None:
@@ -241,6 +243,14 @@ def test_a_dropped_engine_frees_nothing_of_others(sketch, other, driver):
         del engine
         other.assert_intact()
         assert context() is None, "nothing holds it"
+
+
+def test_an_engine_that_cannot_be_opened_leaves_no_context():
+    before = open_contexts()
+    with pytest.raises(ContextError, match="driver 'cuda'") as caught:
+        headless(driver="cuda")
+    assert open_contexts() == before
+    assert caught.traceback, "whose frames still refer to the context"
 
 
 def test_a_texture_outlives_its_dropped_engine(sketch, other):
@@ -277,6 +287,8 @@ def test_dropped_engines_do_not_pile_up(sketch):
         assert sum(context() is not None for context in contexts) <= 4
     finally:
         gc.enable()
+        del engine
+        gc.collect()  # here, before another thread happens to
 
 
 @pytest.mark.parametrize("mode", ["auto", "context_gc", None])
@@ -295,7 +307,7 @@ def test_an_engine_dropped_on_a_users_context_is_reported(sketch, other, mode):
         assert [(w.category, "release()" in str(w.message)) for w in caught] == [(ResourceWarning, True)]
     with Engine(ctx) as engine:
         np.testing.assert_array_equal(engine.render(sketch, size=(64, 36)).array, first)
-    ctx.release()
+    release_context(ctx)
 
 
 def test_an_engine_dropped_in_another_thread_waits(sketch, other):

@@ -520,13 +520,12 @@ def test_no_texel_of_another_s_work_is_left_in_a_picture(ctx, monkeypatch):
     assignment = next(x for x in assignments_of([read_lesson("first_height")]) if x.task.name == "wave")
     made = []
 
-    def engine(context, *, owns_context, cache_bytes, notice):
-        made.append(Engine(context, cache_bytes=2**21, notice=notice))  # full after two works
+    def engine(*, software, device, cache_bytes, notice):
+        made.append(Engine(ctx, cache_bytes=2**21, notice=notice))  # full after two works
         made[0].runner.pool.limit = 2**26
         return made[0]
 
-    monkeypatch.setattr(handler, "open_context", lambda **choice: ctx)
-    monkeypatch.setattr(handler, "Engine", engine)
+    monkeypatch.setattr(handler, "open_engine", engine)
     judge = handler.open_service(Silent(), handler.Options(("first_height",), "en")).answer
     right = answer_text(assignment.task)
     for number in range(3):
@@ -543,13 +542,12 @@ def test_no_texel_of_another_s_work_is_left_in_a_picture(ctx, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_challenge_has_a_score_in_its_column_and_no_points(ctx, any_engine, monkeypatch):
+def test_a_challenge_has_a_score_in_its_column_and_no_points(any_engine, monkeypatch):
     """Its picture has 100, what is handed out 0, between them it grows with the slider that was moved."""
     assignment = next(
         x for x in assignments_of([read_lesson("slopes", "fr")]) if isinstance(x.task, Challenge)
     )
-    monkeypatch.setattr(handler, "open_context", lambda **choice: ctx)
-    monkeypatch.setattr(handler, "Engine", lambda context, **rest: any_engine)
+    monkeypatch.setattr(handler, "open_engine", lambda **choice: any_engine)
     judge = handler.open_service(Silent(), handler.Options(("slopes",), "fr")).answer
     begin, expected = (
         values_of(scene.sketch)["light.sun"] for scene in (assignment.task.begin, assignment.task.scene)

@@ -11,8 +11,8 @@ import numpy as np
 import PIL.Image
 import pytest
 
+from playground.api import headless
 from playground.data.image_files import read_png
-from playground.engine.context import open_context
 from playground.errors import DataError
 from playground.shots.adapters import taken
 from playground.shots.levels import levels_of
@@ -133,8 +133,9 @@ def uncollected() -> Iterator[None]:
 @pytest.mark.parametrize(("kind", "samples"), [("f1", 0), ("f4", 0), ("nu2", 0), ("f1", 4), ("f4", 4)])
 def test_what_moderngl_drew_has_its_top_row_first(kind: str, samples: int) -> None:
     """The north half is cleared to another colour: it is what comes first."""
-    with open_context(software=True) as context:
-        size = (6, 4)
+    with headless(software=True) as engine, headless(software=True) as beside:
+        context, size = engine.ctx, (6, 4)
+        context.__enter__()
         attachment = (
             context.renderbuffer(size, 4, samples=samples, dtype=kind)
             if samples
@@ -143,8 +144,8 @@ def test_what_moderngl_drew_has_its_top_row_first(kind: str, samples: int) -> No
         framebuffer = context.framebuffer([attachment])
         framebuffer.clear(1.0, 0.5, 0.0, 1.0)
         framebuffer.clear(0.0, 0.0, 1.0, 1.0, viewport=(0, 2, 6, 2))
-        other = open_context(software=True)  # is current now, and has a framebuffer of that number
-        other.simple_framebuffer(size).clear(0.3, 0.3, 0.3)
+        beside.ctx.__enter__()  # is current now, and has a framebuffer of that number
+        beside.ctx.simple_framebuffer(size).clear(0.3, 0.3, 0.3)
         result = taken(framebuffer)
         assert result.context is context
         pixels = levels_of(result.values)[0]

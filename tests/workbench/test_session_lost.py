@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from playground.engine.context import abandon, open_context
-from playground.engine.engine import Engine
+from playground.engine.context import abandon
+from playground.engine.engine import open_engine
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
 from playground.workbench.reload_stages import ReloadStage
@@ -42,7 +42,7 @@ class Machine:
         (folder / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
         (folder / "sketch.toml").write_text(SKETCH, encoding="utf-8")
         self.is_lost = False
-        self.engine = Engine(open_context(), owns_context=True)
+        self.engine = open_engine()
         self.session = Session(self.engine, folder, is_lost=lambda: self.is_lost)
 
     def picture(self) -> np.ndarray:
@@ -55,7 +55,7 @@ class Machine:
     def lose(self) -> None:
         """Take the context away and give the session another."""
         abandon(self.engine.ctx)
-        self.engine = Engine(open_context(), owns_context=True)
+        self.engine = open_engine()
         self.session.rebuild(self.engine)
         self.is_lost = False
 

@@ -15,8 +15,8 @@ import numpy as np
 from PIL import Image
 
 from playground.allowed_files import leads_outside
-from playground.engine.context import ContextInfo, context_info, open_context
-from playground.engine.engine import Engine
+from playground.engine.context import ContextInfo
+from playground.engine.engine import Engine, open_engine
 from playground.engine.plain_forms import silent
 from playground.engine.process.child import Outcome
 from playground.engine.process.pool import Limits, Pool, PoolOwner
@@ -161,11 +161,10 @@ class Request:
 
 def open_service(parent: Parent, options: Options) -> Service:
     """Open a context and an engine on it, and read the lessons."""
-    context = open_context(software=options.software, device=options.device)
-    engine = Engine(context, owns_context=True, cache_bytes=_CACHE, notice=silent)
+    engine = open_engine(software=options.software, device=options.device, cache_bytes=_CACHE, notice=silent)
     engine.runner.pool.clears = True  # a text that gets around writing a texel shows nobody else's there
     lessons = [read_lesson(name, options.language) for name in options.lessons]
-    return Service(_Handler(parent, engine, options, assignments_of(lessons)).answer, context_info(context))
+    return Service(_Handler(parent, engine, options, assignments_of(lessons)).answer, engine.info)
 
 
 class _Handler:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from playground.engine.context import open_context
-from playground.engine.engine import Engine
+from playground.engine.engine import Engine, open_engine
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Step
 from playground.engine.process.child import Outcome
@@ -106,7 +105,7 @@ def _judgement(request: Any, outcome: Outcome) -> Verdict | Match | Ends:
 def open_service(parent: Parent, options: tuple[bool, int | None]) -> Service:
     """Open a context: on a software renderer, on which device."""
     software, device = options
-    engine = Engine(open_context(software=software, device=device), owns_context=True, notice=silent)
+    engine = open_engine(software=software, device=device, notice=silent)
 
     def begin(step: Step) -> None:
         engine.ctx.finish()  # the time of a step is its own
