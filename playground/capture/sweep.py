@@ -13,13 +13,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from playground.errors import ParameterError, nearest
-from playground.shader.parameter import coerce, expected, is_whole, length_of, read_whole, write
+from playground.shader.parameter import coerce, components, expected, is_whole, length_of, read_whole, write
 from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve, value_of, values_of
 from playground.sketch.model import Parameter, Sketch, Value
 
 DEFAULT_STEPS = 9
 MAX_PICTURES = 400
-_PARTS = {"direction": ("azimuth", "elevation"), "colour": tuple("rgba")}
 
 
 @dataclass(frozen=True)
@@ -98,15 +97,11 @@ def sweep_of(sketch: Sketch, path: str, arguments: object) -> Sweep:
         raise ParameterError(f"sweep {path}: expected one value or more; there is none")
     names: tuple[str, ...] = ()
     if part is None and isinstance(values[0], tuple):
-        names = ("x", "y") if parameter is None else _parts_of(parameter)
+        names = ("x", "y") if parameter is None else components(parameter)
     kind = parameter.widget.kind if parameter is not None else ""
     unit = parameter.unit if parameter is not None else {"relief": "m", "base_elevation": "m"}.get(path, "")
     texts = kind in ("menu", "file")
     return Sweep(path, whole_path, part, tuple(values), tuple(labels), names, unit, texts)
-
-
-def _parts_of(parameter: Parameter) -> tuple[str, ...]:
-    return _PARTS.get(parameter.widget.kind, tuple("xyzw"))[: length_of(parameter.type)]
 
 
 def _target(sketch: Sketch, path: str) -> tuple[str, int | None, Parameter | None]:
@@ -121,7 +116,7 @@ def _target(sketch: Sketch, path: str) -> tuple[str, int | None, Parameter | Non
             continue
         if whole == path:
             return path, None, parameter
-        names = _parts_of(parameter)
+        names = components(parameter)
         if last in names and len(names) > 1:
             return around, names.index(last), parameter
         hint = nearest(last, names if len(names) > 1 else ())

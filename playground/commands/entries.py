@@ -11,7 +11,7 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, SKETCHES
-from playground.shader.parameter import WIDGETS, write
+from playground.shader.parameter import write
 from playground.sketch.assign import Settable, Shown, shown_parameters, value_of, values_of
 from playground.sketch.find import is_part, shipped_names, shipped_sketches
 from playground.sketch.load import load, load_with
@@ -38,7 +38,7 @@ class Choice:
     def range(self) -> str:
         """What values there may be, in a few words; "" where anything of its type will do."""
         widget = self.parameter.widget
-        if words := ", ".join(widget.choices) or WIDGETS[widget.kind].listed:
+        if words := ", ".join(widget.choices) or widget.facts.listed:
             return words
         if widget.low is None or widget.high is None:
             return ""

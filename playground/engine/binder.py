@@ -25,7 +25,7 @@ from playground.engine.textures import FACES, Shaped, check_size, copied, drain,
 from playground.errors import ContextError
 from playground.memo import Memo
 from playground.paths import shown
-from playground.shader.parameter import srgb_to_linear
+from playground.shader.colours import srgb_to_linear
 from playground.shader.reserved_names import MATCHES, PRESSED, TOWARDS, UNWIRED, WINDOW, WIRED
 from playground.sketch.model import Input, Kernel, Parameter, Sampling, Value
 

@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.shader.parameter import linear_to_srgb, srgb_to_linear
+from playground.shader.colours import linear_to_srgb, srgb_to_linear
 
 
 @cache

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from playground.sketch.assign import part_names
+from playground.shader.parameter import part_names
 from playground.workbench.control.controllers import Controllers
 from playground.workbench.parameter_list import Item
 

@@ -23,9 +23,7 @@ from playground.workbench.parameter_list import Item, Values
 from playground.workbench.session import Session
 from playground.workbench.typed_values import read_typed
 
-TYPED = frozenset({"number", "slider", "log_slider", "angle", "divider"})
-"""Widgets that become a field at a double click, or a click with Ctrl."""
-
+_TYPED = "numbers"  # the control that becomes a field at a double click, or a click with Ctrl
 _MENU = "parameter"
 _PRESSED = imgui.HoveredFlags_.allow_when_blocked_by_active_item.value  # as while the lock is pressed
 
@@ -54,7 +52,7 @@ class Rows:
             else:
                 new = draw_value(parameter, value, WidgetSlot(item.label, self.look.scale, folder))
                 clicked = imgui.is_item_hovered() and imgui.is_mouse_clicked(0)
-                if parameter.widget.kind in TYPED and clicked and self._is_typing(item):
+                if parameter.widget.facts.control == _TYPED and clicked and self._is_typing(item):
                     new = None
                 if new is not None and parameter.widget.kind == "button":
                     self.session.press(path)

@@ -6,14 +6,14 @@ a vector are one below the other, so that each has a name and room for its numbe
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
-from playground.shader.parameter import is_whole
+from playground.shader.parameter import is_whole, part_names
+from playground.shader.widgets import fraction_of
 from playground.sketch.model import Parameter
 from playground.workbench.number_format import format_of, snapped, unit_of
 
@@ -22,14 +22,6 @@ _LOGARITHMIC = imgui.SliderFlags_.logarithmic.value
 _PLAIN = imgui.SliderFlags_.no_input.value  # the panel has a field of its own, which reads expressions
 _WHOLE = 2**31 - 1
 _EDGE = 2.0  # imgui keeps a knob so far from the slider's ends
-_XYZW = ("x", "y", "z", "w")
-
-
-def part_names(parameter: Parameter) -> tuple[str, ...]:
-    """Return what the parts of a vector are called; nothing for a scalar."""
-    if not isinstance(parameter.default, tuple):
-        return ()
-    return parameter.parts or _XYZW[: len(parameter.default)]
 
 
 def draw_numbers(parameter: Parameter, numbers: Sequence[float], label: str) -> list[float] | None:
@@ -75,7 +67,7 @@ def _slide(parameter: Parameter, number: float, low: float, high: float, label: 
         ends = max(int(low), -_WHOLE), min(int(high), _WHOLE)
         whole = slide_whole(label, int(number), ends, lambda n: form % n, typed=False)
         return None if whole is None else float(whole)
-    logarithmic = parameter.widget.kind == "log_slider"
+    logarithmic = parameter.widget.facts.is_log
     return slide(label, number, (low, high), form, logarithmic=logarithmic, typed=False)
 
 
@@ -96,15 +88,8 @@ def slide(
     flags = _CLAMP | (_LOGARITHMIC if logarithmic else 0) | (0 if typed else _PLAIN)
     with _hidden_number(typed) as hidden:
         changed, now = imgui.slider_float(label, number, low, high, form, flags)
-    held = min(max(now, low), high)
-    if high <= low:  # nothing to choose from, as for a brush while there is no terrain
-        share = 0.0
-    elif logarithmic:
-        share = math.log(held / low) / math.log(high / low)
-    else:
-        share = (held - low) / (high - low)
-    if hidden:
-        _write_number(form % now, share)
+    if hidden:  # at 0 where there is nothing to choose from, as for a brush while there is no terrain
+        _write_number(form % now, fraction_of(min(max(now, low), high), low, high, log=logarithmic))
     return now if changed else None
 
 

@@ -1,7 +1,7 @@
 """Draw a parameter as its annotation says, and give back what the user makes of it.
 
-One function a widget, by its name in ``CONTROLS``, which has an entry for each row of ``WIDGETS`` in
-``shader/parameter.py``. Each returns the new value, or None while nothing changed.
+One function a control, by its name in ``CONTROLS``: those of ``shader/widgets.json``. Each returns the new
+value, or None while nothing changed.
 """
 
 from __future__ import annotations
@@ -19,18 +19,10 @@ from playground.errors import DataError
 from playground.live import dome, theme
 from playground.live.draw import choose
 from playground.live.panel_rows import fitting_choice
-from playground.live.sliders import draw_numbers, part_names
+from playground.live.sliders import draw_numbers
 from playground.paths import shown
-from playground.shader.parameter import (
-    WIDGETS,
-    expected,
-    is_whole,
-    length_of,
-    linear_to_srgb,
-    srgb_to_linear,
-    tidied,
-    write,
-)
+from playground.shader.colours import linear_to_srgb, srgb_to_linear
+from playground.shader.parameter import expected, is_whole, length_of, part_names, tidied, write
 from playground.sketch.model import Parameter, Value
 from playground.workbench.number_format import unit_of
 
@@ -54,20 +46,20 @@ Draw = Callable[[Parameter, Value, WidgetSlot], "Value | None"]
 
 def draw_value(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
     """Draw the widget of a parameter over the width that is left; return a new value, or None."""
-    return CONTROLS[parameter.widget.kind](parameter, value, slot)
+    return CONTROLS[parameter.widget.facts.control](parameter, value, slot)
 
 
 def explanation(parameter: Parameter, path: str) -> str:
     """Return a tooltip: what a parameter is, takes, is by default, where it is declared, its path."""
     lines = [parameter.tooltip] if parameter.tooltip else []
-    in_words = parameter.widget.choices or WIDGETS[parameter.widget.kind].expects
+    in_words = parameter.widget.choices or parameter.widget.facts.expects
     unit = "" if in_words else unit_of(parameter)
     default = write(parameter, parameter.default) or "none"
     lines.append(f"Takes {expected(parameter)}{unit}; by default {default}{unit}.")
     if parameter.step:
         lines.append(f"In steps of {parameter.step:g}{unit}.")
     if names := part_names(parameter):
-        if parameter.widget.kind in ("slider", "number"):
+        if parameter.widget.facts.control == "numbers":
             lines.append(f"Its parts: {', '.join(names)}.")
     declared = f"uniform {parameter.type} {parameter.name}"
     lines.append(f"{declared}, {shown(parameter.file)}:{parameter.line}" if parameter.file else declared)
@@ -77,7 +69,7 @@ def explanation(parameter: Parameter, path: str) -> str:
 # ── numbers ──────────────────────────────────────────────────────────────────
 
 
-def _slider(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
+def _numbers(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
     data = draw_numbers(parameter, _as_list(value), slot.label)
     return None if data is None else _back(parameter, data)
 
@@ -282,11 +274,7 @@ def _back(parameter: Parameter, numbers: Sequence[float]) -> Value:
 
 
 CONTROLS: dict[str, Draw] = {
-    "number": _slider,
-    "slider": _slider,
-    "log_slider": _slider,
-    "angle": _slider,
-    "divider": _slider,
+    "numbers": _numbers,
     "direction": _direction,
     "colour": _colour,
     "menu": _menu,
@@ -295,4 +283,4 @@ CONTROLS: dict[str, Draw] = {
     "point": _point,
     "file": _file,
 }
-"""How each widget is drawn, by its name in an annotation."""
+"""How each control is drawn."""

@@ -14,7 +14,7 @@ from playground.errors import DataError
 from playground.lsp.documents import Document, Documents
 from playground.lsp.shader import shader_of
 from playground.lsp.sketch_text import SketchText
-from playground.shader.parameter import parse_hex, to_hex
+from playground.shader.colours import parse_hex, to_hex
 from playground.sketch.model import Parameter
 
 _LITERAL = re.compile(r"(vec[34])\s*\(([^()]*)\)")

@@ -20,8 +20,8 @@ from playground.shader.kernel import PRAGMAS, options_of
 from playground.shader.libraries import libraries
 from playground.shader.options import FORMATS, Option
 from playground.shader.outline import code_of
-from playground.shader.parameter import WIDGETS
 from playground.shader.reserved_names import GLSL_WORDS
+from playground.shader.widgets import WIDGETS
 
 Kind = types.CompletionItemKind
 _INCLUDE = re.compile(r"\s*#\s*include\s*[\"<]([^\">]*)$")
@@ -144,7 +144,7 @@ def _annotation(before: str, glsl_type: str) -> list[types.CompletionItem]:
     items = []
     if not re.search(r"\w", written.replace(re.split(r"\W", written)[-1], "", 1)):
         items = [
-            item(name, Kind.Keyword, kind.takes, order=1)
+            item(name, Kind.Keyword, kind.takes, kind.about, order=1)
             for name, kind in WIDGETS.items()
             if name != "number" and glsl_type in kind.types
         ]

@@ -33,7 +33,7 @@ from playground.shader.kernel import (
     options_of,
 )
 from playground.shader.options import FORMATS, SIZE, Scope, check_expression
-from playground.shader.parameter import SCALARS, VECTORS, WIDGETS, Follows, Parameter, Sampling, Value, Widget
+from playground.shader.parameter import Follows, Parameter, Sampling
 from playground.shader.reserved_names import (
     DRIVER_BOUND,
     GIVEN,
@@ -47,6 +47,7 @@ from playground.shader.reserved_names import (
     WIRED,
 )
 from playground.shader.source import Line, SourceText
+from playground.shader.widgets import SCALARS, VECTORS, WIDGETS, Value, Widget
 
 _ARGUMENT = re.compile(r'\s*(?:(\w+)\s*=\s*)?("(?:[^"\\]|\\.)*"|[^,()"]+)\s*(,|$)')
 _WORD = re.compile(r"\s*([A-Za-z_]\w*)(\s*\()?")
@@ -393,7 +394,8 @@ def _parts(name: str, glsl_type: str, kind: str, calls: Calls, line: Line) -> tu
     count = values.length_of(glsl_type)
     if not parts:
         return ()
-    if kind not in ("slider", "number"):
+    facts = WIDGETS[kind]
+    if facts.control != "numbers" or not facts.has_vectors:
         raise line.error(f"parts is for a vector of numbers; '{name}' is a {kind}")
     if count == 1 or len(parts) != count or len(set(parts)) < count or not all(parts):
         example = ", ".join(f'"{part}"' for part in ("west", "east", "south", "north")[:count])
@@ -407,7 +409,7 @@ def _preview(parameter: Parameter, calls: Calls, line: Line) -> Value | None:
     if "preview" not in calls:
         return None
     result = calls["preview"]
-    if parameter.widget.kind not in ("menu", "slider", "log_slider") or len(result) != 1:
+    if parameter.widget.facts.takes not in ("choices", "range") or len(result) != 1:
         example = 'preview("fast"), or a slider\'s number'
         raise line.error(f"preview of '{parameter.name}': expected one choice of a menu, as {example}")
     try:
@@ -432,8 +434,8 @@ def _widget(name: str, kind: str, arguments: list[str], line: Line) -> Widget:
     facts = WIDGETS[kind]
     if facts.takes == "range" or (facts.takes == "range or nothing" and arguments):
         low, high = _numbers(name, kind, arguments, 2, line)
-        if kind == "log_slider" and low <= 0:
-            raise line.error(f"log_slider of '{name}': its range must lie above 0")
+        if facts.is_log and low <= 0:
+            raise line.error(f"{kind} of '{name}': its range must lie above 0")
         return Widget(kind, low, high)
     if facts.takes == "ranges" and arguments:
         pairs = [arguments[:2], arguments[2:]] if len(arguments) > 2 else [arguments]

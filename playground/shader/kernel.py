@@ -37,9 +37,10 @@ from playground.shader.options import (
     read_stages,
     read_warnings,
 )
-from playground.shader.parameter import AS_IT_IS, Parameter, Sampling, Value
+from playground.shader.parameter import AS_IT_IS, Parameter, Sampling
 from playground.shader.reserved_names import GIVEN, PLAIN_UNIFORMS
 from playground.shader.source import Line, SourceText
+from playground.shader.widgets import Value
 
 VARIANTS = ("compute", "passes", "draws")
 """The kinds of fast variants: a ``.comp`` needs compute shaders, a ``.fast.toml`` does not.

@@ -1,186 +1,24 @@
-"""Parameters: their widgets, colours, and values read from TOML, the command line, and Python.
-
-``WIDGETS`` has a row for each widget: types, arguments, range, unit. How the window draws it is another
-table, ``CONTROLS`` in ``live/widgets.py``; a test compares the two.
+"""Parameters, and their values read from TOML, the command line, and Python.
 
 ``coerce`` makes any value Python's own type for the parameter's GLSL type, checked against the range that
 its annotation gives.
-
-Every colour is linear inside the playground; encoded ones live only in files, in TOML and on the screen.
-There is no other colour space here, and no tone mapping (that is `view/present`).
-Source: IEC 61966-2-1:1999 with Amendment 1 (2003), clause 5.2: the exact piecewise curve, not the power 2.2.
-Its printed thresholds (0.04045 and 0.0031308) leave a step of less than 1e-7 between the pieces, far below
-the 1/255 of a byte.
 """
 
 from __future__ import annotations
 
 import math
 import os
-import re
 import reprlib
 import struct
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from playground.errors import DataError, ParameterError, nearest
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
-
-
-SCALARS = ("float", "int", "uint", "bool")
-VECTORS = ("vec2", "vec3", "vec4", "ivec2", "ivec3", "ivec4", "uvec2", "uvec3", "uvec4")
-_NUMBERS = ("float", "int", "uint", *VECTORS)
-
-
-@dataclass(frozen=True, slots=True)
-class Kind:
-    """What is true of every parameter with one widget."""
-
-    types: tuple[str, ...]  # GLSL types that it may be given to
-    takes: str = ""
-    """In brackets: "" nothing, range, "range or nothing", ranges, "raw or nothing", choices, sampling."""
-    range: tuple[float, float] | None = None  # of each number, where the brackets give none
-    expects: str = ""  # a value, in words; "": numbers of the type, in the range
-    listed: str = ""  # a value, in a word or two of a table; "": its range
-    unit: str = ""  # where the annotation gives none
-
-    @property
-    def bare(self) -> bool:
-        """Whether it may be written without brackets."""
-        return self.takes not in ("range", "choices")
-
-
-WIDGETS: dict[str, Kind] = {
-    "number": Kind(_NUMBERS),  # what has no widget; no word of an annotation
-    "slider": Kind(_NUMBERS, "range"),
-    "log_slider": Kind(("float", "int", "uint"), "range"),
-    "angle": Kind(("float",), "range or nothing", range=(-360.0, 360.0), unit="°"),
-    "divider": Kind(
-        ("float",),
-        range=(0.0, 1.0),
-        expects="a fraction of the picture's width, from 0 to 1",
-        listed="0 to 1",
-    ),
-    "direction": Kind(
-        ("vec2",),
-        expects="azimuth and elevation in degrees, as 135,25",
-        listed="azimuth, elevation",
-        unit="°",
-    ),
-    "colour": Kind(("vec3", "vec4"), "raw or nothing", expects="a colour, as #8a9a5b"),
-    "menu": Kind(("int",), "choices"),
-    "checkbox": Kind(("bool",), expects="true or false"),
-    "button": Kind(("bool",), expects="true or false", listed="true while pressed"),
-    "point": Kind(("vec2",), "ranges", range=(0.0, 1.0)),
-    "file": Kind(("sampler2D",), "sampling", expects="the path of a file"),
-}
-"""By the word that asks for it in an annotation."""
-
-
-_HEX = re.compile(r"#(?:[0-9a-f]{3}|[0-9a-f]{6}|[0-9a-f]{8})", re.IGNORECASE | re.ASCII)
-
-
-def srgb_to_linear(encoded: ArrayLike) -> NDArray[np.float64]:
-    """Decode sRGB to linear light, component by component.
-
-    `encoded` is 0..1, any shape (divide bytes by 255 first); the result is
-    float64 of that shape. Below 0 the straight piece goes on, above 1 the
-    curve does. Alpha is never encoded: leave it out.
-    """
-    import numpy as np  # a tenth of a second, which to list the sketches need not cost
-
-    c = np.asarray(encoded, dtype=np.float64)
-    curve = ((np.maximum(c, 0.04045) + 0.055) / 1.055) ** 2.4
-    return np.asarray(np.where(c <= 0.04045, c / 12.92, curve))
-
-
-def linear_to_srgb(linear: ArrayLike) -> NDArray[np.float64]:
-    """Encode linear light as sRGB: the inverse of `srgb_to_linear`, same shapes."""
-    import numpy as np  # as above
-
-    c = np.asarray(linear, dtype=np.float64)
-    curve = 1.055 * np.maximum(c, 0.0031308) ** (1.0 / 2.4) - 0.055
-    return np.asarray(np.where(c <= 0.0031308, 12.92 * c, curve))
-
-
-def parse_hex(text: str, *, raw: bool = False) -> tuple[float, ...]:
-    """Read `"#rgb"`, `"#rrggbb"` or `"#rrggbbaa"` as linear floats, 0..1; `raw`: not decoded.
-
-    Returns three numbers, or four where an alpha was written (it is not decoded:
-    alpha is a coverage, not a light).
-
-    Raises:
-        DataError: the text is not such a colour.
-    """
-    number = text.strip() if isinstance(text, str) else ""
-    if not _HEX.fullmatch(number):
-        raise DataError(f"{text!r} is not a colour; expected '#rrggbb', '#rgb' or '#rrggbbaa', as '#87a96b'")
-    digits = number[1:]
-    if len(digits) == 3:
-        digits = "".join(2 * d for d in digits)
-    values = [byte / 255.0 for byte in bytes.fromhex(digits)]
-    return tuple(values) if raw else (*map(_decoded, values[:3]), *values[3:])
-
-
-def to_hex(linear: Sequence[float], *, raw: bool = False) -> str:
-    """Write a linear colour of three or four numbers as `"#rrggbb"` or `"#rrggbbaa"`; `raw`: not encoded.
-
-    Components outside 0..1 are clamped. `to_hex(parse_hex(text))` is `text` in
-    lower case and full length.
-
-    Raises:
-        DataError: not three or four finite numbers.
-    """
-    values = [float(v) for v in linear]
-    if len(values) not in (3, 4) or not all(map(math.isfinite, values)):
-        raise DataError(f"{tuple(values)} is not a colour; expected three or four finite numbers from 0 to 1")
-    clamped = [min(max(v, 0.0), 1.0) for v in values]
-    shown = clamped if raw else [*map(_encoded, clamped[:3]), *clamped[3:]]
-    return "#" + bytes(round(255.0 * v) for v in shown).hex()
-
-
-def _decoded(c: float) -> float:
-    return c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
-
-
-def _encoded(c: float) -> float:
-    return c * 12.92 if c <= 0.0031308 else 1.055 * c ** (1.0 / 2.4) - 0.055
-
-
-Value = float | int | bool | str | tuple[float, ...] | tuple[int, ...]
-"""A parameter's value: a scalar, a tuple for a vector, or a path for a file."""
+from playground.shader.colours import parse_hex, to_hex
+from playground.shader.widgets import PLAIN, VECTORS, WIDGETS, Value, Widget
 
 MAX_SIDE = 16_384
 """Texels or pixels that a side may have: what common graphics cards take."""
-
-
-@dataclass(frozen=True, slots=True)
-class Widget:
-    """How a parameter is shown and what it may be."""
-
-    kind: str = "number"  # a row of WIDGETS
-    low: float | None = None  # None: unbounded
-    high: float | None = None
-    choices: tuple[str, ...] = ()  # of a menu
-    values: tuple[int, ...] = ()  # of a menu: what the uniform gets for each choice; (): its number, from 0
-    raw: bool = False  # of a colour: as it is shown, not linear
-    axes: tuple[tuple[float, float], ...] = ()  # of a point: each number's range, where they differ
-
-    def ends(self, axis: int = 0) -> tuple[float | None, float | None]:
-        """Return the range of one of a vector's numbers; None where it is unbounded."""
-        return self.axes[axis] if self.axes else (self.low, self.high)
-
-    def uniform_value(self, value: Value) -> Value:
-        """Return what the uniform gets: of a menu with values the chosen one."""
-        return self.values[value] if self.values and isinstance(value, int) else value
-
-    def chosen(self, uniform: Value) -> Value:
-        """Return the value that gives a uniform what it has: the inverse of ``uniform_value``."""
-        return self.values.index(uniform) if self.values and isinstance(uniform, int) else uniform
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,7 +64,7 @@ class Parameter:
     name: str
     type: str  # GLSL: float int uint bool vec2..4 ivec2..4 uvec2..4, or sampler2D for a file
     default: Value
-    widget: Widget = Widget()
+    widget: Widget = PLAIN
     step: float | None = None
     unit: str = ""
     group: str = ""
@@ -271,6 +109,17 @@ _TRUE = {
 def length_of(glsl_type: str) -> int:
     """Return the number of components of a GLSL type, 1 for a scalar."""
     return _LENGTH.get(glsl_type, 1)
+
+
+def part_names(parameter: Parameter) -> tuple[str, ...]:
+    """Return what the components of a vector are called in a panel; nothing for a scalar or a file."""
+    return parameter.parts or components(parameter)
+
+
+def components(parameter: Parameter) -> tuple[str, ...]:
+    """Return the names by which a vector's components are set alone, as x; nothing for a scalar or a file."""
+    count = length_of(parameter.type)
+    return () if count == 1 else (parameter.widget.facts.parts or ("x", "y", "z", "w"))[:count]
 
 
 def is_whole(glsl_type: str) -> bool:
@@ -330,7 +179,7 @@ def expected(parameter: Parameter) -> str:
     widget = parameter.widget
     if widget.choices:
         return "one of " + ", ".join(widget.choices)
-    if words := WIDGETS[widget.kind].expects:
+    if words := widget.facts.expects:
         return words
     if widget.kind == "point":
         ranges = [f"from {low:g} to {high:g}" for low, high in map(_ends(widget), range(2))]
@@ -474,13 +323,10 @@ def _number(parameter: Parameter, value: object, name: str) -> float | int:
 def _check_range(parameter: Parameter, value: Value, name: str) -> None:
     widget = parameter.widget
     items: tuple[float | str, ...] = value if isinstance(value, tuple) else (value,)
-    if widget.kind == "direction":
-        azimuth, elevation = items[0], items[-1]
-        if not -90 <= float(elevation) <= 90:
-            raise ParameterError(f"{name}: elevation {float(elevation):g} is outside -90 to 90 degrees")
-        if not -720 <= float(azimuth) <= 720:
-            raise ParameterError(f"{name}: azimuth {float(azimuth):g} is outside -720 to 720 degrees")
-        return
+    facts = widget.facts
+    for part, (low, high), item in reversed(list(zip(facts.parts, facts.limits, items, strict=False))):
+        if not low <= float(item) <= high:
+            raise ParameterError(f"{name}: {part} {float(item):g} is outside {low:g} to {high:g} degrees")
     if widget.low is None or widget.high is None:
         return
     for axis, item in enumerate(items):

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError, nearest
-from playground.shader.parameter import linear_to_srgb
+from playground.shader.colours import linear_to_srgb
 
 Numbers = NDArray[np.float64]
 

@@ -9,8 +9,9 @@ from dataclasses import replace
 
 from playground.errors import ParameterError, nearest
 from playground.shader.kernel import ARRAY, CpuSource, Graph, Kernel, Output, PassSpec
-from playground.shader.parameter import Parameter, Widget
+from playground.shader.parameter import Parameter
 from playground.shader.source import Line, SourceText
+from playground.shader.widgets import Widget
 from playground.sketch.arrays import ArrayFile, texels
 from playground.sketch.wiring import initial_names, input_names, takes_input
 

@@ -14,7 +14,8 @@ from typing import Any, Protocol
 from playground.errors import ParameterError, nearest
 from playground.memo import GRAPHS
 from playground.shader.kernel import Export, Graph, Kernel, Technique
-from playground.shader.parameter import MAX_SIDE, WIDGETS, Parameter, Value, coerce, length_of, spell
+from playground.shader.parameter import MAX_SIDE, Parameter, coerce, part_names, spell
+from playground.shader.widgets import Value
 
 # How many numbers at most, which, and what a message expects.
 _TERRAIN: dict[str, tuple[int, Callable[[float], bool], str]] = {
@@ -29,8 +30,6 @@ _TERRAIN: dict[str, tuple[int, Callable[[float], bool], str]] = {
 }
 TERRAIN_KEYS = tuple(_TERRAIN)
 """What belongs to the sketch itself, and may be set like a parameter."""
-
-_DIRECTION = ((0.0, 360.0), (0.0, 90.0))  # [degrees] azimuth, elevation: the sky
 
 
 class Settable(Protocol):
@@ -156,32 +155,22 @@ def described(shown: Shown) -> dict[str, Any]:
         "type": parameter.type,
         "ranges": [range_of(parameter, part) for part in range(max(len(names), 1))],
         "step": parameter.step,
-        "unit": parameter.unit or WIDGETS[parameter.widget.kind].unit,
+        "unit": parameter.unit or parameter.widget.facts.unit,
         "choices": list(parameter.widget.choices),
         "parts": list(names),
         "exported": shown.exported,
     }
 
 
-def part_names(parameter: Parameter) -> tuple[str, ...]:
-    """Return what the parts of a vector are called; nothing for a scalar."""
-    if length_of(parameter.type) == 1 or parameter.widget.kind == "file":
-        return ()
-    if parameter.parts:
-        return parameter.parts
-    if parameter.widget.kind == "direction":
-        return ("azimuth", "elevation")
-    return tuple(("rgba" if parameter.widget.kind == "colour" else "xyzw")[: length_of(parameter.type)])
-
-
 def range_of(parameter: Parameter, part: int = 0) -> tuple[float, float] | None:
     """Return the range of a parameter's number, or of one of its parts; None where it has none."""
-    if parameter.widget.kind == "direction":
-        return _DIRECTION[part]
+    facts = parameter.widget.facts
+    if facts.spans:
+        return facts.spans[part]
     low, high = parameter.widget.ends(part)
     if low is not None and high is not None:
         return low, high
-    return WIDGETS[parameter.widget.kind].range
+    return facts.range
 
 
 def flat_values(technique: Technique, arguments: Mapping[str, object], prefix: str = "") -> dict[str, object]:

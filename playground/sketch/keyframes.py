@@ -23,7 +23,8 @@ from typing import Any
 
 from playground.memo import GRAPHS
 from playground.shader.kernel import Graph
-from playground.shader.parameter import Parameter, Value, is_whole
+from playground.shader.parameter import Parameter, is_whole
+from playground.shader.widgets import Value
 from playground.sketch.assign import resolve
 
 EASES = ("smooth", "linear", "hold")

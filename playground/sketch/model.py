@@ -47,7 +47,8 @@ from playground.shader.kernel import (
     with_inner,
 )
 from playground.shader.options import FORMATS, Buffer
-from playground.shader.parameter import MAX_SIDE, Follows, Parameter, Sampling, Value, Widget
+from playground.shader.parameter import MAX_SIDE, Follows, Parameter, Sampling
+from playground.shader.widgets import Value, Widget
 from playground.sketch.assign import TERRAIN_KEYS, check_value
 from playground.sketch.keyframes import Keyframe, at
 from playground.sketch.presence import as_wired

@@ -22,8 +22,9 @@ from playground.errors import DataError, PlaygroundError, SketchError
 from playground.partial import partial_file
 from playground.paths import GLSL
 from playground.regular_file import read_regular
+from playground.shader.colours import parse_hex, to_hex
 from playground.shader.kernel import ARRAY
-from playground.shader.parameter import is_whole, parse_hex, shortest, to_hex
+from playground.shader.parameter import is_whole, shortest
 from playground.shader.source import normalised
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.load import load, load_with

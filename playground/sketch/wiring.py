@@ -8,7 +8,7 @@ from playground.errors import SketchError, nearest
 from playground.shader import expressions
 from playground.shader.expressions import ExpressionError
 from playground.shader.kernel import Draw, Export, Graph, Kernel, Output, PassSpec, Technique, TexelKernel
-from playground.shader.parameter import SCALARS
+from playground.shader.widgets import SCALARS
 from playground.sketch.assign import find_targets, resolve
 
 _GIVEN = (*expressions.CLOCKS, *expressions.COUNTERS, "compute", "size.x", "size.y")

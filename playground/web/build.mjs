@@ -29,7 +29,8 @@ const ENTRIES = {
 function hashOfSources() {
   const names = readdirSync(join(HERE, "runtime")).filter((name) => /\.(js|css)$/.test(name)).sort();
   const hash = createHash("sha256");
-  for (const name of ["build.mjs", "package-lock.json", ...names.map((name) => `runtime/${name}`)]) {
+  const others = ["build.mjs", "package-lock.json", "../shader/widgets.json"];
+  for (const name of [...others, ...names.map((name) => `runtime/${name}`)]) {
     hash.update(`${name}\0`).update(readFileSync(join(HERE, name))).update("\0");
   }
   return hash.digest("hex").slice(0, 16);

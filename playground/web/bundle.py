@@ -43,6 +43,7 @@ def hash_of_sources() -> str:
     """Return the hash of the sources as they are in a checkout, as build.mjs works it out."""
     names = sorted(path.name for path in (_HERE / "runtime").iterdir() if path.suffix in (".js", ".css"))
     digest = hashlib.sha256()
-    for name in ("build.mjs", "package-lock.json", *(f"runtime/{name}" for name in names)):
+    others = ("build.mjs", "package-lock.json", "../shader/widgets.json")
+    for name in (*others, *(f"runtime/{name}" for name in names)):
         digest.update(f"{name}\0".encode() + (_HERE / name).read_bytes() + b"\0")
     return digest.hexdigest()[:16]

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from playground.data.content_hash import content_hash
 from playground.data.image_files import MAX_HALF, read_image
-from playground.shader.parameter import srgb_to_linear
+from playground.shader.colours import srgb_to_linear
 from playground.web.blobs import Blobs
 
 _MAX_WEBP_SIDE = 16_383

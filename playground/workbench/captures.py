@@ -21,14 +21,13 @@ from playground.capture.sweep import read_sweep, swept
 from playground.capture.video import QUALITY, check_video
 from playground.errors import DataError, ParameterError, PlaygroundError, counted
 from playground.paths import shown
-from playground.shader.parameter import is_whole, length_of
+from playground.shader.parameter import components, is_whole
 from playground.sketch.model import MAX_PICTURE_SIDE, MAX_SIDE, Parameter, Sketch
 from playground.workbench.notices import Notices
 from playground.workbench.session import Session
 from playground.workbench.snapshot import save_new
 
 MULTIPLES = (1, 2, 4, 8)
-_PARTS = {"direction": ("azimuth", "elevation"), "colour": tuple("rgba")}
 _TURN = {"azimuth": (0.0, 350.0), "elevation": (5.0, 60.0)}
 
 
@@ -221,8 +220,7 @@ def parts_of(parameter: Parameter) -> tuple[str, ...]:
     """Return the parts that a parameter is swept by, ("",) for one number, () for what cannot be."""
     if parameter.type == "sampler2D" or parameter.widget.kind == "file":
         return ()
-    count = length_of(parameter.type)
-    return ("",) if count == 1 else _PARTS.get(parameter.widget.kind, tuple("xyzw"))[:count]
+    return components(parameter) or ("",)
 
 
 def open_folder(path: Path) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from playground.shader.parameter import WIDGETS, is_whole
+from playground.shader.parameter import is_whole
 from playground.sketch.model import Parameter
 
 
@@ -16,7 +16,7 @@ def decimals(parameter: Parameter) -> int:
     if parameter.step:
         return _places(parameter.step)
     if widget.low is not None and widget.high is not None:
-        fine = widget.low if widget.kind == "log_slider" else (widget.high - widget.low) / 1000
+        fine = widget.low if widget.facts.is_log else (widget.high - widget.low) / 1000
         return _places(10.0 ** math.floor(math.log10(fine) + 1e-9)) if fine > 0 else 3
     return 3
 
@@ -25,7 +25,7 @@ def format_of(parameter: Parameter) -> str:
     """Return the C format that writes a parameter's number with its unit."""
     if is_whole(parameter.type):
         number = "%d"
-    elif parameter.widget.kind == "log_slider":
+    elif parameter.widget.facts.is_log:
         number = "%.4g"
     else:
         number = f"%.{decimals(parameter)}f"
@@ -34,7 +34,7 @@ def format_of(parameter: Parameter) -> str:
 
 def unit_of(parameter: Parameter) -> str:
     """Return the unit as it follows a number: degrees close up, others after a space."""
-    unit = parameter.unit or WIDGETS[parameter.widget.kind].unit
+    unit = parameter.unit or parameter.widget.facts.unit
     unit = "°" if unit == "degrees" else unit
     return unit if unit in ("", "°", "%") else f" {unit}"
 

@@ -11,7 +11,9 @@ import math
 from collections.abc import Iterable, Mapping
 from random import Random
 
-from playground.shader.parameter import is_whole, linear_to_srgb, srgb_to_linear, tidied
+from playground.shader.colours import linear_to_srgb, srgb_to_linear
+from playground.shader.parameter import is_whole, tidied
+from playground.shader.widgets import at_fraction, fraction_of
 from playground.sketch.model import Parameter, Value
 from playground.workbench.number_format import snapped
 
@@ -86,19 +88,14 @@ def _on(parameter: Parameter, share: float, axis: int) -> float:
     """Return the number at a fraction of the slider's way; ``axis`` is its place in a vector."""
     low, high = parameter.widget.ends(axis)
     assert low is not None and high is not None
-    share = min(max(share, 0.0), 1.0)
-    if parameter.widget.kind == "log_slider":
-        return float(low * (high / low) ** share)
-    return low + (high - low) * share
+    return at_fraction(min(max(share, 0.0), 1.0), low, high, log=parameter.widget.facts.is_log)
 
 
 def _share(parameter: Parameter, number: float, axis: int) -> float:
     """Return the fraction of the slider's way at which a number lies; ``axis`` is its place in a vector."""
     low, high = parameter.widget.ends(axis)
     assert low is not None and high is not None
-    if parameter.widget.kind == "log_slider":
-        return math.log(number / low) / math.log(high / low)
-    return (number - low) / (high - low)
+    return fraction_of(number, low, high, log=parameter.widget.facts.is_log)
 
 
 def _count(parameter: Parameter) -> int:

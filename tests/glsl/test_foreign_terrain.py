@@ -9,7 +9,7 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
-from playground.shader.parameter import srgb_to_linear
+from playground.shader.colours import srgb_to_linear
 from playground.sketch.assign import value_of, values_of
 from playground.sketch.flatten import flatten
 from playground.sketch.replace_technique import choices, with_technique, with_texts

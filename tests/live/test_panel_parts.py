@@ -12,7 +12,7 @@ from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.live.dome import direction_at, dot_of
 from playground.live.widgets import CONTROLS
-from playground.shader.parameter import WIDGETS
+from playground.shader.widgets import WIDGETS
 from playground.sketch.model import Camera, Parameter, Widget
 from playground.workbench.camera_drag import Gesture, steered
 from playground.workbench.error_excerpt import numbered, short_place
@@ -21,7 +21,7 @@ from playground.workbench.snapshot import save_new
 
 
 def test_every_widget_of_an_annotation_has_a_control():
-    assert CONTROLS.keys() == WIDGETS.keys()
+    assert CONTROLS.keys() == {kind.control for kind in WIDGETS.values()}
 
 
 @pytest.mark.parametrize(

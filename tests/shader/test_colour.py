@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from playground.errors import DataError
-from playground.shader.parameter import linear_to_srgb, parse_hex, srgb_to_linear, to_hex
+from playground.shader.colours import linear_to_srgb, parse_hex, srgb_to_linear, to_hex
 
 
 def test_the_curve_passes_through_known_points():

@@ -10,17 +10,8 @@ import numpy as np
 import pytest
 
 from playground.errors import ParameterError
-from playground.shader.parameter import (
-    coerce,
-    expected,
-    label_of,
-    linear_to_srgb,
-    parse_hex,
-    spell,
-    srgb_to_linear,
-    to_hex,
-    write,
-)
+from playground.shader.colours import linear_to_srgb, parse_hex, srgb_to_linear, to_hex
+from playground.shader.parameter import coerce, expected, label_of, spell, write
 from playground.sketch.model import Parameter, Widget
 
 from ..cases import each

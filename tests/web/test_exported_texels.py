@@ -18,7 +18,7 @@ from playground.engine.plan import PlanRequest
 from playground.engine.planner import make_plan
 from playground.engine.textures import split_format
 from playground.paths import SKETCHES
-from playground.shader.parameter import srgb_to_linear
+from playground.shader.colours import srgb_to_linear
 from playground.sketch.assign import shown_parameters
 from playground.sketch.model import Sketch
 from playground.web.page_data import page_data

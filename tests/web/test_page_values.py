@@ -12,16 +12,8 @@ import pytest
 
 from playground.engine.camera import look
 from playground.live import dome
-from playground.shader.parameter import (
-    coerce,
-    is_whole,
-    length_of,
-    linear_to_srgb,
-    parse_hex,
-    srgb_to_linear,
-    tidied,
-    to_hex,
-)
+from playground.shader.colours import linear_to_srgb, parse_hex, srgb_to_linear, to_hex
+from playground.shader.parameter import coerce, is_whole, length_of, tidied
 from playground.sketch.assign import check_value, resolve, shown_parameters, values_of
 from playground.sketch.find import shipped_sketches
 from playground.sketch.model import Camera, Parameter, Sketch, Value

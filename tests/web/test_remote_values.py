@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from playground.shader.parameter import parse_hex
+from playground.shader.colours import parse_hex
 
 from .node import Node
 

@@ -17,7 +17,8 @@ from playground.capture.shader_export.passes import ExportPlan, ShaderPass
 from playground.capture.shader_export.texts import DECODE, DECODING, Host, PassText, is_sampled, variable_of
 from playground.data.image_files import read_image
 from playground.errors import SketchError
-from playground.shader.parameter import label_of, linear_to_srgb
+from playground.shader.colours import linear_to_srgb
+from playground.shader.parameter import label_of
 from playground.shader.reserved_names import GLSL_WORDS, TOWARDS
 from playground.sketch.assign import resolve, shown_parameters
 from playground.sketch.model import Kernel, Parameter, Value

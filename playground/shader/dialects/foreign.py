@@ -18,9 +18,10 @@ from playground.shader.declarations import Declared, is_declared, takes, uniform
 from playground.shader.dialects.es import Rewritten, version_of
 from playground.shader.header import read_uniforms, title_of
 from playground.shader.kernel import SHAPES, ForeignShader, Input, Output, VertexShader
-from playground.shader.parameter import Parameter, Sampling, Value, Widget
+from playground.shader.parameter import Parameter, Sampling
 from playground.shader.reserved_names import ELEMENT
 from playground.shader.source import Line, Origin, SourceText, normalised, read_source_and_origin, read_text
+from playground.shader.widgets import Value, Widget
 
 Names = Mapping[str, tuple[str, str]]
 """Name → GLSL type and meaning: a key of ``Runner``'s values; of a sampler "noise 0", "picture 3", "none"."""

@@ -27,9 +27,10 @@ from playground.shader.dialects.foreign import STAND_INS, Files, Names, Rules, S
 from playground.shader.dialects.passes import VIEW
 from playground.shader.expressions import MAX_LETTERS, ExpressionError
 from playground.shader.header import with_axes
-from playground.shader.parameter import Parameter, Sampling, Widget, spell
+from playground.shader.parameter import Parameter, Sampling, spell
 from playground.shader.preprocessor import live_source
 from playground.shader.source import Line, SourceText
+from playground.shader.widgets import Widget
 
 _BEGIN = re.compile(r"(?:\s|//[^\n]*\n)*/\*\s*(?=\{)")
 _LENIENT = re.compile(

@@ -22,10 +22,11 @@ from playground.shader.declarations import Declarations, is_declared
 from playground.shader.dialects.es import rewritten
 from playground.shader.dialects.foreign import Files, Names, Rules, Shader, ShaderChannel
 from playground.shader.dialects.passes import VIEW
-from playground.shader.parameter import Parameter, Sampling, Widget, spell
+from playground.shader.parameter import Parameter, Sampling, spell
 from playground.shader.preprocessor import WEBGL_2, Token, live_source, readings
 from playground.shader.reserved_names import SIZES
 from playground.shader.source import Line, SourceText
+from playground.shader.widgets import Widget
 
 _LOOKUP = re.compile(r"texture(?:Lod|Grad|Cube\w*)?")
 _TYPES = {

@@ -6,6 +6,7 @@ import { lengthOf } from "./numbers.js";
 import { nearest } from "./name_suggestions.js";
 import { declaredUniforms } from "./uniforms.js";
 import { fits } from "./value_text.js";
+import { WIDGETS, isLog } from "./widgets.js";
 
 /** @typedef {import("./source.js").Line} Line */
 /** @typedef {import("./schema.js").Value} Value */
@@ -16,33 +17,14 @@ import { fits } from "./value_text.js";
  *            | "choices" | "parts" | "raw" | "value">} Facts */
 /** @typedef {{uniform: Uniform, facts: Facts, line: Line}} Written */
 
-const NUMBERS = /^(?:float|u?int|[iu]?vec[234])$/;
-/** What widgets are for and what they take in brackets: WIDGETS of shader/parameter.py.
- *  @type {Object<string, {types: RegExp, takes?: "range" | "some range" | "ranges" | "raw" | "choices",
- *                         range?: [number, number], unit?: string}>} */
-const WIDGETS = {
-  number: { types: NUMBERS },
-  slider: { types: NUMBERS, takes: "range" },
-  log_slider: { types: /^(?:float|u?int)$/, takes: "range" },
-  angle: { types: /^float$/, takes: "some range", range: [-360, 360], unit: "°" },
-  divider: { types: /^float$/, range: [0, 1] },
-  direction: { types: /^vec2$/, unit: "°" },
-  colour: { types: /^vec[34]$/, takes: "raw" },
-  menu: { types: /^int$/, takes: "choices" },
-  checkbox: { types: /^bool$/ },
-  button: { types: /^bool$/ },
-  point: { types: /^vec2$/, takes: "ranges", range: [0, 1] },
-  file: { types: /^sampler2D$/ },
-  input: { types: /^sampler2D$/ },
-};
-const ROLES = Object.keys(WIDGETS).filter((word) => word !== "number");
+const SAMPLER = { types: "sampler2D", control: "" }; // an input
+const ROLES = [...Object.keys(WIDGETS).filter((word) => word !== "number"), "input"];
 const MODIFIERS = ["step", "unit", "group", "label", "parts", "values", "follows", "erode", "preview"];
 const WORDS = [...ROLES, ...MODIFIERS];
-const BARE = ROLES.filter((word) => !["range", "choices"].includes(WIDGETS[word].takes ?? ""));
+const BARE = ROLES.filter((word) => !["range", "choices"].includes(WIDGETS[word]?.takes ?? ""));
 const ANNOTATION = /^\s*\/\/!(.*)$/;
 const WORD = /\s*([A-Za-z_]\w*)(\s*\()?/y;
 const ARGUMENT = /\s*("(?:[^"\\]|\\.)*"|[^,()"]+)\s*(,|$)/y;
-const SKY = [[0, 360], [0, 90]]; // degrees of a direction
 
 /** The parameters that a file of a flat text declares, but for textures. Throws an error with `file` and
  *  `line` for one that cannot be read.
@@ -133,14 +115,14 @@ function argumentsOf(text, line) {
 function parameterOf(name, type, initial, note, line) {
   const { calls, tooltip } = callsOf(note, line), words = ROLES.filter((word) => calls.has(word));
   if (words.length > 1) throw errorAt(line, `'${name}' has two widgets: ${words.join(" and ")}`);
-  const widget = words[0] ?? (type === "bool" ? "checkbox" : "number"), kind = WIDGETS[widget];
-  if (!kind.types.test(type)) throw errorAt(line, `${widget} does not suit '${name}', a ${type}`);
+  const widget = words[0] ?? (type === "bool" ? "checkbox" : "number");
+  const kind = WIDGETS[widget] ?? SAMPLER;
+  if (!kind.types.split(" ").includes(type)) throw errorAt(line, `${widget} does not suit '${name}', a ${type}`);
   const given = calls.get(widget) ?? [], count = lengthOf(type);
   const text = (/** @type {string} */ word) => calls.get(word)?.[0] ?? "";
   const step = calls.has("step") ? numbersOf(name, "step", calls.get("step") ?? [], 1, line)[0] : null;
   if (step !== null && step <= 0) throw errorAt(line, `step of '${name}': expected a number above 0`);
-  const names = calls.get("parts") ?? (count === 1 ? [] : widget === "direction" ? ["azimuth", "elevation"]
-    : [...(widget === "colour" ? "rgba" : "xyzw").slice(0, count)]);
+  const names = calls.get("parts") ?? (count === 1 ? [] : (kind.parts ?? [..."xyzw"]).slice(0, count));
   const values = calls.get("values")?.map(Number);
   /** @type {Facts} */
   const facts = {
@@ -162,17 +144,17 @@ function parameterOf(name, type, initial, note, line) {
  *  @param {string} name @param {string} widget @param {string[]} given in brackets @param {number} count
  *  @param {Line} line @returns {[number | null, number | null][]} */
 function rangesOf(name, widget, given, count, line) {
-  const { takes = "", range } = WIDGETS[widget];
+  const { takes = "", range, spans } = WIDGETS[widget];
   const pair = (/** @type {string[]} */ some) =>
     /** @type {[number, number]} */ (numbersOf(name, widget, some, 2, line));
   const each = (/** @type {[number | null, number | null]} */ ends) =>
     Array.from({ length: count }, () => /** @type {[number | null, number | null]} */ ([...ends]));
-  if (widget === "direction") return /** @type {[number, number][]} */ (SKY);
+  if (spans) return spans;
   if (takes === "ranges" && given.length > 2) return [pair(given.slice(0, 2)), pair(given.slice(2))];
-  if (takes === "range" || (takes.endsWith("range") || takes === "ranges") && given.length) {
+  if (takes === "range" || ["range or nothing", "ranges"].includes(takes) && given.length) {
     const ends = pair(given);
-    if (widget !== "log_slider" || ends[0] > 0) return each(ends);
-    throw errorAt(line, `log_slider of '${name}': its range must lie above 0`);
+    if (!isLog(widget) || ends[0] > 0) return each(ends);
+    throw errorAt(line, `${widget} of '${name}': its range must lie above 0`);
   }
   if (given.length && !takes) throw errorAt(line, `${widget} of '${name}' takes nothing in brackets`);
   return each(range ?? [null, null]);

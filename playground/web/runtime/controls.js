@@ -5,6 +5,7 @@ import { button, make } from "./dom.js";
 import { LONG, numberLine } from "./number_line.js";
 import { partNames, unitOf } from "./numbers.js";
 import { axesOf, makePad } from "./pads.js";
+import { WIDGETS } from "./widgets.js";
 
 /** @typedef {import("./schema.js").Shown} Shown */
 /** @typedef {import("./schema.js").Value} Value */
@@ -128,7 +129,7 @@ export const whyLocked = (reason) => make("p", { className: "note why-locked" },
  *  somewhere else.
  *  @param {Shown} one @param {string} label @param {Acts} acts @param {boolean} [said] */
 export function makeRow(one, label, acts, said = false) {
-  const control = (Object.hasOwn(KINDS, one.widget) ? KINDS[one.widget] : numbers)(one, acts);
+  const control = (KINDS[WIDGETS[one.widget].control] ?? numbers)(one, acts);
   const about = [one.description, one.locked].filter(Boolean).join(" ");
   const name = make("span", { className: "name" }, label);
   name.title = [about, one.path].filter(Boolean).join("\n");

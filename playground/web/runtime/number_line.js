@@ -2,6 +2,7 @@
 
 import { make } from "./dom.js";
 import { clamp, dragSpeed, isWhole, rangeOf, scaleOf, snapped, tidied, unitOf, written } from "./numbers.js";
+import { WIDGETS, isLog } from "./widgets.js";
 
 /** @typedef {import("./schema.js").Shown} Shown */
 
@@ -16,13 +17,12 @@ const STEPS = 1000; // of a slider without steps of its own
 const PAD = 500; // pixels of a drag through the range of a number that has a pad instead of a slider
 /** Letters from which on a unit is written after the label, and not after the number. */
 export const LONG = 4;
-/** What azimuth and elevation may be [degrees]. @type {[number, number][]} */
-const SKY = [[-720, 720], [-90, 90]];
 
 /** @param {Shown} one @param {Line} line */
 export function numberLine(one, { part, largest, changed, name = "", unit = unitOf(one) }) {
-  const range = one.widget === "direction" ? SKY[part] : rangeOf(one, part), whole = isWhole(one.type);
-  const scale = ["direction", "point"].includes(one.widget) ? null : scaleOf(one, part);
+  const { control, limits } = WIDGETS[one.widget], whole = isWhole(one.type);
+  const range = limits?.[part] ?? rangeOf(one, part);
+  const scale = ["direction", "point"].includes(control) ? null : scaleOf(one, part); // those have a pad
   const span = range ? range[1] - range[0] : 0;
   const field = make("input", { type: "text", inputMode: "decimal", className: "number" });
   field.autocomplete = "off";
@@ -36,7 +36,7 @@ export function numberLine(one, { part, largest, changed, name = "", unit = unit
     return changed(whole ? Math.round(held) : tidied(held));
   }
 
-  const own = one.widget !== "log_slider" && (one.step || (whole && span <= STEPS ? 1 : 0));
+  const own = !isLog(one.widget) && (one.step || (whole && span <= STEPS ? 1 : 0));
   const step = own ? own / span : 1 / STEPS;
   const slider = scale && make("input", { type: "range", min: 0, max: 1, step });
   if (slider) {

@@ -1,5 +1,7 @@
 // numbers.js -- a parameter's numbers: range, steps, places after the point, unit, as the window has them.
 
+import { WIDGETS, isLog } from "./widgets.js";
+
 /** @typedef {import("./schema.js").Shown} Shown */
 /** @typedef {Pick<Shown, "type" | "widget" | "unit" | "parts" | "ranges" | "step">} Ranged */
 
@@ -58,7 +60,7 @@ export function decimals(one, part = 0) {
   if (isWhole(one.type)) return 0;
   if (one.step) return placesOf(one.step);
   const range = rangeOf(one, part);
-  const fine = !range ? 0 : one.widget === "log_slider" ? range[0] : (range[1] - range[0]) / 1000;
+  const fine = !range ? 0 : isLog(one.widget) ? range[0] : (range[1] - range[0]) / 1000;
   return fine > 0 ? placesOf(10 ** Math.floor(Math.log10(fine) + 1e-9)) : 3;
 }
 
@@ -92,15 +94,15 @@ export function general(number, digits) {
  *  @param {Ranged} one @param {number} number @param {number} [part] */
 export function written(one, number, part = 0) {
   if (isWhole(one.type)) return String(Math.trunc(number));
-  return one.widget === "log_slider" || !rangeOf(one, part)
-    ? general(number, one.widget === "log_slider" ? 4 : 6)
+  return isLog(one.widget) || !rangeOf(one, part)
+    ? general(number, isLog(one.widget) ? 4 : 6)
     : fixed(number, decimals(one, part));
 }
 
 /** The unit as it follows a number: degrees close up, others after a space.
  *  @param {Ranged} one */
 export function unitOf(one) {
-  const unit = one.unit || (["angle", "direction"].includes(one.widget) ? "°" : "");
+  const unit = one.unit || (WIDGETS[one.widget].unit ?? "");
   if (unit === "degrees") return "°";
   return ["", "°", "%"].includes(unit) ? unit : ` ${unit}`;
 }
@@ -136,7 +138,7 @@ export function scaleOf(one, part = 0) {
   const range = rangeOf(one, part);
   if (!range || !(range[1] > range[0])) return null;
   const [low, high] = range,
-    log = one.widget === "log_slider" && low > 0;
+    log = isLog(one.widget) && low > 0;
   const at = (/** @type {number} */ share) =>
     log ? low * (high / low) ** share : low + share * (high - low);
   return {

@@ -116,7 +116,7 @@
  *  @property {string} pass                         the sketch's own pass
  *  @property {string} label
  *  @property {string} type                         GLSL
- *  @property {string} widget                       a row of WIDGETS in shader/parameter.py
+ *  @property {string} widget                       a row of shader/widgets.json
  *  @property {string} unit
  *  @property {string} group
  *  @property {string} description

@@ -2,6 +2,7 @@
 
 import { fromHex, toHex } from "./colours.js";
 import { general, isWhole, lengthOf, rangeOf } from "./numbers.js";
+import { WIDGETS } from "./widgets.js";
 
 /** @typedef {import("./schema.js").Shown} Shown */
 /** @typedef {import("./schema.js").Value} Value */
@@ -57,8 +58,9 @@ export function read(one, text) {
 
 /** What a number of a parameter may be; of the terrain more than its slider has.
  *  @param {Shown} one @param {number} part @returns {[number, number]} */
-function limits(one, part) {
-  if (one.widget === "direction") return part ? [-90, 90] : [-720, 720];
+function limitsOf(one, part) {
+  const { limits } = WIDGETS[one.widget];
+  if (limits) return limits[part];
   if (one.path === "relief") return [0, MAX_METRES];
   if (one.path === "extent") return [Number.MIN_VALUE, MAX_METRES];
   const [low, high] = rangeOf(one, part) ?? [-Infinity, Infinity];
@@ -77,7 +79,7 @@ export function fits(one, value) {
   const count = lengthOf(one.type), numbers = count === 1 ? [value] : Array.isArray(value) ? value : [];
   return numbers.length === count && numbers.every((number, part) => {
     if (typeof number !== "number" || !Number.isFinite(number)) return false;
-    const [low, high] = limits(one, part);
+    const [low, high] = limitsOf(one, part);
     return number >= low && number <= high && (!isWhole(one.type) || Number.isInteger(number));
   });
 }

@@ -11,8 +11,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
-from playground.shader.parameter import is_whole, tidied
-from playground.sketch.assign import TERRAIN_KEYS, find_targets, part_names
+from playground.shader.parameter import is_whole, part_names, tidied
+from playground.sketch.assign import TERRAIN_KEYS, find_targets
 from playground.sketch.model import Graph, Parameter, Value
 from playground.workbench.control.controls import Controls
 from playground.workbench.control.items import items_of, values_of

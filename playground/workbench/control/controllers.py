@@ -15,7 +15,7 @@ from pathlib import Path
 
 from playground.errors import ParameterError, PlaygroundError, nearest
 from playground.paths import GLSL, shown
-from playground.sketch.assign import part_names
+from playground.shader.parameter import part_names
 from playground.sketch.model import Parameter, Value
 from playground.workbench.control.controller_file import (
     Binding,

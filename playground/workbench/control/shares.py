@@ -1,16 +1,16 @@
 """Map a fraction of a widget's range, from 0 to 1, to a value and back: what a knob or a fader says.
 
-Linear over the range, logarithmic for a ``log_slider``, in equal stretches for a menu, from the
+Linear over the range, logarithmic where its scale is, in equal stretches for a menu, from the
 half on for a checkbox. A colour's channels are display-encoded, as the panel shows them. A
 vector has one share for each part.
 """
 
 from __future__ import annotations
 
-import math
-
 from playground.errors import ParameterError
-from playground.shader.parameter import is_whole, linear_to_srgb, srgb_to_linear
+from playground.shader.colours import linear_to_srgb, srgb_to_linear
+from playground.shader.parameter import is_whole
+from playground.shader.widgets import at_fraction, fraction_of
 from playground.sketch.assign import range_of
 from playground.sketch.model import Parameter, Value
 from playground.workbench.number_format import decimals
@@ -24,13 +24,13 @@ def check_shares(parameter: Parameter, path: str) -> None:
     kind = parameter.widget.kind
     if kind == "file":
         raise ParameterError(f"{path} names a file, so no knob can set it")
-    if kind not in ("colour", "menu", "checkbox", "button") and range_of(parameter) is None:
+    if kind != "colour" and not is_switch(parameter) and range_of(parameter) is None:
         raise ParameterError(f"{path} has no range: no knob can set it without a slider(low, high)")
 
 
 def is_switch(parameter: Parameter) -> bool:
     """Say whether a parameter has a few choices rather than a range: a knob takes it over at once."""
-    return parameter.widget.kind in ("menu", "checkbox", "button")
+    return parameter.widget.facts.is_switch
 
 
 def share_of(parameter: Parameter, value: Value, part: int = 0) -> float:
@@ -46,13 +46,7 @@ def share_of(parameter: Parameter, value: Value, part: int = 0) -> float:
     low, high = _ends(parameter, part)
     if widget.kind == "direction" and part == 0:
         number = number if number == high else number % 360.0
-    if high <= low:
-        return 0.0
-    if widget.kind == "log_slider":
-        share = math.log(max(number, low) / low) / math.log(high / low)
-    else:
-        share = (number - low) / (high - low)
-    return min(max(share, 0.0), 1.0)
+    return min(max(fraction_of(number, low, high, log=widget.facts.is_log), 0.0), 1.0)
 
 
 def with_share(parameter: Parameter, value: Value, share: float, part: int = 0) -> Value:
@@ -63,7 +57,7 @@ def with_share(parameter: Parameter, value: Value, share: float, part: int = 0) 
     if widget.kind == "menu":
         return min(int(share * len(widget.choices)), len(widget.choices) - 1)
     low, high = _ends(parameter, part)
-    number = low * (high / low) ** share if widget.kind == "log_slider" else low + share * (high - low)
+    number = at_fraction(share, low, high, log=widget.facts.is_log)
     if _is_encoded(parameter, part):
         number = float(srgb_to_linear([number])[0])
     else:
@@ -81,7 +75,7 @@ def _stepped(parameter: Parameter, number: float, low: float, high: float) -> fl
         number = round(number)
     if parameter.step:
         number = low + round((number - low) / parameter.step) * parameter.step
-    if parameter.widget.kind == "log_slider":
+    if parameter.widget.facts.is_log:
         number = float(f"{number:.5g}")
     elif not is_whole(parameter.type):
         number = round(number, decimals(parameter) + 2)  # finer than 14 bits are, and short in a file

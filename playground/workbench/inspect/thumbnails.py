@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.textures import make_texture
+from playground.shader.colours import linear_to_srgb
 from playground.shader.own_shaders import own_shader
-from playground.shader.parameter import linear_to_srgb
 from playground.workbench.inspect.results import TexelShader, Version, result_of
 from playground.workbench.session import Session
 

@@ -7,8 +7,9 @@ import itertools
 import pytest
 
 from playground.errors import ParameterError
-from playground.shader.parameter import Widget, coerce
-from playground.sketch.assign import part_names, range_of
+from playground.shader.parameter import coerce, part_names
+from playground.shader.widgets import Widget
+from playground.sketch.assign import range_of
 from playground.sketch.model import Parameter, Value
 from playground.workbench.control.shares import check_shares, share_of, with_share
 
