@@ -33,7 +33,7 @@ from playground.shader.kernel import (
     options_of,
 )
 from playground.shader.options import FORMATS, SIZE, Scope, check_expression
-from playground.shader.parameter import Follows, Parameter, Sampling
+from playground.shader.parameter import Brush, Follows, Parameter, Sampling
 from playground.shader.reserved_names import (
     DRIVER_BOUND,
     GIVEN,
@@ -338,8 +338,7 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
         path,
         Widget("file"),
         sampling=sampling,
-        painted="paint" in words,
-        erode=_text(calls, "erode", line),
+        brush=Brush(_text(calls, "erode", line)) if "paint" in words else None,
         **_described(calls, tooltip, line),
     )
 
@@ -385,7 +384,7 @@ def _parameter(
         parameter = replace(parameter, default=values.coerce(parameter, default))
     except ParameterError as error:
         raise line.error(f"the default of {error.diagnostics[0].message}") from None
-    return replace(parameter, preview=_preview(parameter, calls, line))
+    return replace(parameter, widget=replace(parameter.widget, preview=_preview(parameter, calls, line)))
 
 
 def _parts(name: str, glsl_type: str, kind: str, calls: Calls, line: Line) -> tuple[str, ...]:

@@ -38,6 +38,13 @@ AS_IT_IS = Sampling()
 
 
 @dataclass(frozen=True, slots=True)
+class Brush:
+    """What paints on a file in the window."""
+
+    erode: str = ""  # the technique that it erodes with, as ``use`` names it; "": it does not
+
+
+@dataclass(frozen=True, slots=True)
 class Follows:
     """An angle that takes a direction's azimuth while it has its default."""
 
@@ -71,10 +78,7 @@ class Parameter:
     label: str = ""
     tooltip: str = ""
     sampling: Sampling = AS_IT_IS  # of a file
-    painted: bool = False  # a file that may be painted on in the window
-    erode: str = ""  # the technique that the brush erodes with, as ``use`` names it; "": it does not
-    preview: Value | None = None  # in a preview on a software renderer, while it is not set; a number
-    # where that has fewer pixels
+    brush: Brush | None = None  # of a file that may be painted on in the window
     follows: Follows | None = None  # where its value comes from while it is not set
     parts: tuple[str, ...] = ()  # what a vector's components are, one name each; (): x, y, z, w
     file: str = ""

@@ -87,6 +87,8 @@ class Widget:
     values: tuple[int, ...] = ()  # of a menu: what the uniform gets for each choice; (): its number, from 0
     raw: bool = False  # of a colour: as it is shown, not linear
     axes: tuple[Range, ...] = ()  # of a point: each number's range, where they differ
+    preview: Value | None = None  # in a preview on a software renderer, while it is not set; a number
+    # where that has fewer pixels
 
     @property
     def facts(self) -> Kind:

@@ -65,7 +65,7 @@ def _traits(graph: Graph) -> Traits:
         faster=tuple(
             (path, kernel)
             for path, kernel in kernels
-            if any(p.preview is not None for p in kernel.parameters)
+            if any(p.widget.preview is not None for p in kernel.parameters)
         ),
     )
 

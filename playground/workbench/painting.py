@@ -103,7 +103,8 @@ class Painting:
     @property
     def erodes_by(self) -> str:
         """The technique that erode runs, as ``use`` names it; "" where it has none, or no height."""
-        return self._parameter().erode if self._adds_metres else ""
+        brush = self._parameter().brush
+        return brush.erode if brush is not None and self._adds_metres else ""
 
     @property
     def levels(self) -> tuple[float, float]:
@@ -342,7 +343,7 @@ class Painting:
             self.session.notes.append(f"nothing to erode in {self.target}: choose another tool")
             return False
         try:
-            technique = technique_at(parameter.erode, parameter.file)
+            technique = technique_at(self.erodes_by, parameter.file)
             runner = self._eroding.runner if self._eroding is not None else None
             if runner is None or runner.engine is not engine or runner.technique != technique:
                 self._eroding = ErodeTool(engine, technique)
@@ -412,7 +413,7 @@ def _painted(sketch: Sketch | None) -> tuple[str, ...]:
     """Return the parameters that may be painted on, those that a technique shows before those inside."""
     if sketch is None:
         return ()
-    painted = [shown for shown in shown_parameters(sketch) if shown.parameter.painted]
+    painted = [shown for shown in shown_parameters(sketch) if shown.parameter.brush is not None]
     return tuple(shown.path for shown in sorted(painted, key=lambda shown: not shown.exported))
 
 

@@ -47,10 +47,10 @@ def as_preview(
         if parameter is not None and values[name] == parameter.default and int(parameter.default) > grid:  # type: ignore[arg-type]
             coarse.append((name, grid))
     chosen = [
-        (f"{path}.{parameter.name}", parameter.preview)
+        (f"{path}.{parameter.name}", parameter.widget.preview)
         for path, kernel in quick
         for parameter in kernel.parameters
-        if parameter.preview is not None
+        if parameter.widget.preview is not None
         and (path in faster if parameter.widget.kind == "menu" else fewer)
         and _is_unset(path, parameter, kernel, values)
     ]

@@ -172,9 +172,9 @@ def test_brackets_and_commas_in_a_menu_s_names(parameter):
 
 
 def test_the_choice_of_previews_is_one_of_the_menu_s(parameter):
-    assert parameter('uniform int a = 0; //! menu("x", "y") preview("y") Which').preview == 1
-    assert parameter('uniform int a = 0; //! menu("x", "y") Which').preview is None
-    assert parameter("uniform int a = 9; //! slider(0, 20) preview(5) Many").preview == 5
+    assert parameter('uniform int a = 0; //! menu("x", "y") preview("y") Which').widget.preview == 1
+    assert parameter('uniform int a = 0; //! menu("x", "y") Which').widget.preview is None
+    assert parameter("uniform int a = 9; //! slider(0, 20) preview(5) Many").widget.preview == 5
 
 
 def test_a_library_file_declares_nothing(parse):
