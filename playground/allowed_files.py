@@ -20,9 +20,9 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
+from playground.files import read_regular
 from playground.memo import FILES
 from playground.paths import GLSL, shown
-from playground.regular_file import read_regular
 
 if TYPE_CHECKING:
     from xml.etree import ElementTree

@@ -50,14 +50,12 @@ LAYERS = (
         "allowed_files",
         "errors",
         "extras",
-        "folders",
+        "files",
         "json_text",
         "local_server",
         "markup",
         "memo",
-        "partial",
         "paths",
-        "regular_file",
     ),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}

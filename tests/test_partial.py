@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.data.image_files import replacing
-from playground.partial import partial_file, remove_left_over
+from playground.files import partial_file, remove_left_over, replacing
 
 ROOT = Path(__file__).resolve().parent.parent
 PLAIN = "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(0.5); }\n"
@@ -51,7 +50,7 @@ def test_what_a_dead_process_left_is_removed_and_nothing_else(tmp_path: Path):
 WRITES = """
 import sys, time
 from pathlib import Path
-from playground.partial import partial_file
+from playground.files import partial_file
 with partial_file(Path(sys.argv[1])) as partial:
     print(partial.path.name, flush=True)
     time.sleep(600)

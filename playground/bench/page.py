@@ -21,9 +21,9 @@ from playground._version import __version__
 from playground.bench.against import changes
 from playground.bench.results import Figure, Results
 from playground.bench.table import HEADINGS, rows_of
-from playground.data.image_files import replacing
 from playground.errors import DataError
 from playground.extras import needs
+from playground.files import write_file
 from playground.markup import Markup, joined, tag
 
 if TYPE_CHECKING:
@@ -53,8 +53,7 @@ def write_page(results: Results, earlier: Sequence[Results], path: Path, clock: 
         changes=_changes(results, earlier, clock),
         suites=joined(*(_suite(name, list(figures), runs, clock) for name, figures in suites)),
     )
-    with replacing(path) as file:
-        file.write(text.encode("utf-8"))
+    write_file(path, text)
 
 
 def _moment(date: str) -> str:

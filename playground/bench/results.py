@@ -13,11 +13,10 @@ from typing import Any
 
 from playground.bench.rows import Goal
 from playground.bench.timing import Samples
-from playground.data.image_files import replacing
 from playground.errors import DataError
+from playground.files import read_regular, write_file
 from playground.json_text import read_json
 from playground.paths import shown
-from playground.regular_file import read_regular
 
 FORMAT = 1
 KIND = "playground bench"
@@ -84,8 +83,7 @@ def as_json(results: Results) -> dict[str, Any]:
 
 def write(results: Results, path: Path) -> None:
     """Write results as JSON."""
-    with replacing(path) as file:
-        file.write((json.dumps(as_json(results), indent=1, ensure_ascii=False) + "\n").encode("utf-8"))
+    write_file(path, json.dumps(as_json(results), indent=1, ensure_ascii=False) + "\n")
 
 
 def read(path: Path) -> Results:

@@ -15,6 +15,7 @@ from typing import Any
 from playground.api import headless
 from playground.bench.thesis import Thesis
 from playground.engine.engine import Engine
+from playground.files import write_file
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
@@ -77,7 +78,7 @@ class Room:
     def written(self, name: str, text: str) -> Path:
         """Write a file of the sketches' folder and return its path."""
         path = self.folder / name
-        path.write_text(text, encoding="utf-8")
+        write_file(path, text)
         return path
 
     def sketch(self, options: Mapping[str, Any], size: int) -> Sketch:

@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 
-from playground.data.image_files import reason, replacing
 from playground.errors import DataError
-from playground.regular_file import open_regular
+from playground.files import open_regular, reason, replacing
 
 _MARK = b"terrain shader playground"
 _LOOKED_AT = 4096  # bytes, within which an export says who made it

@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.data.image_files import reason
 from playground.errors import ContextError, DataError
 from playground.extras import needs
+from playground.files import reason
 
 if TYPE_CHECKING:
     import av.container

@@ -23,13 +23,13 @@ from playground.capture.sequence import write_sequence
 from playground.capture.sheet import write_sheet
 from playground.capture.sweep import DEFAULT_STEPS, read_sweep, swept
 from playground.capture.video import QUALITY
-from playground.data.image_files import new_name, reason
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
 from playground.engine.process.child import Outcome
 from playground.engine.process.pool import Pool
 from playground.engine.process.worker import Cancelled, Parent, Service, summary_of
 from playground.errors import DataError, PlaygroundError
+from playground.files import new_name, reason
 from playground.sketch.model import Sketch
 
 PICTURE, PICTURES, FILM, SHEET = KINDS = ("picture", "pictures", "film", "sheet")

@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.capture.png_strips import PngStrips
-from playground.data.image_files import replacing
 from playground.engine.engine import Engine
 from playground.engine.picture_reduction import reduced
 from playground.engine.plan import Window, drawn_size
 from playground.engine.textures import read_picture
 from playground.errors import DataError, ParameterError, SketchError
+from playground.files import replacing
 from playground.sketch.load import opened
 from playground.sketch.model import MAX_PICTURE_SIDE, Sketch
 

@@ -17,9 +17,10 @@ from pathlib import Path
 from playground.api import headless
 from playground.capture.film import DEFAULT_SIZE, FPS, MAX_FRAMES, Film, frame_uniforms
 from playground.capture.large import is_large, write_large
-from playground.data.image_files import make_folder, read_png
+from playground.data.image_files import read_png
 from playground.engine.engine import Engine
 from playground.errors import DataError, ParameterError
+from playground.files import make_folder
 from playground.sketch.load import opened
 from playground.sketch.model import Sketch
 

@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.capture.encoders import Codec, open_encoder, read_packets
-from playground.data.image_files import VIDEO_ENDINGS, reason, writing
+from playground.data.image_files import VIDEO_ENDINGS
 from playground.errors import DataError, ParameterError, PlaygroundError, counted, nearest
-from playground.partial import partial_file
+from playground.files import partial_file, reason, writing
 from playground.paths import shown
 
 QUALITIES: dict[str, tuple[int, int]] = {

@@ -215,7 +215,7 @@ def output_file(output: str, usual: str, endings: Sequence[str], what: str) -> A
     the sentence, as "a picture is".
     """
     if not output:
-        from playground.data.image_files import new_name
+        from playground.files import new_name
 
         return new_name(usual)
     path = Path(output).expanduser()

@@ -214,7 +214,7 @@ def _write_piped(
 def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: Renderer) -> None:
     from playground.capture.export import ExportJob, prepare, run
     from playground.capture.export_options import check
-    from playground.data.image_files import new_name
+    from playground.files import new_name
 
     sketch = moment.sketch
     with ExitStack() as stack:

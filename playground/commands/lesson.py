@@ -285,7 +285,7 @@ def translated(
 
 
 def _write_notebooks(folder: Path, lessons: dict[str, list[Lesson]], engine: Engine) -> None:
-    from playground.data.image_files import replacing
+    from playground.files import write_file
     from playground.lessons.measuring import numbers_of
     from playground.lessons.notebook.build import notebook_text
 
@@ -295,8 +295,7 @@ def _write_notebooks(folder: Path, lessons: dict[str, list[Lesson]], engine: Eng
         for lesson in in_languages:
             path = folder / lesson.language / f"{lesson.name}.ipynb"
             path.parent.mkdir(parents=True, exist_ok=True)
-            with replacing(path) as handle:
-                handle.write(notebook_text(lesson, numbers, names).encode())
+            write_file(path, notebook_text(lesson, numbers, names))
             print(path)
 
 

@@ -76,7 +76,7 @@ def mutants(
     loaded = load(sketch)
     first = shot_of(loaded, shot, pixels)
     if pictures is not None:
-        from playground.data.image_files import make_folder
+        from playground.files import make_folder
 
         make_folder(pictures)
     results: list[MutantResult] = []

@@ -18,7 +18,7 @@ from playground.data.bounds import MAX_TEXELS, refuse_bomb
 from playground.data.grid import SIXTEEN_BIT, FileRows, RasterFile, check_grid, in_memory
 from playground.data.place import WGS_84, Crs, Georeference, spacing_from_degrees
 from playground.errors import DataError
-from playground.regular_file import open_regular
+from playground.files import open_regular
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from playground.allowed_files import sidecars
 from playground.errors import DataError
+from playground.files import open_regular, require_regular
 from playground.memo import FILES
 from playground.paths import shown
-from playground.regular_file import open_regular, require_regular
 
 _TICK = 50_000_000  # [ns] more than a file system's clock takes to move on
 _LARGE = 2**26  # [bytes] takes longer to read than a tick lasts

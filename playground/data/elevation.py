@@ -28,10 +28,11 @@ from playground.allowed_files import ELEVATIONS
 from playground.data.arrays import read_npy, read_npz, read_raw
 from playground.data.gis import read_raster
 from playground.data.grid import Heights, Packing, RasterFile, check_grid, from_channels
-from playground.data.image_files import checked_file, read_samples, read_texts, reason
+from playground.data.image_files import read_samples, read_texts
 from playground.data.place import Georeference
 from playground.data.resample import decimate
 from playground.errors import DataError, nearest
+from playground.files import checked_file, reason
 from playground.paths import shown
 
 Edge = Literal["north", "south"]

@@ -43,10 +43,9 @@ from playground.data.grid import (
     require_grey,
     unpacked,
 )
-from playground.data.image_files import reason
 from playground.data.place import WGS_84, Crs, Georeference, gdal, gdal_crs
 from playground.errors import DataError
-from playground.regular_file import irregularity, read_regular
+from playground.files import irregularity, read_regular, reason
 
 if TYPE_CHECKING:
     import rasterio.io

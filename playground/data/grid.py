@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from playground.data.bounds import MAX_TEXELS
 from playground.data.place import Crs, Georeference
 from playground.errors import DataError
-from playground.regular_file import open_regular
+from playground.files import open_regular
 
 Heights = NDArray[np.float32]
 Packing = Literal["grey", "rgb"]

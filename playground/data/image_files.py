@@ -22,12 +22,10 @@ import logging
 import math
 import re
 import struct
-import warnings
 import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import chain, count
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -37,11 +35,9 @@ from numpy.typing import NDArray
 
 from playground.data.bounds import refuse_bomb, refuse_too_many, webp_size
 from playground.data.content_hash import content_key
-from playground.errors import DataError, nearest
+from playground.errors import DataError
+from playground.files import checked_file, reading, reason, write_file
 from playground.memo import FILES
-from playground.partial import partial_file
-from playground.paths import shown
-from playground.regular_file import NotRegularError, open_regular, require_regular
 
 if TYPE_CHECKING:
     import PIL.Image
@@ -307,52 +303,6 @@ def read_texts(path: str | Path) -> dict[str, str]:
         return {str(k): v for k, v in open_picture(handle, path).info.items() if isinstance(v, str)}
 
 
-def checked_file(path: str | Path) -> Path:
-    """Return the path of a file that exists and is not empty.
-
-    Raises:
-        DataError: nothing there (with the nearest name in that folder), a folder,
-            an empty file, or no permission.
-    """
-    path = Path(path)
-    try:
-        if require_regular(path).st_size == 0:
-            raise DataError("the file is empty", file=path)
-    except (FileNotFoundError, NotADirectoryError) as error:
-        if not path.parent.is_dir():
-            raise DataError(f"there is no folder '{shown(path.parent)}'", file=path) from error
-        near = nearest(path.name, (p.name for p in path.parent.iterdir() if p.suffix == path.suffix))
-        raise DataError(f"there is no such file{near}", file=path) from error
-    except NotRegularError as error:
-        raise DataError(reason(error), file=path) from None
-    except (OSError, ValueError) as error:
-        raise DataError(f"cannot be read: {reason(error)}", file=path) from error
-    return path
-
-
-def reason(error: BaseException) -> str:
-    """Return in a few words of one line what an error of a library means."""
-    text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-    return " ".join(text.split()).rstrip(".") or type(error).__name__
-
-
-@contextmanager
-def reading(path: Path) -> Iterator[BinaryIO]:
-    """Open a file; what a decoder raises in the block becomes a ``DataError``."""
-    logging.getLogger(__name__).debug("read %s", shown(path))
-    # Of damaged files Pillow raises OSError, SyntaxError, ValueError, struct.error …; of odd ones it warns.
-    try:
-        with warnings.catch_warnings(), open_regular(path) as handle:
-            warnings.simplefilter("ignore")
-            yield handle
-    except DataError:
-        raise
-    except (PermissionError, NotRegularError) as error:
-        raise DataError(f"cannot be read: {reason(error)}", file=path) from error
-    except Exception as error:
-        raise DataError(f"the file is damaged or cut short: {reason(error)}", file=path) from error
-
-
 def _png_header(handle: BinaryIO) -> tuple[int, int]:
     # (bit depth, colour type), (0, 0) for what is not a PNG; leaves the handle at the start.
     start = handle.read(26)
@@ -516,85 +466,12 @@ def write_png(path: str | Path, array: NDArray[np.uint8], *, text: Mapping[str, 
         DataError: what `encode_png` refuses, a missing folder, no permission, a full disk.
     """
     data = encode_png(array, text)
-    with replacing(path) as handle:
-        handle.write(data)
+    write_file(path, data)
 
 
 def chunk(kind: bytes, data: bytes) -> bytes:
     """Return a chunk of a PNG."""
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-
-@contextmanager
-def writing(path: str | Path) -> Iterator[None]:
-    """Raise an ``OSError`` of the block as a ``DataError`` that says that the file cannot be written."""
-    try:
-        yield
-    except OSError as error:
-        raise DataError(f"cannot be written: {reason(error)}", file=path) from error
-
-
-def make_folder(path: Path) -> Path:
-    """Make a folder, with its parents, where there is none; raise ``DataError`` where it cannot be made."""
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DataError(f"no folder can be made: {reason(error)}", file=path) from error
-    return path
-
-
-@contextmanager
-def new_name(path: str | Path) -> Iterator[Path]:
-    """Reserve the first of `hills.png`, `hills-2.png` and so on that no file has, to write to in the block.
-
-    An empty file holds the name from here on, so that no other program takes it; it is
-    removed when the block fails.
-
-    Raises:
-        DataError: a missing folder, no permission, a full disk.
-    """
-    requested = Path(path)
-    numbered = (requested.with_name(f"{requested.stem}-{n}{requested.suffix}") for n in count(2))
-    name = next(name for name in chain([requested], numbered) if _takes(name))
-    try:
-        yield name
-    except BaseException:
-        name.unlink(missing_ok=True)
-        raise
-
-
-def _takes(path: Path) -> bool:
-    """Make an empty file; say no where something has the name."""
-    try:
-        path.touch(exist_ok=False)
-    except FileExistsError:
-        return False
-    except OSError as error:
-        raise DataError(f"nothing can be written here: {reason(error)}", file=path.parent) from error
-    return True
-
-
-@contextmanager
-def replacing(path: str | Path) -> Iterator[BinaryIO]:
-    """Open a new file that takes the name `path` when the block ends well.
-
-    It is written in the same folder. When the block fails, the temporary file is
-    removed and a file that had the name stays as it was.
-
-    Raises:
-        DataError: a missing folder, a folder of that name, no permission, a full disk.
-    """
-    path = Path(path)
-    if "\0" in str(path):
-        raise DataError("a file's name cannot hold a zero character", file=repr(str(path)))
-    with writing(path):
-        if not path.parent.is_dir():
-            raise DataError(f"there is no folder '{shown(path.parent)}' to write into", file=path)
-        if path.is_dir():
-            raise DataError("is a folder; expected the name of a file to write", file=path)
-        with partial_file(path) as partial:
-            yield partial.handle
-            partial.rename(path)
 
 
 _MAX_SIDE = {".webp": 16383, ".jpg": 65500, ".jpeg": 65500}  # pixels a side that libwebp and libjpeg take
@@ -667,8 +544,7 @@ def write_picture(path: str | Path, array: NDArray[np.uint8], *, text: Mapping[s
     ending = picture_ending(path)
     with naming(path):
         data = encode_as(ending, array, text)
-    with replacing(path) as handle:
-        handle.write(data)
+    write_file(path, data)
     lost = ending in (".jpg", ".jpeg") and array.shape[2] == 4 and bool((array[..., 3] < 255).any())
     return "a JPEG is opaque: the picture's alpha was dropped; .png, .webp and .tif keep it" if lost else ""
 

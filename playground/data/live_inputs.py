@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.data.image_files import reason
 from playground.data.media import RATE, SPAN, pyav
 from playground.errors import ContextError, PlaygroundError
 from playground.extras import needs
+from playground.files import reason
 
 _PATIENCE = 2.0  # [s] that a device may take to stop
 

@@ -32,9 +32,9 @@ from numpy.typing import NDArray
 
 from playground.data.bounds import ALWAYS_FINE, refuse_bomb, refuse_too_many
 from playground.data.content_hash import content_key
-from playground.data.image_files import checked_file, reason
 from playground.errors import ContextError, DataError
 from playground.extras import needs
+from playground.files import checked_file, reason
 from playground.memo import SOURCES, Memo
 
 if TYPE_CHECKING:

@@ -21,11 +21,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.data.image_files import reason
 from playground.errors import DataError
 from playground.extras import needs
+from playground.files import read_regular, reason, require_regular
 from playground.json_text import read_json
-from playground.regular_file import read_regular, require_regular
 
 Floats = NDArray[np.float32]
 Json = Mapping[str, Any]

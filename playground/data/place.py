@@ -18,8 +18,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from playground.data.image_files import reason
 from playground.errors import DataError
+from playground.files import reason
 from playground.memo import TEXTS
 
 if TYPE_CHECKING:

@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.data.image_files import PNG_KINDS, VALUE_ENDINGS, encode_samples, replacing
+from playground.data.image_files import PNG_KINDS, VALUE_ENDINGS, encode_samples
 from playground.errors import DataError, nearest
+from playground.files import replacing, write_file
 
 
 def write_values(path: str | Path, array: NDArray[np.float32]) -> str:
@@ -58,8 +59,7 @@ def write_values(path: str | Path, array: NDArray[np.float32]) -> str:
             tifffile.imwrite(handle, image, photometric="minisblack", metadata=None, software=False)
         return ""
     data, clamped = _values_as_png(image, path)
-    with replacing(path) as handle:
-        handle.write(data)
+    write_file(path, data)
     return clamped
 
 

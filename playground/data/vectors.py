@@ -23,11 +23,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.allowed_files import sidecar_places
-from playground.data.image_files import checked_file, reason
 from playground.errors import DataError
 from playground.extras import needs
+from playground.files import checked_file, irregularity, open_regular, read_regular, reason
 from playground.json_text import read_json
-from playground.regular_file import irregularity, open_regular, read_regular
 
 Kind = Literal["point", "line", "polygon"]
 Line = NDArray[np.float64]  # (n, 2): x or longitude, y or latitude

@@ -30,12 +30,12 @@ from typing import IO, Any
 
 from playground import paths
 from playground._version import __version__
-from playground.data.image_files import replacing
 from playground.engine.context import ContextInfo, build_of
 from playground.engine.textures import bytes_of, levels_of
 from playground.errors import ParameterError, PlaygroundError
-from playground.folders import cache_folder
+from playground.files import replacing
 from playground.json_text import read_json
+from playground.paths import cache_folder
 
 LIMIT = 2**30  # [bytes] unless the environment says another
 VARIABLE = "PLAYGROUND_CACHE"

@@ -35,13 +35,14 @@ from playground.data.elevation import (
 )
 from playground.data.gis import transformed
 from playground.data.grid import Packing, check_grid, fitted
-from playground.data.image_files import Image, read_image, replacing
+from playground.data.image_files import Image, read_image
 from playground.data.models import Model, read_model
 from playground.data.place import Georeference
 from playground.data.resample import resample
 from playground.data.vectors import Grid, Line, VectorShape, draw, read_vectors
 from playground.engine.source_kinds import Terrain
 from playground.errors import DataError
+from playground.files import replacing
 from playground.memo import FILES, SOURCES, bytes_held
 from playground.paths import shown
 from playground.sketch.model import Value

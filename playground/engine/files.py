@@ -19,9 +19,9 @@ from playground.allowed_files import (
 )
 from playground.data.media import SOUND_FILES, VIDEO_FILES
 from playground.errors import DataError, nearest
+from playground.files import irregularity
 from playground.memo import FILES
 from playground.paths import GLSL, SKETCHES, shown
-from playground.regular_file import irregularity
 from playground.shader.libraries import libraries, library_around
 from playground.sketch.arrays import holds_array
 from playground.sketch.assign import resolve, values_of

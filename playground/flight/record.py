@@ -17,9 +17,9 @@ from types import TracebackType
 from typing import IO, Any, TypeGuard
 
 from playground.errors import DataError
+from playground.files import read_regular
 from playground.flight.craft import STEP, Controls
 from playground.json_text import read_json
-from playground.regular_file import read_regular
 
 FORMAT, VERSION = "playground flight", 1
 MIN_RADIUS, MAX_RADIUS = 1.5, 16.0  # [parts] visible: nearer, the end of the terrain would show

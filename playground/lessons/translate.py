@@ -16,8 +16,8 @@ from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
 
-from playground.data.image_files import replacing
 from playground.errors import SketchError
+from playground.files import write_file
 from playground.lessons.document import Document, prose_of, texts_in
 from playground.lessons.fence import Fence
 from playground.lessons.fences import open_fence
@@ -118,8 +118,7 @@ def write_hashes(english: Document, other: Document) -> None:
     front, rest = text[:edge], text[edge:]
     front = _SOURCE.sub(line, front, count=1) if _SOURCE.search(front) else f"{front}\n{line}"
     tomllib.loads(front.removeprefix("+++"))  # what is written can be read
-    with replacing(other.path) as handle:
-        handle.write((front + rest).encode())
+    write_file(other.path, front + rest)
 
 
 def _source(other: Document) -> tuple[str, ...]:

@@ -10,8 +10,8 @@ from pathlib import Path
 from shlex import quote as quoted
 
 from playground._version import __version__
-from playground.data.image_files import replacing, writing
 from playground.errors import DataError, counted
+from playground.files import write_file, writing
 from playground.json_text import read_json
 from playground.paths import shown
 from playground.reduce.candidate_process import CandidateProcess, DrawTask
@@ -71,8 +71,7 @@ def write_folder(folder: Path, account: Account, more: Mapping[str, str]) -> lis
         record = {"playground": __version__, "sketch": account.question.sketch.name, "files": names}
         texts[RECORD] = json.dumps(record, indent=2) + "\n"
         for name, text in texts.items():
-            with replacing(folder / name) as handle:
-                handle.write(text.encode())
+            write_file(folder / name, text)
         for name, source in data:
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(source, folder / name)
@@ -160,7 +159,7 @@ def plain_texts(case: Case, probe: Probe, finding: Finding, process: CandidatePr
     endings = {"vertex": ".vert", "fragment": ".frag", "compute": ".comp"}
     texts = {f"plain{endings[stage]}": stages[stage].text for stage in stages}
     for name, text in texts.items():
-        (probe.folder / name).write_text(text, encoding="utf-8")
+        write_file(probe.folder / name, text)
     opened = "plain.frag" if "plain.frag" in texts else "plain.comp"
     result = process.draw(
         DrawTask(sketch=str(probe.folder / opened), ref="", driver=driver, frame=case.frame, time=case.time)

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from playground.errors import ParameterError
+from playground.files import write_file
 from playground.reduce.candidate_process import CandidateProcess, DrawResult, DrawTask
 from playground.reduce.case import SHOT, Case, copied
 from playground.reduce.failures import Commanded, FailureKind, Finding
@@ -57,7 +58,7 @@ class Probe:
             (self.folder / name).unlink(missing_ok=True)
         for name, text in texts.items():
             if self._written.get(name) != text:
-                (self.folder / name).write_text(text, encoding="utf-8")
+                write_file(self.folder / name, text)
         for name, source in copied(case.files, texts):
             if not (self.folder / name).exists():
                 (self.folder / name).parent.mkdir(parents=True, exist_ok=True)

@@ -15,11 +15,9 @@ from pathlib import Path
 
 from playground.allowed_files import is_inside, names_below, note
 from playground.errors import DataError, ParameterError, nearest
-from playground.folders import state_folder
+from playground.files import partial_file, read_regular
 from playground.json_text import read_json
-from playground.partial import partial_file
-from playground.paths import program
-from playground.regular_file import read_regular
+from playground.paths import program, state_folder
 
 VARIABLE = "PLAYGROUND_LIBRARIES"
 ENDINGS = (".glsl", ".frag", ".vert", ".hlsl", ".fs", ".h")

@@ -33,9 +33,9 @@ from playground.allowed_files import (
     unsaved_texts,
 )
 from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError, nearest
+from playground.files import NotRegularError, irregularity, read_regular
 from playground.memo import TEXTS
 from playground.paths import GLSL, shown
-from playground.regular_file import NotRegularError, irregularity, read_regular
 from playground.shader.libraries import how_to_name, libraries, library_around
 
 _DEFINE = re.compile(r"\s*#\s*define\s+(\w+)(\(|\s+(\w+)\s*$)?")

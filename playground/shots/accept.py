@@ -19,10 +19,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.data.image_files import make_folder, read_png, replacing, write_png
+from playground.data.image_files import read_png, write_png
 from playground.errors import DataError, ParameterError, nearest
+from playground.files import make_folder, read_regular, write_file
 from playground.paths import shown
-from playground.regular_file import read_regular
 from playground.shots.references import FOLDER, accepted_in
 from playground.shots.results import NEVER_ACCEPTED, Record, digest_of, digests_of
 
@@ -104,8 +104,7 @@ def undo(change: Change) -> list[str]:
     for path, data in change.before.items():
         if path.exists() and digest_of(data) == digest_of(read_regular(path)):
             continue
-        with replacing(path) as handle:
-            handle.write(data)
+        write_file(path, data)
         lines.append(f"restored {shown(path)}")
     if change.written not in change.before:
         change.written.unlink()

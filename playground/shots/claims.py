@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.data.image_files import make_folder, replacing
+from playground.files import make_folder, write_file
 from playground.shots.names import one_spelling
 
 _FOLDER = ".names"
@@ -82,8 +82,7 @@ class Claims:
         draft = file.with_name(f"{secrets.token_hex(8)}.draft")
         try:
             make_folder(file.parent)
-            with replacing(draft) as handle:
-                handle.write(json.dumps(asdict(claim)).encode())
+            write_file(draft, json.dumps(asdict(claim)))
             try:
                 os.link(draft, file)  # unlike a renaming, it fails where one is there
             except FileExistsError:

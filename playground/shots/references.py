@@ -19,9 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground import paths
-from playground.data.image_files import make_folder, read_png, write_png
+from playground.data.image_files import read_png, write_png
 from playground.engine.context import ContextInfo
 from playground.errors import DataError
+from playground.files import make_folder
 from playground.shots.fingerprint import Fingerprint, fingerprint_of, read_fingerprint
 from playground.shots.plugin_constants import SCREENSHOTS
 from playground.sketch.model import Sketch

@@ -16,10 +16,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from playground.data.image_files import replacing
 from playground.errors import counted
+from playground.files import read_regular, write_file
 from playground.paths import shown
-from playground.regular_file import read_regular
 from playground.shots.page.document import page
 from playground.shots.page.shot import ShotPageContext
 from playground.shots.results import FOLDER, Record, read_results
@@ -43,8 +42,7 @@ def write_report(folder: Path = Path(FOLDER), file: Path | None = None) -> Path:
     except ValueError:  # on Windows, another drive
         links = str(folder.absolute())
     text = report_html(read_results(folder), folder, Path(links))
-    with replacing(target) as handle:
-        handle.write(text.encode())
+    write_file(target, text)
     return target
 
 

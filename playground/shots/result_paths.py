@@ -13,8 +13,8 @@ import secrets
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
-from playground.data.image_files import replacing
 from playground.errors import DataError
+from playground.files import write_file
 from playground.shots.results import PICTURES, Record, make_results_folder, read_result
 
 _CLAIM = ".home"
@@ -84,8 +84,7 @@ def clean(folder: Path, root: Path, complete: Mapping[Path, Collection[str]]) ->
 def _put(claim: Path, key: str) -> None:
     """Write a claim, whole, unless another process has been faster."""
     draft = claim.with_name(f"{_CLAIM}.{secrets.token_hex(6)}")
-    with replacing(draft) as handle:
-        handle.write(key.encode())
+    write_file(draft, key)
     try:
         os.link(draft, claim)  # unlike a renaming, it fails where one is there
     except FileExistsError:

@@ -30,10 +30,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.data.image_files import encode_png, make_folder, replacing
+from playground.data.image_files import encode_png
 from playground.errors import DataError
+from playground.files import make_folder, read_regular, write_file
 from playground.json_text import read_json
-from playground.regular_file import read_regular
 from playground.shots.plugin_constants import REPORT
 
 FORMAT = 2
@@ -181,22 +181,22 @@ def write_result(folder: Path, record: Record, pictures: Mapping[str, NDArray[np
             (folder / name).unlink(missing_ok=True)
             continue
         data = encode_png(pictures[word], record.texts if word == "actual" else {})
-        with replacing(folder / name) as handle:
-            handle.write(data)
+        write_file(folder / name, data)
         files[word] = name
         if word == "actual":
             digest = digest_of(data)
     whole = replace(record, pictures=files, digest=digest)
-    with replacing(result_path(folder, whole)) as handle:
-        handle.write(to_json(whole).encode())
+    write_file(result_path(folder, whole), to_json(whole))
     return whole
 
 
 def make_results_folder(folder: Path) -> Path:
     """Make the results folder if it is not there, with a ``.gitignore`` of everything in it."""
     if not folder.is_dir():
-        with replacing(make_folder(folder) / ".gitignore") as handle:
-            handle.write(b"# Results of screenshot tests: written again by every run.\n*\n")
+        write_file(
+            make_folder(folder) / ".gitignore",
+            b"# Results of screenshot tests: written again by every run.\n*\n",
+        )
     return folder
 
 

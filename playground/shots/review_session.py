@@ -12,8 +12,8 @@ from pathlib import Path
 from urllib.parse import quote
 
 from playground.errors import DataError, PlaygroundError
+from playground.files import read_regular
 from playground.paths import shown
-from playground.regular_file import read_regular
 from playground.shots.accept import Change, accept, undo
 from playground.shots.page.document import page
 from playground.shots.page.shot import ShotPageContext

@@ -30,10 +30,9 @@ from playground.allowed_files import (
     is_variant,
 )
 from playground.errors import DataError, SketchError, counted, nearest
-from playground.folders import cache_folder
+from playground.files import irregularity, open_regular
 from playground.json_text import read_json
-from playground.paths import GLSL, SKETCHES
-from playground.regular_file import irregularity, open_regular
+from playground.paths import GLSL, SKETCHES, cache_folder
 from playground.shader.dialects import EXPORT, is_export
 
 ENDING = ".zip"

@@ -19,9 +19,8 @@ from pathlib import Path
 
 from playground.allowed_files import is_elevation, leads_outside, sidecars
 from playground.errors import DataError, PlaygroundError, SketchError
-from playground.partial import partial_file
+from playground.files import partial_file, read_regular, write_file
 from playground.paths import GLSL
-from playground.regular_file import read_regular
 from playground.shader.colours import parse_hex, to_hex
 from playground.shader.kernel import ARRAY
 from playground.shader.parameter import is_whole, shortest
@@ -176,7 +175,7 @@ def save_copy(file: Sketch, edited: Sketch, folder: Path) -> Path:
             (target / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(Path(file.folder) / name, target / name)
         path = target / "sketch.toml"
-        path.write_bytes(text.encode())
+        write_file(path, text)
         copied = load(path)
         graph = replace(edited.graph, path=copied.graph.path, name=copied.graph.name)
         moved = replace(edited, file=copied.file, folder=copied.folder, name=copied.name, graph=graph)

@@ -20,8 +20,8 @@ from playground.allowed_files import (
     root_of,
 )
 from playground.errors import PlaygroundError, ShaderError, SketchError, nearest
+from playground.files import irregularity
 from playground.paths import GLSL, shown
-from playground.regular_file import irregularity
 from playground.shader.dialects import EXPORT, OWN, is_export, read_foreign
 from playground.shader.kernel_cache import parsed_kernel, replaced
 from playground.shader.source import EncodingError

@@ -33,8 +33,8 @@ from playground.errors import (
     SketchError,
     nearest,
 )
+from playground.files import irregularity
 from playground.paths import GLSL, SKETCHES, shown
-from playground.regular_file import irregularity
 from playground.shader.dialects import EXPORT, is_export
 from playground.shader.dialects.shadertoy_files import is_image, is_of_folder
 from playground.shader.source import read_text

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.allowed_files import FAST, canonical_of, is_variant, looking_once, root_of
-from playground.data.image_files import replacing
 from playground.engine.engine import Engine
 from playground.engine.standalone import free_name, standalone_sketch
 from playground.errors import PlaygroundError, SketchError, nearest
+from playground.files import write_file
 from playground.paths import GLSL, shown
 from playground.shader import expressions
 from playground.shader.options import Bound, bound_of
@@ -398,8 +398,7 @@ def recorded(verdicts: Iterable[Verdict]) -> list[Path]:
     for record, entries in records.items():
         there = {n: e for n, e in entries.items() if (record.parent / n).is_file()}
         if there != read(record):
-            with replacing(record) as handle:
-                handle.write(written(there).encode())
+            write_file(record, written(there))
             changed.append(record)
     return changed
 

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 
 from playground.engine.plan_warnings import own_kernels
 from playground.errors import Diagnostic, PlaygroundError
+from playground.files import read_regular
 from playground.paths import GLSL, shown
-from playground.regular_file import read_regular
 from playground.shader.expressions import names_in
 from playground.shader.parameter import write
 from playground.shader.reserved_names import GLSL_WORDS

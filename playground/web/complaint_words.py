@@ -12,6 +12,7 @@ import unicodedata
 from pathlib import Path
 
 from playground.engine import programs
+from playground.files import write_file
 from playground.shader import driver_log
 from playground.shader.reserved_names import FETCHES, GIVEN, GIVEN_INSTEAD, GLSL_WORDS
 
@@ -181,4 +182,4 @@ def _together(rows: list[str], inside: str) -> list[str]:
 
 
 if __name__ == "__main__":
-    FILE.write_text(module(), encoding="utf-8", newline="\n")
+    write_file(FILE, module())

@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from playground.errors import PlaygroundError, SandboxError
-from playground.folders import state_folder
-from playground.paths import program
+from playground.paths import program, state_folder
 from playground.sketch.find import find
 from playground.sketch.map_sketch import Map
 from playground.workbench.edit_merge import FileValue, file_values

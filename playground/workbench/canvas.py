@@ -19,7 +19,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.data.image_files import new_name
+from playground.files import new_name
 from playground.workbench.brush import Brush, Part
 from playground.workbench.data_files import hash_of
 from playground.workbench.latest_write import LatestWrite

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.errors import PlaygroundError, counted
+from playground.files import read_regular
 from playground.paths import GLSL, shown
-from playground.regular_file import read_regular
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.model import Camera, Value
 from playground.sketch.save import save, save_copy, save_preset, saved_text

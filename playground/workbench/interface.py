@@ -12,11 +12,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from playground.data.image_files import replacing
 from playground.errors import PlaygroundError
-from playground.folders import state_folder
+from playground.files import read_regular, write_file
 from playground.json_text import read_json
-from playground.regular_file import read_regular
+from playground.paths import state_folder
 from playground.workbench.notices import Notices
 
 SIZES = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0)
@@ -48,8 +47,7 @@ class InterfaceSize:
         text = json.dumps({"format": FORMAT, "size": size})
         with contextlib.suppress(OSError, PlaygroundError):
             self.file.parent.mkdir(parents=True, exist_ok=True)
-            with replacing(self.file) as file:
-                file.write(text.encode())
+            write_file(self.file, text)
 
 
 def remembered_size(folder: Path | None = None) -> InterfaceSize:

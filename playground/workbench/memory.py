@@ -16,10 +16,9 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import IO, Any
 
-from playground.data.image_files import replacing
 from playground.errors import DataError
+from playground.files import read_regular, write_file
 from playground.json_text import read_json
-from playground.regular_file import read_regular
 from playground.sketch.model import Camera, Value
 from playground.workbench.edit_merge import FileValue
 from playground.workbench.edits import Edits
@@ -98,8 +97,7 @@ class Memory:
                 self.path.unlink(missing_ok=True)
             return
         text = json.dumps(_written(remembered, self.sketch), indent=1, ensure_ascii=False)
-        with replacing(self.path) as file:
-            file.write(text.encode("utf-8", "surrogatepass"))
+        write_file(self.path, text.encode("utf-8", "surrogatepass"))
 
     def claim(self) -> bool:
         """Say whether this process may write; one that may keeps that right until it ends."""

@@ -15,9 +15,8 @@ from pathlib import Path
 
 from playground.allowed_files import TEXTS
 from playground.errors import DataError, SketchError
-from playground.folders import state_folder
-from playground.partial import partial_file
-from playground.regular_file import read_regular
+from playground.files import partial_file, read_regular
+from playground.paths import state_folder
 from playground.shader.dialects import OWN, dialect_of, names
 
 MAX_PASTED_BYTES = 4 * 2**20

@@ -15,9 +15,9 @@ from playground.data.live_inputs import LiveInputs
 from playground.engine.plan import Plan
 from playground.engine.plan_warnings import source_warnings
 from playground.errors import Diagnostic, PlaygroundError, counted
+from playground.files import read_regular
 from playground.memo import FILES
 from playground.paths import GLSL, without_part
-from playground.regular_file import read_regular
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.techniques import Techniques
 from playground.sketch.warnings import warnings_of_sketch

@@ -10,8 +10,8 @@ from typing import Protocol
 
 from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ContextError, PlaygroundError, SketchError
+from playground.files import irregularity
 from playground.paths import shown
-from playground.regular_file import irregularity
 
 log = logging.getLogger("playground.live")
 

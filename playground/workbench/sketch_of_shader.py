@@ -12,8 +12,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from playground.allowed_files import TECHNIQUES, is_elevation
-from playground.data.image_files import new_name
 from playground.errors import DataError
+from playground.files import new_name, write_file
 from playground.paths import GLSL
 from playground.sketch.assign import TERRAIN_KEYS, find_targets
 from playground.sketch.load import elevation_text, load
@@ -49,7 +49,7 @@ def save_as_sketch(draft: Draft, folder: Path) -> Draft:
     root = GLSL if ships else Path(draft.file.folder)
     use = f"{'' if ships else './'}{shader.relative_to(root).with_suffix('').as_posix()}"
     with new_name((folder if ships else root) / f"{shader.stem}_sketch.toml") as path:
-        path.write_text(_text(draft.file, use), "utf-8")
+        write_file(path, _text(draft.file, use))
         loaded = load(path)
         if _dialects(loaded) != _dialects(draft.file):
             message = "a sketch depends on the shader's text, not on --dialect, so the picture would differ"
@@ -66,7 +66,7 @@ def _save_elevation(draft: Draft, file: Path, folder: Path) -> Draft:
     ships = file.is_relative_to(GLSL)
     named = file.relative_to(GLSL).as_posix() if ships else file.name
     with new_name((folder if ships else file.parent) / f"{file.stem}.toml") as path:
-        path.write_text(elevation_text(file, named), "utf-8")
+        write_file(path, elevation_text(file, named))
         loaded = load(path)
         save(loaded, Draft(loaded, loaded).with_all(draft.edits).sketch)
         saved = load(path)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from playground.data.image_files import new_name
 from playground.engine.frame import Frame
+from playground.files import new_name
 
 
 def save_new(frame: Frame, folder: Path, name: str) -> Path:

@@ -11,11 +11,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
-from playground.data.image_files import reason
 from playground.errors import DataError
-from playground.partial import partial_file
+from playground.files import partial_file, read_regular, reason
 from playground.paths import shown
-from playground.regular_file import read_regular
 
 MAX_FILE_BYTES = 8 * 2**20
 """Bytes that a file may have."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from playground.data.image_files import new_name
 from playground.errors import PlaygroundError
+from playground.files import new_name
 
 
 def set_aside(path: Path, what: str, error: Exception) -> str:

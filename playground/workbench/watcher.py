@@ -18,7 +18,7 @@ from pathlib import Path
 from watchfiles import watch
 
 from playground.allowed_files import Signature, signature
-from playground.regular_file import NotRegularError, open_regular
+from playground.files import NotRegularError, open_regular
 
 STEP, DEBOUNCE = 5, 50  # [ms] quiet after which a batch is reported; longest batch
 LOOK_EVERY = 500  # [ms]

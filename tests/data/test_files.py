@@ -19,7 +19,6 @@ from playground.data.content_hash import content_hash
 from playground.data.image_files import (
     encode_png,
     encode_samples,
-    new_name,
     read_image,
     read_png,
     read_samples,
@@ -27,6 +26,7 @@ from playground.data.image_files import (
 )
 from playground.data.values import write_values
 from playground.errors import DataError
+from playground.files import new_name
 
 RNG = np.random.default_rng(5)
 KINDS = {1: 0, 2: 4, 3: 2, 4: 6}
@@ -191,7 +191,7 @@ def test_permission_denied_is_a_sentence(tmp_path, monkeypatch):
     def denied(*_: object, **__: object) -> None:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr("playground.data.image_files.open_regular", denied)
+    monkeypatch.setattr("playground.files.open_regular", denied)
     with pytest.raises(DataError, match=r"cannot be read: Permission denied$"):
         read_image(tmp_path / "a.png")
 

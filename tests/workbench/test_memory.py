@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.folders import cache_folder, state_folder
+from playground.paths import cache_folder, state_folder
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
 from playground.workbench.autosave import QUIET, TIME, Autosave

@@ -22,10 +22,9 @@ from playground.capture.shader_export.texts import (
     size_of,
     text_of,
 )
-from playground.data.image_files import reason
 from playground.engine.plan import Plan
 from playground.errors import DataError
-from playground.regular_file import read_regular
+from playground.files import read_regular, reason
 from playground.sketch.model import PlainFragment, Sketch
 
 MADE_BY = "terrain shader playground"

@@ -16,10 +16,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from playground.data.image_files import replacing
 from playground.engine.context import context_info
 from playground.engine.engine import Engine
 from playground.errors import DataError
+from playground.files import write_file
 from playground.json_text import read_json
 from playground.lessons.book.blocks import LessonContext, picture_image
 from playground.lessons.book.gallery import gallery_html
@@ -190,8 +190,7 @@ def _cover(build: Build, lesson: Lesson, folder: str, *, lazy: bool = False) -> 
 
 def _write(path: Path, data: bytes) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
-    with replacing(path) as handle:
-        handle.write(data)
+    write_file(path, data)
 
 
 def _begin(folder: Path) -> None:

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from playground.data.image_files import replacing
 from playground.engine.engine import Engine
+from playground.files import replacing
 from playground.lessons.figure_renders import Picture, draw, pictures_of
 from playground.lessons.model import Lesson, Scene
 

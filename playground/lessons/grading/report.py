@@ -16,8 +16,8 @@ from pathlib import Path
 
 from PIL import Image
 
-from playground.data.image_files import replacing
 from playground.errors import DataError
+from playground.files import write_file
 from playground.lessons.grading.marks import Graded
 from playground.lessons.grading.page import ReportContext, page, table_hash_of
 from playground.lessons.grading.table import table_bytes
@@ -100,5 +100,4 @@ def _size_of(data: bytes) -> tuple[int, int]:
 
 
 def _write(path: Path, data: bytes) -> None:
-    with replacing(path) as handle:
-        handle.write(data)
+    write_file(path, data)

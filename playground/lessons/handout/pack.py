@@ -18,10 +18,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from playground._version import __version__
-from playground.data.image_files import checked_file, reading, replacing
 from playground.engine.engine import Engine
 from playground.errors import DataError, SketchError
 from playground.extras import DISTRIBUTION
+from playground.files import checked_file, reading, replacing
 from playground.lessons.handout.exercise_files import Assignment, assignments_of
 from playground.lessons.handout.labels import handout_labels
 from playground.lessons.handout.page import handout_page

@@ -13,8 +13,8 @@ import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from playground.data.image_files import reason
 from playground.errors import DataError, PlaygroundError
+from playground.files import reason, write_file
 from playground.lessons.handout.exercise_files import Assignment
 from playground.lessons.tasks.texts import path_of
 from playground.paths import GLSL, SKETCHES
@@ -45,7 +45,7 @@ def student_files(assignment: Assignment) -> dict[str, bytes]:
             text = _without_moments(read_text(first), assignment)
             first.unlink()
             path = first.with_name(assignment.sketch_file)
-            path.write_text(text, encoding="utf-8", newline="\n")
+            write_file(path, text)
             if assignment.task.file:
                 _put_kernel(assignment, path)
             _drop_view_settings(path, scene.sketch)
@@ -89,7 +89,7 @@ def _drop_view_settings(path: Path, begin: Sketch) -> None:
     set_there = tomllib.loads(text).get("view", {}).get("set", {})
     for key in set_there.keys() - dict(view.values if view else ()).keys():
         text = drop(text, ("view", "set"), key)
-    path.write_text(text, encoding="utf-8", newline="\n")
+    write_file(path, text)
 
 
 def _as_begun(sketch: Sketch, begin: Sketch) -> Sketch:
@@ -110,7 +110,7 @@ def _put_kernel(assignment: Assignment, sketch_file: Path) -> None:
     """Write the starter into the folder and have the sketch use it, through the techniques around it."""
     folder, kernel = sketch_file.parent, path_of(assignment.task)
     starter = _includes_from_library(assignment.starter, kernel)
-    (folder / f"{assignment.name}.glsl").write_text(starter, encoding="utf-8", newline="\n")
+    write_file(folder / f"{assignment.name}.glsl", starter)
     own = _OwnKernel(
         kernel, assignment.name, folder, _parameters(read_text(kernel), kernel) - _parameters(starter, kernel)
     )
@@ -121,7 +121,7 @@ def _put_kernel(assignment: Assignment, sketch_file: Path) -> None:
         text = put(text, (), "main", f"[{', '.join(map(text_of, there))}]")
     elif main:
         text = drop(text, (), "main")
-    sketch_file.write_text(text, encoding="utf-8", newline="\n")
+    write_file(sketch_file, text)
 
 
 @dataclass(frozen=True)
@@ -174,7 +174,7 @@ def _own_technique(own: _OwnKernel, technique: Graph) -> tuple[str, set[str]]:
         elif not there:
             text = drop(text, ("parameters",), exported)
             gone.add(exported)
-    (own.folder / f"{name}.toml").write_text(text, encoding="utf-8", newline="\n")
+    write_file(own.folder / f"{name}.toml", text)
     return name, gone
 
 

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from playground.capture.video import QUALITY, Video, check_video
-from playground.data.image_files import replacing
 from playground.engine.engine import Engine
+from playground.files import write_file
 from playground.lessons.figure_renders import broken
 from playground.lessons.measuring import Number, filled, measured, named_in
 from playground.lessons.model import Break, Compare, Lesson, Scene, Slider
@@ -98,8 +98,7 @@ def write_presentation(
     for beat, count in zip(beats, film.counts, strict=True):
         cues += cues_of(beat, at, float(count / FPS))
         at += float(count / FPS)
-    with replacing(path) as handle:
-        handle.write(srt(cues).encode())
+    write_file(path, srt(cues))
     return [film.path, path]
 
 

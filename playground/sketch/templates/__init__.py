@@ -7,6 +7,7 @@ import shutil
 from pathlib import Path
 
 from playground.errors import SketchError
+from playground.files import write_file
 from playground.paths import shown
 
 _HERE = Path(__file__).resolve().parent
@@ -34,7 +35,7 @@ def make_sketch(folder: Path, *, empty: bool = False) -> Path:
         for template in sorted((_HERE / ("empty" if empty else "new")).iterdir()):
             if template.suffix == ".toml":
                 text = template.read_text(encoding="utf-8").replace(_TITLE, _title(name))
-                (folder / template.name).write_text(text, encoding="utf-8")
+                write_file(folder / template.name, text)
             elif template.suffix == ".glsl":
                 shutil.copyfile(template, folder / template.name)
     except OSError as error:

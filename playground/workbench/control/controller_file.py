@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from playground.data.image_files import replacing
 from playground.errors import SketchError
+from playground.files import write_file
 from playground.sketch.toml_table import FORMAT, TomlFile
 
 ENDING = ".controllers"
@@ -77,8 +77,7 @@ def write_bindings(path: Path, bindings: Iterable[Binding]) -> None:
         path.unlink(missing_ok=True)
         return
     head = "# MIDI controllers of the sketch next to this file; playground live writes it.\n"
-    with replacing(path) as file:
-        file.write((head + f"format = {FORMAT}\n" + "".join(parts)).encode())
+    write_file(path, head + f"format = {FORMAT}\n" + "".join(parts))
 
 
 def _text(binding: Binding) -> str:

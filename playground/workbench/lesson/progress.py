@@ -13,11 +13,10 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from playground.data.image_files import replacing
 from playground.errors import PlaygroundError
-from playground.folders import state_folder
+from playground.files import read_regular, write_file
 from playground.json_text import read_json
-from playground.regular_file import read_regular
+from playground.paths import state_folder
 from playground.sketch.model import Value
 from playground.workbench.unread import set_aside
 
@@ -86,8 +85,7 @@ def write_progress(progress: Progress, path: Path) -> str:
     text = json.dumps({"format": FORMAT, **table}, indent=1, ensure_ascii=False)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(path) as file:
-            file.write(text.encode("utf-8", "surrogatepass"))
+        write_file(path, text.encode("utf-8", "surrogatepass"))
     except (OSError, PlaygroundError) as error:
         return f"where you are in the lessons cannot be remembered: {error}"
     return ""
