@@ -26,7 +26,7 @@ from playground import cli
 from playground.data.image_files import read_png, read_samples
 from playground.doctor import where_to_show
 from playground.engine import sandbox
-from playground.engine.picture_reduction import reduced
+from playground.engine.frame import reduced
 from playground.errors import DataError
 from playground.paths import DEFAULT_SKETCH, GLSL
 from playground.sketch.find import shipped_sketches

@@ -1,7 +1,7 @@
 // generation/from_example.glsl -- terrain like an example, along the ridges of a sketch.
 //
 //   gives    height, 0 at the lowest
-//   needs    nothing; the processor makes it (playground/engine/by_example.py)
+//   needs    nothing; the processor makes it (playground/data/by_example.py)
 //   units    heights without unit; where the file tells its metres, the sketch's relief and base
 //            elevation take them unless it sets its own. Metres are the file's: terrain of finer
 //            texels is as smooth as the example between its own

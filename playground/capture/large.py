@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from playground.capture.png_strips import PngStrips
 from playground.engine.engine import Engine
-from playground.engine.picture_reduction import reduced
+from playground.engine.frame import reduced
 from playground.engine.plan import Window, drawn_size
 from playground.engine.textures import read_picture
 from playground.errors import DataError, ParameterError, SketchError

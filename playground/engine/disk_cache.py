@@ -48,7 +48,7 @@ _PART = ".part"
 _ABANDONED = 3600.0  # [s] after which a half-written file is removed
 _MAX_HEADER_BYTES = 2**16  # [bytes]
 _UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
-_LAYERS = ("engine", "gpu", "images", "sketch", "terrain")  # whose Python decides what a pass computes
+_ROOMS = ("data", "engine", "shader", "sketch")  # whose Python decides what a pass computes
 
 
 @dataclass(frozen=True)
@@ -188,7 +188,7 @@ def tool() -> str:
             status = Path(spec.origin).stat()
             versions.append((spec.origin, status.st_size, status.st_mtime_ns))
     home = Path(paths.__file__).parent
-    for path in sorted(path for layer in _LAYERS for path in (home / layer).glob("*.py")):
+    for path in sorted(path for room in _ROOMS for path in (home / room).rglob("*.py")):
         status = path.stat()
         versions.append((path.name, status.st_size, status.st_mtime_ns))
     return hashlib.blake2b(repr(versions).encode(), digest_size=16).hexdigest()

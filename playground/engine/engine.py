@@ -15,9 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.context import ContextInfo, open_context, release_context
-from playground.engine.frame import Frame
+from playground.engine.frame import Frame, reduced
 from playground.engine.non_finite import NotFinite
-from playground.engine.picture_reduction import reduced
 from playground.engine.plain_forms import warn
 from playground.engine.plan import drawn_size, most_iterations
 from playground.engine.planner import repeated_in

@@ -1,4 +1,4 @@
-"""Sources that read a file: elevations, masks, painted numbers, models, vectors.
+"""Sources that read a file: elevations, masks, painted numbers, models, vectors, terrain to quilt.
 
 * Elevations: one of over ``LARGE`` texels is read at the requested size, a part at a time, and never has all
   of its texels in memory.
@@ -9,6 +9,7 @@
   triangle, of the second, and so on. The fourth number of a texel is 1 where there is a corner, else 0.
 * Vectors: an elevation file says where the terrain lies; GDAL brings shapes in another reference system into
   that one. The datums WGS 84, NAD 83 and ETRS 89 are taken for one: they differ by two metres at most.
+* Examples: ``data.by_example`` makes terrain of pieces of a file's, in the metres that are known of it.
 """
 
 from __future__ import annotations
@@ -19,10 +20,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
+from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.data.by_example import SynthesisSettings, made_like
 from playground.data.content_hash import content_key
 from playground.data.elevation import (
     Edge,
@@ -40,7 +43,7 @@ from playground.data.models import Model, read_model
 from playground.data.place import Georeference
 from playground.data.resample import resample
 from playground.data.vectors import Grid, Line, VectorShape, draw, read_vectors
-from playground.engine.source_kinds import Terrain
+from playground.engine.source_kinds import Material, Terrain
 from playground.errors import DataError
 from playground.files import replacing
 from playground.memo import FILES, SOURCES, bytes_held
@@ -411,3 +414,89 @@ def _meets(shape: VectorShape, bounds: tuple[float, float, float, float]) -> boo
     (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
     west, south, east, north = bounds
     return bool(x0 <= east and x1 >= west and y0 <= north and y1 >= south)
+
+
+EXAMPLE_PARAMETERS = ("elevation", "texel", "rise", "piece", "candidates", "follow", "seed")
+EXAMPLE_INPUTS = ("guide",)
+_MAX_EXAMPLE = 2049  # texels of an example's longer side, of a file that has more
+_EXAMPLE_SALT = crc32(b"generation/from_example")
+
+
+def describe_example(values: Mapping[str, Value]) -> Terrain:
+    """Return the example's relief, where it is known: what is made of it has about the same."""
+    low, rise = _metres_of_example(values)
+    assumed = "" if low is None else _example(values)[0].assumed
+    return Terrain(relief=rise, base_elevation=low, assumed=assumed)
+
+
+def make_from_example(
+    values: Mapping[str, Value], size: tuple[int, int], material: Material
+) -> dict[str, NDArray[np.float32]]:
+    """Return heights in units of the relief, the lowest 0."""
+    (example, coarser), (_, rise) = _example(values), _metres_of_example(values)
+    span = example.highest - example.lowest
+    texel = _number(values, "texel")
+    spacing = (texel * coarser, texel * coarser) if texel else example.spacing
+    settings = SynthesisSettings(
+        piece=_number(values, "piece"),
+        candidates=int(_number(values, "candidates")),
+        follow=_number(values, "follow"),
+        seed=(int(_number(values, "seed")) + _EXAMPLE_SALT) % 2**32,
+    )
+    guide = material.inputs.get("guide")
+    heights = made_like(
+        example,
+        spacing or material.spacing,
+        size,
+        material.spacing,
+        settings,
+        None if guide is None else guide.reshape(*guide.shape[:2], -1)[..., 0].astype(np.float64),
+        material.report,
+    )
+    scale = (material.relief if rise is None else rise) / span if span > 0 else 0.0
+    return {"height": ((heights - heights.min()) * (scale / material.relief)).astype(np.float32)}
+
+
+def example_notes(values: Mapping[str, Value]) -> tuple[str, ...]:
+    """Return what was assumed of the example."""
+    example, _ = _example(values)
+    facts = [f"{example.name}: {note}" for note in example.notes]
+    if example.spacing is None and not _number(values, "texel"):
+        facts.append(f"{example.name}: it does not say how large it is, so its texels are this terrain's")
+    return tuple(facts)
+
+
+def _metres_of_example(values: Mapping[str, Value]) -> tuple[float | None, float | None]:
+    """Return the elevation of the example's lowest height, and how far it rises [m]; None: not known."""
+    (example, _), rise = _example(values), _number(values, "rise")
+    if rise:
+        return None, rise
+    if example.in_metres and example.highest > example.lowest:
+        return example.lowest, example.highest - example.lowest
+    return None, None
+
+
+def _example(values: Mapping[str, Value]) -> tuple[Elevation, float]:
+    """Return the example, and how many of the file's texels go to one of it."""
+    path = Path(str(values["elevation"]))
+    return _read_example(str(path), content_key(path))
+
+
+@SOURCES.cached(weight=bytes_held)
+def _read_example(path: str, _: str) -> tuple[Elevation, float]:
+    file = open_elevation(Path(path))
+    size = fitted(file.size, _MAX_EXAMPLE)
+    elevation = fill_no_data(file.read_at(size), "fill")
+    if min(elevation.size) < 2:
+        raise DataError("an example needs 2 x 2 texels at least", file=path)
+    if size == file.size:
+        return elevation, 1.0
+    whole, fewer = (f"{x} x {y}" for x, y in (file.size, size))
+    note = f"its {whole} texels are read as {fewer}, enough for an example"
+    return replace(elevation, notes=(*elevation.notes, note)), (max(file.size) - 1) / (max(size) - 1)
+
+
+def _number(values: Mapping[str, Value], name: str) -> float:
+    value = values[name]
+    assert isinstance(value, int | float)  # the kernel's file says so
+    return value

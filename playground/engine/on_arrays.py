@@ -7,7 +7,7 @@ programs, spare textures and the plan stay, so that the next run of the same sha
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
@@ -20,13 +20,24 @@ from playground.engine.cache_keys import Keys
 from playground.engine.plan import LoopStep, Plan, every_version, sources_of, walk
 from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.results import Cached
-from playground.engine.source_works import SourceWorks
-from playground.engine.standalone import free_name, shown_alone, text_of
 from playground.engine.textures import read_texture, write_texture
+from playground.engine.unfinished import SourceWorks
 from playground.errors import ParameterError, nearest
-from playground.paths import GLSL
+from playground.paths import GLSL, shown
+from playground.shader.own_shaders import own_shader
+from playground.shader.source import Line, SourceText
 from playground.sketch.flat import Ref
-from playground.sketch.model import Kernel, Output, Parameter, PassSpec, Sketch, Technique, TexelKernel
+from playground.sketch.model import (
+    Graph,
+    Input,
+    Kernel,
+    Output,
+    Parameter,
+    PassSpec,
+    Sketch,
+    Technique,
+    TexelKernel,
+)
 from playground.sketch.techniques import read_technique
 from playground.sketch.wiring import initial_names, input_names, is_optional, output_names
 
@@ -187,3 +198,38 @@ def _array_pass(name: str, shape: _Shape) -> PassSpec:
 
 def _channels(shape: _Shape) -> int:
     return shape[2] if len(shape) == 3 else 1
+
+
+def shown_alone(
+    technique: Technique, subject: str, passes: Iterable[PassSpec], folder: Path, line: int = 0
+) -> Sketch:
+    """Return a sketch of some passes and one, named ``subject``, of a technique, which it shows.
+
+    ``folder`` is where its files are, ``line`` that of the technique's file that errors name.
+    """
+    own = PassSpec(subject, subject, technique, file=shown(technique.path), line=line)
+    view = PassSpec("view", "a copy", _COPY, inputs=(("shown", subject),))
+    graph = Graph(subject, technique.path, (*passes, own, view))
+    return Sketch(Path(technique.path).stem, technique.path, str(folder), graph)
+
+
+def free_name(name: str, technique: Technique) -> str:
+    """Return a name for the pass of a technique that none of its inputs has."""
+    taken = {declared.name for declared in technique.inputs} | {"view"}
+    while name in taken:
+        name += "_"
+    return name
+
+
+def text_of(code: str) -> SourceText:
+    """Return code that is in no file as a kernel's text."""
+    lines = code.strip().split("\n")
+    return SourceText("", tuple(Line(line, line, "", "", number) for number, line in enumerate(lines, 1)))
+
+
+_COPY = TexelKernel(
+    name="a copy",
+    source=text_of(own_shader("placeholder_view.glsl")),
+    outputs=(Output("frame", "rgba16f"),),
+    inputs=(Input("shown"),),
+)

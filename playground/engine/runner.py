@@ -25,9 +25,9 @@ from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.software import Software
 from playground.engine.source_kinds import Material, SourceKind
-from playground.engine.source_works import Arrays, SourceWorks, Task
 from playground.engine.sources import source_kind
 from playground.engine.textures import read_texture, split_format, write_texture
+from playground.engine.unfinished import Arrays, SourceWorks, Task
 from playground.errors import DataError
 from playground.shader.expressions import FRAME_RATE, last_frame_at
 from playground.shader.reserved_names import MOMENT, NEUTRAL, OF_THE_TERRAIN, PRESSED

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from playground.allowed_files import reading_unsaved
-from playground.engine.all_errors import all_errors
 from playground.engine.context import open_context
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
@@ -18,21 +17,17 @@ from playground.engine.programs import compile_library
 from playground.engine.sandbox import Activity, Request, SandboxReport, TryLibrary, TrySketch
 from playground.engine.textures import drain, is_lost
 from playground.engine.unfinished import Unfinished
-from playground.errors import (
-    ContextError,
-    PlaygroundError,
-    SandboxCrash,
-    ShaderError,
-)
+from playground.errors import ContextError, Diagnostic, PlaygroundError, SandboxCrash, ShaderError
 from playground.shader.source import read_source
 from playground.shader.wrap import COMPUTE
-from playground.sketch.model import Sketch
+from playground.sketch.model import CpuSource, Sketch
 
 if TYPE_CHECKING:
     import moderngl
 
 _FINEST = 33  # vertices a side of the sandbox's meshes
 _PATIENCE = 0.2  # [s] for loops over the frames: many frames prove little more than some
+_MAX_DIAGNOSTICS = 200  # more help no one
 _TRIES = 4  # at earlier times: of several loops, each may have come less far
 
 
@@ -133,3 +128,45 @@ def _refuse(engine: Engine, what: str) -> None:
         step = engine.record.plan.step(not_finite.path)
         if step is not None and (throughout or what == "any"):
             raise step.kernel.error(not_finite.everywhere() if throughout else str(not_finite))
+
+
+def all_errors(
+    error: PlaygroundError, engine: Engine, sketch: Sketch, *, size: tuple[int, int], time: float = 0.0
+) -> PlaygroundError:
+    """Return an error with those of all other kernels of the sketch after its own.
+
+    Each pass is compiled in the form that the engine would run; nothing is drawn. An error
+    that is not a shader's, and one of a sketch with no plan, comes back as it is.
+    """
+    if not isinstance(error, ShaderError):
+        return error
+    try:
+        plan = engine.plan(sketch, size, time)
+    except PlaygroundError:
+        return error
+    diagnostics: dict[tuple[str, int, int, str], Diagnostic] = {}
+    _take(diagnostics, error)
+    tried: set[tuple[int, str]] = set()
+    for step in plan.walk():
+        if isinstance(step.kernel, CpuSource) or len(diagnostics) >= _MAX_DIAGNOSTICS:
+            continue
+        try:
+            kernel, driver = step.kernel, engine.driver_for(step)
+            if (id(kernel), driver) in tried:
+                continue
+            tried.add((id(kernel), driver))
+            if engine.runner.before_step is not None:
+                engine.runner.before_step(step)
+            engine.runner.programs.get(kernel, driver)
+        except ShaderError as other:
+            _take(diagnostics, other)
+        except PlaygroundError:
+            continue  # this machine lacks something, which is no mistake of the text
+    return ShaderError(diagnostics=diagnostics.values())
+
+
+def _take(diagnostics: dict[tuple[str, int, int, str], Diagnostic], error: ShaderError) -> None:
+    """Add an error's diagnostics; one of a file that several kernels include is added once."""
+    for diagnostic in error.diagnostics:
+        key = (diagnostic.file, diagnostic.line, diagnostic.column, diagnostic.message)
+        diagnostics.setdefault(key, diagnostic)

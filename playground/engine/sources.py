@@ -11,10 +11,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.engine import by_example, file_sources, time_sources
-from playground.engine.delaunay import Rules, tables, triangulate
+from playground.data.by_example import ranked
+from playground.data.delaunay import Rules, tables, triangulate
+from playground.engine import file_sources, time_sources
 from playground.engine.file_sources import make_model, read_mask, read_numbers, size_of_model
-from playground.engine.source_kinds import Recording, SourceKind, Terrain
+from playground.engine.source_kinds import Material, Recording, SourceKind, Terrain
 from playground.engine.time_sources import (
     LEAD,
     frames_of_sound,
@@ -83,6 +84,16 @@ def _make_array(
     return {"values": array[..., 0] if array.shape[2] == 1 else array}
 
 
+def rank_heights(
+    values: Mapping[str, Value], size: tuple[int, int], material: Material
+) -> dict[str, NDArray[np.float32]]:
+    """Return of the example in a size (nx, ny): the normal deviate of each texel's rank, and all sorted."""
+    value = material.inputs.get("example")
+    example = None if value is None else value.reshape(*value.shape[:2], -1)[..., 0].astype(np.float64)
+    normal, in_order = ranked(example, size, _number(values, "widest"), material.report)
+    return {"normal": normal.astype(np.float32), "sorted": in_order.astype(np.float32)}
+
+
 def _number(values: Mapping[str, Value], name: str) -> float:
     value = values[name]
     assert isinstance(value, int | float)  # the kernel's file says so
@@ -107,23 +118,23 @@ SOURCES: dict[str, SourceKind] = {
         "the triangulation",
     ),
     "example_file": SourceKind(
-        by_example.describe,
+        file_sources.describe_example,
         None,
         ("elevation",),
-        by_example.PARAMETERS,
+        file_sources.EXAMPLE_PARAMETERS,
         "the terrain",
-        notes=by_example.notes,
-        inputs=by_example.INPUTS,
-        work=by_example.work,
+        notes=file_sources.example_notes,
+        inputs=file_sources.EXAMPLE_INPUTS,
+        work=file_sources.make_from_example,
     ),
     "ranked_heights": SourceKind(
         lambda _: Terrain(),
         None,
         (),
-        by_example.RANKED_PARAMETERS,
+        ("widest",),
         "the table of ranks",
-        inputs=by_example.RANKED_INPUTS,
-        work=by_example.rank_heights,
+        inputs=("example",),
+        work=rank_heights,
     ),
     "mask_file": SourceKind(
         lambda _: Terrain(),

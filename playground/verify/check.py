@@ -20,11 +20,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from playground.allowed_files import TEXTS, is_elevation, is_variant, named_root, root_of, unsaved_texts
+from playground.engine.on_arrays import free_name
 from playground.engine.plan import PlanRequest, located_at
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import make_plan
 from playground.engine.sandbox import Request, Sandbox, SandboxReport, TryLibrary, TrySketch
-from playground.engine.standalone import free_name, standalone_sketch, with_pictures
 from playground.errors import (
     DataError,
     Diagnostic,
@@ -71,6 +71,7 @@ from playground.sketch.variants import (
     without_variants,
 )
 from playground.sketch.warnings import warnings_of_sketch
+from playground.verify.standalone import standalone_sketch, with_pictures
 from playground.verify.warnings import kernel_warnings, shadowed_by_files, warnings_of_kernel
 
 BOTH = (FRAGMENT, COMPUTE)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from playground.allowed_files import FAST, canonical_of, is_variant, looking_once, root_of
 from playground.engine.engine import Engine
-from playground.engine.standalone import free_name, standalone_sketch
+from playground.engine.on_arrays import free_name
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.files import write_file
 from playground.paths import GLSL, shown
@@ -52,6 +52,7 @@ from playground.sketch.variants import (
     written,
 )
 from playground.sketch.wiring import initial_names, inner, input_names, is_optional, output_names
+from playground.verify.standalone import standalone_sketch
 
 SIZES = ((33, 33), (64, 48), (129, 129), (97, 130), (257, 193))
 """Texels; a technique that takes others is drawn at the nearest that it takes."""

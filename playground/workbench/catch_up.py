@@ -12,8 +12,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from playground.engine.engine import Engine
-from playground.engine.source_works import SourceUnfinished
-from playground.engine.unfinished import Unfinished
+from playground.engine.unfinished import SourceUnfinished, Unfinished
 
 if TYPE_CHECKING:
     import moderngl

@@ -21,7 +21,7 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Plan
-from playground.engine.source_works import SourceUnfinished
+from playground.engine.unfinished import SourceUnfinished
 from playground.errors import ContextError, PlaygroundError
 from playground.sketch.assign import find_targets, resolve
 from playground.sketch.find import find

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from playground.capture.large import strips
-from playground.engine.picture_reduction import reduced
+from playground.engine.frame import reduced
 from playground.errors import ParameterError, SketchError
 from playground.sketch.load import load
 

@@ -11,9 +11,8 @@ import pytest
 import tifffile
 from scipy.ndimage import gaussian_filter
 
-from playground.data.elevation import Elevation, read_elevation
-from playground.engine import by_example
-from playground.engine.by_example import (
+from playground.data import by_example
+from playground.data.by_example import (
     CELLS,
     Candidates,
     Fit,
@@ -27,6 +26,8 @@ from playground.engine.by_example import (
     quilted,
     smoothed,
 )
+from playground.data.elevation import Elevation, read_elevation
+from playground.engine import file_sources
 from playground.engine.source_kinds import Material
 from playground.errors import DataError
 from playground.memo import SOURCES
@@ -372,32 +373,36 @@ def values(file: Path, **more: float) -> dict[str, object]:
 
 
 def test_the_file_says_the_relief_and_heights_are_in_it():
-    terrain = by_example.describe(values(JACKSBORO))
+    terrain = file_sources.describe_example(values(JACKSBORO))
     assert (terrain.relief, terrain.base_elevation, terrain.size) == (840.0, 236.0, None)
     for relief in (840.0, 420.0):
         material = Material({}, (METRES, METRES), relief)
-        result = relief * by_example.work(values(JACKSBORO), (65, 65), material)["height"]
+        result = relief * file_sources.make_from_example(values(JACKSBORO), (65, 65), material)["height"]
         assert result.min() == 0 and 300 < result.max() < 1200, "metres are metres"
-    assert by_example.notes(values(JACKSBORO)) == ()
+    assert file_sources.example_notes(values(JACKSBORO)) == ()
 
 
 def test_a_file_without_metres_is_told_them(tmp_path):
     hills = gaussian_filter(np.random.default_rng(2).normal(size=(90, 70)), 4)
     file = tmp_path / "hills.tif"  # a picture, whose greys have no unit
     tifffile.imwrite(file, (65535 * (hills - hills.min()) / np.ptp(hills)).astype(np.uint16))
-    assert by_example.describe(values(file)).relief is None
-    assert by_example.describe(values(file, rise=300.0)).relief == 300.0
-    assert "it does not say how large it is" in by_example.notes(values(file))[0]
-    assert by_example.notes(values(file, texel=30.0)) == ()
+    assert file_sources.describe_example(values(file)).relief is None
+    assert file_sources.describe_example(values(file, rise=300.0)).relief == 300.0
+    assert "it does not say how large it is" in file_sources.example_notes(values(file))[0]
+    assert file_sources.example_notes(values(file, texel=30.0)) == ()
     for rise, expected in ((0.0, 1.0), (300.0, 0.3)):  # of a relief of 1000 m
         material = Material({}, (METRES, METRES), 1000.0)
-        made = by_example.work(values(file, rise=rise, piece=1600.0), (65, 65), material)["height"]
+        made = file_sources.make_from_example(values(file, rise=rise, piece=1600.0), (65, 65), material)[
+            "height"
+        ]
         assert 0.4 * expected < made.max() < 1.6 * expected
 
 
 def test_of_a_large_file_no_more_is_read_than_an_example_needs(tmp_path):
     file = tmp_path / "large.npy"
     np.save(file, np.add.outer(np.zeros(20), np.arange(4097)).astype(np.float32))
-    assert "its 4097 x 20 texels are read as 2049 x " in by_example.notes(values(file, texel=10.0))[0]
-    example, coarser = by_example._example(values(file))
+    assert (
+        "its 4097 x 20 texels are read as 2049 x " in file_sources.example_notes(values(file, texel=10.0))[0]
+    )
+    example, coarser = file_sources._example(values(file))
     assert (example.size[0], coarser) == (2049, 2.0)

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine.all_errors import all_errors
 from playground.engine.engine import Engine
 from playground.engine.sandbox import Sandbox, TrySketch
+from playground.engine.sandbox_handler import all_errors
 from playground.errors import PlaygroundError, ShaderError, SketchError
 
 from ..loading import load

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from playground.engine.on_arrays import OnArrays
-from playground.engine.source_works import SourceUnfinished
+from playground.engine.unfinished import SourceUnfinished
 from playground.errors import PlaygroundError
 from playground.sketch.techniques import read_technique
 

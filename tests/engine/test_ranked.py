@@ -6,8 +6,9 @@ from scipy.ndimage import gaussian_filter
 from scipy.special import ndtri
 from scipy.stats import rankdata
 
-from playground.engine.by_example import normal_deviate, rank_heights
+from playground.data.by_example import normal_deviate
 from playground.engine.source_kinds import Material
+from playground.engine.sources import rank_heights
 
 RNG = np.random.default_rng(4)
 

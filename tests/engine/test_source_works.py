@@ -17,7 +17,7 @@ from playground.engine.engine import Engine
 from playground.engine.process.worker import Cancelled
 from playground.engine.sandbox import Sandbox, TrySketch
 from playground.engine.source_kinds import Material, SourceKind, Terrain
-from playground.engine.source_works import SourceUnfinished, SourceWorks
+from playground.engine.unfinished import SourceUnfinished, SourceWorks
 from playground.errors import DataError, PlaygroundError
 
 from ..loading import load

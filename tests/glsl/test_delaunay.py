@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import LinearNDInterpolator
 
-from playground.engine.delaunay import Rules, Triangulation, triangulate
+from playground.data.delaunay import Rules, Triangulation, triangulate
 from playground.engine.engine import Engine
 from playground.errors import DataError
 from playground.memo import SOURCES

@@ -7,7 +7,7 @@ from zlib import crc32
 import numpy as np
 import pytest
 
-from playground.engine import delaunay
+from playground.data import delaunay
 from playground.paths import GLSL
 
 SALT = re.compile(r'^const uint \w*SALT = 0x([0-9a-f]{8})u;  // CRC-32 of "([^"]+)"$', re.M)

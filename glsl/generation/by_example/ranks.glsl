@@ -2,7 +2,7 @@
 //
 //   gives    normal: of each texel the number that has its rank in a normal distribution;
 //            sorted: all heights from the lowest on, row by row
-//   needs    nothing; the processor makes it (playground/engine/by_example.py)
+//   needs    nothing; the processor makes it (playground/data/by_example.py)
 //   units    heights as the example's
 //   source   Heitz and Neyret 2018, "High-Performance By-Example Noise using a
 //            Histogram-Preserving Blending Operator" (Proc. ACM CGIT 1(2))

@@ -3,7 +3,7 @@
 //   gives    places (x, y, height), triangles (three points, counter-clockwise), neighbours
 //            (the triangle across from each point, -1 outside) and last (what the last
 //            insertion did): entry k at texel (k % width, k / width)
-//   needs    nothing; the processor triangulates (playground/engine/delaunay.py)
+//   needs    nothing; the processor triangulates (playground/data/delaunay.py)
 //   units    places in lattice spacings, 2^24 along the terrain's longer side; heights without
 //            unit; points and triangles by their numbers, the corners first
 //   source   Belaiche 2010, section 1.3.8, its slip 5 fixed; Bowyer 1981 and Watson 1981

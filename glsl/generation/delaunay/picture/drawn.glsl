@@ -4,7 +4,7 @@
 //            edge_of_triangle, marked_edge, marked_triangle and the names of what may be marked
 //   needs    generation/delaunay/tables.glsl
 //   units    pixels of the picture, whose first is 0 to 1; lattice spacings
-//   source   derived here; the circle's determinant as in playground/engine/delaunay.py
+//   source   derived here; the circle's determinant as in playground/data/delaunay.py
 //   tested   tests/glsl/test_delaunay.py, by the pictures' own pixels
 #ifndef GENERATION_DELAUNAY_PICTURE_DRAWN
 #define GENERATION_DELAUNAY_PICTURE_DRAWN

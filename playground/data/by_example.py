@@ -10,31 +10,25 @@ field has no step there, and its transform is made of cosines: edges are free.
 Sources: Zhou, Sun, Turk and Rehg 2007, "Terrain Synthesis from Digital Elevation Models" (IEEE TVCG 13, 4);
 Efros and Freeman 2001, "Image Quilting for Texture Synthesis and Transfer" (SIGGRAPH).
 
-``rank_heights``, after Heitz and Neyret 2018, "High-Performance By-Example Noise using a Histogram-Preserving
+``ranked``, after Heitz and Neyret 2018, "High-Performance By-Example Noise using a Histogram-Preserving
 Blending Operator" (Proc. ACM CGIT 1, 2): blended as the numbers of a normal distribution that have their
 ranks, and brought back by the sorted heights, heights keep their histogram.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from heapq import heappop, heappush
-from pathlib import Path
 from typing import Any
-from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.data.content_hash import content_key
-from playground.data.elevation import Elevation, fill_no_data, open_elevation
-from playground.data.grid import fitted
+from playground.data.elevation import Elevation
 from playground.data.resample import resample
-from playground.engine.source_kinds import Material, Terrain
 from playground.errors import DataError
 from playground.memo import SOURCES, bytes_held
-from playground.sketch.model import Value
 
 Field = NDArray[np.float64]
 _LEAST_EXPONENT = -200.0
@@ -402,7 +396,7 @@ def made_like(
     spacing_of_example: tuple[float, float],
     size: tuple[int, int],
     spacing: tuple[float, float],
-    wishes: SynthesisSettings,
+    settings: SynthesisSettings,
     guide: Field | None = None,
     report: Callable[[int, int], None] = lambda done, total: None,
 ) -> Field:
@@ -413,15 +407,15 @@ def made_like(
     Raises ``DataError`` for an example that is smaller than a piece.
     """
     report(0, _STEPS)
-    rng = np.random.default_rng(wishes.seed)
+    rng = np.random.default_rng(settings.seed)
     ways = _ways(example, spacing_of_example, spacing)
-    side = _side(wishes, spacing, ways, example)
+    side = _side(settings, spacing, ways, example)
     report(1, _STEPS)
     of_example = _features(example, spacing_of_example, spacing, side)
-    pieces = Candidates(ways, side, _count(wishes, side), rng, of_example)
+    pieces = Candidates(ways, side, _count(settings, side), rng, of_example)
     report(2, _STEPS)
     hills = _guide(guide, size)
-    features = features_of(hills, side / 6) if hills is not None and wishes.follow > 0 else None
+    features = features_of(hills, side / 6) if hills is not None and settings.follow > 0 else None
     if features is not None and (deviation := float(features.std())) > 0:
         features = features / deviation
     laid = 0
@@ -436,7 +430,7 @@ def made_like(
         size,
         max(side // _OVERLAP, 1),
         features=features,
-        weight=_WEIGHT * wishes.follow,
+        weight=_WEIGHT * settings.follow,
         report=laying,
     )
     report(laid + _BEFORE, laid + _STEPS)
@@ -444,7 +438,7 @@ def made_like(
     if features is not None and hills is not None:
         wide = smoothed(hills, side / 6)
         deviation = float(smoothed(ways[0], side / 6).std()) / (float(wide.std()) or 1.0)
-        near, nearness = (wide - wide.mean()) * deviation, 2 * wishes.follow * (1.5 / side) ** 2
+        near, nearness = (wide - wide.mean()) * deviation, 2 * settings.follow * (1.5 / side) ** 2
     report(laid + _BEFORE + 1, laid + _STEPS)
     field = integrated(quilt.east, quilt.north, near, nearness)
     report(laid + _BEFORE + 2, laid + _STEPS)
@@ -468,10 +462,10 @@ def _features(
 
 
 def _side(
-    wishes: SynthesisSettings, spacing: tuple[float, float], ways: list[Field], example: Elevation
+    settings: SynthesisSettings, spacing: tuple[float, float], ways: list[Field], example: Elevation
 ) -> int:
     """Return the texels of a piece's side."""
-    side = int(np.clip(round(wishes.piece / np.sqrt(spacing[0] * spacing[1])), _MIN_PIECE, _MAX_PIECE))
+    side = int(np.clip(round(settings.piece / np.sqrt(spacing[0] * spacing[1])), _MIN_PIECE, _MAX_PIECE))
     least = min(min(way.shape) for way in ways)
     if least < side + 2:
         ny, nx = ways[0].shape
@@ -483,8 +477,8 @@ def _side(
     return side
 
 
-def _count(wishes: SynthesisSettings, side: int) -> int:
-    return max(min(wishes.candidates, _BYTES // (8 * side * side)), 1)
+def _count(settings: SynthesisSettings, side: int) -> int:
+    return max(min(settings.candidates, _BYTES // (8 * side * side)), 1)
 
 
 def _guide(guide: Field | None, size: tuple[int, int]) -> Field | None:
@@ -496,127 +490,37 @@ def _guide(guide: Field | None, size: tuple[int, int]) -> Field | None:
     return resample(guide, size).astype(np.float64)
 
 
-PARAMETERS = ("elevation", "texel", "rise", "piece", "candidates", "follow", "seed")
-INPUTS = ("guide",)
-_MAX_SIDE = 2049  # texels of an example's longer side, of a file that has more
-_SALT = crc32(b"generation/from_example")
-
-
-def describe(values: Mapping[str, Value]) -> Terrain:
-    """Return the example's relief, where it is known: what is made of it has about the same."""
-    low, rise = _metres(values)
-    assumed = "" if low is None else _example(values)[0].assumed
-    return Terrain(relief=rise, base_elevation=low, assumed=assumed)
-
-
-def work(
-    values: Mapping[str, Value], size: tuple[int, int], material: Material
-) -> dict[str, NDArray[np.float32]]:
-    """Return heights in units of the relief, the lowest 0."""
-    (example, coarser), (_, rise) = _example(values), _metres(values)
-    span = example.highest - example.lowest
-    texel = _number(values, "texel")
-    spacing = (texel * coarser, texel * coarser) if texel else example.spacing
-    wishes = SynthesisSettings(
-        piece=_number(values, "piece"),
-        candidates=int(_number(values, "candidates")),
-        follow=_number(values, "follow"),
-        seed=(int(_number(values, "seed")) + _SALT) % 2**32,
-    )
-    guide = material.inputs.get("guide")
-    heights = made_like(
-        example,
-        spacing or material.spacing,
-        size,
-        material.spacing,
-        wishes,
-        None if guide is None else guide.reshape(*guide.shape[:2], -1)[..., 0].astype(np.float64),
-        material.report,
-    )
-    scale = (material.relief if rise is None else rise) / span if span > 0 else 0.0
-    return {"height": ((heights - heights.min()) * (scale / material.relief)).astype(np.float32)}
-
-
-def notes(values: Mapping[str, Value]) -> tuple[str, ...]:
-    """Return what was assumed of the example."""
-    example, _ = _example(values)
-    facts = [f"{example.name}: {note}" for note in example.notes]
-    if example.spacing is None and not _number(values, "texel"):
-        facts.append(f"{example.name}: it does not say how large it is, so its texels are this terrain's")
-    return tuple(facts)
-
-
-def _metres(values: Mapping[str, Value]) -> tuple[float | None, float | None]:
-    """Return the elevation of the example's lowest height, and how far it rises [m]; None: not known."""
-    (example, _), rise = _example(values), _number(values, "rise")
-    if rise:
-        return None, rise
-    if example.in_metres and example.highest > example.lowest:
-        return example.lowest, example.highest - example.lowest
-    return None, None
-
-
-def _example(values: Mapping[str, Value]) -> tuple[Elevation, float]:
-    """Return the example, and how many of the file's texels go to one of it."""
-    path = Path(str(values["elevation"]))
-    return _read(str(path), content_key(path))
-
-
-@SOURCES.cached(weight=bytes_held)
-def _read(path: str, content: str) -> tuple[Elevation, float]:  # ``content`` changes whenever the file does
-    file = open_elevation(Path(path))
-    size = fitted(file.size, _MAX_SIDE)
-    elevation = fill_no_data(file.read_at(size), "fill")
-    if min(elevation.size) < 2:
-        raise DataError("an example needs 2 x 2 texels at least", file=path)
-    if size == file.size:
-        return elevation, 1.0
-    whole, fewer = (f"{x} x {y}" for x, y in (file.size, size))
-    note = f"its {whole} texels are read as {fewer}, enough for an example"
-    return replace(elevation, notes=(*elevation.notes, note)), (max(file.size) - 1) / (max(size) - 1)
-
-
-def _number(values: Mapping[str, Value], name: str) -> float:
-    value = values[name]
-    assert isinstance(value, int | float)  # the kernel's file says so
-    return value
-
-
-RANKED_PARAMETERS = ("widest",)
-RANKED_INPUTS = ("example",)
 _RANKED_STEPS = 5  # resampling, smoothing, sorting, the deviates, and what is left
 
 
-def rank_heights(
-    values: Mapping[str, Value], size: tuple[int, int], material: Material
-) -> dict[str, NDArray[np.float32]]:
-    """Return of the example in a size (nx, ny): the normal deviate of each texel's rank, and all sorted.
+def ranked(
+    example: Field | None,
+    size: tuple[int, int],
+    widest: float,
+    report: Callable[[int, int], None] = lambda done, total: None,
+) -> tuple[Field, Field]:
+    """Return the normal deviate of each rank, and the heights sorted, of an example in a size (nx, ny).
 
-    ``sorted`` holds the heights from the lowest on, row by row.
+    Both (ny, nx) in float64; the sorted heights begin with the lowest, row by row. Hills wider than the
+    fraction ``widest`` of the width are taken out first; 0 leaves all. Without an example all is 0.
     """
     nx, ny = size
-    material.report(0, _RANKED_STEPS)
-    value = material.inputs.get("example")
-    heights = np.zeros((ny, nx)) if value is None else value.reshape(*value.shape[:2], -1)[..., 0]
+    report(0, _RANKED_STEPS)
+    heights = np.zeros((ny, nx)) if example is None else example
     heights = np.nan_to_num(np.asarray(heights, np.float64), posinf=0.0, neginf=0.0)
     if heights.shape != (ny, nx):
         heights = resample(heights, size).astype(np.float64) if min(heights.shape) > 1 else np.zeros((ny, nx))
-    material.report(1, _RANKED_STEPS)
-    widest = values["widest"]
-    assert isinstance(widest, int | float)  # the kernel's file says so
+    report(1, _RANKED_STEPS)
     if widest > 0:
         heights = heights - smoothed(heights, widest * nx / 4)  # a hill is some four deviations wide
-    material.report(2, _RANKED_STEPS)
+    report(2, _RANKED_STEPS)
     order = heights.ravel().argsort(kind="stable")
-    material.report(3, _RANKED_STEPS)
+    report(3, _RANKED_STEPS)
     ranks = np.empty(order.size)
     ranks[order] = np.arange(order.size)
     normal = normal_deviate((ranks + 0.5) / order.size)
-    material.report(4, _RANKED_STEPS)
-    return {
-        "normal": normal.reshape(ny, nx).astype(np.float32),
-        "sorted": heights.ravel()[order].reshape(ny, nx).astype(np.float32),
-    }
+    report(4, _RANKED_STEPS)
+    return normal.reshape(ny, nx), heights.ravel()[order].reshape(ny, nx)
 
 
 def normal_deviate(share: NDArray[np.float64]) -> NDArray[np.float64]:

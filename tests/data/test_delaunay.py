@@ -11,8 +11,8 @@ import pytest
 from scipy.interpolate import LinearNDInterpolator
 from scipy.spatial import Delaunay
 
-from playground.engine import delaunay
-from playground.engine.delaunay import (
+from playground.data import delaunay
+from playground.data.delaunay import (
     MAX_POINTS,
     MAX_PROPORTION,
     SIDE,
