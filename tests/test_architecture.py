@@ -33,7 +33,7 @@ LAYERS = (
     ("bench",),
     ("remote",),
     ("workbench",),
-    ("lessons",),
+    ("course",),
     ("reduce",),
     ("capture",),
     ("shots",),

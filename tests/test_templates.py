@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from playground.course.tasks.texts import EXERCISES
 from playground.engine.camera import look
 from playground.engine.engine import Engine
-from playground.lessons.tasks.texts import EXERCISES
 from playground.paths import SKETCHES
 from playground.sketch.assign import values_of
 from playground.sketch.load import load

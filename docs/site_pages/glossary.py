@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from playground.lessons.glossary import Term, alphabetical
+from playground.course.glossary import Term, alphabetical
 
 from .markdown import escaped
 

@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from playground.lessons.glossary import FILE as GLOSSARY
+from playground.course.glossary import FILE as GLOSSARY
 
 from . import commands, gallery, glossary, keys, python, shots, techniques
 

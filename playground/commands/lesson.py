@@ -24,9 +24,9 @@ from playground.errors import ParameterError, PlaygroundError, SketchError, coun
 from playground.terminal import complain, note, painted, print_json, print_rows, print_table, progress
 
 if TYPE_CHECKING:
+    from playground.course.model import Lesson
+    from playground.course.read import Summary
     from playground.engine.engine import Engine
-    from playground.lessons.model import Lesson
-    from playground.lessons.read import Summary
 
 HELP = help_text(
     "Lessons on terrain, to read next to the window, in a browser or as notebooks.",
@@ -99,7 +99,7 @@ NamesArgument = Annotated[list[str] | None, positional("NAME", "Lessons; all by 
 @app.command("list", help=LIST_HELP)
 def list_(lang: options.Language = "", as_json: options.Json = False) -> None:
     """List the lessons, in their order."""
-    from playground.lessons.read import summaries
+    from playground.course.read import summaries
 
     result = summaries(read_language(lang))
     if as_json:
@@ -134,8 +134,8 @@ def open_(
     software: options.Software = False,
 ) -> None:
     """Open a lesson next to the live window."""
-    from playground.lessons.document import read_document
-    from playground.lessons.library import lesson_file
+    from playground.course.document import read_document
+    from playground.course.library import lesson_file
 
     language = read_language(lang)
     name = name or _lesson_read_last()
@@ -146,7 +146,7 @@ def open_(
 
 
 def _lesson_read_last() -> str:
-    from playground.lessons.course import lesson_names
+    from playground.course.contents import lesson_names
     from playground.workbench.lesson.progress import progress_file, read_progress
 
     names, last = lesson_names(), read_progress(progress_file()).lesson
@@ -156,9 +156,9 @@ def _lesson_read_last() -> str:
 @app.command("status", help=STATUS_HELP)
 def status(as_json: options.Json = False) -> None:
     """List the translations that are out of date."""
-    from playground.lessons.library import LANGUAGES, SOURCE
-    from playground.lessons.read import summaries
-    from playground.lessons.status import status_of
+    from playground.course.library import LANGUAGES, SOURCE
+    from playground.course.read import summaries
+    from playground.course.status import status_of
 
     names = [summary.name for summary in summaries(SOURCE)]
     statuses = [status_of(name, code) for code in LANGUAGES if code != SOURCE for name in names]
@@ -174,10 +174,10 @@ def status(as_json: options.Json = False) -> None:
 @app.command("check", help=CHECK_HELP)
 def check(ctx: typer.Context, names: NamesArgument = None, software: options.Software = False) -> None:
     """Check lessons: what they name, the rules of lessons, what they claim."""
-    from playground.lessons.library import LANGUAGES
-    from playground.lessons.read import read_lesson
-    from playground.lessons.rules import broken_rules, wrong_pictures
-    from playground.lessons.scenes import Sketches
+    from playground.course.library import LANGUAGES
+    from playground.course.read import read_lesson
+    from playground.course.rules import broken_rules, wrong_pictures
+    from playground.course.scenes import Sketches
     from playground.paths import shown
 
     chosen = _chosen(names)
@@ -212,9 +212,9 @@ def pictures(
     software: options.Software = False,
 ) -> None:
     """Draw every picture of a lesson into a folder."""
+    from playground.course.figure_renders import draw, pictures_of
+    from playground.course.read import read_lesson
     from playground.data.image_files import write_png
-    from playground.lessons.figure_renders import draw, pictures_of
-    from playground.lessons.read import read_lesson
 
     result = pictures_of(read_lesson(name))
     output.mkdir(parents=True, exist_ok=True)
@@ -245,10 +245,10 @@ def build(
     software: options.Software = False,
 ) -> None:
     """Build the lessons as a book, or as notebooks."""
-    from playground.lessons.book.blocks import ANSWERS
-    from playground.lessons.book.build import prepare, write_book
-    from playground.lessons.library import LANGUAGES
-    from playground.lessons.read import read_lessons
+    from playground.course.book.blocks import ANSWERS
+    from playground.course.book.build import prepare, write_book
+    from playground.course.library import LANGUAGES
+    from playground.course.read import read_lessons
 
     if answers not in ANSWERS:
         raise ParameterError(f"--answers {answers}: expected {either(ANSWERS)}{nearest(answers, ANSWERS)}")
@@ -271,10 +271,10 @@ def translated(
     lang: Annotated[str, value("--lang CODE", "Language of the translation: fr.", complete_language)] = "",
 ) -> None:
     """Mark a translation as up to date with today's English."""
-    from playground.lessons.document import read_document
-    from playground.lessons.library import SOURCE, lesson_file
-    from playground.lessons.read import read_lesson
-    from playground.lessons.translate import mark
+    from playground.course.document import read_document
+    from playground.course.library import SOURCE, lesson_file
+    from playground.course.read import read_lesson
+    from playground.course.translate import mark
     from playground.paths import shown
 
     if not lang or lang == SOURCE:
@@ -285,9 +285,9 @@ def translated(
 
 
 def _write_notebooks(folder: Path, lessons: dict[str, list[Lesson]], engine: Engine) -> None:
+    from playground.course.measuring import numbers_of
+    from playground.course.notebook.build import notebook_text
     from playground.files import write_file
-    from playground.lessons.measuring import numbers_of
-    from playground.lessons.notebook.build import notebook_text
 
     names = {lesson.name for chosen in lessons.values() for lesson in chosen}
     for in_languages in zip(*lessons.values(), strict=True):
@@ -300,8 +300,8 @@ def _write_notebooks(folder: Path, lessons: dict[str, list[Lesson]], engine: Eng
 
 
 def _chosen(names: list[str] | None) -> list[str]:
-    from playground.lessons.library import SOURCE, lesson_file
-    from playground.lessons.read import summaries
+    from playground.course.library import SOURCE, lesson_file
+    from playground.course.read import summaries
 
     for name in names or []:
         lesson_file(name)  # raises with the list of lessons

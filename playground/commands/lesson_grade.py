@@ -16,9 +16,9 @@ from playground.errors import SketchError, counted
 from playground.terminal import note, print_json, print_table, progress
 
 if TYPE_CHECKING:
-    from playground.lessons.grading.marks import Graded
-    from playground.lessons.grading.submissions import Submission
-    from playground.lessons.handout.exercise_files import Assignment
+    from playground.course.grading.marks import Graded
+    from playground.course.grading.submissions import Submission
+    from playground.course.handout.exercise_files import Assignment
 
 HELP = help_text(
     "Grade a folder of submissions: one folder or zip for each student, as `playground lesson handout` gave"
@@ -46,12 +46,12 @@ def grade(
     software: options.Software = False,
 ) -> None:
     """Grade a folder of submissions."""
-    from playground.lessons.grading.grade import count_works, grade, read_all
-    from playground.lessons.grading.judges import Judges, Options
-    from playground.lessons.grading.report import check_folder, write_report
-    from playground.lessons.grading.submissions import find_submissions
-    from playground.lessons.handout.exercise_files import assignments_of
-    from playground.lessons.read import read_lesson
+    from playground.course.grading.grade import count_works, grade, read_all
+    from playground.course.grading.judges import Judges, Options
+    from playground.course.grading.report import check_folder, write_report
+    from playground.course.grading.submissions import find_submissions
+    from playground.course.handout.exercise_files import assignments_of
+    from playground.course.read import read_lesson
 
     language, folder, output = read_language(lang), folder.expanduser(), output.expanduser()
     submissions, others = find_submissions(folder, output)
@@ -84,8 +84,8 @@ def grade(
 
 def _lessons_handed_in(submissions: Sequence[Submission]) -> list[str]:
     """Return the lessons of which anything was handed in; raise ``SketchError`` for none."""
-    from playground.lessons.course import lesson_names
-    from playground.lessons.grading.handed_in import lessons_in
+    from playground.course.contents import lesson_names
+    from playground.course.grading.handed_in import lessons_in
 
     lessons = lesson_names()
     names = {name for submission in submissions for name in lessons_in(submission.path, lessons)}
@@ -115,8 +115,8 @@ def _as_json(graded: Graded) -> dict[str, object]:
 
 
 def _print(graded: Sequence[Graded], assignments: Sequence[Assignment]) -> None:
-    from playground.lessons.grading.entries import printable
-    from playground.lessons.grading.marks import spelled_points
+    from playground.course.grading.entries import printable
+    from playground.course.grading.marks import spelled_points
 
     headings = ["student", *(graded.name for graded in assignments), "total", "of"]
     rows = [

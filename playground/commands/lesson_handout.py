@@ -43,8 +43,8 @@ def handout(
     software: options.Software = False,
 ) -> None:
     """Write the exercises of lessons as a zip for students."""
-    from playground.lessons.handout.pack import count_tasks, read_wheel, write_handout
-    from playground.lessons.read import read_lesson
+    from playground.course.handout.pack import count_tasks, read_wheel, write_handout
+    from playground.course.read import read_lesson
 
     output = output.expanduser()
     if output.is_dir() or output.suffix.lower() != ".zip":

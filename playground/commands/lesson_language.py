@@ -7,7 +7,7 @@ from playground.errors import SketchError, nearest
 
 def read_language(text: str) -> str:
     """Return the language that an option names, or the system's; raise ``SketchError`` for an unknown one."""
-    from playground.lessons.library import LANGUAGES, preferred_language
+    from playground.course.library import LANGUAGES, preferred_language
 
     if text and text not in LANGUAGES:
         raise SketchError(f"--lang {text}: no such language{nearest(text, LANGUAGES)}")

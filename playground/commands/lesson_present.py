@@ -16,7 +16,7 @@ from playground.errors import ParameterError
 from playground.terminal import note, progress
 
 if TYPE_CHECKING:
-    from playground.lessons.model import Lesson
+    from playground.course.model import Lesson
 
 HELP = help_text(
     "Present a lesson to a class: full screen, large type, one thought at a time.\n\n"
@@ -43,9 +43,9 @@ def present(
     software: options.Software = False,
 ) -> None:
     """Present a lesson to a class."""
-    from playground.lessons.library import lesson_file
-    from playground.lessons.present.beats import beats_of
-    from playground.lessons.read import read_lesson
+    from playground.course.library import lesson_file
+    from playground.course.present.beats import beats_of
+    from playground.course.read import read_lesson
 
     lesson_file(name)  # says so where there is none
     lesson = read_lesson(name, read_language(lang))

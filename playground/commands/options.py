@@ -57,14 +57,14 @@ def complete_dialect(incomplete: str) -> list[str]:
 
 def complete_lesson(incomplete: str) -> list[str]:
     """Return the lessons that complete a word."""
-    from playground.lessons.library import lesson_files
+    from playground.course.library import lesson_files
 
     return [name for name in lesson_files() if name.startswith(incomplete)]
 
 
 def complete_language(incomplete: str) -> list[str]:
     """Return the codes of languages that complete a word."""
-    from playground.lessons.library import LANGUAGES
+    from playground.course.library import LANGUAGES
 
     return [code for code in LANGUAGES if code.startswith(incomplete)]
 

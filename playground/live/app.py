@@ -18,12 +18,12 @@ from typing import TYPE_CHECKING, cast
 from imgui_bundle import imgui
 
 from playground.allowed_files import TEXTS
+from playground.course.library import SOURCE, lesson_file
 from playground.engine.context import prefer_software
 from playground.engine.engine import Engine
 from playground.engine.programs import warnings_of
 from playground.engine.sandbox import Sandbox
 from playground.errors import Diagnostic, PlaygroundError
-from playground.lessons.library import SOURCE, lesson_file
 from playground.live.capture_window import draw_capture
 from playground.live.code_window import draw_code
 from playground.live.draw import Area, tooltip_waits

@@ -30,7 +30,7 @@ from ..live.screen import ON_LINUX, Program, Screen
 from ..report.browser import MISSING
 from .pages import PAGES, ROOT, blocks_of, files, outside_of_blocks, write_files
 
-TEXTS = ROOT / "playground" / "lessons" / "texts"
+TEXTS = ROOT / "playground" / "course" / "texts"
 LESSONS = tuple(sorted(TEXTS.rglob("*.md")))
 INLINE = re.compile(r"`((?:\./play|playground|python|pytest|pip)(?: [^`\n]*)?)`")
 FORM = re.compile(  # how a command is used, not a command
@@ -56,7 +56,7 @@ NOT_RUN = {
     r"playground (render --video|check --json|reduce|pack|shots mutants)": "names it; with more it is run",
     r"\./play lesson present .* --video .*": "takes minutes; test_present_film.py has a small one",
     r"playground bench": "takes minutes: tests/bench run small parts of it",
-    r"playground lesson translated": "names the command; tests/lessons have a translation to give it",
+    r"playground lesson translated": "names the command; tests/course have a translation to give it",
     r"playground variants renew": "writes this checkout's record; that of a folder is written",
     r"playground (live|render) diamond_square-my-version\.zip.*": "saved by a browser: web/test_my_version",
     r"pytest|pip": "names the program",

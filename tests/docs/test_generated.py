@@ -16,8 +16,8 @@ from site_pages import commands, gallery, glossary, keys, pages, python, shots, 
 import playground
 from playground.cli import command_line
 from playground.commands.entries import techniques as listed
-from playground.lessons.glossary import alphabetical, terms
-from playground.lessons.library import LANGUAGES
+from playground.course.glossary import alphabetical, terms
+from playground.course.library import LANGUAGES
 from playground.live.keys import KEYS
 from playground.paths import GLSL
 

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 from imgui_bundle import imgui
 
+from playground.course import library
+from playground.course.document import read_document
+from playground.course.scenes import Sketches
+from playground.course.translate import write_hashes
 from playground.engine.engine import Engine
-from playground.lessons import library
-from playground.lessons.document import read_document
-from playground.lessons.scenes import Sketches
-from playground.lessons.translate import write_hashes
 from playground.live.code_window import draw_code
 from playground.live.inspect.timeline import height_of_timeline
 from playground.live.lesson.host import Lessons

@@ -17,7 +17,7 @@ from playground.live.lesson.markdown_runs import written
 from playground.live.theme import Theme
 
 ROOT = Path(__file__).resolve().parents[2]
-LESSONS = ROOT / "playground" / "lessons" / "texts"
+LESSONS = ROOT / "playground" / "course" / "texts"
 
 
 @pytest.fixture(scope="module")

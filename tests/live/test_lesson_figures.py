@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from playground.lessons import library
-from playground.lessons.figure_renders import broken, draw
-from playground.lessons.model import Break, Compare, Exercise, Figure, Scene, Slider, Steps
-from playground.lessons.read import read_lesson
+from playground.course import library
+from playground.course.figure_renders import broken, draw
+from playground.course.model import Break, Compare, Exercise, Figure, Scene, Slider, Steps
+from playground.course.read import read_lesson
 from playground.sketch.find import find
 from playground.workbench.edits import Draft, Edits
 from playground.workbench.framing import framed

@@ -8,7 +8,7 @@ import pytest
 from imgui_bundle import ImVec2, imgui
 
 from playground import cli
-from playground.lessons.scenes import Sketches
+from playground.course.scenes import Sketches
 from playground.sketch.find import find
 from playground.workbench.lesson.links import follow
 
@@ -26,7 +26,7 @@ def test_a_key_brings_the_lessons_where_they_were_left_and_takes_them_away(harne
     harness.key(imgui.Key.page_down)
     harness.key(imgui.Key.f2)
     assert not harness.reader.progress.shown and harness.bench.interface.panel_shown
-    progress = json.loads((tmp_path / "state/terrain-shader-playground/lessons.json").read_text())
+    progress = json.loads((tmp_path / "state/terrain-shader-playground/course.json").read_text())
     assert (
         progress["lesson"] == "halving" and progress["sections"] == {"halving": 1} and not progress["shown"]
     )

@@ -8,10 +8,10 @@ import imgui_bundle
 import pytest
 from imgui_bundle import imgui
 
-from playground.lessons.library import LANGUAGES, TEXTS, lesson_files
-from playground.lessons.markdown import formulas
-from playground.lessons.model import Break, Compare, Exercise, Figure, Slider, Steps
-from playground.lessons.read import read_lesson
+from playground.course.library import LANGUAGES, TEXTS, lesson_files
+from playground.course.markdown import formulas
+from playground.course.model import Break, Compare, Exercise, Figure, Slider, Steps
+from playground.course.read import read_lesson
 from playground.live.lesson.formulas import set_formula
 from playground.live.lesson.markdown_runs import INSTEAD
 from playground.workbench.edits import Draft

@@ -6,8 +6,8 @@ import time
 
 import pytest
 
-from playground.lessons import library
-from playground.lessons.tasks.texts import answer_text
+from playground.course import library
+from playground.course.tasks.texts import answer_text
 from playground.live.lesson.host import Lessons
 from playground.live.lesson.page import Page
 from playground.paths import GLSL

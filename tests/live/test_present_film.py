@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from playground.cli import main
+from playground.course.present.spoken import seconds_of
+from playground.course.read import read_lesson
 from playground.engine.engine import Engine
-from playground.lessons.present.spoken import seconds_of
-from playground.lessons.read import read_lesson
 from playground.live.present.film import FPS, film_of, write_presentation
 
 from .lesson_desk import shelved

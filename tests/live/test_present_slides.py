@@ -8,11 +8,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from playground.lessons.library import LANGUAGES
-from playground.lessons.present.beat import Beat
-from playground.lessons.present.beats import beats_of
-from playground.lessons.read import read_lesson, summaries
-from playground.lessons.scenes import Sketches
+from playground.course.library import LANGUAGES
+from playground.course.present.beat import Beat
+from playground.course.present.beats import beats_of
+from playground.course.read import read_lesson, summaries
+from playground.course.scenes import Sketches
 from playground.live.present.faces import Face
 from playground.live.present.slide import (
     MIN_LETTER_HEIGHT,

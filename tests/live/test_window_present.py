@@ -16,7 +16,7 @@ from .screen import ON_LINUX, Program, Screen
 RUN = """
 import sys
 from pathlib import Path
-from playground.lessons import library
+from playground.course import library
 library.TEXTS = Path(sys.argv[1])
 from playground.live.app import run
 from playground.live.present.stage import Presenting

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from playground.lessons.present.beat import Beat
+from playground.course.present.beat import Beat
 from playground.workbench.lesson import presenter as module
 from playground.workbench.lesson.presenter import TYPED, Presenter
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
+from playground.course.model import Break, Code
 from playground.errors import PlaygroundError
-from playground.lessons.model import Break, Code
 from playground.live import theme
 from playground.live.lesson.page import Page
 from playground.workbench.lesson.bugs import BROKEN, FIXED, SHOWN

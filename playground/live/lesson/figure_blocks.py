@@ -7,9 +7,9 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
+from playground.course.model import Compare, Figure, Scene, Slider, Steps
+from playground.course.scenes import comparable
 from playground.errors import ParameterError
-from playground.lessons.model import Compare, Figure, Scene, Slider, Steps
-from playground.lessons.scenes import comparable
 from playground.live import theme
 from playground.live.lesson.page import Page
 from playground.live.parameter_row import Rows

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from markdown_it.token import Token
 
-from playground.lessons.markdown import parser
+from playground.course.markdown import parser
 from playground.memo import INTERFACE
 
 

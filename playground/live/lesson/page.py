@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, imgui
 
-from playground.lessons.model import Lesson, Markdown
+from playground.course.model import Lesson, Markdown
 from playground.live import theme
 from playground.live.draw import button, inked, pushed_id, styled
 from playground.live.lesson.markdown_runs import written

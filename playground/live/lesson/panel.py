@@ -8,8 +8,8 @@ from typing import Any
 
 from imgui_bundle import ImVec2, imgui
 
-from playground.lessons.library import LANGUAGES
-from playground.lessons.model import (
+from playground.course.library import LANGUAGES
+from playground.course.model import (
     Block,
     Break,
     Challenge,
@@ -23,7 +23,7 @@ from playground.lessons.model import (
     Slider,
     Steps,
 )
-from playground.lessons.present.labels import labels_of
+from playground.course.present.labels import labels_of
 from playground.live import theme
 from playground.live.draw import SIDE_PANEL, button, inked, styled, window
 from playground.live.lesson.code_blocks import draw_break, draw_code_block

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from playground.lessons.measuring import named_in
-from playground.lessons.model import Exercise, Measure, Prose, Question
-from playground.lessons.tasks.tasks import checks_itself
+from playground.course.measuring import named_in
+from playground.course.model import Exercise, Measure, Prose, Question
+from playground.course.tasks.tasks import checks_itself
 from playground.live import theme
 from playground.live.draw import pushed_id, styled
 from playground.live.lesson.markdown_runs import plain

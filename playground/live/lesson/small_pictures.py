@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from imgui_bundle import ImVec2, imgui
 
-from playground.lessons.tasks.verdict import Picture
+from playground.course.tasks.verdict import Picture
 
 if TYPE_CHECKING:
     import moderngl

@@ -8,12 +8,12 @@ from typing import Any
 
 from imgui_bundle import ImVec2, imgui
 
-from playground.lessons.model import Challenge, Exercise
-from playground.lessons.tasks.difference_map import difference_map
-from playground.lessons.tasks.sentences import points_of, sentence_of
-from playground.lessons.tasks.tasks import checks_itself
-from playground.lessons.tasks.texts import path_of
-from playground.lessons.tasks.verdict import CheckResult, Picture, Verdict
+from playground.course.model import Challenge, Exercise
+from playground.course.tasks.difference_map import difference_map
+from playground.course.tasks.sentences import points_of, sentence_of
+from playground.course.tasks.tasks import checks_itself
+from playground.course.tasks.texts import path_of
+from playground.course.tasks.verdict import CheckResult, Picture, Verdict
 from playground.live import theme
 from playground.live.code_window import save
 from playground.live.lesson.figure_blocks import draw_parameters

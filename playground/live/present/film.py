@@ -16,15 +16,15 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from playground.capture.video import QUALITY, Video, check_video
+from playground.course.figure_renders import broken
+from playground.course.measuring import Number, filled, measured, named_in
+from playground.course.model import Break, Compare, Lesson, Scene, Slider
+from playground.course.present.beat import BOTH, Beat, scene_of, texts_of_beat, with_texts
+from playground.course.present.beats import beats_of
+from playground.course.present.spoken import cues_of, seconds_of, srt
+from playground.course.scenes import with_value
 from playground.engine.engine import Engine
 from playground.files import write_file
-from playground.lessons.figure_renders import broken
-from playground.lessons.measuring import Number, filled, measured, named_in
-from playground.lessons.model import Break, Compare, Lesson, Scene, Slider
-from playground.lessons.present.beat import BOTH, Beat, scene_of, texts_of_beat, with_texts
-from playground.lessons.present.beats import beats_of
-from playground.lessons.present.spoken import cues_of, seconds_of, srt
-from playground.lessons.scenes import with_value
 from playground.live.present.slide import Gauge, Sizes, board_of, gauges_of, strip_of
 from playground.sketch.assign import resolve
 from playground.sketch.model import Value

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from playground.course.present.beat import Beat
 from playground.errors import DataError, ParameterError
-from playground.lessons.present.beat import Beat
 from playground.remote.notes import Notes
 from playground.workbench.lesson.presenter import Presenter
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from PIL import Image, ImageDraw
 
-from playground.lessons.present.beat import Beat
+from playground.course.present.beat import Beat
 from playground.live.lesson.markdown_runs import plain
 from playground.live.present.code_colours import coloured
 from playground.live.present.faces import Face

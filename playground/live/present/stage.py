@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.course.present.beat import Beat, texts_of_beat, with_texts
+from playground.course.present.labels import labels_of
 from playground.errors import PlaygroundError
-from playground.lessons.present.beat import Beat, texts_of_beat, with_texts
-from playground.lessons.present.labels import labels_of
 from playground.live.draw import Area
 from playground.live.present.keys import act_on_presentation_keys, help_rows
 from playground.live.present.notes_link import NotesLink

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from playground.lessons.book.html import code_block, prose
-from playground.lessons.present.beat import Beat
-from playground.lessons.present.labels import labels_of
+from playground.course.book.html import code_block, prose
+from playground.course.present.beat import Beat
+from playground.course.present.labels import labels_of
 from playground.live.lesson.markdown_runs import plain
 from playground.workbench.lesson.presenter import Presenter
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from PIL import Image, ImageDraw
 
-from playground.lessons.model import Markdown
+from playground.course.model import Markdown
 from playground.live.lesson.formulas import set_formula
 from playground.live.lesson.line_breaking import Extent, Line, Placed, broken
 from playground.live.lesson.markdown_runs import Run, Runs, TextBlock, parts_of, written

@@ -11,11 +11,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from playground.course.excerpt import Excerpt, excerpt
+from playground.course.figure_renders import Picture, draw, with_bug
+from playground.course.model import Break, Code, Scene
+from playground.course.picture_difference import SHARE, share_differing
 from playground.errors import PlaygroundError
-from playground.lessons.excerpt import Excerpt, excerpt
-from playground.lessons.figure_renders import Picture, draw, with_bug
-from playground.lessons.model import Break, Code, Scene
-from playground.lessons.picture_difference import SHARE, share_differing
 from playground.paths import GLSL, shown
 from playground.shader.source import read_text
 from playground.sketch.model import kernels_of

@@ -9,13 +9,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from playground.course.library import SOURCE
+from playground.course.model import Lesson
+from playground.course.scenes import Sketches
 from playground.errors import PlaygroundError
-from playground.lessons.library import SOURCE
-from playground.lessons.model import Lesson
-from playground.lessons.scenes import Sketches
 
 if TYPE_CHECKING:
-    from playground.lessons.read import Summary
+    from playground.course.read import Summary
 
 
 @dataclass
@@ -30,7 +30,7 @@ class Catalogue:
     def listed(self, language: str) -> list[Summary]:
         """Return all lessons, in their order."""
         if language not in self._listed:
-            from playground.lessons.read import summaries
+            from playground.course.read import summaries
 
             try:
                 self._listed[language] = summaries(language)
@@ -44,7 +44,7 @@ class Catalogue:
 
         Raises ``SketchError`` for one that is not there or not well written.
         """
-        from playground.lessons.read import read_lesson
+        from playground.course.read import read_lesson
 
         try:
             return read_lesson(name, language, self._sketches)

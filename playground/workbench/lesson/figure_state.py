@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from playground.course.model import Scene
 from playground.engine.planner import repeated_in
-from playground.lessons.model import Scene
 from playground.sketch.flatten import flatten
 from playground.sketch.map_sketch import USE, Map
 from playground.sketch.model import Sketch, Value

@@ -12,9 +12,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from playground.course.model import Scene
+from playground.course.scenes import comparable
 from playground.errors import PlaygroundError
-from playground.lessons.model import Scene
-from playground.lessons.scenes import comparable
 from playground.sketch.load import load
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import DEFAULT_PICTURE

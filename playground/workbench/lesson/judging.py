@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from playground.course.model import Block, Challenge, Exercise
+from playground.course.tasks.judge_process import JudgeProcess
+from playground.course.tasks.match import Ends
+from playground.course.tasks.verdict import Picture, Verdict
+from playground.course.tasks.work import Work
 from playground.errors import PlaygroundError
-from playground.lessons.model import Block, Challenge, Exercise
-from playground.lessons.tasks.judge_process import JudgeProcess
-from playground.lessons.tasks.match import Ends
-from playground.lessons.tasks.verdict import Picture, Verdict
-from playground.lessons.tasks.work import Work
 from playground.workbench.notices import Notices
 
 SIDE = 160

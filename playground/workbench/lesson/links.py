@@ -6,8 +6,8 @@ import webbrowser
 from collections.abc import Callable
 from pathlib import Path
 
+from playground.course.glossary import linked_term
 from playground.errors import PlaygroundError
-from playground.lessons.glossary import linked_term
 from playground.sketch.find import find
 from playground.workbench.history import History
 from playground.workbench.lesson.labels import labels_in

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from playground.course.measuring import Number, filled, measured, named_in
+from playground.course.model import Block, Lesson, Markdown, Measure, texts_of
 from playground.errors import PlaygroundError
-from playground.lessons.measuring import Number, filled, measured, named_in
-from playground.lessons.model import Block, Lesson, Markdown, Measure, texts_of
 from playground.workbench.inspect.compare import as_before
 from playground.workbench.session import Session
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from playground.course.figure_renders import with_bug
+from playground.course.model import Break, Compare, Exercise, Slider, Steps
+from playground.course.present.beat import Beat, Still
+from playground.course.tasks.texts import path_of, starter_text
 from playground.errors import ParameterError, PlaygroundError
-from playground.lessons.figure_renders import with_bug
-from playground.lessons.model import Break, Compare, Exercise, Slider, Steps
-from playground.lessons.present.beat import Beat, Still
-from playground.lessons.tasks.texts import path_of, starter_text
 from playground.shader.parameter import is_whole, write
 from playground.sketch.assign import range_of, resolve
 from playground.sketch.model import Parameter, Value

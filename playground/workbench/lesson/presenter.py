@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from playground.lessons.model import Lesson
-from playground.lessons.present.beat import Beat
-from playground.lessons.present.beats import beats_of, first_of_page
+from playground.course.model import Lesson
+from playground.course.present.beat import Beat
+from playground.course.present.beats import beats_of, first_of_page
 
 TYPED = 3.0
 """[s] after its last digit that a typed number is forgotten."""

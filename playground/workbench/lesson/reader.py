@@ -11,9 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.errors import PlaygroundError
-from playground.lessons.library import LANGUAGES, preferred_language
-from playground.lessons.model import (
+from playground.course.library import LANGUAGES, preferred_language
+from playground.course.model import (
     Block,
     Challenge,
     Compare,
@@ -25,8 +24,9 @@ from playground.lessons.model import (
     Slider,
     Steps,
 )
-from playground.lessons.scenes import comparable
-from playground.lessons.tasks.texts import answer_text, path_of
+from playground.course.scenes import comparable
+from playground.course.tasks.texts import answer_text, path_of
+from playground.errors import PlaygroundError
 from playground.workbench.bench import Workbench
 from playground.workbench.lesson.bugs import Bugs
 from playground.workbench.lesson.catalogue import Catalogue
@@ -40,7 +40,7 @@ from playground.workbench.lesson.tasks import Tasks
 from playground.workbench.text_file import unsaved
 
 if TYPE_CHECKING:
-    from playground.lessons.read import Summary
+    from playground.course.read import Summary
 
 _STEP, _VALUE = 0.8, 0.5
 """[s] that a step, and a value of a sweep, is shown while it plays."""

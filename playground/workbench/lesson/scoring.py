@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from playground.course.model import Challenge
+from playground.course.tasks.match import Ends, Match, match
+from playground.course.tasks.work import Work
 from playground.errors import PlaygroundError
-from playground.lessons.model import Challenge
-from playground.lessons.tasks.match import Ends, Match, match
-from playground.lessons.tasks.work import Work
 from playground.workbench.inspect.compare import as_before
 from playground.workbench.lesson.judging import SIDE
 from playground.workbench.notices import Notices

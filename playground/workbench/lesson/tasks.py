@@ -13,13 +13,13 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from playground.course.model import Challenge, Exercise, Scene
+from playground.course.scenes import with_value
+from playground.course.tasks.match import Match
+from playground.course.tasks.texts import path_of, starter_text
+from playground.course.tasks.verdict import Verdict
+from playground.course.tasks.work import Work, scene_of, starter
 from playground.errors import PlaygroundError
-from playground.lessons.model import Challenge, Exercise, Scene
-from playground.lessons.scenes import with_value
-from playground.lessons.tasks.match import Match
-from playground.lessons.tasks.texts import path_of, starter_text
-from playground.lessons.tasks.verdict import Verdict
-from playground.lessons.tasks.work import Work, scene_of, starter
 from playground.sketch.assign import value_of, values_of
 from playground.sketch.model import Sketch, Value, kernels_of
 from playground.workbench.lesson.figure_view import FigureView

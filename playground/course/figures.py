@@ -1,0 +1,95 @@
+"""The thesis's figures that show a result: their captions, and the shots that draw them."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from dataclasses import dataclass
+
+from playground.course.library import HERE
+from playground.course.model import Scene
+from playground.course.scenes import Sketches
+from playground.shader.parameter import write
+from playground.sketch.assign import resolve, value_of, values_of
+from playground.sketch.find import shipped_sketches
+from playground.sketch.model import Sketch
+
+_SHOT = re.compile(r"figure-(\d+)-(\d+)(?:-([a-z]))?")
+
+
+@dataclass(frozen=True)
+class FigurePicture:
+    """One picture of a figure."""
+
+    sketch: str
+    shot: str
+    scene: Scene
+    parameters: tuple[tuple[str, str], ...]  # path → value, of all that a file sets
+
+    @property
+    def command(self) -> str:
+        """The command that makes it."""
+        return f"playground render {self.sketch} --shot {self.shot}"
+
+
+@dataclass(frozen=True)
+class ThesisFigure:
+    """A figure of the thesis, and the pictures that show what it showed."""
+
+    number: str  # "1.14"
+    captions: dict[str, str]  # by language
+    pictures: tuple[FigurePicture, ...]  # none for a diagram of a formula
+    diagram: bool = False
+
+    @property
+    def chapter(self) -> str:
+        """Its chapter."""
+        return self.number.partition(".")[0]
+
+
+def thesis_figures() -> list[ThesisFigure]:
+    """Return every figure of the thesis, in order, with its pictures; raise as loading sketches does."""
+    with (HERE / "figures.toml").open("rb") as handle:
+        table = tomllib.load(handle)
+    shots = _shots()
+    return [
+        ThesisFigure(
+            number,
+            {key: value for key, value in row.items() if key != "diagram"},
+            tuple(drawn for _, drawn in sorted(shots.get(number, []), key=lambda pair: pair[0])),
+            bool(row.get("diagram")),
+        )
+        for number, row in table.items()
+    ]
+
+
+def _shots() -> dict[str, list[tuple[str, FigurePicture]]]:
+    sketches = Sketches()
+    shots: dict[str, list[tuple[str, FigurePicture]]] = {}
+    for name in shipped_sketches():
+        sketch = sketches.load(name)
+        for shot in sketch.shots:
+            match = _SHOT.fullmatch(shot.name)
+            if match is None:
+                continue
+            made = sketch.for_shot(shot)
+            scene = Scene(
+                made, shot.size, shot.time, shot.steps, shot.name, shot.preset, shot.values, plain=True
+            )
+            drawn = FigurePicture(name, shot.name, scene, _parameters(sketch, made))
+            shots.setdefault(f"{match[1]}.{match[2]}", []).append((f"{match[3] or ''} {name}", drawn))
+    return shots
+
+
+def _parameters(file: Sketch, made: Sketch) -> tuple[tuple[str, str], ...]:
+    """List what a sketch sets of its passes, and its shot over that; the view's looks aside."""
+    paths = [
+        f"{spec.name}.{path}" for spec in file.graph.passes if spec.name != "view" for path, _ in spec.values
+    ]
+    paths += [path for path, _ in made.overrides if path not in paths]
+    leaves = values_of(made)
+    rows = [("size", " × ".join(map(str, made.terrain.size)))] if made.terrain.size else []
+    for path in paths:
+        parameter = resolve(made.graph, path)[0].parameter
+        rows.append((path, write(parameter, value_of(made, path, leaves))))
+    return tuple(rows)

@@ -1,0 +1,295 @@
+"""Judge many works side by side in worker processes; what stops one costs nobody else anything.
+
+A work that takes too long, by the processor's time that it has had, ends with its process, and so does one
+that crashes it or takes all memory. A process that died is replaced. A crash counts only if it happens again
+in a new process: what went wrong there may be what an earlier work has left behind.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from PIL import Image
+
+from playground.allowed_files import leads_outside
+from playground.course.figure_renders import draw
+from playground.course.grading.marks import GRADED, REFUSED, Mark, Pair
+from playground.course.grading.values_in_toml import values_in_toml
+from playground.course.handout.exercise_files import Assignment, assignments_of
+from playground.course.model import Challenge, Exercise
+from playground.course.read import read_lesson
+from playground.course.tasks.judge import Wanted, answers, judge, small
+from playground.course.tasks.match import Ends, ends_of, match
+from playground.course.tasks.sentences import score_of, sentences
+from playground.course.tasks.texts import path_of
+from playground.course.tasks.verdict import Picture, Verdict
+from playground.course.tasks.work import Work, answer, scene_of, wanted_scene
+from playground.course.translatable import Said, in_language
+from playground.engine.context import ContextInfo
+from playground.engine.engine import Engine, open_engine
+from playground.engine.plain_forms import silent
+from playground.engine.process.child import Outcome
+from playground.engine.process.pool import Limits, Pool, PoolOwner
+from playground.engine.process.worker import Parent, Service
+from playground.engine.textures import is_lost
+from playground.errors import ContextError, DataError, PlaygroundError, SandboxCrash
+from playground.paths import GLSL, shown
+from playground.sketch.model import Sketch, kernels_of
+
+WORKERS = 2
+"""Processes side by side."""
+
+LIMIT = 10.0
+"""[s] of a processor that judging one work may take, where the model answer is not slow itself."""
+
+TIMES_ANSWER = 10.0
+"""A work may take so many times as long as the model answer, if that is more."""
+
+MEMORY = 4 * 2**30
+"""[bytes] that a process may take."""
+
+_ANSWER = 300.0  # [s] that drawing a model answer may take, which is not the student's time
+_MAX_WORKS = 80  # of a process: a driver never forgets a shader
+
+
+@dataclass(frozen=True)
+class Stopped:
+    """What ended the process that judged a work."""
+
+    took_too_long: bool = False
+    cause: str = ""  # of a crash
+
+
+Result = Mark | Stopped
+
+
+class Judges(PoolOwner):
+    """Worker processes that judge; use it with ``with``, or call ``close()``."""
+
+    def __init__(
+        self, options: Options, workers: int = WORKERS, limit: float = LIMIT, memory_bytes: int = MEMORY
+    ) -> None:
+        self._limit = limit
+        self._limits: dict[str, float] = {}  # [s] by exercise
+        self.renderer = ""  # what draws, once something was judged
+        self._pool = Pool(
+            __name__,
+            Limits(longer={PREPARING: _ANSWER}, memory_bytes=memory_bytes, requests=_MAX_WORKS, crashes=2),
+            options=options,
+            workers=workers,
+            # Processes side by side: each draws on a processor of its own.
+            environment={"LP_NUM_THREADS": "1"} if workers > 1 else {},
+        )
+
+    def judge_all(self, requests: Iterable[tuple[object, Request]]) -> Iterator[tuple[object, Result]]:
+        """Yield what comes of each request, with its key, in their order.
+
+        Raises ``PlaygroundError`` where it is nobody's work: no renderer, a model answer that fails.
+        """
+        tasks = [
+            (key, request, self._pool.submit(request, seconds=self._seconds(request)))
+            for key, request in requests
+        ]
+        for key, request, task in tasks:
+            yield key, self._result(request, task.result())
+
+    def limit_of(self, exercise: str) -> float:
+        """Return how long judging a work of an exercise may take [s]."""
+        return self._limits.get(exercise, self._limit)
+
+    def _seconds(self, request: Request) -> float:
+        return _ANSWER if request.text is None else self.limit_of(request.exercise)
+
+    def _result(self, request: Request, outcome: Outcome) -> Result:
+        if not outcome.started or (outcome.kind == "hang" and outcome.progress == PREPARING):
+            raise outcome.failure(f"drawing the answer of {request.exercise}")
+        if outcome.kind == "hang":
+            return Stopped(took_too_long=True)
+        if outcome.kind == "crash":
+            return Stopped(cause=outcome.cause() if outcome.error is None else _cause(outcome.error))
+        mark = outcome.get("judging")
+        assert isinstance(mark, Mark) and isinstance(outcome.info, ContextInfo)
+        self.renderer = outcome.info.renderer
+        if request.text is None:
+            # By its own clock, as the limit is kept: on a busy machine the wall's would give much more.
+            longest = min(max(self._limit, TIMES_ANSWER * outcome.seconds), _ANSWER)
+            self._limits[request.exercise] = float(round(longest))
+        return mark
+
+
+def _cause(error: Exception) -> str:
+    if isinstance(error, MemoryError):
+        return Said("ran out of memory")
+    if isinstance(error, SandboxCrash):
+        return error.diagnostics[0].message
+    return Said("could not be judged: {why}", why=error.args[0])
+
+
+# ── in the worker ────────────────────────────────────────────────────────────
+
+
+PREPARING, JUDGING = "preparing", "judging"
+"""What the worker reports: it draws the model answer, or a student's work, whose time is limited."""
+
+_CACHE = 192 * 2**20  # [bytes] of textures
+_QUALITY = 82  # of WebP
+_MAX_LINE = 160  # characters of a line of a sentence
+_MAX_MESSAGES = 8  # a text may have thousands of mistakes
+_MAX_PAIRS = 4  # of pictures, for each exercise
+
+
+@dataclass(frozen=True)
+class Options:
+    """What a worker is started with."""
+
+    lessons: tuple[str, ...]
+    language: str
+    software: bool = False
+    device: int | None = None
+
+
+@dataclass(frozen=True)
+class Request:
+    """One work to judge; without a text, the model answer, which must have all points."""
+
+    exercise: str  # its name in a hand-out
+    text: str | None = None  # of its file
+
+
+def open_service(parent: Parent, options: Options) -> Service:
+    """Open a context and an engine on it, and read the lessons."""
+    engine = open_engine(software=options.software, device=options.device, cache_bytes=_CACHE, notice=silent)
+    engine.runner.pool.clears = True  # a text that gets around writing a texel shows nobody else's there
+    lessons = [read_lesson(name, options.language) for name in options.lessons]
+    return Service(_Handler(parent, engine, options, assignments_of(lessons)).answer, engine.info)
+
+
+class _Handler:
+    """Judges with one engine; what the model answers give is drawn once."""
+
+    def __init__(
+        self, parent: Parent, engine: Engine, options: Options, assignments: Sequence[Assignment]
+    ) -> None:
+        self._parent, self._engine, self._language = parent, engine, options.language
+        self._tasks = {assignment.name: assignment.task for assignment in assignments}
+        self._wanted: dict[str, tuple[Wanted, ...] | Ends] = {}
+
+    def answer(self, request: Request) -> Mark:
+        """Return the mark of a work.
+
+        Raises ``PlaygroundError`` where the model answer cannot be drawn or has not all points, and
+        ``SandboxCrash`` where the context was lost.
+        """
+        task = self._tasks[request.exercise]
+        if request.exercise not in self._wanted:
+            self._parent.report(PREPARING)
+            draw_wanted = ends_of if isinstance(task, Challenge) else answers
+            self._wanted[request.exercise] = draw_wanted(self._engine, task)  # type: ignore[arg-type]
+        if request.text is None:
+            return self._judged(task, request.exercise, answer(task))
+        self._parent.report(JUDGING)
+        try:
+            work = _work_of(task, request.text)
+            mark = self._judged(task, request.exercise, work)
+        except (ContextError, DataError) as error:  # or a texture larger than there is room for
+            said = (_short(in_language(error.diagnostics[0].message, self._language)),)
+            mark = replace(no_mark(task), outcome=REFUSED, sentences=said)
+        if is_lost(self._engine.ctx):
+            raise SandboxCrash("made the driver reset itself")
+        return mark
+
+    def _judged(self, task: Exercise | Challenge, name: str, work: Work) -> Mark:
+        ends = self._wanted[name]
+        if isinstance(task, Challenge):
+            assert isinstance(ends, Ends)
+            match_found = match(self._engine, task, work, ends)
+            shown_pairs = (
+                () if match_found.mine is None else (Pair(_webp(match_found.mine), _webp(ends.target)),)
+            )
+            said = [*map(str, match_found.diagnostics)] or [score_of(match_found, self._language)]
+            return replace(
+                no_mark(task),
+                sentences=self._said(task, name, said),
+                pairs=shown_pairs,
+                score=match_found.score,
+            )
+        assert not isinstance(ends, Ends)
+        verdict = judge(self._engine, task, work, ends)
+        return Mark(
+            verdict.points,
+            verdict.of,
+            GRADED,
+            self._said(task, name, sentences(verdict, self._language)),
+            self._pairs(task, work, verdict),
+        )
+
+    def _said(self, task: Exercise | Challenge, name: str, said: Sequence[str]) -> tuple[str, ...]:
+        """Return sentences as they are shown.
+
+        Where a text was read from is the student's own file, not the one that it takes the place of.
+        """
+        path_text, own = shown(path_of(task)) if task.file else "", f"{name}.glsl"
+        return tuple(_short(s.replace(path_text, own) if path_text else s) for s in said[:_MAX_MESSAGES])
+
+    def _pairs(self, exercise: Exercise, work: Work, verdict: Verdict) -> tuple[Pair, ...]:
+        """Return the pictures to compare: those that failed first, of measures one of all that is drawn."""
+        if verdict.diagnostics:
+            return ()
+        shown = [
+            result for result in verdict.results if result.mine is not None and result.expected is not None
+        ]
+        pairs = []
+        for result in sorted(shown, key=lambda result: result.passed)[:_MAX_PAIRS]:
+            assert result.mine is not None and result.expected is not None
+            pairs.append(Pair(_webp(result.mine), _webp(result.expected)))
+        if not pairs:
+            scenes = scene_of(exercise, work), wanted_scene(exercise)
+            mine, expected = (_webp(draw(self._engine, small(scene)).array) for scene in scenes)
+            pairs.append(Pair(mine, expected))
+        return tuple(pairs)
+
+
+def no_mark(task: Exercise | Challenge) -> Mark:
+    """Return the mark of one who has nothing."""
+    if isinstance(task, Challenge):
+        return Mark(0.0, 0, GRADED, score=0.0, goal=task.goal)
+    return Mark(0.0, task.points, GRADED)
+
+
+def _work_of(task: Exercise | Challenge, text: str) -> Work:
+    """Return a work by its file's text; raise ``DataError`` for what names files elsewhere."""
+    if not task.file:
+        return Work(None, values_in_toml(text, task.sliders))
+    work = Work(text)
+    try:
+        sketch = scene_of(task, work).sketch
+    except PlaygroundError:
+        return work  # the judge says what is wrong with it
+    if outside := _outside_file(sketch):
+        raise DataError(Said("names '{name}', a file outside of its folder; it was not opened", name=outside))
+    return work
+
+
+def _outside_file(sketch: Sketch) -> str:
+    """Return a file that a kernel names by itself and that lies neither with the sketch nor in ``glsl/``."""
+    for _, kernel in kernels_of(sketch.graph):
+        for parameter in kernel.parameters:
+            text = str(parameter.default)
+            if parameter.widget.kind == "file" and text and leads_outside(text, GLSL, parameter.file):
+                return text
+    return ""
+
+
+def _short(sentence: str) -> str:
+    """Return a sentence, with the code that it may quote, without the rest of endless lines."""
+    lines = [line if len(line) <= _MAX_LINE else f"{line[:_MAX_LINE]}…" for line in sentence.split("\n")]
+    return "\n".join(line for line in lines[:3] if line.strip())
+
+
+def _webp(picture: Picture) -> bytes:
+    stream = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(picture[..., :3])).save(stream, "WEBP", quality=_QUALITY, method=2)
+    return stream.getvalue()

@@ -1,0 +1,212 @@
+"""What lessons measure: numbers of a texture, each a pure function of its values.
+
+A function receives ``values``, float64 (ny, nx), row 0 in the south, of a texture's first
+channel, and the ``Grid`` that they are on. Lessons name it in ``what``, and give the rest
+of its arguments in ``with``; it raises ``ValueError`` for one that does not fit the texture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from inspect import signature
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.course.drainage import pits, slope_area_power, slope_where_drained, tail_power
+from playground.course.grid import Grid, Values
+
+
+@dataclass(frozen=True)
+class OfTexture:
+    """A measure of a texture's values."""
+
+    function: Callable[..., float]
+    arguments: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class OfRun:
+    """A measure of how a texture or a picture is computed: from the engine, not from the values."""
+
+    arguments: tuple[str, ...] = ()
+
+
+def mean(values: Values, grid: Grid) -> float:
+    """Return the mean."""
+    return float(values.mean())
+
+
+def mean_below_mesh(values: Values, grid: Grid) -> float:
+    """Return the mean of the mesh through the texels: one on an edge counts half, in a corner a quarter."""
+    east, north = (np.r_[0.5, np.ones(count - 2), 0.5] for count in values.shape[::-1])
+    return float(np.average(values, weights=np.outer(north, east)))
+
+
+def lowest(values: Values, grid: Grid) -> float:
+    """Return the lowest value."""
+    return float(values.min())
+
+
+def highest(values: Values, grid: Grid) -> float:
+    """Return the highest value."""
+    return float(values.max())
+
+
+def spread(values: Values, grid: Grid) -> float:
+    """Return how far apart the lowest and the highest value are."""
+    return float(values.max() - values.min())
+
+
+def deviation(values: Values, grid: Grid) -> float:
+    """Return the standard deviation."""
+    return float(values.std())
+
+
+def share_below(values: Values, grid: Grid, limit: float) -> float:
+    """Return the fraction of the texels that lies below a limit, 0..1."""
+    return float((values < limit).mean())
+
+
+def share_above(values: Values, grid: Grid, limit: float) -> float:
+    """Return the fraction of the texels that lies above a limit, 0..1."""
+    return float((values > limit).mean())
+
+
+def share_between(values: Values, grid: Grid, low: float, high: float) -> float:
+    """Return the fraction of the texels that lies between two limits, both included, 0..1."""
+    return float(((values >= low) & (values <= high)).mean())
+
+
+def distinct(values: Values, grid: Grid) -> float:
+    """Return how many different values there are."""
+    return float(np.unique(values).size)
+
+
+def local_maxima(values: Values, grid: Grid) -> float:
+    """Return how many texels, borders aside, are higher than each of their eight neighbours."""
+    return float(_peaks(values).sum())
+
+
+def peaks_on_lattice(values: Values, grid: Grid, every: float) -> float:
+    """Return the fraction of the local maxima that has a row and a column that ``every`` divides, 0..1."""
+    step = int(every)
+    if step < 1:
+        raise ValueError(f"every = {every:g}: expected 1 or more")
+    rows, columns = np.nonzero(_peaks(values))
+    return float((((rows + 1) % step == 0) & ((columns + 1) % step == 0)).mean()) if rows.size else 0.0
+
+
+def _peaks(values: Values) -> NDArray[np.bool_]:
+    inner = values[1:-1, 1:-1]
+    top = np.ones(inner.shape, bool)
+    for dy in (0, 1, 2):
+        for dx in (0, 1, 2):
+            if (dy, dx) != (1, 1):
+                top &= inner > values[dy : dy + inner.shape[0], dx : dx + inner.shape[1]]
+    return top
+
+
+def mean_slope(values: Values, grid: Grid) -> float:
+    """Return the mean slope in degrees of a height in 0..1, by central differences in metres."""
+    return float(_slopes(values, grid).mean())
+
+
+def share_steeper(values: Values, grid: Grid, degrees: float) -> float:
+    """Return the fraction of the terrain that is steeper than some degrees, 0..1."""
+    return float((_slopes(values, grid) > degrees).mean())
+
+
+def _slopes(values: Values, grid: Grid) -> Values:
+    north, east = np.gradient(values * grid.relief, grid.spacing[1], grid.spacing[0])
+    slopes: Values = np.degrees(np.arctan(np.hypot(east, north)))
+    return slopes
+
+
+def spectrum_slope(values: Values, grid: Grid) -> float:
+    """Return the slope of the radial power spectrum in log-log, from 8 cycles to a quarter of the side.
+
+    Of fractional Brownian motion in the plane it is −(2H + 2), H the Hurst exponent. The
+    values are weighed by a Hann window; the sixteen bins are of equal width in the logarithm.
+    """
+    side = min(values.shape)
+    part = values[:side, :side]
+    window = np.hanning(side)
+    power = np.abs(np.fft.fft2((part - part.mean()) * np.outer(window, window))) ** 2
+    along = np.fft.fftfreq(side, 1 / side)
+    frequency = np.hypot(along[None], along[:, None])
+    edges = np.geomspace(8.0, side / 4.0, 17)
+    means = [power[(frequency >= low) & (frequency < high)].mean() for low, high in pairwise(edges)]
+    return float(np.polyfit(np.log(np.sqrt(edges[1:] * edges[:-1])), np.log(means), 1)[0])
+
+
+def box_dimension(values: Values, grid: Grid, limit: float) -> float:
+    """Return the dimension by counting boxes of 2 to a quarter of a side of what lies above a limit."""
+    side = 2 ** int(np.log2(min(values.shape)))
+    mask = values[:side, :side] > limit
+    sizes = [2**k for k in range(1, int(np.log2(side)) - 1)]
+    counts = []
+    for size in sizes:
+        boxes = mask.reshape(side // size, size, side // size, size).any(axis=(1, 3))
+        counts.append(max(int(boxes.sum()), 1))
+    return float(-np.polyfit(np.log(sizes), np.log(counts), 1)[0])
+
+
+def diagonal_crease(values: Values, grid: Grid) -> float:
+    """Return how much a square heightmap bends across its south-west diagonal, over the parallels of it.
+
+    The bend is the second difference along the other diagonal; the parallels are the forty on each side.
+    """
+    bend = np.abs(values[2:, :-2] - 2.0 * values[1:-1, 1:-1] + values[:-2, 2:])
+    near = [np.diagonal(bend, k).mean() for k in range(-40, 41) if k]
+    return float(np.diagonal(bend).mean() / np.mean(near))
+
+
+def step_across(values: Values, grid: Grid, at: float) -> float:
+    """Return the mean step from column ``at`` − 1 to ``at``, over that of four pairs of columns nearby."""
+    column, count = int(at), values.shape[1]
+    if not 4 <= column <= count - 4:
+        raise ValueError(f"column {column} of {count} has not four on each side")
+    steps = np.abs(np.diff(values, axis=1)).mean(axis=0)
+    neighbours = [steps[column - 1 + k] for k in (-3, -2, 2, 3)]
+    return float(steps[column - 1] / np.mean(neighbours))
+
+
+def correlation(values: Values, grid: Grid, dx: float, dy: float) -> float:
+    """Return the correlation of a texture with itself, moved by so many texels, over what they share."""
+    x, y = int(dx), int(dy)
+    ny, nx = values.shape
+    if abs(x) >= nx or abs(y) >= ny:
+        raise ValueError(f"moved by {x}, {y}: expected less than {nx}, {ny}")
+    first = values[max(y, 0) : ny + min(y, 0), max(x, 0) : nx + min(x, 0)]
+    second = values[max(-y, 0) : ny + min(-y, 0), max(-x, 0) : nx + min(-x, 0)]
+    return float(np.corrcoef(first.ravel(), second.ravel())[0, 1])
+
+
+def edge_match(values: Values, grid: Grid) -> float:
+    """Return the mean step from the last column to the first, over that of neighbouring columns.
+
+    About 1 for terrain that repeats without a seam.
+    """
+    return float(np.abs(values[:, 0] - values[:, -1]).mean() / np.abs(np.diff(values, axis=1)).mean())
+
+
+_FUNCTIONS: tuple[Callable[..., float], ...] = (
+    *(mean, mean_below_mesh, lowest, highest, spread, deviation, distinct),
+    *(share_below, share_above, share_between, share_steeper),
+    *(local_maxima, peaks_on_lattice, mean_slope, spectrum_slope, box_dimension),
+    *(diagonal_crease, step_across, correlation, edge_match),
+    *(pits, tail_power, slope_where_drained, slope_area_power),
+)
+
+MEASURES: dict[str, OfTexture | OfRun] = {
+    **{each.__name__: OfTexture(each, tuple(signature(each).parameters)[2:]) for each in _FUNCTIONS},
+    "triangles": OfRun(),  # drawn for the whole picture
+    "iterations": OfRun(),  # of the repeated pass in ``of``
+    "texels": OfRun(),  # computed for ``of`` by fragment shaders, every iteration counted
+    "texture_bytes": OfRun(),  # of ``of``, without mip levels
+    "milliseconds": OfRun(),  # to compute ``of`` again: the best of three
+}
+"""Every measure, by the name that lessons use."""

@@ -1,0 +1,157 @@
+"""Write a lesson as a Jupyter notebook: its texts as Markdown, a cell of code for each picture."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Mapping
+from typing import Any
+
+from playground.course import model
+from playground.course.bugs import bug_region
+from playground.course.excerpt import excerpt
+from playground.course.glossary import linked_term, terms_of
+from playground.course.library import SOURCE, THESIS, interface_labels
+from playground.course.measuring import Number, filled
+from playground.course.tasks.sentences import task_labels
+from playground.course.tasks.tasks import checks_itself
+from playground.course.tasks.texts import starter_text
+from playground.errors import DataError
+from playground.extras import needs
+from playground.sketch.assign import value_of, values_of
+
+_LINK = re.compile(r"\[([^\]]*)\]\((lesson|sketch|thesis|term):([^)]*)\)")
+
+
+def notebook_text(lesson: model.Lesson, numbers: Mapping[str, Number], lessons: Collection[str] = ()) -> str:
+    """Return a lesson's notebook, not run yet, with its numbers and with links to ``lessons``, by name.
+
+    Raises ``DataError`` without nbformat.
+    """
+    try:
+        import nbformat
+    except ModuleNotFoundError:
+        raise DataError(needs("a notebook", "nbformat", "notebook")) from None
+    form: Any = nbformat  # its functions have no types
+    make: Any = {"markdown": form.v4.new_markdown_cell, "code": form.v4.new_code_cell}
+    cells = []
+    for number, (kind, text) in enumerate(_Writer(lesson, numbers, lessons).cells()):
+        cell: Any = make[kind](text)
+        cell["id"] = f"{lesson.name.replace('_', '-')[:40]}-{number}"  # the same at every build
+        cells.append(cell)
+    kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
+    notebook: Any = form.v4.new_notebook(
+        cells=cells, metadata={"kernelspec": kernel, "language_info": {"name": "python"}}
+    )
+    form.validate(notebook)
+    return str(form.writes(notebook)) + "\n"
+
+
+class _Writer:
+    """Writes the cells of one lesson: (kind, text)."""
+
+    def __init__(self, lesson: model.Lesson, numbers: Mapping[str, Number], lessons: Collection[str]) -> None:
+        self.lesson = lesson
+        self.lessons = lessons
+        self.numbers = numbers
+        self.label = interface_labels(lesson.language)
+
+    def cells(self) -> Iterator[tuple[str, str]]:
+        """Yield all cells."""
+        lesson, label = self.lesson, self.label
+        minutes = label("minutes", reading=lesson.minutes, exercises=lesson.exercise_minutes)
+        head = f"{label('lesson')} {lesson.number} · {minutes}\n\n# {lesson.title}"
+        goal = f"**{label('goal')}**{label('colon')}{lesson.goal}"
+        yield "markdown", f"{head}\n\n{goal}\n\n{label('run_first')}"
+        language = "" if lesson.language == SOURCE else f', language="{lesson.language}"'
+        opening = f'lesson = open_lesson("{lesson.name}"{language})'
+        yield "code", f"from playground.course.notebook import open_lesson\n\n{opening}"
+        for block in lesson.blocks:
+            yield from self.block(block)
+        sections = ", ".join(label("section", n=number) for number in lesson.thesis)
+        papers = "\n".join(f"- {paper}" for paper in lesson.papers)
+        thesis = f"## {label('thesis')}\n\n{THESIS}{label('colon')}{sections}."
+        yield "markdown", f"{thesis}\n\n## {label('papers')}\n\n{papers}"
+        if terms := terms_of(lesson):
+            entries = "\n".join(f"- {term.definition(lesson.language)}" for term in terms)
+            yield "markdown", f"## {label('glossary')}\n\n{entries}"
+
+    def block(self, block: model.Block) -> Iterator[tuple[str, str]]:
+        """Yield the cells of a block: its text, then the code that draws it."""
+        label, text = self.label, self.text
+        if isinstance(block, model.Prose):
+            mark = f"{'#' * block.level} " if block.kind == "heading" else ""
+            yield "markdown", text(f"{mark}{block.markdown}")
+        elif isinstance(block, model.Figure | model.Steps | model.Slider | model.Compare):
+            yield "markdown", f"*{text(block.caption)}*"
+            yield "code", f'lesson.show("{block.name}")'
+        elif isinstance(block, model.Code):
+            title = label("code_of", file=f"glsl/{block.file}")
+            caption = f"{text(block.caption)} " if block.caption else ""
+            yield "markdown", f"```glsl\n{excerpt(block.file, block.anchor).text}\n```\n\n{caption}({title})"
+        elif isinstance(block, model.Break):
+            yield "markdown", f"### {label('bug')}\n\n{text(block.ask)}"
+            yield "code", f'lesson.show("{block.name}")'
+            yield "markdown", label("your_task")
+            yield "code", f'lesson.fix("{block.name}", r"""\n{bug_region(block).broken}\n""")'
+            folded = (self.folded("hint", block.hint), self.folded("fix", block.fix))
+            yield "markdown", "\n\n".join(folded)
+        elif isinstance(block, model.Question):
+            choices = "".join(f"\n- {text(choice)}" for choice in block.choices)
+            question = f"### {label('question')}\n\n{text(block.ask)}\n{choices}".rstrip()
+            yield "markdown", f"{question}\n\n{self.folded('answer', block.answer)}"
+        elif isinstance(block, model.Exercise | model.Challenge):
+            yield from self.task(block)
+        elif isinstance(block, model.Measure) and block.sentence:
+            yield "markdown", text(block.sentence)
+            yield "code", f'lesson.measure("{block.name}")'
+
+    def task(self, block: model.Exercise | model.Challenge) -> Iterator[tuple[str, str]]:
+        """Yield an exercise, its solution folded away; one that checks itself has a cell that does."""
+        say, folded = task_labels(self.lesson.language), []
+        if isinstance(block, model.Exercise):
+            head = f"{self.label('exercise')} {self.lesson.number_of(block)}"
+        else:
+            head = say["challenge"]
+        if block.hint:
+            folded.append(self.folded("hint", block.hint))
+        if block.solution:
+            folded.append(self.folded("solution", block.solution))
+        asked = f"### {head}\n\n{self.text(block.ask)}"
+        if not checks_itself(block):
+            yield "markdown", "\n\n".join([asked, *folded])
+            return
+        matches = isinstance(block, model.Challenge)
+        here = say["match_here" if matches else "write_here" if block.file else "set_here"]
+        yield "markdown", asked
+        yield "code", f'lesson.exercise("{block.name}")'
+        yield "markdown", here
+        yield "code", f'lesson.{"match" if matches else "check"}("{block.name}", {_begun(block)})'
+        if folded:
+            yield "markdown", "\n\n".join(folded)
+
+    def folded(self, key: str, markdown: str) -> str:
+        """Return a text that is unfolded by its label."""
+        return f"<details><summary>{self.label(key)}</summary>\n\n{self.text(markdown)}\n\n</details>"
+
+    def text(self, markdown: str) -> str:
+        """Return a text with its numbers, and with links that a notebook can follow."""
+        return _LINK.sub(self.linked, filled(markdown, self.numbers, comma=self.lesson.language == "fr"))
+
+    def linked(self, link: re.Match[str]) -> str:
+        """Return a link that a notebook can follow: of a term, to the list at its end."""
+        text, kind, what = link.groups()
+        if term := linked_term(f"{kind}:{what}"):
+            name = f'[{text}](#{self.label("glossary")} "{term.definition(self.lesson.language)}")'
+            bold = link.string[: link.start()].endswith("**") and link.string[link.end() :].startswith("**")
+            return name if bold else f"**{name}**"
+        return f"[{text}]({what}.ipynb)" if kind == "lesson" and what in self.lessons else text
+
+
+def _begun(task: model.Exercise | model.Challenge) -> str:
+    """Return what a student begins from, as Python."""
+    if task.file:
+        return f'r"""\n{starter_text(task).rstrip()}\n"""'
+    assert task.begin is not None
+    values = values_of(task.begin.sketch)
+    value = {path: value_of(task.begin.sketch, path, values) for path in task.sliders}
+    return repr(value)

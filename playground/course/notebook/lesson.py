@@ -1,0 +1,170 @@
+"""A lesson in a notebook: its blocks by name, drawn by one engine for all."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any
+
+from playground.course import model
+from playground.course.book.live_files import widget_page
+from playground.course.bugs import bug_region
+from playground.course.figure_renders import broken, draw
+from playground.course.library import SOURCE, interface_labels
+from playground.course.measuring import measured
+from playground.course.notebook.checked import Checked, Matched
+from playground.course.notebook.controls import controls_of, scene_at
+from playground.course.picture_difference import SHARE, share_differing
+from playground.course.read import read_lesson
+from playground.course.tasks.judge_process import JudgeProcess
+from playground.course.tasks.match import Match
+from playground.course.tasks.tasks import checks_itself
+from playground.course.tasks.verdict import Verdict
+from playground.course.tasks.work import Work, scene_of, starter
+from playground.engine.frame import Frame
+from playground.errors import SketchError, nearest
+from playground.markup import tag
+from playground.notebook.engine_thread import on_engine
+from playground.paths import GLSL
+from playground.sketch.model import Value
+from playground.sketch.replace_technique import with_texts
+
+
+def open_lesson(name: str, language: str = SOURCE) -> NotebookLesson:
+    """Return a lesson for a notebook; raise ``SketchError`` for a name or language there is not."""
+    return NotebookLesson(read_lesson(name, language))
+
+
+@cache
+def _judge() -> JudgeProcess:
+    return JudgeProcess()
+
+
+def _work(task: model.Task, text: str | Mapping[str, Value]) -> Work:
+    """Return what a student gives as a work; raise ``SketchError`` for a text where values are asked for."""
+    if isinstance(text, str) and not task.file:
+        what = ", ".join(f'"{path}": …' for path in task.sliders)
+        raise SketchError(f"'{task.name}' asks for values: {{{what}}}")
+    return Work(text) if isinstance(text, str) else Work(values=dict(text))
+
+
+@dataclass(frozen=True, eq=False)
+class Fixed(Frame):
+    """The picture that edited lines make, with a verdict: whether the bug is fixed."""
+
+    verdict: str = ""
+
+    def _repr_html_(self) -> str:
+        source = f"data:image/png;base64,{b64encode(self._repr_png_()).decode()}"
+        return tag("p", self.verdict) + tag("img", src=source, alt=self.verdict)
+
+
+class NotebookLesson:
+    """A lesson whose blocks can be shown one by one."""
+
+    def __init__(self, lesson: model.Lesson) -> None:
+        self.lesson = lesson
+        self.label = interface_labels(lesson.language)
+        self._best: dict[str, float] = {}  # score, by challenge
+
+    def show(self, name: str) -> Any:
+        """Return what a notebook shows of a block: a picture, with sliders where it has some.
+
+        Raises ``SketchError`` for a block there is not, or one without a picture.
+        """
+        block = self._block(name)
+        if isinstance(block, model.Figure | model.Steps | model.Slider | model.Compare):
+            return self._dragged(block)
+        if isinstance(block, model.Break):
+            return self._frame(broken(block))
+        if isinstance(block, model.Exercise | model.Challenge) and block.scene:
+            return self._frame(block.scene)
+        raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' has no picture")
+
+    def measure(self, name: str) -> float:
+        """Return the number of a measure, computed now."""
+        block = self._block(name)
+        if not isinstance(block, model.Measure):
+            raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' measures nothing")
+        return on_engine(lambda engine: measured(engine, block)).value
+
+    def fix(self, name: str, lines: str) -> Fixed:
+        """Return the picture that a shader makes with other lines in place of those with the bug.
+
+        Raises ``ShaderError`` naming what is wrong with the lines.
+        """
+        block = self._block(name)
+        if not isinstance(block, model.Break) or block.scene is None:
+            raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' is no bug to fix")
+        text = bug_region(block).with_lines(lines)
+        path = str((GLSL / block.file).resolve())
+        sketch = block.scene.sketch.plainly()  # what is compared is the text, not a fast variant
+        tried = replace(block.scene, sketch=with_texts(sketch, {path: text}), plain=False)
+        frame, correct = self._frame(tried), self._frame(replace(block.scene, sketch=sketch))
+        fixed = share_differing(frame.array, correct.array) <= SHARE
+        return Fixed(frame.array, frame.sketch, frame.time, self.label("fixed" if fixed else "not_yet"))
+
+    def exercise(self, name: str) -> Frame:
+        """Return the picture that an exercise or a challenge begins from.
+
+        Raises ``SketchError`` for a block there is not, or one that does not check itself.
+        """
+        task = self._task(name)
+        return self._frame(scene_of(task, starter(task)))
+
+    def check(self, name: str, work: str | Mapping[str, Value]) -> Checked:
+        """Return the verdict on an exercise: of the text of its kernel, or of values by parameter path.
+
+        The work is judged in a process of its own. Raises ``SketchError`` for a block that is no exercise, or
+        one that does not check itself.
+        """
+        task = self._task(name)
+        if not isinstance(task, model.Exercise):
+            raise SketchError(f"block '{name}' is a picture to match: lesson.match scores it")
+        verdict = _judge().check(task, _work(task, work))
+        assert isinstance(verdict, Verdict)
+        return Checked(verdict, self.lesson.language)
+
+    def match(self, name: str, work: str | Mapping[str, Value]) -> Matched:
+        """Return how near a work is to the picture of a challenge, and the best score; else as ``check``."""
+        task = self._task(name)
+        if not isinstance(task, model.Challenge):
+            raise SketchError(f"block '{name}' is no picture to match: lesson.check checks it")
+        match = _judge().check(task, _work(task, work))
+        assert isinstance(match, Match)
+        self._best[name] = max(match.score, self._best.get(name, 0.0))
+        return Matched(match, self._best[name], self.lesson.language)
+
+    def _task(self, name: str) -> model.Exercise | model.Challenge:
+        block = self._block(name)
+        if not checks_itself(block):
+            raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' does not check itself")
+        return block
+
+    def _block(self, name: str) -> model.Named:
+        named = self.lesson.named
+        if name not in named:
+            raise SketchError(f"lesson '{self.lesson.name}' has no block '{name}'{nearest(name, named)}")
+        return named[name]
+
+    def _frame(self, scene: model.Scene) -> Frame:
+        return on_engine(lambda engine: draw(engine, scene))
+
+    def _dragged(self, block: model.Figure | model.Steps | model.Slider | model.Compare) -> Any:
+        controls = controls_of(block, self.lesson.language, self.label)
+
+        def png(values: Mapping[str, float]) -> bytes:
+            return self._frame(scene_at(block, values))._repr_png_()
+
+        if not controls:
+            return self._frame(scene_at(block, {}))
+        try:
+            from playground.course.notebook.widget import PictureWidget
+        except ModuleNotFoundError:
+            return self._frame(scene_at(block, {control.key: control.value for control in controls}))
+        labels = controls[0].choices if not isinstance(block, model.Figure) else ()
+        page = on_engine(lambda engine: widget_page(block, engine))
+        language = self.lesson.language
+        return PictureWidget(png, controls, block.alt, page=page, labels=labels, language=language)

@@ -1,0 +1,171 @@
+"""Check the rules of every lesson, so that all of them can be read the same way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from latex2mathml.converter import convert
+
+from playground.course import model
+from playground.course.excerpt import excerpt
+from playground.course.figure_renders import broken, draw
+from playground.course.glossary import terms
+from playground.course.library import lesson_files
+from playground.course.markdown import formulas, images, links
+from playground.course.measuring import measured, named_in
+from playground.course.tasks.proof import wrong_task
+from playground.course.tasks.tasks import tasks_of
+from playground.engine.engine import Engine
+from playground.engine.frame import Frame
+from playground.errors import PlaygroundError, nearest
+from playground.sketch.find import shipped_sketches
+
+MAX_WORDS = 60
+"""Words that may come before the first picture, so that it is on the first screen."""
+
+MAX_MINUTES = 12
+"""Minutes that reading a lesson may take, by ``reading_time``; its exercises are counted apart."""
+
+EXERCISES = 3
+"""Exercises that a lesson has at least."""
+
+VISIBLE_MEAN, VISIBLE_SHARE, VISIBLE_LEVELS = 2.0, 0.02, 16
+"""A bug is visible if pictures differ by so many levels in the mean, or such a share of pixels by so many."""
+
+
+def broken_rules(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
+    """Yield (line, sentence) of every rule that a lesson's text breaks; nothing is drawn."""
+    yield from _time(lesson)
+    yield from _first_screen(lesson)
+    yield from _kinds(lesson)
+    yield from _sections(lesson)
+    yield from _references(lesson)
+    for block in lesson.blocks:
+        alt, caption = getattr(block, "alt", ""), getattr(block, "caption", "")
+        if alt and alt == caption:
+            yield block.line, f"'{getattr(block, 'name', '')}': alt repeats the caption"
+        try:
+            if isinstance(block, model.Code):
+                excerpt(block.file, block.anchor)
+            elif isinstance(block, model.Break):
+                broken(block)
+        except PlaygroundError as error:
+            yield block.line, error.diagnostics[0].message
+
+
+def wrong_pictures(engine: Engine, lesson: model.Lesson) -> Iterator[tuple[int, str]]:
+    """Yield (line, sentence) of what only drawing shows: bugs not seen, numbers not as claimed, bad tasks."""
+    for block in lesson.blocks:
+        try:
+            if isinstance(block, model.Break) and block.scene:
+                if not visible(draw(engine, block.scene), draw(engine, broken(block))):
+                    yield block.line, f"break '{block.name}': the bug hardly changes the picture"
+            elif isinstance(block, model.Exercise | model.Challenge):
+                yield from ((block.line, sentence) for sentence in wrong_task(engine, block))
+            elif isinstance(block, model.Measure):
+                value = measured(engine, block).value
+                if block.between and not block.between[0] <= value <= block.between[1]:
+                    low, high = block.between
+                    yield block.line, f"measure '{block.name}': {value:g} is not between {low:g} and {high:g}"
+        except PlaygroundError as error:
+            yield block.line, error.diagnostics[0].message
+
+
+def visible(frame: Frame, other: Frame) -> bool:
+    """Whether two pictures of one size differ visibly."""
+    difference = np.abs(frame.array.astype(np.int16) - other.array).max(axis=-1)
+    share = float((difference > VISIBLE_LEVELS).mean())
+    return float(difference.mean()) >= VISIBLE_MEAN or share >= VISIBLE_SHARE
+
+
+def _time(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
+    if lesson.minutes > MAX_MINUTES:
+        message = f"reading takes {lesson.minutes} minutes; at most {MAX_MINUTES} are allowed"
+        yield 1, f"{message}: trim the lesson, or make it two"
+
+
+def _first_screen(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
+    words = 0
+    for block in lesson.blocks:
+        if isinstance(block, model.Figure):
+            if words > MAX_WORDS:
+                yield block.line, f"{words} words before the first figure; at most {MAX_WORDS} are allowed"
+            return
+        words += len(block.text.split()) if isinstance(block, model.Prose) else 0
+        if isinstance(block, model.Named):
+            yield block.line, "the first block of a lesson is a figure"
+            return
+    yield 1, "a lesson has a figure"
+
+
+def _kinds(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
+    target: tuple[tuple[str, tuple[type[model.Block], ...]], ...] = (
+        ("a step or a slider", (model.Steps, model.Slider)),
+        ("a compare or a question", (model.Compare, model.Question)),
+        ("a code", (model.Code,)),
+        ("a measure", (model.Measure,)),
+    )
+    tasks = tasks_of(lesson)
+    if not tasks and not any(isinstance(block, model.Break) for block in lesson.blocks):
+        yield 1, "a lesson has a break block, or an exercise that checks itself"
+    for what, kinds in target:
+        if not any(isinstance(block, kinds) for block in lesson.blocks):
+            yield 1, f"a lesson has {what} block"
+    count = sum(isinstance(block, model.Exercise) for block in lesson.blocks)
+    if count < EXERCISES:
+        yield 1, f"{count} exercises; a lesson has {EXERCISES}"
+    if not lesson.thesis or not lesson.papers:
+        yield 1, "a lesson names sections of the thesis, and papers"
+
+
+def _sections(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
+    sections = lesson.sections[1:]
+    if not sections:
+        yield 1, "a lesson has sections, each begun by ##"
+        return
+    for section in sections[:-1]:
+        named = [block for block in section.blocks if isinstance(block, model.Named)]
+        if all(isinstance(block, model.Measure) for block in named):
+            line = section.blocks[0].line if section.blocks else 1
+            yield line, f"section '{section.title}' shows nothing: no picture, code or question"
+    if not any(isinstance(block, model.Exercise) for block in sections[-1].blocks):
+        yield 1, "the last section of a lesson holds the exercises"
+
+
+def _references(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
+    measures = {measure.name for measure in lesson.measures}
+    targets = {"lesson": lesson_files(), "sketch": shipped_sketches(), "term": list(terms())}
+    linked: set[str] = set()
+    texts = [(1, lesson.title), (1, lesson.goal)]
+    texts += [(block.line, text) for block in lesson.blocks for text in model.texts_of(block)]
+    for line, text in texts:
+        for latex in formulas(text):
+            yield from ((line, message) for message in _formula(latex))
+        for name in named_in(text):
+            if name not in measures:
+                yield line, f"{{{{{name}}}}}: there is no measure of that name"
+        for address in images(text):
+            yield line, f"an image of '{address}': pictures are blocks of their own"
+        for address in links(text):
+            kind, _, what = address.partition(":")
+            if kind in targets and what not in targets[kind]:
+                yield line, f"a link to {kind} '{what}', which does not exist{nearest(what, targets[kind])}"
+            elif kind == "thesis" and not all(part.isdigit() for part in what.split(".")):
+                yield line, f"a link to section '{what}' of the thesis, which is no number"
+            elif kind == "term" and address in linked:
+                yield line, f"a second link to term '{what}': only its first appearance has one"
+            elif kind not in (*targets, "thesis", "https"):
+                yield line, f"a link to '{address}': expected {':, '.join(targets)}:, thesis: or https:"
+            linked.add(address)
+
+
+def _formula(latex: str) -> Iterator[str]:
+    try:
+        is_convertible = "\\" not in convert(latex)  # a command that it does not know stays as it is
+    except Exception as error:  # its errors have no class in common
+        message = str(error) or type(error).__name__.removesuffix("Error")
+        yield f"formula ${latex}$ cannot be read: {message}"
+        return
+    if not is_convertible:
+        yield f"formula ${latex}$ holds a command that cannot be shown"

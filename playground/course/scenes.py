@@ -1,0 +1,197 @@
+"""Read the state of a picture: a sketch, and what a block of a lesson sets of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from playground.course.model import Scene
+from playground.errors import ParameterError, PlaygroundError, nearest
+from playground.memo import INTERFACE
+from playground.paths import SKETCHES
+from playground.shader.parameter import spell
+from playground.sketch.find import shipped_sketches
+from playground.sketch.flat import leaves_of
+from playground.sketch.flatten import flatten
+from playground.sketch.load import load_with
+from playground.sketch.map_sketch import Map
+from playground.sketch.model import MAX_SIDE, Shot, Sketch, Value
+from playground.sketch.replace_technique import with_texts
+from playground.sketch.techniques import Techniques
+from playground.sketch.toml_graph import read_set
+from playground.sketch.toml_sketch import read_camera, read_steps
+from playground.sketch.toml_table import TomlFile
+from playground.sketch.toml_text import KeyPath
+
+STATE = ("sketch", "shot", "preset", "set", "steps", "camera", "time", "pixels", "view", "range")
+"""The keys that describe a picture."""
+
+PICTURE = (640, 360)
+"""Pixels of a picture by itself."""
+
+FRAME = (480, 270)
+"""Pixels of one picture of a series."""
+
+
+@dataclass
+class Sketches:
+    """Sketches that have been loaded, so that a lesson reads each of its shaders once."""
+
+    techniques: Techniques = field(default_factory=Techniques)
+    loaded: dict[str, Sketch] = field(default_factory=dict)
+
+    def load(self, name: str) -> Sketch:
+        """Return a shipped sketch by name; raise as ``playground.sketch.load.load`` does."""
+        if name not in self.loaded:
+            self.loaded[name] = load_with(self.techniques, SKETCHES / f"{name}.toml")
+        return self.loaded[name]
+
+
+def read_scene(
+    file: TomlFile,
+    table: Mapping[str, Any],
+    key_path: KeyPath,
+    sketches: Sketches,
+    pixels: tuple[int, int] = PICTURE,
+    under: Mapping[str, Any] | None = None,
+    texts: Mapping[str, str] | None = None,
+) -> Scene:
+    """Return the picture that a table's keys of ``STATE`` describe; its own override those of ``under``.
+
+    ``set`` and ``steps`` of both are joined. ``texts``, by absolute path, replace those of the sketch's
+    shaders, none of whose fast variants runs then. Raises ``SketchError`` at the key that is wrong.
+    """
+    whole = _joined(file, table, key_path, under or {})
+    sketch = _sketch(file, whole, key_path, sketches)
+    if texts:
+        sketch = with_texts(sketch, texts).plainly()
+    shot = _shot(file, whole, key_path, sketch)
+    preset = file.take(whole, "preset", str, "", *key_path)
+    values = read_set(file, sketch, whole, key_path, "this picture")
+    steps = dict(shot.steps) | dict(read_steps(file, sketch, whole, key_path))
+    for_shot = sketch.for_shot(shot)
+    try:
+        made = for_shot.with_preset(preset) if preset else for_shot
+        made = replace(made.with_values(dict(values)), warnings=(*made.warnings, *file.warnings))
+    except PlaygroundError as error:
+        raise file.error(error.diagnostics[0].message, *key_path, "preset" if preset else "set") from None
+    if "camera" in whole:
+        made = made.with_camera(read_camera(file, whole, for_shot.camera, key_path))
+    view = file.take(whole, "view", str, "", *key_path)
+    if view:
+        made = _from_above(file, whole, key_path, made)
+    elif "range" in whole:
+        raise file.error("range: there is no view, whose lowest and highest value it is", *key_path, "range")
+    scene = Scene(
+        sketch=made,
+        pixels=_pixels(file, whole, key_path, shot.size if shot.name else pixels),
+        time=file.take(whole, "time", float, shot.time, *key_path),
+        steps=tuple(steps.items()),
+        shot=shot.name,
+        preset=preset,
+        values=values,
+        view=view,
+        plain=bool(shot.name) and not texts and whole.keys() <= {"sketch", "shot"},
+    )
+    _check_steps(file, key_path, scene)
+    return scene
+
+
+def _joined(
+    file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, under: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the keys of both tables; ``set`` and ``steps`` hold those of both, the table's own first."""
+    whole = dict(under) | dict(table)
+    for key in ("set", "steps"):
+        if key in under and key in table:
+            whole[key] = file.take(under, key, dict, {}) | file.take(table, key, dict, {}, *key_path)
+    return whole
+
+
+def _check_steps(file: TomlFile, key_path: KeyPath, scene: Scene) -> None:
+    """Raise ``SketchError`` where a pass cannot be stopped at the iteration that is named."""
+    from playground.engine.plan import PlanRequest
+    from playground.engine.planner import make_plan  # it needs what is loaded by then only
+
+    try:
+        if scene.steps:
+            make_plan(
+                scene.sketch, PlanRequest(frame_size=scene.pixels, time=scene.time, steps=dict(scene.steps))
+            )
+    except ParameterError as error:
+        raise file.error(error.diagnostics[0].message, *key_path, "steps") from None
+
+
+def comparable(first: Scene, second: Scene) -> bool:
+    """Return whether a line can part them: one sketch shows both, at one time and from one place."""
+    left, other = (
+        (scene.sketch.file, scene.time, scene.view, scene.sketch.camera) for scene in (first, second)
+    )
+    return left == other
+
+
+def with_steps(scene: Scene, steps: Mapping[str, int]) -> Scene:
+    """Return the picture with repeated passes stopped after so many iterations."""
+    return replace(scene, steps=tuple({**dict(scene.steps), **steps}.items()), plain=False)
+
+
+def with_value(scene: Scene, path: str, value: Value) -> Scene:
+    """Return the picture with one more parameter set."""
+    values = (*(v for v in scene.values if v[0] != path), (path, value))
+    return replace(scene, sketch=scene.sketch.with_values({path: value}), values=values, plain=False)
+
+
+def _sketch(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, sketches: Sketches) -> Sketch:
+    name = file.take(table, "sketch", str, "", *key_path)
+    if name not in shipped_sketches():
+        hint = nearest(name, shipped_sketches())
+        raise file.error(
+            f"sketch = {spell(name)}: a lesson shows a sketch that ships{hint}", *key_path, "sketch"
+        )
+    return sketches.load(name)
+
+
+def _shot(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, sketch: Sketch) -> Shot:
+    name = file.take(table, "shot", str, "", *key_path)
+    if not name:
+        return Shot("")
+    try:
+        return sketch.shot(name)
+    except PlaygroundError as error:
+        raise file.error(error.diagnostics[0].message, *key_path, "shot") from None
+
+
+def _pixels(
+    file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, default: tuple[int, int]
+) -> tuple[int, int]:
+    pixels = file.take(table, "pixels", list, list(default), *key_path)
+    if len(pixels) != 2 or not all(type(v) is int and 16 <= v <= MAX_SIDE for v in pixels):
+        raise file.error(f"pixels = {spell(pixels)}: expected [width, height], from 16", *key_path, "pixels")
+    return pixels[0], pixels[1]
+
+
+def _range(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath) -> tuple[float, float]:
+    text = file.take(table, "range", list, [0.0, 1.0], *key_path)
+    if len(text) != 2 or not all(type(v) in (int, float) for v in text) or text[0] >= text[1]:
+        raise file.error(f"range = {spell(text)}: expected [lowest, highest]", *key_path, "range")
+    return float(text[0]), float(text[1])
+
+
+def _from_above(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, sketch: Sketch) -> Sketch:
+    ref = table["view"]
+    flat = flatten(sketch)
+    try:
+        ref_found = flat.ref(ref, sketch.name)
+    except PlaygroundError as error:
+        raise file.error(error.diagnostics[0].message, *key_path, "view") from None
+    kernels = {leaf.path: leaf.kernel for leaf in leaves_of(flat.nodes)}
+    output = next(o for o in kernels[ref_found.path].outputs if o.name == ref_found.output)
+    lowest, highest = _range(file, table, key_path)
+    shown = _map(ref).with_value("lowest", lowest).with_value("highest", highest)
+    return shown.with_value("channel", 0 if output.components > 2 else 1).of(sketch)
+
+
+@INTERFACE.cached()
+def _map(ref: str) -> Map:
+    return Map(ref)

@@ -1,0 +1,200 @@
+"""Judge a work: draw it and the model answer at the values of each check, and compare them.
+
+Nothing that a student hands in raises: a text that is wrong, or that lacks a parameter, is a
+verdict too. A work that never ends is its caller's to stop: judge in a process that may be killed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.course.figure_renders import draw
+from playground.course.measuring import NoNumberError, measured
+from playground.course.model import Check, Exercise, Scene
+from playground.course.picture_difference import differing, share_differing
+from playground.course.tasks.verdict import CheckResult, Picture, Verdict
+from playground.course.tasks.work import LackingParameter, Work, scene_of, wanted_scene
+from playground.course.translatable import Said
+from playground.engine.engine import Engine
+from playground.errors import ParameterError, PlaygroundError
+
+SIDE = 240
+"""Pixels of the longer side of the pictures that are compared."""
+
+_DOWN, _ACROSS = ("top", "", "bottom"), ("left", "", "right")
+_MIN_FRACTION = 0.6
+"""Share of all that differs that lies in a third of a picture, to say that it lies there."""
+
+_ROUNDING = 4 * float(np.finfo(np.float32).eps)
+"""By how much, relatively, the texels of a constant texture may differ."""
+
+Values = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What the model answer gives for a check: a picture, or a texture; neither for a measure."""
+
+    picture: Picture | None = None
+    texture: Values | None = None
+
+
+def judge(
+    engine: Engine, exercise: Exercise, work: Work, expected: tuple[Wanted, ...] | None = None
+) -> Verdict:
+    """Return what comes of a work; ``expected``, from ``answers``, saves drawing the answer again.
+
+    Raises ``PlaygroundError`` only where it is not the student's doing: no OpenGL, an exercise whose
+    answer cannot be drawn.
+    """
+    expected = answers(engine, exercise) if expected is None else expected
+    try:
+        draw(engine, small(scene_of(exercise, work)))
+    except PlaygroundError as error:
+        return Verdict((), error.diagnostics, 0.0, exercise.points)
+    results = tuple(
+        _result(engine, exercise, work, check, expected_result)
+        for check, expected_result in zip(exercise.checks, expected, strict=True)
+    )
+    passed = sum(result.passed for result in results)
+    return Verdict(results, (), round(exercise.points * passed / len(results), 2), exercise.points)
+
+
+def answers(engine: Engine, exercise: Exercise) -> tuple[Wanted, ...]:
+    """Return what the model answer gives for each check; raise as ``Engine.render`` does."""
+    expected = []
+    for check in exercise.checks:
+        scene = small(wanted_scene(exercise, check.at))
+        if check.measure is not None:
+            expected.append(Wanted())
+        elif check.of:
+            expected.append(Wanted(texture=_read(engine, scene, check.of)))
+        else:
+            expected.append(Wanted(picture=_drawn(engine, scene)))
+    return tuple(expected)
+
+
+def compare(check: Check, mine: Wanted, expected: Wanted) -> CheckResult:
+    """Return what comes of a check of a picture or a texture."""
+    if expected.picture is not None:
+        assert mine.picture is not None
+        return _compare_pictures(check, mine.picture, expected.picture)
+    assert mine.texture is not None and expected.texture is not None
+    return _compare_textures(check, mine.texture, expected.texture)
+
+
+def small(scene: Scene, side: int = SIDE) -> Scene:
+    """Return a picture with at most ``side`` pixels on its longer side."""
+    times = max(max(scene.pixels) / side, 1.0)
+    width, height = (max(round(pixels / times), 16) for pixels in scene.pixels)
+    return replace(scene, pixels=(width, height))
+
+
+def _result(engine: Engine, exercise: Exercise, work: Work, check: Check, expected: Wanted) -> CheckResult:
+    try:
+        whole = scene_of(exercise, work, check.at)
+        if check.measure is not None:
+            return _measure(engine, check, whole)
+        scene = small(whole)
+        if check.of:
+            return compare(check, Wanted(texture=_read(engine, scene, check.of)), expected)
+        return compare(check, Wanted(picture=_drawn(engine, scene)), expected)
+    except PlaygroundError as error:
+        # The words of a value that is refused have the value, which may be hidden.
+        tells = check.hidden and isinstance(error, ParameterError) and not isinstance(error, LackingParameter)
+        mistake = Said("a parameter does not take its value") if tells else error.diagnostics[0].message
+        return CheckResult(check, False, float("inf"), mistake=mistake)
+
+
+def _drawn(engine: Engine, scene: Scene) -> Picture:
+    return np.ascontiguousarray(draw(engine, scene).array[..., :3])
+
+
+def _read(engine: Engine, scene: Scene, of: str) -> Values:
+    at: dict[str, Any] = {"size": scene.pixels, "time": scene.time, "steps": dict(scene.steps)}
+    return engine.read(scene.sketch, of, **at)
+
+
+def _measure(engine: Engine, check: Check, scene: Scene) -> CheckResult:
+    """Measure at the scene's own pixels, as the lesson does: triangles depend on the frame's size."""
+    measure = check.measure
+    assert measure is not None and measure.between is not None
+    try:
+        with np.errstate(all="ignore"):  # a flat texture has no correlation: 0/0
+            value = measured(engine, replace(measure, scene=scene)).value
+    except NoNumberError:
+        return CheckResult(check, False, math.nan)
+    low, high = measure.between
+    return CheckResult(check, low <= value <= high, value)
+
+
+def _compare_pictures(check: Check, mine: Picture, expected: Picture) -> CheckResult:
+    share = share_differing(mine, expected)
+    passed = share <= check.tolerance
+    if mine.shape != expected.shape:
+        sizes = mine.shape[1::-1], expected.shape[1::-1]
+        return CheckResult(check, False, share, sizes=sizes, mine=mine, expected=expected)
+    bias = float((mine.astype(np.float64) - expected).mean())
+    region = _place(differing(mine, expected).astype(np.float64))
+    return CheckResult(check, passed, share, bias, region, mine=mine, expected=expected)
+
+
+def _compare_textures(check: Check, mine: Values, expected: Values) -> CheckResult:
+    result = CheckResult(
+        check, False, float("inf"), mine=_as_picture(mine, expected), expected=_as_picture(expected, expected)
+    )
+    if mine.shape != expected.shape:
+        return replace(result, sizes=(_size(mine), _size(expected)))
+    finite = np.isfinite(mine)
+    if not finite.all():
+        count = int((~finite.reshape(*mine.shape[:2], -1).all(axis=-1)).sum())
+        return replace(result, not_finite=count)
+    apart = mine.astype(np.float64) - expected
+    by_texel = np.abs(apart).reshape(*mine.shape[:2], -1).max(axis=-1)
+    largest = float(by_texel.max())
+    region = _place(np.where(by_texel > check.tolerance, by_texel, 0.0)[::-1])
+    passed, bias = largest <= check.tolerance, float(apart.mean())
+    return replace(result, passed=passed, difference=largest, bias=bias, region=region)
+
+
+def _size(values: Values) -> tuple[int, ...]:
+    """Return width, height, and channels of a texture."""
+    return (values.shape[1], values.shape[0], values.shape[2] if values.ndim > 2 else 1)
+
+
+def _as_picture(values: Values, expected: Values) -> Picture:
+    """Return a texture in grey or colour, from the answer's lowest to its highest value; north is up.
+
+    An answer that is the same everywhere is shown as it is: from 0 to 1, or to itself where it is outside.
+    """
+    low, high = float(expected.min()), float(expected.max())
+    if high - low <= _ROUNDING * max(abs(low), abs(high)):
+        low, high = min(low, 0.0), max(high, 1.0)
+    clean = np.nan_to_num(values, nan=low, posinf=high, neginf=low)
+    grey = np.clip((clean - low) / (high - low), 0.0, 1.0)[::-1]
+    channels = grey[..., None] if grey.ndim == 2 else grey
+    if channels.shape[2] < 3:
+        channels = np.repeat(channels[..., :1], 3, axis=2)
+    return np.ascontiguousarray((channels[..., :3] * 255.0 + 0.5).astype(np.uint8))
+
+
+def _place(amount: NDArray[np.float64]) -> str:
+    """Return where in a picture, top row first, most of it is, as "top-left", "left" or "middle"; else ""."""
+    total = float(amount.sum())
+    if not total:
+        return ""
+    result = []
+    for axis, names in ((0, _DOWN), (1, _ACROSS)):
+        thirds = [float(part.sum()) / total for part in np.array_split(amount, 3, axis=axis)]
+        result.append(
+            next((name for name, part in zip(names, thirds, strict=True) if part > _MIN_FRACTION), None)
+        )
+    down, across = result
+    if down == across:
+        return "middle" if down == "" else ""
+    return "-".join(filter(None, (down, across)))
