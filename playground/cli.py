@@ -17,12 +17,12 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache as cached
-from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from playground import rooms
 from playground._version import __version__
 from playground.allowed_files import exists
 from playground.commands import (
@@ -31,7 +31,6 @@ from playground.commands import (
     check,
     doctor,
     export,
-    lesson,
     library,
     listing,
     live,
@@ -52,12 +51,6 @@ from playground.signals import ended_by_signals
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.streams import flush_or_discard, open_streams
 from playground.terminal import complain, note, with_loudness
-
-# Rooms that bring their own commands; without its folder and its line here, the rest works as before.
-ROOMS = (
-    "playground.flight.commands",
-    "playground.lsp.commands",
-)
 
 _NAME = "playground"
 MISTAKE, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
@@ -175,7 +168,7 @@ def _open_default(renderer: Renderer) -> None:
     from playground.sketch.load import load
 
     if where_to_show(os.environ, sys.platform):
-        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, show_lessons=True)
+        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, request={"welcome": True})
         return
     note(f"no display here, so a picture is rendered instead; {program()} --help lists the commands")
     render.write_output(moment_of(load()), render.Output(), renderer)
@@ -205,7 +198,7 @@ def _no_command(name: str, ctx: Any) -> str:
     return f"no command '{name}'{hint}"
 
 
-app.command("live", cls=live.LiveCommand, help=live.HELP)(live.live)
+app.command("live", cls=live.LiveCommand, help=live.HELP)(live.command())
 app.command("render", help=render.HELP)(render.render)
 app.command("export", help=export.HELP)(export.export)
 app.command("check", help=check.HELP)(check.check)
@@ -215,10 +208,11 @@ app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
 app.command("pack", help=pack.HELP)(pack.pack)
 app.command("new", help=new.HELP)(new.new)
-for _group in (shots.app, lesson.app, cache.app, variants.app, library.app):
+app.add_typer(shots.app)
+for _room in rooms.modules("commands"):
+    _room.add_to(app)
+for _group in (cache.app, variants.app, library.app):
     app.add_typer(_group)
-for _room in ROOMS:
-    import_module(_room).add_to(app)
 
 
 @cached

@@ -24,6 +24,7 @@ PACKAGE = ROOT / "playground"
 LAYERS = (
     ("__main__",),
     ("cli",),
+    ("course",),
     ("flight",),
     ("lsp",),
     ("commands",),
@@ -33,7 +34,6 @@ LAYERS = (
     ("bench",),
     ("remote",),
     ("workbench",),
-    ("course",),
     ("reduce",),
     ("capture",),
     ("shots",),
@@ -56,6 +56,7 @@ LAYERS = (
         "markup",
         "memo",
         "paths",
+        "rooms",
     ),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
@@ -192,7 +193,7 @@ def test_the_lowest_layers_import_no_opengl():
 @pytest.mark.slow
 def test_only_two_rooms_have_a_window():
     for path in modules():
-        if layer_of(path) not in ("live", "flight"):
+        if layer_of(path) not in ("live", "flight", "course"):
             tops = {name.split(".")[0] for _, name in imported(tree_of(path), path)}
             assert not tops & {"glfw", "imgui_bundle"}, path
 
@@ -236,8 +237,8 @@ print(",".join(name for name in sys.modules if name in rare or name.startswith(r
 """
 OF_MISTAKES = ["playground.shader.driver_log"]
 OF_LESSONS = [
-    "playground.live.lesson.panel",
-    "playground.live.present.slide",
+    "playground.course.window.panel",
+    "playground.course.talk.slide",
     "latex2mathml",
     "markdown_it",
     "PIL",

@@ -1,1 +1,1 @@
-"""Pages of the site that are generated from the code: commands, techniques, gallery, glossary, Python."""
+"""Pages of the site that are generated from the code: commands, techniques, gallery, keys, Python."""

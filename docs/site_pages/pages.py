@@ -8,9 +8,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from playground.course.glossary import FILE as GLOSSARY
+from playground import rooms
 
-from . import commands, gallery, glossary, keys, python, shots, techniques
+from . import commands, gallery, keys, python, shots, techniques
+from .markdown import escaped
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -35,8 +36,7 @@ _PAGES: dict[str, Callable[[], str]] = {
     "reference/keys.md": keys.page,
     "reference/python.md": python.page,
     "reference/gallery.md": gallery.page,
-    "reference/glossary.md": partial(glossary.page, "en"),
-    "reference/glossaire.md": partial(glossary.page, "fr"),
+    **{path: partial(write, escaped) for room in rooms.modules("site") for path, write in room.PAGES.items()},
 }
 _LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!\w+:|#)([^)#\s]+)(#[^)\s]*)?\)")
 
@@ -76,7 +76,8 @@ def moved(text: str, source: str, page: str) -> str:
     What is no page of the site is named in place of a link.
     """
     homes = {home: key for key, home in ELSEWHERE.items()}
-    homes[GLOSSARY.relative_to(ROOT).as_posix()] = "reference/glossary.md"
+    for room in rooms.modules("site"):
+        homes |= {file.relative_to(ROOT).as_posix(): key for file, key in room.HOMES.items()}
     up = "../" * page.count("/")
 
     def lead(match: re.Match[str]) -> str:

@@ -72,6 +72,13 @@ HELP = help_text(
 )
 
 
+def _complete_language(incomplete: str) -> list[str]:
+    """Return the codes of a page's languages that complete a word."""
+    from playground.web.page import LANGUAGES
+
+    return [code for code in LANGUAGES if code.startswith(incomplete)]
+
+
 def export(
     ctx: typer.Context,
     sketch: options.Sketch = "",
@@ -139,7 +146,7 @@ def export(
             "--lang CODE",
             "Language of a web page's interface: en or fr; English without it. Names and explanations of"
             " parameters, and notes, stay in English.",
-            options.complete_language,
+            _complete_language,
         ),
     ] = "",
     settings: options.Set = None,

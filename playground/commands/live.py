@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable, Mapping
 from contextlib import suppress
+from inspect import Signature, signature
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperCommand
 
+from playground import rooms
 from playground.commands import options
 from playground.commands.arguments import (
     Renderer,
@@ -22,7 +25,7 @@ from playground.commands.arguments import (
     with_whole_paths,
     within,
 )
-from playground.commands.options import complete_lesson, flag, value
+from playground.commands.options import flag, value
 from playground.commands.standard_input import kept
 from playground.errors import ContextError, ParameterError, PlaygroundError
 from playground.terminal import complain, say
@@ -40,7 +43,7 @@ HELP = help_text(
     "playground live jacksboro --size 1600x900",
     "playground live my-land --set height.seed=3",
     "playground live my-land --fresh",
-    "playground live --lesson diamond_square --lang fr",
+    *(example for module in rooms.modules("options") for example in module.LIVE_EXAMPLES),
     "playground live my-land --no-cache",
     "playground live shader.frag",
     "playground live dem.tif",
@@ -74,8 +77,7 @@ def live(
     dialect: options.Dialect = "",
     software: options.Software = False,
     fresh: Annotated[bool, flag("--fresh", "Forget your edits of the last time.")] = False,
-    lesson: Annotated[str, value("--lesson NAME", "Open a lesson next to the sketch.", complete_lesson)] = "",
-    lang: options.Language = "",
+    request: Mapping[str, object] | None = None,
     no_cache: Annotated[
         bool,
         flag("--no-cache", "Compute all terrain again, and cache none on disk (see playground cache)."),
@@ -114,11 +116,32 @@ def live(
         plain=plain,
         dialect=check_name(dialect),
         fresh=fresh,
-        lesson=lesson,
-        language=lang,
+        request=request,
         no_cache=no_cache,
         remotes=remotes,
     )
+
+
+def command() -> Callable[..., None]:
+    """Return ``live`` as it is called: with the options of the rooms in the place of ``request``."""
+    readers = [module.live_options for module in rooms.modules("options")]
+    added = [signature(read, eval_str=True).parameters for read in readers]
+    own = signature(live, eval_str=True).parameters
+
+    def called(**arguments: Any) -> None:
+        request: dict[str, object] = {}
+        for read, names in zip(readers, added, strict=True):
+            request |= read(**{name: arguments.pop(name) for name in names})
+        live(**arguments, request=request)
+
+    parameters = [
+        parameter
+        for name in own
+        for parameter in ((own[name],) if name != "request" else (p for each in added for p in each.values()))
+    ]
+    called.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    called.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
+    return called
 
 
 def _clipboard() -> str:

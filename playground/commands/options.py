@@ -55,20 +55,6 @@ def complete_dialect(incomplete: str) -> list[str]:
     return [name for name in names() if name.startswith(incomplete)]
 
 
-def complete_lesson(incomplete: str) -> list[str]:
-    """Return the lessons that complete a word."""
-    from playground.course.library import lesson_files
-
-    return [name for name in lesson_files() if name.startswith(incomplete)]
-
-
-def complete_language(incomplete: str) -> list[str]:
-    """Return the codes of languages that complete a word."""
-    from playground.course.library import LANGUAGES
-
-    return [code for code in LANGUAGES if code.startswith(incomplete)]
-
-
 def complete_setting(ctx: typer.Context, incomplete: str) -> list[str]:
     """Return the parameters, as ``path=``, that complete a word."""
     from playground.sketch.assign import TERRAIN_KEYS, shown_parameters
@@ -119,6 +105,3 @@ Dialect = Annotated[
 Software = Annotated[bool, flag("--software", "Render in software, on the CPU (Mesa llvmpipe).")]
 Device = Annotated[str, value("--device N", "Render on this EGL device, from 0.")]
 Json = Annotated[bool, flag("--json", "Print JSON, for programs.")]
-Language = Annotated[
-    str, value("--lang CODE", "Language: en or fr; that of the system by default.", complete_language)
-]

@@ -7,7 +7,7 @@
     document            a file split into front matter and pieces
     read, fences        from a file to a lesson; ``task_fences`` of what a student does
     translate, status   from a translation to a lesson; what of it is out of date
-    library             which lessons and languages there are
+    library, contents   which lessons and languages there are, and their order
     figure_renders      the pictures of a lesson
     figures             the thesis's figures
     measuring           the numbers of a lesson, by the functions of ``measures``
@@ -16,8 +16,11 @@
     tasks/              exercises that check themselves, and pictures to match
     exercises/          their starters and model answers
     book/               pages to read offline
-    present/            beats to show to a class
     notebook/           Jupyter notebooks
+    handout/, grading/  exercises given out as a zip; what a class has handed in, graded
+    window/             lessons next to the live picture
+    talk/               a lesson in front of a class
+    commands, options, addition, site   what the room adds to the rest (``playground.rooms``)
 
 Reading needs no OpenGL; what draws receives an engine.
 """

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, cast
 
 from imgui_bundle import imgui
 
+from playground import rooms
 from playground.allowed_files import TEXTS
-from playground.course.library import SOURCE, lesson_file
 from playground.engine.context import prefer_software
 from playground.engine.engine import Engine
 from playground.engine.programs import warnings_of
@@ -30,19 +30,18 @@ from playground.live.draw import Area, tooltip_waits
 from playground.live.drops import Drops, opened_from
 from playground.live.errors_list import ErrorsList
 from playground.live.guard import Guard
+from playground.live.host import Host
 from playground.live.inspect.ab import below_bar, drag_line, paint_both
 from playground.live.inspect.overlays import draw_inspection
 from playground.live.inspect.timeline import height_of_timeline
 from playground.live.keymap import draw_keymap
 from playground.live.keys import act_on_keys
-from playground.live.lesson.host import Lessons
 from playground.live.mouse import PictureMouse
 from playground.live.non_finite import draw_not_finite
 from playground.live.overlay import checking_text, draw_behind, draw_checking, draw_notices, draw_waiting
 from playground.live.panel import Panel
 from playground.live.part_labels import draw_part_labels
 from playground.live.picture_keys import PictureKeys
-from playground.live.present.stage import Presenting, Stage
 from playground.live.status import Status
 from playground.live.window import Window, wake
 from playground.live.window_place import WindowPlacement
@@ -52,6 +51,7 @@ from playground.shader.wrap import COMPUTE, FRAGMENT, wrap
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, ComputeVariant, CpuSource, Kernel, PlainCompute, Value
+from playground.workbench.addition import Addition, FullScreen
 from playground.workbench.autosave import QUIET, Autosave, memory_of
 from playground.workbench.bench import Workbench
 from playground.workbench.disk_caching import SessionCaching
@@ -87,10 +87,7 @@ def run(
     dialect: str = "",
     values: Mapping[str, object] | None = None,
     fresh: bool = False,
-    lesson: str = "",
-    language: str = "",
-    show_lessons: bool = False,
-    present: Presenting | None = None,
+    request: Mapping[str, object] | None = None,
     cache_limit: int = 0,
     time_limit: float | None = None,
     sandbox: Sandbox | None = None,
@@ -100,18 +97,17 @@ def run(
     """Show a sketch in a window until it is closed; return the exit status.
 
     ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. The user's edits
-    of the last time are restored, unless ``fresh``. ``lesson`` opens one by name, in a
-    ``language`` by code; ``show_lessons`` opens the one read last, or the first, next to the sketch,
-    unless the reader has closed the lessons; ``present`` begins a presentation of it. Expensive terrain
-    is cached on disk, in at most ``cache_limit`` bytes, and taken from there. With a ``time_limit`` [s]
-    the window closes itself. ``sandbox``: one that has been started already, and is its owner's.
+    of the last time are restored, unless ``fresh``. ``request`` is what the additions of
+    rooms are asked for, by name (``Addition.begin``). Expensive terrain is cached on disk, in at most
+    ``cache_limit`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
+    ``sandbox``: one that has been started already, and is its owner's.
     ``report`` receives each error, for the terminal. ``remotes`` are closed by who opened them.
     Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
-    sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
+    sketch, or nothing that the request names, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
     """
-    if lesson:
-        lesson_file(lesson, language or SOURCE)  # says so before a window opens, where there is none
+    for module in rooms.modules("addition"):
+        module.check_request(request or {})
     path, unpacked = opened_from(Path(sketch)) if sketch else (find(DEFAULT_SKETCH), "")
     checked = _checked(path, values or {}, dialect)
     if software:
@@ -146,11 +142,11 @@ def run(
         live.remotes.attach(live.bench, wake)
         if remembered.at is not None:
             live.place.move_to(remembered.at)
-        live.lessons.begin(lesson, language, show_lessons=show_lessons)
-        if present is not None:
-            live.stage.begin(present)
+        for addition in live.additions:
+            addition.begin(request or {})
         stack.callback(live.release)
-        stack.callback(live.stage.close)
+        for addition in live.additions:
+            stack.callback(addition.close)
         stack.callback(live.bench.captures.close)
         stack.callback(live.finish_painting, report)
         stack.callback(autosave.close)
@@ -224,8 +220,9 @@ class Live:
         self.keys = PictureKeys(self.bench)
         session.engine.runner.inputs.is_live = True
         self.finite = FiniteWatch()
-        self.lessons = Lessons(self.bench, autosave, self._remember)
-        self.stage = Stage(self.bench, self.lessons.reader, wake)
+        host = Host(self.bench, autosave, self._remember, wake, lambda: window.theme)
+        self.additions: list[Addition] = [m.open_addition(host) for m in rooms.modules("addition")]
+        self.bench.additions = self.additions
         self.remotes = Remotes()
 
     def run(self, time_limit: float | None = None) -> None:
@@ -236,8 +233,7 @@ class Live:
             now = self.bench.notices.now()
             others = (
                 self.bench.inspection.patience(now),
-                self.lessons.reader.patience(now),
-                self.stage.patience,
+                *(addition.patience for addition in self.additions),
             )
             patience = min(self._patience(), *others)
             if end is not None:
@@ -248,7 +244,8 @@ class Live:
             self._sleep(patience)
             self.guard.run("reading what was saved", self._take_saved, None)
             self.guard.run("what a remote asks for", self.remotes.take, None)
-            self.guard.run("what the notes ask for", self.stage.take, None)
+            for addition in self.additions:
+                self.guard.run(f"what {addition.name} is asked for", addition.take, None)
             if self.window.pixels != (0, 0):
                 self._draw_frame()
             if self.window.lost:
@@ -277,8 +274,8 @@ class Live:
     def release(self) -> None:
         """Release all that was made in the window's context."""
         self.bench.inspection.release()
-        self.lessons.release()
-        self.stage.release()
+        for addition in self.additions:
+            addition.release()
         self.painter.release()
         self.session.engine.runner.inputs.close()
         self.session.release()
@@ -342,10 +339,13 @@ class Live:
         window.zoom = bench.interface.size.size
         window.begin()
         bench.inspection.begin()
-        if self.stage.on:
-            self._draw_presentation()
+        full = next((a.full_screen for a in self.additions if a.full_screen is not None), None)
+        if full is not None:
+            self._draw_full(full)
             return
-        left = guard.draw("the lesson's panel", lambda: self.lessons.draw(look), 0.0)
+        left = 0.0
+        for addition in self.additions:
+            left += guard.draw(f"{addition.name}'s panel", addition.draw_panel, 0.0)
         if bench.interface.panel_shown:
             left += guard.draw("the panel", lambda: self.panel.draw(bench, look, left), 0.0)
         room = imgui.get_main_viewport().size
@@ -367,24 +367,24 @@ class Live:
         window.end()
         guard.run("what follows a picture", self._follow_up, None)
 
-    def _draw_presentation(self) -> None:
-        """Draw the rest of a frame while a lesson is presented: its picture, and what is written of it."""
-        window, bench, guard, stage = self.window, self.bench, self.guard, self.stage
-        stage_area, density = stage.area(window.pixels), window.density
-        area: Area = (0.0, 0.0, stage_area[2] / density, stage_area[3] / density)
-        if guard.draw("keys and mouse of the presentation", lambda: stage.act(area), False):
+    def _draw_full(self, full: FullScreen) -> None:
+        """Draw the rest of a frame while a room fills the window: the picture, and what is around it."""
+        window, bench, guard = self.window, self.bench, self.guard
+        pixels_area, density = full.area(window.pixels), window.density
+        area: Area = (0.0, 0.0, pixels_area[2] / density, pixels_area[3] / density)
+        if guard.draw(f"keys and mouse of {full.name}", lambda: full.act(area), False):
             guard.draw("the mouse over the picture", lambda: self._act(area), None)
-        if stage.turned():  # its words come at once, its picture as soon as it is drawn
+        if full.turned():  # its text comes at once, its picture as soon as it is drawn
             picture, self._settling = self.session.picture.texture, _SETTLES
         else:
-            picture = guard.run("the picture", lambda: self._picture((stage_area[2], stage_area[3])), None)
+            picture = guard.run("the picture", lambda: self._picture((pixels_area[2], pixels_area[3])), None)
         guard.run("taking in the picture", self._take_in, None)
         if picture is not None:
             compared = bench.inspection.compare
             guard.run("the picture that it is compared with", lambda: compared.follow(picture), None)
         bench.inspection.update()
-        guard.draw("the presentation", lambda: stage.draw(window.pixels, density, area), None)
-        guard.run("showing the picture", lambda: self._show(picture, stage_area), None)
+        guard.draw(full.name, lambda: full.draw(window.pixels, density, area), None)
+        guard.run("showing the picture", lambda: self._show(picture, pixels_area), None)
         window.end()
         guard.run("what follows a picture", self._follow_up, None)
 
@@ -454,13 +454,14 @@ class Live:
             self.painter.paint(picture, window.screen, area)
 
     def _follow_up(self) -> None:
-        """Do what may wait until the frame is shown: driver warnings, the status, the lessons."""
+        """Do what may wait until the frame is shown: driver warnings, the status, the rooms."""
         is_idle = self._settling == 0 and not self.session.drafts.testing
         if is_idle:
             self.warnings.look()
         self.status.write(self.bench, self.finite.non_finite)
         self.remotes.tell()
-        self.lessons.update(idle=is_idle and not imgui.is_mouse_down(0))
+        for addition in self.additions:
+            addition.update(idle=is_idle and not imgui.is_mouse_down(0))
 
     def _remember(self) -> None:
         geometry = self.place.geometry()
@@ -481,6 +482,6 @@ class Live:
         """Show a notice when a save has become a picture."""
         latest = self.session.last_reload
         if latest is not self._reloads:
-            if self._reloads is not None and self.lessons.reader.figure.before_lesson is None:
+            if self._reloads is not None and not any(addition.shows_own for addition in self.additions):
                 self.bench.notices.say(f"reloaded in {latest.seconds * 1e3:.0f} ms" if latest else "")
             self._reloads = latest

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
 
 from imgui_bundle import imgui
 
 from playground.live.code_window import ask_to_close, stay
+from playground.workbench.addition import Layer
 from playground.workbench.bench import Workbench
-
-Layer = tuple[str, Callable[[], None]]
-"""The name of something open, and what closes it."""
 
 
 def close_one(bench: Workbench) -> None:
@@ -47,8 +45,8 @@ def _open(bench: Workbench) -> Iterator[Layer]:
         yield "A/B", inspection.compare.toggle
     if bench.window.is_full():
         yield "full screen", bench.window.toggle_full
-    if bench.lessons.is_shown():
-        yield "lesson", bench.lessons.toggle
+    for addition in bench.additions:
+        yield from addition.layers()
 
 
 def _close_popup(bench: Workbench) -> None:

@@ -3,33 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 
 from imgui_bundle import imgui
 
+from playground import rooms
 from playground.live.escape_layers import close_one
+from playground.live.key import Key
 from playground.live.text_field import ctrl_held, keeps_keys, left_a_field, letters
 from playground.workbench.bench import Workbench
 from playground.workbench.brush import TOOLS, Tool
 from playground.workbench.interface import resize
-
-
-@dataclass(frozen=True)
-class Key:
-    """A key and its meaning."""
-
-    key: imgui.Key
-    name: str
-    meaning: str
-    act: Callable[[Workbench], None]
-    ctrl: bool = False
-    shift: bool = False
-    sign: str = ""  # "+" or "-", with Ctrl: on the keypad, and wherever else the keyboard has it
-    brief: str = ""  # in the panel's last line; empty: not there
-    letter: str = ""  # what it types, for one that is elsewhere on every keyboard
-    brush: bool = False  # only while the brush is taken
-
 
 _K = imgui.Key
 _INSPECT = "every pass's number at a pixel; Shift: of those inside, too"
@@ -69,10 +53,7 @@ KEYS: tuple[Key, ...] = (
     Key(_K.s, "S", "save a PNG", lambda b: b.captures.save_picture(), brief="save"),
     Key(_K.c, "C", "capture: large pictures, films, sheets", lambda b: b.captures.toggle()),
     Key(_K.tab, "Tab", "hide the panel", lambda b: b.interface.toggle_panel(), brief="hide"),
-    Key(_K.f2, "F2", "show the lessons, or no longer", lambda b: b.lessons.toggle()),
-    Key(_K.page_down, "PgDn", "a page of the lesson on", lambda b: b.lessons.turn_page(1)),
-    Key(_K.page_up, "PgUp", "a page of the lesson back", lambda b: b.lessons.turn_page(-1)),
-    Key(_K.f5, "F5", "present the lesson to a class, full screen", lambda b: b.lessons.present()),
+    *(key for module in rooms.modules("addition") for key in module.KEYS),
     Key(_K.none, "/", "search the parameters", lambda b: b.interface.search(), letter="/"),
     Key(_K.f11, "F11", "fill the screen, or no longer", lambda b: b.window.toggle_full()),
     Key(_K.none, "?", _HELP, lambda b: b.interface.toggle_keymap(), letter="?", brief="keys"),

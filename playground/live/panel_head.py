@@ -40,13 +40,16 @@ def draw_head(memory: Memory, bench: Workbench, look: Theme) -> None:
     with look.font(look.text, theme.SMALL):
         style = imgui.get_style()
         room = imgui.get_content_region_avail().x
-        wide = imgui.calc_text_size("Lessons").x + 2 * style.frame_padding.x
+        buttons = [addition for addition in bench.additions if addition.button]
+        widths = [imgui.calc_text_size(addition.button).x + 2 * style.frame_padding.x for addition in buttons]
+        wide = sum(widths) + style.item_spacing.x * max(len(buttons) - 1, 0)
         start = imgui.get_cursor_pos_x()
         imgui.text_disabled(fitting_path(shown(path), room - wide - style.item_spacing.x))
         imgui.set_item_tooltip(str(path))
-        imgui.same_line(start + room - wide)
-        if button("Lessons", "What there is to know of terrain, step by step (F2)", small=True):
-            bench.lessons.toggle()
+        for at, addition in enumerate(buttons):
+            imgui.same_line(*() if at else (start + room - wide,))
+            if button(addition.button, addition.button_note, small=True):
+                addition.toggle()
     if sketch is None:
         return
     _buttons(memory, bench, look)

@@ -70,8 +70,9 @@ class Status:
             "edited": dict(session.shown.edits.values) if session.shown else {},
             "trying": checking[0] if checking[1] >= PATIENCE else "",
             "layers": open_layers(bench),
-            "beat": bench.lessons.beat(),
         }
+        for addition in bench.additions:
+            now |= addition.status()
         if now != self._last:
             self._last = now
             add_line(self.path, now)

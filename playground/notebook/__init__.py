@@ -8,5 +8,5 @@
 
 Widgets need the extra ``notebook`` (anywidget). Where a browser has WebGL2 and a page can hold the sketch,
 the runtime of web pages draws it there (``playground.web``); else the kernel does, and sends pictures.
-Lessons as notebooks (``playground.course.notebook``) are made of the same parts.
+Lessons as notebooks are made of the same parts.
 """

@@ -1,4 +1,4 @@
-"""A live session without a window: drafts, user edits, history, painting, inspection, lessons.
+"""A live session without a window: drafts, user edits, history, painting, inspection.
 
     session.py          the sketch as it is shown: it has the four below
       drafts.py         what the files say, the user's edits, what is wrong
@@ -24,8 +24,8 @@
     interface.py        which panels are shown, and how large
     memory.py, autosave.py   the file that remembers one sketch, written as one goes
     inspect/            numbers, costs, comparisons, the pass graph, time
-    lesson/             a reader and the lessons
     bench.py            all of it put together
+    addition.py         what rooms that can be removed add to it and its window
 
 Nothing here imports a window: a test, a notebook or another interface can drive all of it.
 """

@@ -6,12 +6,13 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from playground.workbench.addition import Addition
 from playground.workbench.captures import Captures
 from playground.workbench.commands import Commands
 from playground.workbench.control.controllers import Controllers
 from playground.workbench.editors import Opener
 from playground.workbench.inspect.toggles import Inspection
-from playground.workbench.interface import Interface, InterfaceSize, LessonControls, WindowControls
+from playground.workbench.interface import Interface, InterfaceSize, WindowControls
 from playground.workbench.keyframe_edits import KeyframeEdits
 from playground.workbench.notices import Notices
 from playground.workbench.open_files import OpenFiles
@@ -51,7 +52,7 @@ class Workbench:
         self.captures = Captures(session=session, notices=self.notices, folder=folder, settle=settle)
         self.files = OpenFiles(self.notices, opener or Opener())
         self.interface = Interface(size=size or InterfaceSize())
-        self.lessons = LessonControls()
+        self.additions: list[Addition] = []  # of the rooms that can be removed
         self.controllers = Controllers(session, self.notices)
 
     def take_notes(self) -> None:

@@ -118,14 +118,3 @@ class WindowControls:
     toggle_full: Callable[[], None] = lambda: None  # fills the screen, or no longer
     is_full: Callable[[], bool] = lambda: False
     sign_held: Callable[[], str] = lambda: ""  # "+" or "-" where this keyboard's key for it is down
-
-
-@dataclass
-class LessonControls:
-    """What keys ask of the lessons, where there are any."""
-
-    toggle: Callable[[], None] = lambda: None  # shows them, or no longer
-    is_shown: Callable[[], bool] = lambda: False
-    turn_page: Callable[[int], None] = lambda pages: None
-    present: Callable[[], None] = lambda: None  # in front of a class
-    beat: Callable[[], int] = lambda: 0  # the number of the beat that is presented; 0 for none

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -14,7 +14,9 @@ from playground.course.scenes import Sketches
 from playground.course.translate import translated, write_hashes
 from playground.engine.engine import Engine
 
+from ..live.conftest import screen as screen
 from ..web.conftest import node as node
+from .lesson_desk import OWN, Harness, shelved
 
 FRONT = """+++
 title   = "A small lesson"
@@ -246,3 +248,15 @@ def french(write_lesson: Callable[..., Path], tmp_path: Path) -> Lesson:
     path.write_text(FRENCH, encoding="utf-8")
     write_hashes(english, read_document(path))
     return translated(read_file(english.path, SKETCHES), english, read_document(path), "fr")
+
+
+@pytest.fixture
+def harness(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) -> Iterator[Harness]:
+    """Give a panel of lessons on the reader's own sketch."""
+    shelved(monkeypatch, tmp_path)
+    own = tmp_path / "own"
+    own.mkdir()
+    (own / "sketch.toml").write_text(OWN, encoding="utf-8")
+    made = Harness(any_engine, own)
+    yield made
+    made.close()

@@ -22,14 +22,14 @@ from playground.course.model import (
     Slider,
     Steps,
 )
-from playground.course.present.beat import BOTH, Beat, Still, scene_of
-from playground.course.present.beats import beats_of, first_of_page
-from playground.course.present.block_beats import BOARD_WORDS, CODE_LINES
-from playground.course.present.labels import LABELS
-from playground.course.present.sentences import MAX_WORDS, sentences, shown_of, words
-from playground.course.present.spoken import LETTERS, MIN_SECONDS, cues_of, plain_text, seconds_of, srt
 from playground.course.read import read_lesson, summaries
 from playground.course.scenes import Sketches
+from playground.course.talk.beat import BOTH, Beat, Still, scene_of
+from playground.course.talk.beats import beats_of, first_of_page
+from playground.course.talk.block_beats import BOARD_WORDS, CODE_LINES
+from playground.course.talk.labels import LABELS
+from playground.course.talk.sentences import MAX_WORDS, sentences, shown_of, words
+from playground.course.talk.spoken import LETTERS, MIN_SECONDS, cues_of, plain_text, seconds_of, srt
 from playground.engine.engine import Engine
 
 pytestmark = pytest.mark.slow

@@ -8,9 +8,9 @@ import sys
 import pytest
 
 from playground.cli import main
-from playground.commands import lesson as lesson_command
+from playground.course import commands as lesson_command
 from playground.course import library
-from playground.workbench.lesson.progress import Progress, progress_file, write_progress
+from playground.course.window.progress import Progress, progress_file, write_progress
 from tests.course.conftest import FRENCH
 
 
@@ -134,7 +134,7 @@ def test_open_without_a_name_takes_the_lesson_read_last_or_the_first(texts, tmp_
     monkeypatch.setattr("sys.platform", "linux")
     opened = []
     monkeypatch.setattr(lesson_command, "check_display", lambda renderer: None)
-    monkeypatch.setattr(lesson_command, "open_window", lambda *_, **named: opened.append(named["lesson"]))
+    monkeypatch.setattr(lesson_command, "open_window", lambda *_, request: opened.append(request["lesson"]))
     course = tmp_path / "course.toml"
     (texts / "en/first.md").write_bytes((texts / "en/small.md").read_bytes())
     course.write_text(course.read_text().replace('["small"]', '["first", "small"]'), encoding="utf-8")

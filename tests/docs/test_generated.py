@@ -11,13 +11,11 @@ import hooks
 import pytest
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.exceptions import PluginError
-from site_pages import commands, gallery, glossary, keys, pages, python, shots, techniques
+from site_pages import commands, gallery, keys, pages, python, shots, techniques
 
 import playground
 from playground.cli import command_line
 from playground.commands.entries import techniques as listed
-from playground.course.glossary import alphabetical, terms
-from playground.course.library import LANGUAGES
 from playground.live.keys import KEYS
 from playground.paths import GLSL
 
@@ -115,32 +113,6 @@ def test_every_key_is_in_the_table():
     text = keys.page()
     for key in KEYS:
         assert key.meaning.split(";")[0] in text, key.name
-
-
-def test_the_glossary_has_each_term_in_both_languages():
-    terms = alphabetical("en")
-    assert len(terms) > 70
-    for language in LANGUAGES:
-        names = [term.names[language][0] for term in terms]
-        assert len(set(names)) == len(names)
-        text = glossary.page(language)
-        for term in terms:
-            assert f"{{ #{term.key} }}" in text
-            assert re.fullmatch(r"[^.].*\.", term.meaning[language]) and len(term.meaning[language]) < 200
-    avoided = {word for term in terms for word in term.avoid}
-    assert not avoided & {term.names["en"][0] for term in terms}
-
-
-def test_sections_of_the_thesis_have_a_page():
-    form = re.compile(r"(?:(?:\d(?:\.\d)+|introduction), p\. \d+)?")
-    assert not [term.key for term in terms().values() if not form.fullmatch(term.thesis)]
-
-
-def test_a_term_without_its_french_is_refused(tmp_path: Path):
-    file = tmp_path / "glossary.toml"
-    file.write_text('[texel]\nen = ["texel"]\nmeans = "One element."\n')
-    with pytest.raises(ValueError, match=r"texel.*missing.*fr"):
-        terms(file)
 
 
 def test_links_of_a_text_from_elsewhere_lead_into_the_site():

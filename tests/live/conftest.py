@@ -10,7 +10,6 @@ import pytest
 from playground.engine.engine import Engine
 
 from .desk import Bare
-from .lesson_desk import OWN, Harness, shelved
 from .screen import Screen
 
 
@@ -26,18 +25,6 @@ def folder(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
 def bare(folder: Path, any_engine: Engine) -> Iterator[Bare]:
     """Give a panel on the sketch in the folder."""
     made = Bare(any_engine, folder)
-    yield made
-    made.close()
-
-
-@pytest.fixture
-def harness(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) -> Iterator[Harness]:
-    """Give a panel of lessons on the reader's own sketch."""
-    shelved(monkeypatch, tmp_path)
-    own = tmp_path / "own"
-    own.mkdir()
-    (own / "sketch.toml").write_text(OWN, encoding="utf-8")
-    made = Harness(any_engine, own)
     yield made
     made.close()
 

@@ -11,6 +11,7 @@ from imgui_bundle import imgui
 from playground.engine.engine import Engine
 from playground.live.code_window import draw_code
 from playground.live.escape_layers import open_layers
+from playground.workbench.addition import Addition, Layer
 
 from ..sketch_texts import map_of_height
 from .desk import Bare
@@ -45,6 +46,19 @@ def bare(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) ->
     made.close()
 
 
+class Guest(Addition):
+    """What a room adds: one layer, which is open."""
+
+    def __init__(self) -> None:
+        self.is_open = True
+
+    def toggle(self) -> None:
+        self.is_open = not self.is_open
+
+    def layers(self) -> list[Layer]:
+        return [("guest", self.toggle)] if self.is_open else []
+
+
 def escape(bare: Bare) -> None:
     bare.key(imgui.Key.escape)
     bare.run_frames(2)
@@ -53,18 +67,17 @@ def escape(bare: Bare) -> None:
 
 def test_one_layer_at_a_time_and_then_none(bare: Bare, tmp_path: Path) -> None:
     bench = bare.bench
-    full, lesson = [True], [True]
+    full = [True]
     bench.window.is_full = lambda: full[0]
     bench.window.toggle_full = lambda: full.__setitem__(0, not full[0])
-    bench.lessons.is_shown = lambda: lesson[0]
-    bench.lessons.toggle = lambda: lesson.__setitem__(0, not lesson[0])
+    bench.additions = [Guest()]
     bench.inspection.compare.keep()
     bench.inspection.inspector.toggle()
     bench.inspection.graph.toggle()
     bench.files.open(tmp_path / "terrain.glsl", here=True)
     bench.captures.shown = bench.interface.keymap_shown = True
     bare.run_frames(3)
-    names = ["keys", "capture", "editor terrain.glsl", "graph", "inspector", "A/B", "full screen", "lesson"]
+    names = ["keys", "capture", "editor terrain.glsl", "graph", "inspector", "A/B", "full screen", "guest"]
     for n in range(len(names)):
         assert open_layers(bench) == names[n:]
         escape(bare)

@@ -1,9 +1,0 @@
-"""A lesson in front of a class: its blocks as beats, each with little to read and one picture.
-
-beat        what is on the screen between two presses of Next
-block_beats from a block to its beats
-beats       from a lesson to its beats
-sentences   what of a text is shown large, and what is only in the notes
-spoken      how long a beat is read, and its notes as subtitles
-labels      the words around beats, in each language
-"""

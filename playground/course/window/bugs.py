@@ -1,0 +1,211 @@
+"""Shaders that a reader breaks, fixes or edits: each as a copy that is drawn in place of its file.
+
+Nothing is written. Turning a page closes its copies; what was typed in them is
+there again when they are opened the next time.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from playground.course.excerpt import Excerpt, excerpt
+from playground.course.figure_renders import Picture, draw, with_bug
+from playground.course.model import Break, Code, Scene
+from playground.course.picture_difference import SHARE, share_differing
+from playground.course.window.figure_view import FigureView
+from playground.course.window.shader_copies import Copies, Copy, line_of
+from playground.errors import PlaygroundError
+from playground.paths import GLSL, shown
+from playground.shader.source import read_text
+from playground.sketch.model import kernels_of
+from playground.sketch.replace_technique import with_texts
+from playground.workbench.inspect.compare import as_before
+from playground.workbench.notices import Notices
+from playground.workbench.session import Session
+
+_KERNEL = re.compile(r"^\w+ kernel\(.*$", re.MULTILINE)
+
+WHOLE, BROKEN, FIXED, SHOWN = "", "broken", "fixed", "shown"
+"""How far a bug has come: SHOWN where the lesson has fixed it."""
+
+
+@dataclass(kw_only=True)
+class Bugs:
+    """The bugs and edited copies of one reader."""
+
+    session: Session
+    notices: Notices
+    copies: Copies
+    figure: FigureView
+    label: Callable[[str], str]  # of the interface, by key
+    state: dict[str, str] = field(default_factory=dict)  # of each bug, by block
+    typed: dict[str, str] = field(default_factory=dict)  # what was typed in a copy, by block
+
+    def __post_init__(self) -> None:
+        self._on: Break | None = None  # the bug whose copy is drawn
+        self._to_check = False
+
+    @property
+    def texts(self) -> Mapping[str, str]:
+        """What replaces files, by absolute path."""
+        return {str(path): copy.base for path, copy in self.copies.open.items()}
+
+    @property
+    def waits(self) -> bool:
+        """Whether a fix is still to be checked."""
+        return self._to_check and not self.figure.busy
+
+    # ── bugs ─────────────────────────────────────────────────────────────────
+
+    def break_it(self, block: Break) -> None:
+        """Draw a bug, and open the text that it is in."""
+        if block.scene is None:
+            return
+        self.leave()
+        path = file_of(block)
+        try:
+            text = self.typed.get(block.name) or with_bug(block)
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+            return
+        begins = _KERNEL.search(text)
+        line = line_of(text, begins[0]) if begins else 1  # the bug itself is to be found
+        self._open(block, path, text, line)
+        self._on, self.state[block.name] = block, BROKEN
+        self.figure.show(block.scene, (block.name, 1), self.texts)
+        self._to_check = text != with_bug(block)
+
+    def focus(self, block: Break) -> None:
+        """Bring the copy of a bug to the front, also where its window was closed."""
+        self.copies.focus(file_of(block))
+
+    def fix_it(self, block: Break) -> None:
+        """Draw the file's own text again."""
+        if block.scene is None:
+            return
+        self.copies.close(file_of(block))
+        self.typed.pop(block.name, None)
+        self._on, self._to_check = None, False
+        self.state[block.name] = SHOWN
+        self.figure.show(block.scene, (block.name, 0), self.texts)
+
+    def check(self) -> bool:
+        """Check whether the reader's own fix shows the whole picture; return whether there was one."""
+        session, block = self.session, self._on
+        if not self._to_check or block is None or block.scene is None or self.figure.busy:
+            return False
+        self._to_check = False
+        if session.error is not None or session.plan is None or not session.is_idle:
+            return True
+        path = file_of(block)
+        text = self.copies.text_of(path)
+        if text is None:
+            return True
+        try:
+            with as_before(session.engine, session.plan):
+                same = self._difference(block.scene, {str(path): text}) <= SHARE
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+            return True
+        if same and self.state[block.name] != FIXED:
+            self.notices.say(self.label("fixed"))
+        self.state[block.name] = FIXED if same else BROKEN
+        return True
+
+    def _difference(self, scene: Scene, texts: Mapping[str, str]) -> float:
+        small = Picture("", scene).smaller().scene
+        engine = self.session.engine
+        whole = draw(engine, small).array
+        mine = draw(engine, replace(small, sketch=with_texts(small.sketch, texts))).array
+        return share_differing(mine, whole)
+
+    # ── code ─────────────────────────────────────────────────────────────────
+
+    def excerpt(self, block: Code) -> Excerpt:
+        """Return the code as it is now: in the copy, or in the file; raise ``SketchError`` if it is gone."""
+        path = file_of(block)
+        text = self.copies.text_of(path)
+        return excerpt(block.file, block.anchor, read_text(path) if text is None else text)
+
+    def edit(self, block: Code) -> None:
+        """Open a copy of the code's file at its place."""
+        path = file_of(block)
+        try:
+            line = self.excerpt(block).line
+            if not self.copies.focus(path, line):
+                text = self.copies.text_of(path) or self.typed.get(block.name) or read_text(path)
+                self._open(block, path, text, line)
+                self._draw()
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+            return
+        sketch = self.session.sketch
+        if sketch is not None and not _uses(sketch.graph, path):
+            self.notices.say(self.label("not_in_view").format(shown(path)))
+
+    def is_edited(self, block: Code) -> bool:
+        """Return whether a copy with another text replaces the code's file."""
+        text = self.copies.text_of(file_of(block))
+        return text is not None and text != read_text(file_of(block))
+
+    def put_back(self, block: Code) -> None:
+        """Draw the file's own text again, and forget what was typed."""
+        self.copies.close(file_of(block))
+        self.typed.pop(block.name, None)
+        if self._on is not None and file_of(self._on) == file_of(block):
+            self.typed.pop(self._on.name, None)
+            self.leave()
+        self._draw()
+
+    # ── copies ───────────────────────────────────────────────────────────────
+
+    def leave(self) -> None:
+        """Stop drawing a bug: another picture comes."""
+        if self._on is not None:
+            self.copies.close(file_of(self._on))
+            if self.state[self._on.name] == BROKEN:
+                self.state[self._on.name] = WHOLE
+            self._on, self._to_check = None, False
+
+    def close_all(self, *, drawn: bool = True) -> None:
+        """Close all copies; ``drawn``: and draw the files themselves."""
+        self.leave()
+        if self.copies.open:
+            self.copies.close()
+        if drawn and self.session.drafts.texts:
+            self._draw()
+
+    def forget(self) -> None:
+        """Forget what was typed and fixed: another lesson is opened."""
+        self.close_all()
+        self.state.clear()
+        self.typed.clear()
+
+    def _open(self, block: Break | Code, path: Path, text: str, line: int) -> None:
+        def apply(new: str) -> None:
+            self.typed[block.name] = new
+            self._draw()
+            self._to_check = self._on is not None
+
+        def leave(new: str) -> None:
+            self.typed[block.name] = new
+
+        copy = Copy(
+            path, text, apply=apply, leave=leave, note=self.label("applied"), label=self.label("copy")
+        )
+        self.copies.edit(copy, line)
+
+    def _draw(self) -> None:
+        self.figure.set_texts(self.texts)
+
+
+def file_of(block: Break | Code) -> Path:
+    """Return the file that a block is about."""
+    return (GLSL / block.file).resolve()
+
+
+def _uses(technique: object, path: Path) -> bool:
+    return str(path) in {file for _, kernel in kernels_of(technique) for file in kernel.files}  # type: ignore[arg-type]

@@ -1,0 +1,327 @@
+"""A reader and the lessons: which page is open, which figure is shown, questions and answers.
+
+Draws nothing; ``update`` is called once a frame.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from playground.course.library import LANGUAGES, preferred_language
+from playground.course.model import (
+    Block,
+    Challenge,
+    Compare,
+    Exercise,
+    Figure,
+    Lesson,
+    Scene,
+    Section,
+    Slider,
+    Steps,
+)
+from playground.course.scenes import comparable
+from playground.course.tasks.texts import answer_text, path_of
+from playground.course.window.bugs import Bugs
+from playground.course.window.catalogue import Catalogue
+from playground.course.window.figure_state import steps_of
+from playground.course.window.figure_view import FigureView
+from playground.course.window.labels import labels_in
+from playground.course.window.measurements import Numbers
+from playground.course.window.progress import Progress, progress_file, write_progress
+from playground.course.window.shader_copies import Copies
+from playground.course.window.tasks import Tasks
+from playground.errors import PlaygroundError
+from playground.workbench.bench import Workbench
+from playground.workbench.text_file import unsaved
+
+if TYPE_CHECKING:
+    from playground.course.read import Summary
+
+_STEP, _VALUE = 0.8, 0.5
+"""[s] that a step, and a value of a sweep, is shown while it plays."""
+
+BOTH = -1
+"""The place of a comparison where two pictures are shown at once."""
+
+FigureBlock = Steps | Slider | Compare | Figure | Exercise | Challenge
+
+
+@dataclass
+class Reader:
+    """The lesson, the page and the figure of one reader."""
+
+    bench: Workbench
+    progress: Progress
+    file: Path = field(default_factory=progress_file)  # where the progress is remembered
+    begins: Callable[[], None] = lambda: None  # called before a lesson shows its first figure
+    play: Callable[[Path], None] | None = None  # opens a sketch as the reader's own
+    lesson: Lesson | None = None
+    at: dict[str, int] = field(default_factory=dict)  # of a series: which picture, by block
+    shown: set[tuple[str, str]] = field(default_factory=set)  # what was opened: (block, "answer")
+    chosen: dict[str, int] = field(default_factory=dict)  # the answers given, by question
+    playing: str = ""  # the series that plays
+    to_top: bool = False  # a page was turned: it is to be shown from its top
+
+    def __post_init__(self) -> None:
+        bench = self.bench
+        self.figure = FigureView(bench.undo, bench.inspection.compare, self.begins)
+        self.numbers = Numbers(bench.session)
+        copies = Copies(bench.files)
+        self.bugs = Bugs(
+            session=bench.session,
+            notices=bench.notices,
+            copies=copies,
+            figure=self.figure,
+            label=lambda key: labels_in(self.language)[key],
+        )
+        self.tasks = Tasks(
+            session=bench.session,
+            notices=bench.notices,
+            copies=copies,
+            figure=self.figure,
+            progress=self.progress,
+            label=lambda key: labels_in(self.language)[key],
+            remember=self.remember,
+            clear=self._clear,
+            lesson=lambda: self.progress.lesson,
+        )
+        self._catalogue = Catalogue(bench.notices.say)
+        self._due = math.inf  # when what plays goes on
+        self._hid = False  # the parameters' panel, to make room
+
+    # ── pages ────────────────────────────────────────────────────────────────
+
+    @property
+    def language(self) -> str:
+        """The code of the language that is read."""
+        return self.progress.language if self.progress.language in LANGUAGES else preferred_language()
+
+    @property
+    def section(self) -> Section | None:
+        """The page that is open."""
+        sections = self.lesson.sections if self.lesson else ()
+        return sections[self.index] if sections else None
+
+    @property
+    def index(self) -> int:
+        """Which of the lesson's pages is open, from 0."""
+        if self.lesson is None:
+            return 0
+        return min(self.progress.sections.get(self.lesson.name, 0), len(self.lesson.sections) - 1)
+
+    @property
+    def summaries(self) -> list[Summary]:
+        """All lessons, in their order."""
+        return self._catalogue.listed(self.language)
+
+    def open(self, name: str = "", *, language: str = "", page: int | None = None, show: bool = True) -> bool:
+        """Open a lesson, at the page where it was left; return whether that could be done.
+
+        By default the one read last, or the first. ``show``: its figure is shown.
+        """
+        names = [summary.name for summary in self.summaries]
+        name = name or (self.progress.lesson if self.progress.lesson in names else next(iter(names), ""))
+        if language:
+            self.progress.language = language
+        try:
+            lesson = self._catalogue.read(name, self.language, labels_in(self.language)["untranslated"])
+        except PlaygroundError as error:
+            self.bench.notices.say(str(error))
+            return False
+        if self.lesson is None or lesson.name != self.lesson.name:
+            self.at, self.shown, self.chosen = {}, set(), {}
+            self.tasks.forget()
+            self.bugs.forget()
+        if self.lesson is None or not self.progress.shown:
+            self._make_room()
+        self.lesson, self.progress.lesson, self.progress.shown = lesson, name, True
+        self.go(self.progress.sections.get(name, 0) if page is None else page, show=show)
+        return True
+
+    def set_language(self, language: str) -> None:
+        """Switch to another language."""
+        if self.lesson is not None:
+            self.open(self.lesson.name, language=language, show=False)
+
+    def go(self, page: int, *, show: bool = True) -> None:
+        """Open a page of the lesson; ``show``: its first figure is shown."""
+        if self.lesson is None:
+            return
+        last = len(self.lesson.sections) - 1
+        page = min(max(page, 0), last)
+        self.progress.sections[self.lesson.name] = page
+        if page == last and self.lesson.name not in self.progress.done:
+            self.progress.done.append(self.lesson.name)
+        self.playing, self.to_top = "", True
+        self.tasks.leave()
+        self.bugs.close_all()
+        section = self.lesson.sections[page]
+        self.numbers.want(self.lesson, section.blocks)
+        self.tasks.judging.want(section.blocks)
+        self.remember()
+        first = self._picture_of(page)
+        if not show or first is None:
+            return
+        if unsaved(self.bench.files.editing) or (self.figure.before_lesson is None and self.figure.changed):
+            self.bench.notices.say(labels_in(self.language)["yours_stays"])
+            return
+        self.show(first)
+
+    def _picture_of(self, page: int) -> Block | None:
+        """Return what a page shows first; of one without, while nothing is shown yet, the one before."""
+        sections = self.lesson.sections if self.lesson else ()
+        mine, *earlier = [
+            [b for b in section.blocks if isinstance(b, Figure | Steps | Slider | Compare)]
+            for section in reversed(sections[: page + 1])
+        ]
+        if mine or self.figure.key is not None:
+            return next(iter(mine), None)
+        return next((blocks[-1] for blocks in earlier if blocks), None)
+
+    def turn_page(self, pages: int) -> None:
+        """Go a number of pages forwards or backwards."""
+        if self.lesson is not None and self.progress.shown:
+            self.go(self.index + pages)
+
+    def toggle(self) -> None:
+        """Show or hide the panel."""
+        if self.lesson is None:
+            self.open(show=False)
+            return
+        self.progress.shown = not self.progress.shown
+        if self.progress.shown:
+            self._make_room()
+        else:
+            self.playing = ""
+            self.bench.interface.panel_shown = self.bench.interface.panel_shown or self._hid
+            if self.figure.before_lesson is not None and self.figure.changed:
+                self.bench.notices.say(labels_in(self.language)["not_kept"])
+        self.remember()
+
+    def _make_room(self) -> None:
+        """Hide the parameters: a page has those that it is about."""
+        self._hid, self.bench.interface.panel_shown = self.bench.interface.panel_shown, False
+
+    def remember(self) -> None:
+        """Store where the reader is."""
+        complaint = write_progress(self.progress, self.file)
+        if complaint:
+            self.bench.notices.say(complaint)
+
+    # ── pictures ─────────────────────────────────────────────────────────────
+
+    def is_on(self, block: FigureBlock) -> bool:
+        """Return whether a figure of a block is shown."""
+        return self.figure.key is not None and self.figure.key[0] == block.name
+
+    def show(self, block: Block) -> None:
+        """Show a block's figure; of a series the one it was left at."""
+        if isinstance(block, Figure) and block.scene is not None:
+            self._put(block.scene, block.name, 0)
+        elif isinstance(block, Exercise | Challenge) and block.scene is not None:
+            texts = {str(path_of(block)): answer_text(block)} if block.file else {}
+            self._put(block.scene, block.name, 0, texts)
+        elif isinstance(block, Compare):
+            both = len(block.scenes) == 2 and comparable(*block.scenes)
+            self.choose(block, self.at.get(block.name, BOTH if both else 0))
+        elif isinstance(block, Steps | Slider):
+            self.move(block, self.at.get(block.name, 0))
+
+    def move(self, block: Steps | Slider, index: int) -> None:
+        """Show another step, or another value."""
+        index = min(max(index, 0), len(block.scenes) - 1)
+        scene = block.scenes[index]
+        if not self.is_on(block) or self.figure.busy:
+            self._put(scene, block.name, index)
+        elif isinstance(block, Steps):
+            self.figure.stop_at(steps_of(scene), (block.name, index))
+        else:
+            self.bench.session.drafts.set(block.parameter, block.values[index])
+        self.at[block.name] = index
+
+    def choose(self, block: Compare, index: int) -> None:
+        """Show one of several pictures, or ``BOTH``."""
+        if index == BOTH:
+            self.tasks.leave()
+            self.bugs.leave()
+            self.figure.compare(block.scenes[0], block.scenes[1], block.name)
+        else:
+            self._put(block.scenes[index], block.name, index)
+        self.at[block.name] = index
+
+    def play_or_pause(self, block: Steps | Slider) -> None:
+        """Play a series from where it is, from its beginning when it is over; or pause."""
+        if self.playing == block.name:
+            self.playing = ""
+            return
+        at = self.at.get(block.name, 0)
+        self.move(block, 0 if at >= len(block.scenes) - 1 else at)
+        self.playing, self._due = block.name, self.bench.notices.now() + _pause(block)
+
+    def reset(self, block: FigureBlock) -> None:
+        """Show a block's picture as the lesson has it."""
+        self.playing = ""
+        self.show(block)
+
+    def go_back(self) -> None:
+        """Show again what was open before the lessons."""
+        self.playing = ""
+        self.tasks.leave()
+        self.bugs.close_all(drawn=False)
+        self.figure.go_back()
+        if self.figure.before_lesson is not None:  # it is gone: the lesson's picture stays, without copies
+            self.bugs.close_all()
+
+    def _put(self, scene: Scene, name: str, index: int, texts: Mapping[str, str] | None = None) -> None:
+        if self.playing != name:
+            self.playing = ""
+        self.tasks.leave()
+        self.bugs.leave()
+        self.figure.show(scene, (name, index), {**self.bugs.texts, **(texts or {})})
+
+    def _clear(self) -> None:
+        """Stop what plays and what is broken: a task's picture comes."""
+        self.playing = ""
+        self.bugs.leave()
+
+    # ── frames ───────────────────────────────────────────────────────────────
+
+    def update(self, *, idle: bool) -> None:
+        """Update figures and series after a frame; ``idle``: there is time to compute."""
+        self.figure.update()
+        if self.lesson is None or not self.progress.shown:
+            return
+        if self.playing and self.bench.notices.now() >= self._due and not self.figure.busy:
+            self._play()
+        shown = self.lesson.named.get(self.figure.key[0]) if self.figure.key is not None else None
+        task = shown if isinstance(shown, Exercise | Challenge) else None
+        self.tasks.update(task, self.bench.notices.now())
+        if idle and not self.playing and not self.bugs.check():
+            self.numbers.compute()
+
+    def patience(self, now: float) -> float:
+        """Return how long nothing needs to be done here [s]."""
+        if self.lesson is None or not self.progress.shown:
+            return math.inf
+        if self.playing:
+            return max(self._due - now, 0.0)
+        return 0.0 if self.numbers.ready or self.bugs.waits else self.tasks.patience(now)
+
+    def _play(self) -> None:
+        block = self.lesson.named.get(self.playing) if self.lesson else None
+        if not isinstance(block, Steps | Slider):
+            self.playing = ""
+            return
+        self.move(block, self.at.get(block.name, 0) + 1)
+        self._due = self.bench.notices.now() + _pause(block)
+        if self.at[block.name] >= len(block.scenes) - 1:
+            self.playing = ""
+
+
+def _pause(block: Steps | Slider) -> float:
+    return _STEP if isinstance(block, Steps) else _VALUE

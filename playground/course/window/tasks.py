@@ -1,0 +1,301 @@
+"""Exercises that check themselves, and pictures to match, in the live view.
+
+What a student writes is a copy of the file, as a broken shader is. The last attempt, the best points and
+the best score are remembered from one start to the next.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from playground.course.model import Challenge, Exercise, Scene
+from playground.course.scenes import with_value
+from playground.course.tasks.match import Match
+from playground.course.tasks.texts import path_of, starter_text
+from playground.course.tasks.verdict import Verdict
+from playground.course.tasks.work import Work, scene_of, starter
+from playground.course.window.figure_view import FigureView
+from playground.course.window.judging import Judging
+from playground.course.window.progress import Attempt, Progress
+from playground.course.window.scoring import Scoring
+from playground.course.window.shader_copies import Copies, Copy, line_of
+from playground.errors import PlaygroundError
+from playground.sketch.assign import value_of, values_of
+from playground.sketch.model import Sketch, Value, kernels_of
+from playground.workbench.notices import Notices
+from playground.workbench.session import Session
+from playground.workbench.text_file import typed_in
+
+Task = Exercise | Challenge
+
+BEGUN = 1
+"""Which picture of a task is the student's own; 0 is that of the solution."""
+
+_KERNEL = re.compile(r"^\w+ kernel\(.*$", re.MULTILINE)
+_POLL = 0.05  # [s] between two looks at what is judged
+_STORE = 2.0  # [s] after which what is typed is remembered
+
+
+@dataclass(kw_only=True)
+class Tasks:
+    """The tasks of one reader."""
+
+    session: Session
+    notices: Notices
+    copies: Copies
+    figure: FigureView
+    progress: Progress
+    label: Callable[[str], str]  # of the interface, by key
+    remember: Callable[[], None]  # stores the progress
+    clear: Callable[[], None]  # called before a task's picture is shown
+    lesson: Callable[[], str]  # the name of the lesson that is open
+
+    def __post_init__(self) -> None:
+        self.judging = Judging(
+            notices=self.notices, is_idle=lambda: self.session.is_idle, received=self._received
+        )
+        self.scoring = Scoring(session=self.session, notices=self.notices, scored=self._scored)
+        self._on: Task | None = None  # the task that was begun
+        self._copy: Copy | None = None  # what replaces its file
+        self._given: dict[str, list[str]] = {}  # parameters that a starter has
+        self._news = False  # something has come that is not on the screen yet
+        self._store_at = math.inf
+        self._stored: Work | None = None  # what was remembered last
+
+    # ── what the student does ────────────────────────────────────────────────
+
+    def start(self, block: Task) -> None:
+        """Show what the student has, or what there is to begin from, and open its text."""
+        scene = block.begin
+        if scene is None:
+            return
+        self.leave()
+        self.clear()
+        attempt = self.attempt(block)
+        texts: Mapping[str, str] = {}
+        if block.file:
+            path, text = path_of(block), attempt.text or starter_text(block)
+            begins = _KERNEL.search(text)
+            self._open(block, path, text, line_of(text, begins[0]) if begins else 1)
+            texts = {str(path): text}
+        for slider, value in attempt.values.items():
+            if slider in block.sliders:
+                scene = _set(scene, slider, value)
+        self._on = block
+        self.figure.show(scene, (block.name, BEGUN), texts)
+
+    def focus(self, block: Task) -> None:
+        """Bring the student's text to the front, also where its window was closed."""
+        self.copies.focus(path_of(block))
+
+    def check(self, block: Exercise) -> None:
+        """Send the work to be judged; ``update`` receives the verdict."""
+        work = self.work(block)
+        self._keep(block, work)
+        self.judging.check(block, work)
+
+    def start_again(self, block: Task) -> None:
+        """Show the starter; what was there before comes back by ``undo``."""
+        self._exchange(block, ("", {}))
+
+    def undo(self, block: Task) -> None:
+        """Bring back what was there before the student began again, in exchange for what is there now."""
+        before = self.attempt(block).before
+        if before is not None:
+            self._exchange(block, before)
+
+    # ── what is known ────────────────────────────────────────────────────────
+
+    def attempt(self, block: Task) -> Attempt:
+        """Return what is remembered of a task."""
+        return self.progress.attempts.setdefault(f"{self.lesson()}/{block.name}", Attempt())
+
+    def is_begun(self, block: Task) -> bool:
+        """Return whether the student's own picture of a task is in view."""
+        mine = self._on is not None and self._on.name == block.name
+        return mine and self.figure.key == (block.name, BEGUN)
+
+    def sliders(self, block: Task) -> tuple[str, ...]:
+        """Return the parameters to drag in the picture in view: the task's, and the student's own."""
+        shown = self.session.shown
+        if shown is None or not self.is_begun(block) or self.figure.busy:
+            return ()
+        if not block.file:
+            return block.sliders
+        if block.name not in self._given:
+            self._given[block.name] = _parameters(scene_of(block, starter(block)).sketch, path_of(block))
+        own = [
+            path for path in _parameters(shown.sketch, path_of(block)) if path not in self._given[block.name]
+        ]
+        return tuple(dict.fromkeys([*block.sliders, *own]))
+
+    def work(self, block: Task) -> Work:
+        """Return what the student has now, saved or not."""
+        attempt, text = self.attempt(block), None
+        if block.file:
+            text = self._text_of(block) or attempt.text or starter_text(block)
+        values: dict[str, Value] = {k: v for k, v in attempt.values.items() if k in block.sliders}
+        shown = self.session.shown
+        if shown is not None and self.is_begun(block) and not self.figure.busy:
+            values = _values(shown.sketch, block.sliders)
+        return Work(text, values)
+
+    # ── frames ───────────────────────────────────────────────────────────────
+
+    def update(self, block: Task | None, now: float) -> None:
+        """Receive verdicts, score the picture in view, and remember what is typed.
+
+        ``block`` is the task whose picture is in view, if any.
+        """
+        self._news = self.judging.update()
+        if self._on is not None and now >= self._store_at:
+            self._store_at = now + _STORE
+            self.store()
+        elif self._on is not None and self._store_at == math.inf:
+            self._store_at = now + _STORE
+        ends = self.judging.ends.get(block.name) if block is not None else None
+        if isinstance(block, Challenge) and self.is_begun(block) and ends is not None:
+            drawn = Work(self._drawn_text(block), self.work(block).values)
+            self._news |= self.scoring.update(block, drawn, ends, now)
+        else:
+            self.scoring.rest()
+
+    def patience(self, now: float) -> float:
+        """Return how long nothing needs to be done here [s]."""
+        if self._news or self.judging.busy:
+            return 0.0 if self._news else _POLL
+        typed = max(self._store_at - now, 0.0) if self._on is not None else math.inf
+        return min(typed, self.scoring.patience(now))
+
+    def store(self) -> None:
+        """Remember what is typed and set of the task that was begun."""
+        block = self._on
+        if block is None:
+            return
+        work = self.work(block)
+        if work != self._stored:
+            self._stored = work
+            self._keep(block, work)
+
+    def leave(self) -> None:
+        """Close the copy of a task: another picture comes."""
+        block = self._on
+        if block is None:
+            return
+        self.store()
+        self._close(block)
+
+    def close(self) -> None:
+        """Remember what is typed, and end the process that judges."""
+        self.store()
+        self.judging.close()
+
+    def forget(self) -> None:
+        """Forget verdicts: another lesson is opened."""
+        self.leave()
+        self.judging.forget()
+        self.scoring.forget()
+        self._given.clear()
+
+    # ── parts of it ──────────────────────────────────────────────────────────
+
+    def _received(self, name: str, verdict: Verdict) -> None:
+        attempt = self.progress.attempts.setdefault(f"{self.lesson()}/{name}", Attempt())
+        attempt.points, attempt.of = max(attempt.points, verdict.points), verdict.of
+        self.remember()
+
+    def _scored(self, block: Challenge, match: Match) -> None:
+        attempt = self.attempt(block)
+        if match.score > attempt.score:
+            attempt.score = match.score
+            self._keep(block, self.work(block))
+
+    def _text_of(self, block: Task) -> str | None:
+        """Return the text of a task's copy with what is typed; None where it is not open."""
+        path = path_of(block)
+        mine = self._on is not None and self._on.name == block.name
+        if self._copy is None or not mine or self.copies.open.get(path) is not self._copy:
+            return None
+        editing = self.copies.files.copy_of(path)
+        typed = typed_in(editing) if editing is not None else None
+        return self.copies.text_of(path) if typed is None else typed
+
+    def _drawn_text(self, block: Task) -> str | None:
+        """Return the text of a task's copy that is drawn; None where there is none."""
+        return self._copy.base if block.file and self._text_of(block) is not None and self._copy else None
+
+    def _close(self, block: Task) -> None:
+        """Close the copy of a task, which gets what was typed in it."""
+        copy, self._copy = self._copy, None
+        self._on, self._store_at = None, math.inf
+        if block.file and copy is not None and self.copies.open.get(copy.path) is copy:
+            self.copies.close(copy.path)
+
+    def _exchange(self, block: Task, new: tuple[str, dict[str, Value]]) -> None:
+        """Show another text and values, and keep what was there; a bare starter is not worth keeping."""
+        attempt, now = self.attempt(block), _own(block, self.work(block))  # read while its copy is open
+        self._close(block)
+        attempt.text, attempt.values = new
+        attempt.before = now if any(now) else None
+        self._forget(block)
+        self.start(block)
+
+    def _keep(self, block: Task, work: Work) -> None:
+        attempt = self.attempt(block)
+        attempt.text, attempt.values = _own(block, work)
+        self.remember()
+
+    def _forget(self, block: Task) -> None:
+        """Forget what was said of a work that is no more."""
+        self.judging.verdicts.pop(block.name, None)
+        self.scoring.forget(block.name)
+        self.remember()
+
+    def _open(self, block: Task, path: Path, text: str, line: int) -> None:
+        def apply(new: str) -> None:
+            self._keep(block, Work(new, self.attempt(block).values))
+            self.figure.set_texts({str(file): copy.base for file, copy in self.copies.open.items()})
+
+        def leave(new: str) -> None:
+            self._keep(block, Work(new, self.attempt(block).values))
+
+        copy = self._copy = Copy(
+            path, text, apply=apply, leave=leave, note=self.label("applied"), label=self.label("copy")
+        )
+        self.copies.edit(copy, line)
+
+
+def _own(block: Task, work: Work) -> tuple[str, dict[str, Value]]:
+    """Return what is a student's own of a work: the text where it is not the starter, the values likewise."""
+    text = "" if not block.file or work.text == starter_text(block) else work.text or ""
+    values_at_start = _values(block.begin.sketch, block.sliders) if block.begin is not None else {}
+    values = dict(work.values)
+    return text, {} if values == values_at_start else values
+
+
+def _set(scene: Scene, path: str, value: Value) -> Scene:
+    """Return a picture with a value that was remembered; without it where the parameter takes it no more."""
+    try:
+        return with_value(scene, path, value)
+    except PlaygroundError:
+        return scene
+
+
+def _parameters(sketch: Sketch, path: Path) -> list[str]:
+    """Return the parameters of the kernels that a file makes."""
+    kernel_read = [(where, kernel) for where, kernel in kernels_of(sketch.graph) if Path(kernel.path) == path]
+    return [f"{where}.{parameter.name}" for where, kernel in kernel_read for parameter in kernel.parameters]
+
+
+def _values(sketch: Sketch, sliders: tuple[str, ...]) -> dict[str, Value]:
+    """Return the values of parameters; without those that a kernel of the student's has no more."""
+    result, values = values_of(sketch), dict[str, Value]()
+    for slider in sliders:
+        with suppress(PlaygroundError):
+            values[slider] = value_of(sketch, slider, result)
+    return values
