@@ -158,7 +158,7 @@ def status(as_json: options.Json = False) -> None:
     """List the translations that are out of date."""
     from playground.course.library import LANGUAGES, SOURCE
     from playground.course.read import summaries
-    from playground.course.status import status_of
+    from playground.course.translate import status_of
 
     names = [summary.name for summary in summaries(SOURCE)]
     statuses = [status_of(name, code) for code in LANGUAGES if code != SOURCE for name in names]

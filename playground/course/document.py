@@ -1,16 +1,24 @@
-"""Split a lesson's file: TOML between two lines of ``+++``, then the parts of its Markdown."""
+"""A lesson's file: front matter between two lines of ``+++``, the parts of its Markdown, tables of fences."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
+from typing import Any, TypeVar
 
+from playground.course import model
 from playground.course.markdown import Piece, pieces
+from playground.course.measures import MEASURES
 from playground.course.model import Prose
-from playground.errors import SketchError
+from playground.course.scenes import PICTURE, STATE, Sketches, read_scene
+from playground.errors import PlaygroundError, SketchError, nearest
+from playground.paths import GLSL
 from playground.shader.parameter import spell
 from playground.shader.source import read_text
+from playground.sketch.assign import resolve
 from playground.sketch.toml_table import TomlFile
 
 _EDGE = "+++"
@@ -55,3 +63,111 @@ def texts_in(front: TomlFile, key: str) -> tuple[str, ...]:
     if not all(isinstance(item, str) for item in texts):
         raise front.error(f"{key} = {spell(texts)}: expected texts in quotes", key)
     return tuple(texts)
+
+
+B = TypeVar("B", bound=model.Named)
+
+
+@dataclass(frozen=True)
+class Fence:
+    """A fenced block, opened: its kind, its name, and its lines as TOML."""
+
+    kind: str
+    name: str
+    piece: Piece
+    line: int  # in the file, from 1
+    file: TomlFile
+    sketches: Sketches
+
+    def only(self, kind: type[model.Named], *own: str) -> None:
+        """Raise ``SketchError`` for a key that is neither a text of such a block nor one of ``own``."""
+        self.file.only(self.file.table, [*own, *map(model.key_of, model.translated_fields(kind))])
+
+    def take(self, key: str, kind: type, default: Any) -> Any:
+        """Return what a key has, checked to be of a kind."""
+        return self.file.take(self.file.table, key, kind, default)
+
+    def markdown(self, key: str, *, needed: bool = True) -> str:
+        """Return the text that a key has; raise ``SketchError`` if it is needed and not there."""
+        text: str = self.take(key, str, "")
+        if needed and not text.strip():
+            raise self.error(f'a {self.kind} block needs {key} = "…"')
+        return text.strip()
+
+    def texts(self, key: str) -> tuple[str, ...]:
+        """Return the list of texts that a key has."""
+        return tuple(item.strip() for item in texts_in(self.file, key))
+
+    def block(self, kind: type[B], **fields: Any) -> B:
+        """Return the block with these fields; its line, its name and its texts are read."""
+        for text in model.translated_fields(kind):
+            key, meaning = model.key_of(text), text.metadata
+            if text.name not in fields:
+                fields[text.name] = (
+                    self.texts(key) if "listed" in meaning else self.markdown(key, needed=meaning["needed"])
+                )
+        return kind(line=self.line, text=self.piece.text, name=self.name, **fields)
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """Its keys that describe a picture."""
+        return {key: value for key, value in self.file.table.items() if key in STATE}
+
+    def scene(self, pixels: tuple[int, int] = PICTURE) -> model.Scene:
+        """Return the picture that the block's own keys describe."""
+        return read_scene(self.file, self.state, (), self.sketches, pixels)
+
+    def error(self, message: str, *key_path: str | int) -> SketchError:
+        """Return an error at a place in the block."""
+        return self.file.error(message, *key_path)
+
+
+def measure_of(
+    fence: Fence, table: Mapping[str, Any], *key_path: str | int
+) -> tuple[str, tuple[tuple[str, float], ...], tuple[float, float] | None]:
+    """Return the name of the measure that a table asks for, its arguments, and what it must lie between."""
+    file = fence.file
+    what = file.take(table, "what", str, "", *key_path)
+    if not what:
+        raise fence.error(f'a {fence.kind} of a measure needs what = "…"', *key_path)
+    if what not in MEASURES:
+        message = f"what = '{what}': there is no such measure{nearest(what, MEASURES)}"
+        raise fence.error(message, *key_path, "what")
+    arguments: Mapping[str, Any] = file.take(table, "with", dict, {}, *key_path)
+    parameters = MEASURES[what].arguments
+    file.only(arguments, parameters, *key_path, "with")
+    if any(name not in arguments for name in parameters):
+        names = ", ".join(f"{name} = …" for name in parameters)
+        raise fence.error(f"{what} needs with = {{ {names} }}", *key_path)
+    taken = tuple(
+        (name, float(file.take(arguments, name, float, 0.0, *key_path, "with"))) for name in parameters
+    )
+    return what, taken, _between(fence, table, *key_path)
+
+
+def shader(fence: Fence) -> str:
+    """Return the ``file`` of a block; raise ``SketchError`` unless it is in ``glsl/``."""
+    file = fence.markdown("file")
+    path = (GLSL / file).resolve()
+    if not path.is_relative_to(GLSL.resolve()) or not path.is_file():
+        names = [p.relative_to(GLSL).as_posix() for p in GLSL.rglob("*") if p.suffix in (".glsl", ".comp")]
+        raise fence.error(f"file = '{file}': not in glsl/{nearest(file, names)}", "file")
+    return file
+
+
+def check_path(fence: Fence, scene: model.Scene, path: str, key: str) -> None:
+    """Raise ``SketchError`` where a key names no parameter of a picture."""
+    try:
+        resolve(scene.sketch.graph, path)
+    except PlaygroundError as error:
+        raise fence.error(error.diagnostics[0].message, key) from None
+
+
+def _between(fence: Fence, table: Mapping[str, Any], *key_path: str | int) -> tuple[float, float] | None:
+    bounds = fence.file.take(table, "between", list, None, *key_path)
+    if bounds is None:
+        return None
+    numbers = all(type(v) in (int, float) for v in bounds)
+    if len(bounds) != 2 or not numbers or any(b < a for a, b in pairwise(bounds)):
+        raise fence.error(f"between = {spell(bounds)}: expected [lowest, highest]", *key_path, "between")
+    return float(bounds[0]), float(bounds[1])

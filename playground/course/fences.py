@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from playground.course import model
-from playground.course.fence import Fence, check_path, measure_of, shader
+from playground.course.document import Fence, check_path, measure_of, shader
 from playground.course.markdown import Piece
 from playground.course.scenes import FRAME, STATE, Sketches, read_scene, with_steps, with_value
 from playground.course.task_fences import read_challenge, read_exercise

@@ -1,18 +1,22 @@
-"""The thesis's figures that show a result: their captions, and the shots that draw them."""
+"""The thesis's figures that show a result, and the pictures at the heads of lessons: shots and captions."""
 
 from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
-from playground.course.library import HERE
+from playground.course.library import HERE, LANGUAGES
 from playground.course.model import Scene
-from playground.course.scenes import Sketches
+from playground.course.scenes import STATE, Sketches, read_scene
+from playground.memo import INTERFACE
 from playground.shader.parameter import write
 from playground.sketch.assign import resolve, value_of, values_of
 from playground.sketch.find import shipped_sketches
 from playground.sketch.model import Sketch
+from playground.sketch.toml_table import TomlFile
 
 _SHOT = re.compile(r"figure-(\d+)-(\d+)(?:-([a-z]))?")
 
@@ -93,3 +97,48 @@ def _parameters(file: Sketch, made: Sketch) -> tuple[tuple[str, str], ...]:
         parameter = resolve(made.graph, path)[0].parameter
         rows.append((path, write(parameter, value_of(made, path, leaves))))
     return tuple(rows)
+
+
+FILE = HERE / "heroes.toml"
+"""Tables by the names of lessons: the keys of a picture, and ``alt`` in each language."""
+
+HERO = (1067, 427)
+"""Pixels of a hero on a page."""
+
+
+@dataclass(frozen=True)
+class Hero:
+    """A picture at a lesson's head."""
+
+    scene: Scene
+    alt: Mapping[str, str]  # what it shows, by language
+
+
+def hero_names(path: Path = FILE) -> list[str]:
+    """List the lessons that have a hero."""
+    return list(_file(path).table)
+
+
+def hero_of(lesson: str, sketches: Sketches | None = None, path: Path = FILE) -> Hero | None:
+    """Return the hero of a lesson, None where it has none.
+
+    Raises ``SketchError`` at what is wrong with it: a picture that cannot be, a language without its ``alt``.
+    """
+    file = _file(path)
+    if lesson not in file.table:
+        return None
+    table = file.take(file.table, lesson, dict, {})
+    file.only(table, (*STATE, "alt"), lesson)
+    alt = file.take(table, "alt", dict, {}, lesson)
+    file.only(alt, tuple(LANGUAGES), lesson, "alt")
+    for code in LANGUAGES:
+        if not file.take(alt, code, str, "", lesson, "alt").strip():
+            raise file.error(f"a hero has an alt in '{code}'", lesson)
+    state = {key: value for key, value in table.items() if key != "alt"}
+    scene = read_scene(file, {"pixels": list(HERO), **state}, (lesson,), sketches or Sketches())
+    return Hero(scene, alt)
+
+
+@INTERFACE.cached()
+def _file(path: Path) -> TomlFile:
+    return TomlFile(path, path.parent)

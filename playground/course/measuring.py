@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from playground.course.grid import Grid
-from playground.course.measures import MEASURES, OfTexture
+from playground.course.measures import MEASURES, Grid, OfTexture
 from playground.course.model import Lesson, Markdown, Measure, Scene
 from playground.engine.engine import Engine
 from playground.engine.plan import LoopStep, Plan, PlanRequest, Step, every_version, needed

@@ -7,10 +7,10 @@ from dataclasses import replace
 from typing import Any, TypeVar
 
 from playground.course import model
-from playground.course.fence import Fence, measure_of, shader
-from playground.course.picture_difference import SHARE
+from playground.course.document import Fence, measure_of, shader
 from playground.course.scenes import STATE, read_scene
-from playground.course.tasks.texts import EXERCISES, answer_text, path_of, starter_text
+from playground.course.tasks.verdict import SHARE
+from playground.course.tasks.work import EXERCISES, answer_text, path_of, starter_text
 from playground.errors import DataError, PlaygroundError, ShaderError, nearest
 from playground.shader.parameter import spell
 from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve

@@ -35,7 +35,7 @@ from playground.course.handout.normalised import normalised
 from playground.course.library import HERE
 from playground.course.model import Challenge
 from playground.course.read import read_lesson
-from playground.course.tasks.texts import answer_text
+from playground.course.tasks.work import answer_text
 from playground.course.translatable import in_language, patterns
 from playground.data.image_files import write_png
 from playground.engine.engine import Engine

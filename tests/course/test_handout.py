@@ -14,8 +14,7 @@ from playground.cli import main
 from playground.course.handout.exercise_files import assignments_of
 from playground.course.handout.student_sketch import student_files
 from playground.course.read import read_lesson, read_lessons
-from playground.course.tasks.texts import answer_text
-from playground.course.tasks.work import Work, scene_of
+from playground.course.tasks.work import Work, answer_text, scene_of
 from playground.sketch.find import unpacked_beside
 
 from ..loading import load

@@ -15,11 +15,11 @@ from playground.course.book.build import prepare, write_book
 from playground.course.book.live_blocks import beginning, block_data, lesson_data
 from playground.course.book.live_files import MAX_INLINE_LETTERS, live_book
 from playground.course.book.live_scenes import Library, Scenes
-from playground.course.bugs import bug_region
+from playground.course.excerpt import bug_region
 from playground.course.figure_renders import pictures_in
 from playground.course.read import read_lesson
+from playground.course.scenes import spelled_value
 from playground.course.tasks.sentences import task_labels
-from playground.course.values import spelled_value
 from playground.sketch.assign import shown_parameters
 from playground.web.blobs import packed_json
 from playground.web.plan import sketch_data

@@ -16,13 +16,13 @@ import pytest
 from PIL import Image
 
 from playground.course.book.build import prepare, write_book
-from playground.course.bugs import bug_region
 from playground.course.document import read_document
+from playground.course.excerpt import bug_region
 from playground.course.figure_renders import broken, draw
 from playground.course.library import interface_labels
 from playground.course.read import read_file
 from playground.course.scenes import with_value
-from playground.course.tasks.texts import EXERCISES
+from playground.course.tasks.work import EXERCISES
 from playground.course.translate import translated, write_hashes
 from playground.engine.engine import Engine
 

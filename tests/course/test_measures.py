@@ -9,8 +9,7 @@ import pytest
 import scipy.ndimage
 
 from playground.course import measures
-from playground.course.grid import Grid
-from playground.course.measures import MEASURES, OfTexture
+from playground.course.measures import MEASURES, Grid, OfTexture
 from playground.course.measuring import filled, measured, named_in, numbers_of, spelled
 from playground.errors import SketchError
 

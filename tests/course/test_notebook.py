@@ -18,7 +18,7 @@ import pytest
 from PIL import Image
 
 from playground.course.book.live_files import widget_page
-from playground.course.bugs import BugRegion
+from playground.course.excerpt import BugRegion
 from playground.course.figure_renders import broken, draw
 from playground.course.glossary import terms
 from playground.course.library import interface_labels, lesson_files
@@ -164,7 +164,7 @@ def test_a_saved_notebook_shows_the_picture(opened, lesson, engine):
 
 
 def test_fixing_the_lines_makes_the_correct_picture(opened, lesson, engine):
-    from playground.course.bugs import bug_region
+    from playground.course.excerpt import bug_region
 
     block = lesson.named["fault"]
     region = bug_region(block)

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from playground.course.grid import Grid
-from playground.course.measures import peaks_on_lattice
+from playground.course.measures import Grid, peaks_on_lattice
 
 
 def test_a_peak_counts_where_its_row_and_its_column_are_on_the_lattice():

@@ -11,14 +11,12 @@ import pytest
 
 from playground.course.measures import MEASURES
 from playground.course.model import Check
-from playground.course.picture_difference import LEVELS, SHARE, share_differing
 from playground.course.rules import wrong_pictures
-from playground.course.tasks import texts
+from playground.course.tasks import work as work_module
 from playground.course.tasks.judge import Wanted, answers, compare, judge
-from playground.course.tasks.score import score
 from playground.course.tasks.sentences import points_of, sentences, task_labels
-from playground.course.tasks.tasks import tasks_of
-from playground.course.tasks.work import Work, answer, scene_of, starter
+from playground.course.tasks.verdict import LEVELS, SHARE, score, share_differing
+from playground.course.tasks.work import Work, answer, scene_of, starter, tasks_of
 from playground.errors import SketchError
 from playground.paths import GLSL
 from playground.shader.source import read_text
@@ -68,7 +66,7 @@ def _starters(tmp_path, monkeypatch):
     folder = tmp_path / "exercises"
     (folder / "small").mkdir(parents=True)
     (folder / "small/start.glsl").write_text(RAW.replace(FORMULA, "0.0"), encoding="utf-8")
-    monkeypatch.setattr(texts, "EXERCISES", folder)
+    monkeypatch.setattr(work_module, "EXERCISES", folder)
     monkeypatch.setattr("playground.course.task_fences.EXERCISES", folder)
 
 

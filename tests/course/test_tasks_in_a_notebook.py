@@ -10,8 +10,7 @@ from playground.course.notebook import lesson as notebook_lesson
 from playground.course.notebook.build import notebook_text
 from playground.course.notebook.lesson import NotebookLesson
 from playground.course.tasks.judge_process import JudgeProcess
-from playground.course.tasks.texts import starter_text
-from playground.course.tasks.work import Work, answer
+from playground.course.tasks.work import Work, answer, starter_text
 from playground.errors import SketchError
 
 from .test_tasks import CHALLENGE, FORMULA, KERNEL, RAW, VALUES, _starters, task

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from playground.course import library, status
+from playground.course import library
 from playground.course.document import read_document
 from playground.course.read import read_file
-from playground.course.translate import mark, stale, translated, write_hashes
+from playground.course.translate import mark, stale, status_of, translated, write_hashes
 from playground.errors import SketchError
 
 
@@ -140,15 +140,15 @@ def test_the_status_of_a_folder_of_lessons(pair, write_lesson, tmp_path, monkeyp
         (tmp_path / language).mkdir()
         (tmp_path / language / "small.md").write_bytes(path.read_bytes())
     monkeypatch.setattr(library, "TEXTS", tmp_path)
-    assert status.status_of("small", "fr").state == "current"
+    assert status_of("small", "fr").state == "current"
     text = (tmp_path / "en" / "small.md").read_text(encoding="utf-8")
     (tmp_path / "en" / "small.md").write_text(text.replace("A picture first.", "Two."), encoding="utf-8")
-    result = status.status_of("small", "fr")
+    result = status_of("small", "fr")
     line = text.split("\n").index("A picture first.") + 1
     assert (result.state, result.changed) == ("stale", (line,))
     assert result.sentences == [f"changed: line {line}"]
     (tmp_path / "fr" / "small.md").unlink()
-    assert status.status_of("small", "fr").state == "missing"
+    assert status_of("small", "fr").state == "missing"
 
 
 def test_a_block_that_became_one_of_another_kind_is_in_english(pair, write_lesson):

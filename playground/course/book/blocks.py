@@ -12,13 +12,12 @@ from typing import Any
 
 from playground.course import model
 from playground.course.book.html import Anchor, code_block, line, plain, prose
-from playground.course.bugs import bug_region
-from playground.course.excerpt import excerpt
+from playground.course.excerpt import bug_region, excerpt
 from playground.course.figure_renders import Picture, pictures_in
 from playground.course.library import SOURCE, Labels
 from playground.course.measuring import Number, filled
-from playground.course.tasks.texts import starter_text
-from playground.course.values import spelled_value
+from playground.course.scenes import spelled_value
+from playground.course.tasks.work import starter_text
 from playground.markup import Markup, joined, tag
 
 _MAX_QUESTION = 120  # characters of a question that are repeated over its answer

@@ -33,8 +33,7 @@ from playground.course.book.page import (
 )
 from playground.course.book.search import Entry, glossary_entries, lesson_entries, words_script
 from playground.course.figure_renders import Picture, pictures_of
-from playground.course.figures import FigurePicture, ThesisFigure, thesis_figures
-from playground.course.heroes import Hero, hero_of
+from playground.course.figures import FigurePicture, Hero, ThesisFigure, hero_of, thesis_figures
 from playground.course.library import interface_labels
 from playground.course.measuring import Number, numbers_of
 from playground.course.model import Lesson

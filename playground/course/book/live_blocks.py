@@ -8,7 +8,7 @@ from typing import Any
 from playground.course import model
 from playground.course.book.live_scenes import Library, Scenes
 from playground.course.book.live_tasks import task_data
-from playground.course.bugs import bug_region
+from playground.course.excerpt import bug_region
 from playground.errors import PlaygroundError
 from playground.sketch.model import Sketch
 

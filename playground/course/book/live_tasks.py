@@ -12,9 +12,8 @@ from typing import Any
 
 from playground.course import model
 from playground.course.book.live_scenes import Library, Scenes
-from playground.course.tasks.texts import answer_text, path_of, starter_text
-from playground.course.tasks.work import wanted_scene
-from playground.course.values import spelled_at
+from playground.course.scenes import spelled_at
+from playground.course.tasks.work import answer_text, path_of, starter_text, wanted_scene
 from playground.errors import PlaygroundError
 from playground.shader.source import read_text
 from playground.sketch.flatten import flatten

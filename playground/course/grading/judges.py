@@ -21,12 +21,10 @@ from playground.course.grading.values_in_toml import values_in_toml
 from playground.course.handout.exercise_files import Assignment, assignments_of
 from playground.course.model import Challenge, Exercise
 from playground.course.read import read_lesson
-from playground.course.tasks.judge import Wanted, answers, judge, small
-from playground.course.tasks.match import Ends, ends_of, match
+from playground.course.tasks.judge import Ends, Wanted, answers, ends_of, judge, match, small
 from playground.course.tasks.sentences import score_of, sentences
-from playground.course.tasks.texts import path_of
 from playground.course.tasks.verdict import Picture, Verdict
-from playground.course.tasks.work import Work, answer, scene_of, wanted_scene
+from playground.course.tasks.work import Work, answer, path_of, scene_of, wanted_scene
 from playground.course.translatable import Said, in_language
 from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine, open_engine

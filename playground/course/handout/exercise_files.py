@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from playground.course.handout.labels import handout_labels
 from playground.course.handout.normalised import normalised
 from playground.course.model import Challenge, Exercise, Lesson
-from playground.course.tasks.tasks import tasks_of
-from playground.course.tasks.texts import answer_text, starter_text
+from playground.course.tasks.work import answer_text, starter_text, tasks_of
 
 
 @dataclass(frozen=True)

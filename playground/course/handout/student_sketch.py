@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from playground.course.handout.exercise_files import Assignment
-from playground.course.tasks.texts import path_of
+from playground.course.tasks.work import path_of
 from playground.errors import DataError, PlaygroundError
 from playground.files import reason, write_file
 from playground.paths import GLSL, SKETCHES

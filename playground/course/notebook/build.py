@@ -7,14 +7,12 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from playground.course import model
-from playground.course.bugs import bug_region
-from playground.course.excerpt import excerpt
+from playground.course.excerpt import bug_region, excerpt
 from playground.course.glossary import linked_term, terms_of
 from playground.course.library import SOURCE, THESIS, interface_labels
 from playground.course.measuring import Number, filled
 from playground.course.tasks.sentences import task_labels
-from playground.course.tasks.tasks import checks_itself
-from playground.course.tasks.texts import starter_text
+from playground.course.tasks.work import checks_itself, starter_text
 from playground.errors import DataError
 from playground.extras import needs
 from playground.sketch.assign import value_of, values_of

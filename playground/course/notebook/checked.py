@@ -8,10 +8,9 @@ from dataclasses import dataclass
 
 from PIL import Image
 
-from playground.course.tasks.difference_map import difference_map
-from playground.course.tasks.match import Match
+from playground.course.tasks.judge import Match
 from playground.course.tasks.sentences import points_of, sentences, task_labels
-from playground.course.tasks.verdict import CheckResult, Picture, Verdict
+from playground.course.tasks.verdict import CheckResult, Picture, Verdict, difference_map
 from playground.markup import Markup, joined, tag
 
 _MARKS = {True: "✓", False: "✗"}

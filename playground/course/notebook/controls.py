@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from playground.course.library import Labels
 from playground.course.model import Compare, Figure, Scene, Slider, Steps
-from playground.course.scenes import with_value
-from playground.course.values import spelled_value
+from playground.course.scenes import spelled_value, with_value
 from playground.shader.parameter import is_whole
 from playground.sketch.assign import resolve, value_of, values_of
 from playground.sketch.model import Value

@@ -10,19 +10,17 @@ from typing import Any
 
 from playground.course import model
 from playground.course.book.live_files import widget_page
-from playground.course.bugs import bug_region
+from playground.course.excerpt import bug_region
 from playground.course.figure_renders import broken, draw
 from playground.course.library import SOURCE, interface_labels
 from playground.course.measuring import measured
 from playground.course.notebook.checked import Checked, Matched
 from playground.course.notebook.controls import controls_of, scene_at
-from playground.course.picture_difference import SHARE, share_differing
 from playground.course.read import read_lesson
+from playground.course.tasks.judge import Match
 from playground.course.tasks.judge_process import JudgeProcess
-from playground.course.tasks.match import Match
-from playground.course.tasks.tasks import checks_itself
-from playground.course.tasks.verdict import Verdict
-from playground.course.tasks.work import Work, scene_of, starter
+from playground.course.tasks.verdict import SHARE, Verdict, share_differing
+from playground.course.tasks.work import Work, checks_itself, scene_of, starter
 from playground.engine.frame import Frame
 from playground.errors import SketchError, nearest
 from playground.markup import tag

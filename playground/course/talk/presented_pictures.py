@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from playground.course.figure_renders import with_bug
 from playground.course.model import Break, Compare, Exercise, Slider, Steps
 from playground.course.talk.beat import Beat, Still
-from playground.course.tasks.texts import path_of, starter_text
+from playground.course.tasks.work import path_of, starter_text
 from playground.course.window.bugs import file_of
 from playground.course.window.reader import Reader
 from playground.course.window.tasks import BEGUN

@@ -1,4 +1,4 @@
-"""Judge a work: draw it and the model answer at the values of each check, and compare them.
+"""Judge a work: draw it and the model answer at the values of each check, and compare them; score a match.
 
 Nothing that a student hands in raises: a text that is wrong, or that lacks a parameter, is a
 verdict too. A work that never ends is its caller's to stop: judge in a process that may be killed.
@@ -15,13 +15,12 @@ from numpy.typing import NDArray
 
 from playground.course.figure_renders import draw
 from playground.course.measuring import NoNumberError, measured
-from playground.course.model import Check, Exercise, Scene
-from playground.course.picture_difference import differing, share_differing
-from playground.course.tasks.verdict import CheckResult, Picture, Verdict
-from playground.course.tasks.work import LackingParameter, Work, scene_of, wanted_scene
+from playground.course.model import Challenge, Check, Exercise, Scene
+from playground.course.tasks.verdict import CheckResult, Picture, Verdict, differing, score, share_differing
+from playground.course.tasks.work import LackingParameter, Work, scene_of, starter, wanted_scene
 from playground.course.translatable import Said
 from playground.engine.engine import Engine
-from playground.errors import ParameterError, PlaygroundError
+from playground.errors import Diagnostic, ParameterError, PlaygroundError
 
 SIDE = 240
 """Pixels of the longer side of the pictures that are compared."""
@@ -198,3 +197,47 @@ def _place(amount: NDArray[np.float64]) -> str:
     if down == across:
         return "middle" if down == "" else ""
     return "-".join(filter(None, (down, across)))
+
+
+@dataclass(frozen=True, eq=False)
+class Match:
+    """How near a work is to the picture of a challenge."""
+
+    score: float  # 0..100
+    goal: int
+    target: Picture | None  # None where its process ended
+    mine: Picture | None = None
+    diagnostics: tuple[Diagnostic, ...] = ()  # why nothing could be drawn
+
+    @property
+    def solved(self) -> bool:
+        """Whether it is near enough."""
+        return self.score >= self.goal
+
+
+@dataclass(frozen=True, eq=False)
+class Ends:
+    """The two pictures that a score lies between."""
+
+    target: Picture
+    begin: Picture
+
+
+def ends_of(engine: Engine, task: Challenge, side: int = SIDE) -> Ends:
+    """Draw the picture to match and the one to begin from; ``side`` is the longer one, in pixels."""
+    scenes = wanted_scene(task), scene_of(task, starter(task))
+    return Ends(*(_drawn(engine, small(scene, side)) for scene in scenes))
+
+
+def match(engine: Engine, task: Challenge, work: Work, ends: Ends | None = None, side: int = SIDE) -> Match:
+    """Return how near a work is; a mistake in it is an answer too, with no score.
+
+    ``ends``, from ``ends_of`` with the same ``side``, saves drawing them again. Raises ``PlaygroundError``
+    only where it is not the student's doing.
+    """
+    ends = ends_of(engine, task, side) if ends is None else ends
+    try:
+        mine = _drawn(engine, small(scene_of(task, work), side))
+    except PlaygroundError as error:
+        return Match(0.0, task.goal, ends.target, diagnostics=error.diagnostics)
+    return Match(score(ends.target, ends.begin, mine), task.goal, ends.target, mine)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from playground.course.library import Labels
 from playground.course.measuring import spelled
-from playground.course.tasks.match import Match
+from playground.course.tasks.judge import Match
 from playground.course.tasks.verdict import CheckResult, Verdict
 from playground.course.translatable import in_language
 from playground.memo import INTERFACE

@@ -1,17 +1,56 @@
-"""What a student hands in for a task, and the picture that it makes."""
+"""What a student begins from and hands in for a task, and the picture that it makes."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TypeGuard
 
-from playground.course.model import Challenge, Scene, Task
-from playground.course.tasks.texts import answer_text, path_of, starter_text
+from playground.course.library import HERE
+from playground.course.model import Block, Challenge, Exercise, Lesson, Scene, Task
 from playground.course.translatable import Said
 from playground.errors import ParameterError, nearest
+from playground.paths import GLSL
+from playground.shader.source import read_text
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Sketch, Value, kernels_of
 from playground.sketch.replace_technique import with_texts
+
+
+def checks_itself(block: Block) -> TypeGuard[Exercise | Challenge]:
+    """Return whether a block is an exercise that has checks, or a challenge."""
+    return isinstance(block, Challenge) or (isinstance(block, Exercise) and bool(block.checks))
+
+
+def tasks_of(lesson: Lesson) -> list[Exercise | Challenge]:
+    """List a lesson's exercises that have checks, and its challenges, in its order."""
+    return [block for block in lesson.blocks if checks_itself(block)]
+
+
+EXERCISES = HERE / "exercises"
+"""Starters and model answers, in a folder for each lesson."""
+
+
+def path_of(task: Task) -> Path:
+    """Return the absolute path of the file that the student's text replaces."""
+    return (GLSL / task.file).resolve()
+
+
+def starter_text(task: Task) -> str:
+    """Return what a student begins from; "" for a task of values."""
+    return _text(task, task.start)
+
+
+def answer_text(task: Task) -> str:
+    """Return the model answer; "" for a task of values."""
+    return _text(task, task.answer)
+
+
+def _text(task: Task, own: str) -> str:
+    if not task.file:
+        return ""
+    return read_text(EXERCISES / own if own else path_of(task))
 
 
 class LackingParameter(ParameterError):

@@ -14,7 +14,7 @@ from pathlib import Path
 from playground.course.excerpt import Excerpt, excerpt
 from playground.course.figure_renders import Picture, draw, with_bug
 from playground.course.model import Break, Code, Scene
-from playground.course.picture_difference import SHARE, share_differing
+from playground.course.tasks.verdict import SHARE, share_differing
 from playground.course.window.figure_view import FigureView
 from playground.course.window.shader_copies import Copies, Copy, line_of
 from playground.errors import PlaygroundError

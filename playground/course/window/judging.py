@@ -9,8 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from playground.course.model import Block, Challenge, Exercise
+from playground.course.tasks.judge import Ends
 from playground.course.tasks.judge_process import JudgeProcess
-from playground.course.tasks.match import Ends
 from playground.course.tasks.verdict import Picture, Verdict
 from playground.course.tasks.work import Work
 from playground.errors import PlaygroundError

@@ -6,7 +6,7 @@ from imgui_bundle import imgui
 
 from playground.course.measuring import named_in
 from playground.course.model import Exercise, Measure, Prose, Question
-from playground.course.tasks.tasks import checks_itself
+from playground.course.tasks.work import checks_itself
 from playground.course.window.markdown_runs import plain
 from playground.course.window.page import Page
 from playground.course.window.task_blocks import draw_work, task_label

@@ -25,7 +25,7 @@ from playground.course.model import (
     Steps,
 )
 from playground.course.scenes import comparable
-from playground.course.tasks.texts import answer_text, path_of
+from playground.course.tasks.work import answer_text, path_of
 from playground.course.window.bugs import Bugs
 from playground.course.window.catalogue import Catalogue
 from playground.course.window.figure_state import steps_of

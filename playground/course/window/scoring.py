@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from playground.course.model import Challenge
-from playground.course.tasks.match import Ends, Match, match
+from playground.course.tasks.judge import Ends, Match, match
 from playground.course.tasks.work import Work
 from playground.course.window.judging import SIDE
 from playground.errors import PlaygroundError

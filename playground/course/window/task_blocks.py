@@ -9,11 +9,9 @@ from typing import Any
 from imgui_bundle import ImVec2, imgui
 
 from playground.course.model import Challenge, Exercise
-from playground.course.tasks.difference_map import difference_map
 from playground.course.tasks.sentences import points_of, sentence_of
-from playground.course.tasks.tasks import checks_itself
-from playground.course.tasks.texts import path_of
-from playground.course.tasks.verdict import CheckResult, Picture, Verdict
+from playground.course.tasks.verdict import CheckResult, Picture, Verdict, difference_map
+from playground.course.tasks.work import checks_itself, path_of
 from playground.course.window.figure_blocks import draw_parameters
 from playground.course.window.markdown_runs import written
 from playground.course.window.page import Page

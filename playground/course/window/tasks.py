@@ -15,10 +15,9 @@ from pathlib import Path
 
 from playground.course.model import Challenge, Exercise, Scene
 from playground.course.scenes import with_value
-from playground.course.tasks.match import Match
-from playground.course.tasks.texts import path_of, starter_text
+from playground.course.tasks.judge import Match
 from playground.course.tasks.verdict import Verdict
-from playground.course.tasks.work import Work, scene_of, starter
+from playground.course.tasks.work import Work, path_of, scene_of, starter, starter_text
 from playground.course.window.figure_view import FigureView
 from playground.course.window.judging import Judging
 from playground.course.window.progress import Attempt, Progress
