@@ -10,7 +10,8 @@ from pathlib import Path
 from playground.commands.entries import Choice, Entry
 from playground.commands.entries import techniques as listed
 from playground.paths import GLSL
-from playground.sketch.model import Graph, Kernel, Technique, Variant, kernels_of
+from playground.shader.kernel import Variant
+from playground.sketch.model import Graph, Kernel, Technique, kernels_of
 from playground.sketch.presence import deciding_inputs, form_of
 from playground.sketch.techniques import Techniques
 from playground.sketch.wiring import input_names

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import typer
 
 from playground.errors import DataError, ParameterError, PlaygroundError
+from playground.shader.kernel import DRIVERS
 from playground.shader.parameter import read_whole
-from playground.sketch.model import DRIVERS, MAX_SIDE, Shot, Sketch
+from playground.sketch.model import MAX_SIDE, Shot, Sketch
 
 if TYPE_CHECKING:
     from playground.engine.engine import Engine

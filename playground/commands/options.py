@@ -9,7 +9,7 @@ import typer
 
 from playground.commands.arguments import either
 from playground.errors import PlaygroundError
-from playground.sketch.model import DRIVERS
+from playground.shader.kernel import DRIVERS
 
 
 def value(usage: str, text: str, complete: Callable[..., list[str]] | None = None) -> Any:

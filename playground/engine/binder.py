@@ -26,8 +26,9 @@ from playground.errors import ContextError
 from playground.memo import Memo
 from playground.paths import shown
 from playground.shader.colours import srgb_to_linear
+from playground.shader.parameter import Sampling
 from playground.shader.reserved_names import MATCHES, PRESSED, TOWARDS, UNWIRED, WINDOW, WIRED
-from playground.sketch.model import Input, Kernel, Parameter, Sampling, Value
+from playground.sketch.model import Input, Kernel, Parameter, Value
 
 if TYPE_CHECKING:
     import moderngl

@@ -30,17 +30,10 @@ from playground.engine.software import read_by_texels_alone
 from playground.engine.source_kinds import Terrain
 from playground.memo import GRAPHS
 from playground.shader.expressions import counts_frames
+from playground.shader.kernel import VertexShader
 from playground.shader.reserved_names import CLOCKED, GIVEN, MATCHES, PRESSED, TOWARDS
 from playground.sketch.flat import Fed, GraphShape, Ref, Source
-from playground.sketch.model import (
-    ComputeVariant,
-    CpuSource,
-    Draw,
-    ForeignShader,
-    Kernel,
-    TexelKernel,
-    VertexShader,
-)
+from playground.sketch.model import ComputeVariant, CpuSource, Draw, ForeignShader, Kernel, TexelKernel
 
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
 _FIXED = frozenset(GIVEN) - {"time", "clip_from_world", "world_from_clip", "eye"}

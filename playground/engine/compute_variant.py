@@ -23,8 +23,9 @@ from playground.engine.results import UNWIRED, Result
 from playground.engine.software import Choices
 from playground.shader import expressions
 from playground.shader.expressions import ExpressionError, Number
+from playground.shader.options import Buffer
 from playground.shader.wrap import COMPUTE
-from playground.sketch.model import Buffer, ComputeVariant
+from playground.sketch.model import ComputeVariant
 
 if TYPE_CHECKING:
     import moderngl

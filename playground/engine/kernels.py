@@ -24,9 +24,10 @@ from playground.engine.textures import make_framebuffer
 from playground.shader import expressions
 from playground.shader.expressions import FRAME_RATE, ExpressionError, Number, counts_frames
 from playground.shader.own_shaders import own_shader
+from playground.shader.parameter import Sampling
 from playground.shader.reserved_names import DEPTH, ELEMENT, PART, PRESSED, SIZES, VALUE, WINDOW
 from playground.shader.wrap import COMPUTE, FRAGMENT, LOCAL
-from playground.sketch.model import ForeignShader, Kernel, Output, PlainCompute, Sampling, TexelKernel
+from playground.sketch.model import ForeignShader, Kernel, Output, PlainCompute, TexelKernel
 from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:

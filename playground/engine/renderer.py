@@ -46,11 +46,11 @@ from playground.engine.unfinished import Deadline, Piece
 from playground.engine.window import windowed
 from playground.errors import ContextError, Diagnostic, OpenGLFault
 from playground.paths import shown
+from playground.shader.kernel import DRIVERS
 from playground.shader.wrap import COMPUTE, FRAGMENT
 from playground.sketch.flat import Ref
 from playground.sketch.load import opened
 from playground.sketch.model import (
-    DRIVERS,
     MAX_PICTURE_SIDE,
     MAX_SIDE,
     ComputeVariant,

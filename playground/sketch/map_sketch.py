@@ -6,8 +6,9 @@ import re
 from dataclasses import dataclass, field, replace
 
 from playground.paths import GLSL
+from playground.shader.kernel import Export
 from playground.sketch.flat import Flat
-from playground.sketch.model import Export, Graph, Kernel, PassSpec, Sketch, Value
+from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Value
 from playground.sketch.techniques import read_technique
 from playground.sketch.wiring import input_names
 

@@ -20,37 +20,28 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from playground.errors import Diagnostic, ParameterError, SketchError, nearest
-from playground.shader.kernel import (
-    DRIVERS,
-    PRAGMAS,
-    SHAPES,
-    VARIANTS,
-    ComputeVariant,
-    CpuSource,
-    Draw,
-    Export,
-    ForeignShader,
-    Graph,
-    Input,
-    Kernel,
-    Output,
-    PassSpec,
-    PlainCompute,
-    PlainFragment,
-    PlainShader,
-    Technique,
-    TexelKernel,
-    Variant,
-    VertexShader,
-    kernels_of,
-    options_of,
-    with_inner,
-)
-from playground.shader.options import FORMATS, Buffer
-from playground.shader.parameter import MAX_SIDE, Follows, Parameter, Sampling
-from playground.shader.widgets import Value, Widget
+from playground.shader.kernel import VARIANTS as VARIANTS
+from playground.shader.kernel import ComputeVariant as ComputeVariant
+from playground.shader.kernel import CpuSource as CpuSource
+from playground.shader.kernel import Draw as Draw
+from playground.shader.kernel import ForeignShader as ForeignShader
+from playground.shader.kernel import Graph as Graph
+from playground.shader.kernel import Input as Input
+from playground.shader.kernel import Kernel as Kernel
+from playground.shader.kernel import Output as Output
+from playground.shader.kernel import PassSpec as PassSpec
+from playground.shader.kernel import PlainCompute as PlainCompute
+from playground.shader.kernel import PlainFragment as PlainFragment
+from playground.shader.kernel import PlainShader as PlainShader
+from playground.shader.kernel import Technique as Technique
+from playground.shader.kernel import TexelKernel as TexelKernel
+from playground.shader.kernel import kernels_of as kernels_of
+from playground.shader.parameter import MAX_SIDE as MAX_SIDE
+from playground.shader.parameter import Parameter as Parameter
+from playground.shader.widgets import Value as Value
 from playground.sketch.assign import TERRAIN_KEYS, check_value
-from playground.sketch.keyframes import Keyframe, at
+from playground.sketch.keyframes import Keyframe as Keyframe
+from playground.sketch.keyframes import at
 from playground.sketch.presence import as_wired
 
 Given = str | int | Mapping[str, object]
@@ -114,52 +105,6 @@ def _allowed(declared: Given) -> Tolerance:
 
 
 _CHOICES = f"{', '.join(TIERS)}, a number of levels of 255, or {{ levels = 6, share = 0.01 }}"
-
-
-__all__ = [
-    "DEFAULT_PICTURE",
-    "DRIVERS",
-    "FORMATS",
-    "MAX_PICTURE_SIDE",
-    "MAX_SIDE",
-    "MAX_SUPERSAMPLE",
-    "PRAGMAS",
-    "SHAPES",
-    "VARIANTS",
-    "Buffer",
-    "Camera",
-    "ComputeVariant",
-    "CpuSource",
-    "Draw",
-    "Export",
-    "Follows",
-    "ForeignShader",
-    "Graph",
-    "Input",
-    "Kernel",
-    "Keyframe",
-    "Output",
-    "Parameter",
-    "PassSpec",
-    "PictureSettings",
-    "PlainCompute",
-    "PlainFragment",
-    "PlainShader",
-    "Preset",
-    "Sampling",
-    "Shot",
-    "Sketch",
-    "Technique",
-    "TerrainSettings",
-    "TexelKernel",
-    "Value",
-    "Variant",
-    "VertexShader",
-    "Widget",
-    "kernels_of",
-    "options_of",
-    "with_inner",
-]
 
 MAX_PICTURE_SIDE = 65_536
 """Pixels that a side of a picture drawn in parts may have: the limit of single precision."""

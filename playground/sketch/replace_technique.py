@@ -19,21 +19,13 @@ from playground.errors import DataError, ParameterError, PlaygroundError, Sketch
 from playground.paths import GLSL
 from playground.shader.dialects import read_foreign
 from playground.shader.header import parse_kernel
+from playground.shader.kernel import with_inner
 from playground.shader.parameter import coerce
 from playground.shader.source import read_source
 from playground.sketch.assign import find_targets, resolve
 from playground.sketch.find import is_part, shipped_names
 from playground.sketch.flatten import flatten
-from playground.sketch.model import (
-    ComputeVariant,
-    Graph,
-    Kernel,
-    PassSpec,
-    Sketch,
-    Technique,
-    Value,
-    with_inner,
-)
+from playground.sketch.model import ComputeVariant, Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.techniques import Techniques
 from playground.sketch.wiring import output_names, outputs_with_formats, takes_input
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from playground.memo import GRAPHS
+from playground.shader.kernel import Variant
 from playground.sketch.assign import effective_values, resolve
 from playground.sketch.flat import Flat, GraphShape, Leaf, Loop, Node, Ref, Source, leaves_of
 from playground.sketch.flatten import (
@@ -25,7 +26,7 @@ from playground.sketch.flatten import (
     leaf_of,
     ordered,
 )
-from playground.sketch.model import VARIANTS, Graph, Kernel, PassSpec, Sketch, Technique, Value, Variant
+from playground.sketch.model import VARIANTS, Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.variants import INSIDE, Omission, active_variant, unverified
 from playground.sketch.wiring import initial_names, input_names
 

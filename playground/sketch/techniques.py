@@ -23,6 +23,7 @@ from playground.errors import PlaygroundError, ShaderError, SketchError, nearest
 from playground.files import irregularity
 from playground.paths import GLSL, shown
 from playground.shader.dialects import EXPORT, OWN, is_export, read_foreign
+from playground.shader.kernel import Variant
 from playground.shader.kernel_cache import parsed_kernel, replaced
 from playground.shader.source import EncodingError
 from playground.sketch.find import shipped_names
@@ -35,7 +36,6 @@ from playground.sketch.model import (
     PlainShader,
     Technique,
     TexelKernel,
-    Variant,
 )
 from playground.sketch.toml_graph import read_graph
 from playground.sketch.toml_table import TomlFile

@@ -12,6 +12,7 @@ from typing import Any
 from playground.allowed_files import is_variant, leads_outside
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
+from playground.shader.kernel import Export
 from playground.shader.options import read_agreement
 from playground.shader.parameter import coerce, spell
 from playground.sketch import toml_table, wiring
@@ -24,7 +25,7 @@ from playground.sketch.assign import (
     resolve,
     why_absent,
 )
-from playground.sketch.model import Export, Graph, PassSpec, Sketch, Technique, Value
+from playground.sketch.model import Graph, PassSpec, Sketch, Technique, Value
 from playground.sketch.presence import sources_of
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.toml_text import KeyPath

@@ -22,6 +22,7 @@ from playground.errors import PlaygroundError, SketchError, nearest
 from playground.files import write_file
 from playground.paths import GLSL, shown
 from playground.shader import expressions
+from playground.shader.kernel import Variant, with_inner
 from playground.shader.options import Bound, bound_of
 from playground.sketch.assign import all_paths, resolve
 from playground.sketch.find import find, shipped_names, shipped_sketches
@@ -37,9 +38,7 @@ from playground.sketch.model import (
     TerrainSettings,
     TexelKernel,
     Value,
-    Variant,
     kernels_of,
-    with_inner,
 )
 from playground.sketch.techniques import Techniques
 from playground.sketch.variants import (

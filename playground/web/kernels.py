@@ -9,6 +9,8 @@ from typing import Any
 from playground.engine.meshes import mesh_parameters
 from playground.engine.textures import split_format
 from playground.shader.expressions import counts_frames, follows_time
+from playground.shader.kernel import options_of
+from playground.shader.parameter import Sampling
 from playground.shader.wrap import FRAGMENT, previous_name, recipes_of
 from playground.sketch.model import (
     ComputeVariant,
@@ -19,8 +21,6 @@ from playground.sketch.model import (
     Parameter,
     PlainCompute,
     PlainShader,
-    Sampling,
-    options_of,
 )
 from playground.sketch.wiring import initial_names
 from playground.web.es_lacks import lacking

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from playground.engine.binder import Binder
-from playground.sketch.model import Sampling
+from playground.shader.parameter import Sampling
 
 
 @pytest.mark.parametrize(

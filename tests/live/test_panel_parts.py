@@ -12,8 +12,9 @@ from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.live.dome import direction_at, dot_of
 from playground.live.widgets import CONTROLS
+from playground.shader.parameter import Widget
 from playground.shader.widgets import WIDGETS
-from playground.sketch.model import Camera, Parameter, Widget
+from playground.sketch.model import Camera, Parameter
 from playground.workbench.camera_drag import Gesture, steered
 from playground.workbench.error_excerpt import numbered, short_place
 from playground.workbench.number_format import decimals, format_of, snapped

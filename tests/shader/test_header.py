@@ -10,8 +10,9 @@ import pytest
 from playground.errors import PlaygroundError, ShaderError
 from playground.paths import GLSL
 from playground.shader.header import parse_kernel
+from playground.shader.kernel import PRAGMAS, options_of
 from playground.shader.source import read_source
-from playground.sketch.model import PRAGMAS, Kernel, Parameter, options_of
+from playground.sketch.model import Kernel, Parameter
 from playground.sketch.techniques import read_kernel
 
 from ..cases import each

@@ -11,8 +11,8 @@ import pytest
 
 from playground.errors import ParameterError
 from playground.shader.colours import linear_to_srgb, parse_hex, srgb_to_linear, to_hex
-from playground.shader.parameter import coerce, expected, label_of, spell, write
-from playground.sketch.model import Parameter, Widget
+from playground.shader.parameter import Widget, coerce, expected, label_of, spell, write
+from playground.sketch.model import Parameter
 
 from ..cases import each
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from playground.errors import ParameterError
-from playground.shader.parameter import coerce, tidied
-from playground.sketch.model import Camera, Parameter, Widget
+from playground.shader.parameter import Widget, coerce, tidied
+from playground.sketch.model import Camera, Parameter
 from playground.workbench.edits import Draft, Edits
 from playground.workbench.history import History, State, applied, edits_of, in_words, state_of
 from playground.workbench.parameter_list import Filter, Listing, set_words

@@ -11,10 +11,10 @@ from playground.capture.shader_export.declarations import Declaration, declarati
 from playground.capture.shader_export.literals import number, vector
 from playground.capture.shader_export.passes import ExportPlan, ShaderPass, Wire
 from playground.engine.camera import unit_vector
-from playground.shader.parameter import AS_IT_IS
+from playground.shader.parameter import AS_IT_IS, Sampling
 from playground.shader.reserved_names import MATCHES, TOWARDS, WIRED
 from playground.shader.wrap import previous_name
-from playground.sketch.model import Kernel, Output, Parameter, Sampling, Value
+from playground.sketch.model import Kernel, Output, Parameter, Value
 
 _CALL = r"\b(texelFetch|texelFetchOffset|textureLod|textureSize|texture)\s*\(\s*{name}\s*,"
 _FALLBACKS = {"white": "vec4(1.0)", "black": "vec4(0.0, 0.0, 0.0, 1.0)"}
