@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from playground.memo import TEXTS
@@ -146,12 +146,8 @@ def live_source(
     unknown: bool | None = False,
 ) -> SourceText:
     """Return a text without the branches that are off; see ``Conditions.live``."""
-    codes = Conditions([line.code for line in source.lines]).live(defined, unsure=unsure, unknown=unknown)
-    lines = tuple(
-        line if line.code == code else replace(line, code=code)
-        for line, code in zip(source.lines, codes, strict=True)
-    )
-    return source if lines == source.lines else replace(source, lines=lines)
+    conditions = Conditions([line.code for line in source.lines])
+    return source.with_codes(conditions.live(defined, unsure=unsure, unknown=unknown))
 
 
 def code_of(text: str) -> str:

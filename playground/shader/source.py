@@ -168,6 +168,19 @@ class SourceText:
             "includes": self.includes,
         }
 
+    def with_codes(self, codes: Sequence[str]) -> SourceText:
+        """Return the text with other code in its lines, one for each; itself where all is the same."""
+        lines = tuple(
+            line if line.code == code else replace(line, code=code)
+            for line, code in zip(self.lines, codes, strict=True)
+        )
+        return self if lines == self.lines else replace(self, lines=lines)
+
+    def line_with(self, pattern: str) -> Line | None:
+        """Return the first line whose code has a match of a regular expression, if there is one."""
+        search = re.compile(pattern).search
+        return next((line for line in self.lines if search(line.code)), None)
+
     @cached_property
     def code(self) -> str:
         """The text for the driver, one line for each of ``lines``."""
@@ -240,13 +253,9 @@ def read_source_and_origin(
     own = tuple(dict.fromkeys(root.resolve() for root in roots))
     reader = _Reader(own, GLSL.resolve(), instead or {}, foreign)
     reader.flatten(path, reader.read(path), (), (str(path),))
-    codes = with_calls_joined([line.code for line in reader.lines])
-    lines = tuple(
-        line if line.code == code else replace(line, code=code)
-        for line, code in zip(reader.lines, codes, strict=True)
-    )
     includes = tuple((file, name, target) for (file, name), target in reader.named.items())
-    source = SourceText(str(path), lines, tuple(reader.texts), includes)
+    source = SourceText(str(path), tuple(reader.lines), tuple(reader.texts), includes)
+    source = source.with_codes(with_calls_joined([line.code for line in reader.lines]))
     asked = tuple((name, reader.libraries.get(name)) for name in sorted(reader.asked))
     return source, Origin(tuple(reader.texts.items()), tuple(reader.looked_at.items()), asked)
 

@@ -393,8 +393,7 @@ def _without_outputs(kernel: Kernel, arguments: list[tuple[str, str, str]]) -> l
 
 
 def _line_of(kernel: Kernel, name: str) -> Line:
-    pattern = re.compile(rf"\b{name}\s*\(")
-    return next((line for line in kernel.source.lines if pattern.search(line.code)), kernel.source.lines[0])
+    return kernel.source.line_with(rf"\b{name}\s*\(") or kernel.source.lines[0]
 
 
 def _check_signature(kernel: TexelKernel) -> None:

@@ -9,7 +9,6 @@ relief and base elevation are not in that text: they come from the file.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -73,11 +72,8 @@ def elevation_sketch(path: Path, techniques: Techniques) -> Sketch:
     """Return the sketch around an elevation file; the file itself is not read yet."""
     sketch = read_sketch(TomlFile(path, path.parent, elevation_text(path, path.name)), techniques.read)
     # No line of the file itself says any of it.
-    return replace(sketch, graph=replace(sketch.graph, passes=_without_lines(sketch.graph.passes)))
-
-
-def _without_lines(passes: Sequence[PassSpec]) -> tuple[PassSpec, ...]:
-    return tuple(replace(spec, line=0) for spec in passes)
+    passes = tuple(replace(spec, line=0) for spec in sketch.graph.passes)
+    return replace(sketch, graph=replace(sketch.graph, passes=passes))
 
 
 def load(name: str | Path = "", *, dialect: str = "") -> Sketch:

@@ -1,8 +1,8 @@
 """A sketch as a value: graph, terrain, view, shots, presets, keyframes, and the tolerances of shots.
 
 All of it is frozen: what changes a sketch returns a new one. The classes of kernels, graphs and parameters
-are in ``shader.kernel`` and ``shader.parameter``, keyframes in ``keyframes``; they can be imported from here
-as well.
+are in ``shader.kernel`` and ``shader.parameter``, keyframes in ``keyframes``; most can be imported from
+here as well.
 
 Tiers of tolerance have names:
 

@@ -174,7 +174,9 @@ def read_pass(
         choices=choices,
         file=shown(file.path),
         line=file.line(*key_path),
-        set_lines=_set_lines(file, key_path, table.get("set", {}), technique),
+        set_lines=tuple(
+            (path, file.line(*key_path, "set", path)) for path in flat_values(technique, table.get("set", {}))
+        ),
     )
 
 
@@ -217,13 +219,6 @@ def _read_values(
             raise file.error(message, *key_path, "set", path)
         values_read.append((path, value))
     return tuple(values_read)
-
-
-def _set_lines(
-    file: TomlFile, key_path: KeyPath, table: Mapping[str, Any], technique: Technique
-) -> tuple[tuple[str, int], ...]:
-    """Return the line of each path that a pass's ``set`` has."""
-    return tuple((path, file.line(*key_path, "set", path)) for path in flat_values(technique, table))
 
 
 def read_set(

@@ -91,17 +91,6 @@ MASK_ENDING = ".png"
 Mask = tuple[tuple[int, int, int, int] | str, ...]
 
 
-def read_comparison(
-    file: TomlFile, sketch: Sketch, table: Mapping[str, Any], key_path: KeyPath
-) -> dict[str, Any]:
-    """Return the fields of a shot that say how it is compared; raise ``SketchError``."""
-    return {
-        "tolerance": _tolerance(file, table, key_path),
-        "mask": _mask(file, sketch, table, key_path),
-        "allow_blank": file.take(table, "allow_blank", bool, False, *key_path),
-    }
-
-
 def _tolerance(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath) -> Tolerance | None:
     reason = file.take(table, "reason", str, "", *key_path)
     if "tolerance" not in table and "reason" not in table:
@@ -385,7 +374,9 @@ def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
                 steps=read_steps(file, sketch, table, key_path),
                 marks=_marks(file, table, key_path),
                 line=file.line(*key_path),
-                **read_comparison(file, sketch, table, key_path),
+                tolerance=_tolerance(file, table, key_path),
+                mask=_mask(file, sketch, table, key_path),
+                allow_blank=file.take(table, "allow_blank", bool, False, *key_path),
             )
         )
     return tuple(shots)

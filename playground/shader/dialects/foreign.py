@@ -310,16 +310,7 @@ class ForeignKernel:
         for declared in self.declared.values():
             line, file = self._line(declared), self._commented(declared)
             if file and self._is_there(file, line):
-                made = Parameter(
-                    declared.name,
-                    "sampler2D",
-                    file,
-                    Widget("file"),
-                    sampling=SAMPLING,
-                    file=line.file,
-                    line=line.number,
-                )
-                yield declared.name, made
+                yield declared.name, picture_parameter(declared.name, file, SAMPLING, line)
 
     def _commented(self, declared: Declared) -> str:
         line = self._line(declared)
@@ -369,13 +360,10 @@ def unfed_warnings(kernel: ForeignShader, wired: Collection[str]) -> tuple[Diagn
     for name, instead in kernel.unfed:
         if name not in wired:
             names.setdefault(instead, []).append(name)
-    lines = kernel.source.lines
     diagnostics = []
     for instead, some in names.items():
-        first = re.compile(
-            rf"\b(?:{'|'.join([*some, *(name.rpartition(ELEMENT)[0] or name for name in some)])})\b"
-        )
-        line = next((line for line in lines if first.search(line.code)), lines[0])
+        either = "|".join([*some, *(name.rpartition(ELEMENT)[0] or name for name in some)])
+        line = kernel.source.line_with(rf"\b(?:{either})\b") or kernel.source.lines[0]
         diagnostics.append(line.diagnostic(f"nothing feeds {', '.join(some)}: {instead}", severity="warning"))
     return tuple(diagnostics)
 
@@ -385,6 +373,12 @@ def commented_files(source: SourceText) -> Iterator[tuple[Line, str]]:
     for line in source.lines:
         if _PICTURE.search(line.code) and (match := _COMMENTED_FILE.match(line.comment)):
             yield line, match.group(1)
+
+
+def picture_parameter(name: str, path: str, sampling: Sampling, line: Line) -> Parameter:
+    """Return the parameter of a sampler that reads an image file; ``line`` is what says so."""
+    widget = Widget("file")
+    return Parameter(name, "sampler2D", path, widget, sampling=sampling, file=line.file, line=line.number)
 
 
 def places_of(file: str, line: Line, root: Path) -> tuple[Path, ...]:

@@ -182,13 +182,9 @@ class _Viewer:
 
     def _source(self, macros: tuple[str, ...]) -> SourceText:
         """Return the text where some macros are defined: the same object for the same lines."""
-        codes, source = self.live(*macros), self.text.source
+        codes = self.live(*macros)
         if codes not in self.sources:
-            lines = tuple(
-                line if line.code == code else replace(line, code=code)
-                for line, code in zip(source.lines, codes, strict=True)
-            )
-            self.sources[codes] = SourceText(source.path, lines, source.files)
+            self.sources[codes] = self.text.source.with_codes(codes)
         return self.sources[codes]
 
     def _buffers(self, own: _Pass | None) -> dict[str, ShaderChannel]:

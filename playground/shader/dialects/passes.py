@@ -8,7 +8,6 @@ written in the frame before, and the whole of ``view`` is a loop over the frames
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -114,9 +113,8 @@ class _Passes:
 
     def _unwritten(self, index: int, sampler: str, target: str) -> ShaderError:
         made = self.techniques[index]
-        lines = (made if isinstance(made, Kernel) else self.kernels[-1]).source.lines
-        named = re.compile(rf"\b{sampler}\b")
-        line = next((line for line in lines if named.search(line.code)), lines[0])
+        source = (made if isinstance(made, Kernel) else self.kernels[-1]).source
+        line = source.line_with(rf"\b{sampler}\b") or source.lines[0]
         hint = nearest(target, [shader.target for shader in self.shaders if shader.target])
         return line.error(f"{sampler} reads '{target}', which no pass writes{hint}")
 

@@ -20,13 +20,19 @@ from dataclasses import dataclass, field, replace
 from playground.errors import ShaderError, nearest
 from playground.shader.declarations import Declarations, is_declared
 from playground.shader.dialects.es import rewritten
-from playground.shader.dialects.foreign import Files, Names, Rules, Shader, ShaderChannel
+from playground.shader.dialects.foreign import (
+    Files,
+    Names,
+    Rules,
+    Shader,
+    ShaderChannel,
+    picture_parameter,
+)
 from playground.shader.dialects.passes import VIEW
-from playground.shader.parameter import Parameter, Sampling, spell
+from playground.shader.parameter import Sampling, spell
 from playground.shader.preprocessor import WEBGL_2, Token, live_source, readings
 from playground.shader.reserved_names import SIZES
 from playground.shader.source import Line, SourceText
-from playground.shader.widgets import Widget
 
 _LOOKUP = re.compile(r"texture(?:Lod|Grad|Cube\w*)?")
 _TYPES = {
@@ -264,8 +270,7 @@ def refused(files: Files) -> Sequence[Shader]:
 
 
 def _defines(source: SourceText, function: str) -> Line | None:
-    sign = re.compile(rf"\b{function}\s*\(")
-    return next((line for line in source.lines if sign.search(line.code)), None)
+    return source.line_with(rf"\b{function}\s*\(")
 
 
 KEYBOARD = "iKeyboard"
@@ -521,17 +526,7 @@ def _shader(toy: ToyPass, dialect: str) -> Shader:
         if feeds.file:
             names.pop(sampler, None)
             line = toy.source.lines[-1]
-            parameters.append(
-                Parameter(
-                    sampler,
-                    "sampler2D",
-                    feeds.file,
-                    Widget("file"),
-                    sampling=feeds.channel.sampling,
-                    file=line.file,
-                    line=line.number,
-                )
-            )
+            parameters.append(picture_parameter(sampler, feeds.file, feeds.channel.sampling, line))
         else:
             names[sampler] = (feeds.type, "none")
     if toy.kind == CUBE:
