@@ -20,6 +20,7 @@ from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 from heapq import heappop, heappush
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -86,10 +87,6 @@ class Keys:
         return Keys(*(getattr(self, name).copy() for name in self.__dataclass_fields__))
 
 
-def _canonical(kernel: Kernel) -> str:
-    return kernel.source.canonical
-
-
 class KeyMaker:
     """Makes the keys of plans; remembers what kernels' texts say.
 
@@ -98,7 +95,7 @@ class KeyMaker:
 
     def __init__(
         self,
-        text: Callable[[Kernel], str] = _canonical,
+        text: Callable[[Kernel], str] = attrgetter("source.canonical"),
         content: Callable[[Path], str] = content_hash,
     ) -> None:
         self._text = text

@@ -243,13 +243,9 @@ def most_iterations(nodes: tuple[PlanNode, ...]) -> dict[str, int]:
     return counts
 
 
-def needed(nodes: tuple[PlanNode, ...], ref: Ref) -> list[PlanNode]:
-    """Return the nodes that a texture depends on, in order."""
-    return list(_needed(nodes, ref))
-
-
 @PLANS.cached(identities=1)
-def _needed(nodes: tuple[PlanNode, ...], ref: Ref) -> tuple[PlanNode, ...]:
+def needed(nodes: tuple[PlanNode, ...], ref: Ref) -> tuple[PlanNode, ...]:
+    """Return the nodes that a texture depends on, in order."""
     paths = {ref.path}
     result: list[PlanNode] = []
     for node in reversed(nodes):

@@ -38,28 +38,22 @@ class PlanWarnings:
         self.inputs = inputs  # of the engine
         self.report: Callable[[Diagnostic], None] | None = None  # None: nothing is reported
         self._reported: set[tuple[str, str]] = set()  # about what, and of which file
-        self._graph: Graph | None = None  # whose kernels were looked at last
-        self._sketch: Sketch | None = None  # whose file's warnings were looked at last
+        self._last: Sketch | None = None  # whose file and kernels were looked at last
 
     def look(self, plan: Plan) -> None:
         """Report the warnings of a plan that were not reported yet."""
         if self.report is None:
             return
-        warnings = list(warnings_of_sketch(plan.sketch)) if self._is_from_another_file(plan.sketch) else []
-        self._sketch = plan.sketch
+        last, self._last = self._last, plan.sketch
+        graph, is_new = plan.sketch.graph, last is None
+        is_new |= last is not None and not (last.graph is graph and last.warnings is plan.sketch.warnings)
+        warnings = list(warnings_of_sketch(plan.sketch)) if is_new else []
         warnings += source_warnings(plan, self.inputs())
-        if plan.sketch.graph is not self._graph:
-            self._graph = plan.sketch.graph
-            warnings += [w for kernel in own_kernels(plan.sketch.graph) for w in unheeded(kernel)]
+        warnings += [w for kernel in (own_kernels(graph) if is_new else ()) for w in unheeded(kernel)]
         for warning in warnings:
             self.once(warning, warning.message)
         for path, warning in _stops_past_the_end(plan):
             self.once(warning, f"steps of {path}")  # in a film each frame would have another number
-
-    def _is_from_another_file(self, sketch: Sketch) -> bool:
-        """Return whether a sketch may have other warnings than the last one."""
-        last = self._sketch
-        return last is None or sketch.graph is not last.graph or sketch.warnings is not last.warnings
 
     def once(self, warning: Diagnostic, about: str) -> None:
         """Report a warning, unless one of its file about the same was reported."""

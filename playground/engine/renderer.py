@@ -272,7 +272,7 @@ class Renderer:
     ) -> list[str]:
         """Return the paths of the passes that drawing the sketch's picture would run; nothing is run."""
         plan = self.plan(sketch, size, time, steps, interpolated=interpolated)
-        keys, nodes = self.keys_of(plan), needed(plan.nodes, plan.picture)
+        keys, nodes = self.keys_of(plan), list(needed(plan.nodes, plan.picture))
         if self.disk_caching is not None:
             nodes = self.disk_caching.would_run(self.cache, plan, keys, plan.picture, self.painted)
         return would_run(keys, self.cache, nodes, plan)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from playground.errors import ParameterError, nearest
-from playground.shader.kernel import ARRAY, CpuSource, Graph, Kernel, Output, PassSpec
+from playground.shader.kernel import ARRAY, CpuSource, Graph, Output, PassSpec
 from playground.shader.parameter import Parameter
 from playground.shader.source import Line, SourceText
 from playground.shader.widgets import Widget
@@ -27,7 +27,11 @@ def wired(graph: Graph, path: str, value: object) -> tuple[Graph, str, ArrayFile
     name, _, input_name = path.partition(".")
     spec = graph.find(name)
     if spec is None or not input_name or not takes_input(spec.technique, input_name):
-        there = [f"{spec.name}.{each}" for spec in graph.passes for each in _inputs(spec)]
+        there = [
+            f"{spec.name}.{each}"
+            for spec in graph.passes
+            for each in (*input_names(spec.technique), *initial_names(spec.technique))
+        ]
         raise ParameterError(f"no input '{path}'{nearest(path, there)}")
     file, (ny, nx, channels) = texels(value, path)
     own = _name(graph, path, dict(spec.inputs).get(input_name, ""))
@@ -36,11 +40,6 @@ def wired(graph: Graph, path: str, value: object) -> tuple[Graph, str, ArrayFile
     others = [spec for spec in graph.passes if spec.name != own]
     passes = [replace(item, inputs=tuple(wires.items())) if item is spec else item for item in others]
     return replace(graph, passes=(array, *passes)), f"{own}.{_PARAMETER}", file
-
-
-def _inputs(spec: PassSpec) -> tuple[str, ...]:
-    starts = initial_names(spec.technique) if isinstance(spec.technique, Kernel) else ()
-    return (*input_names(spec.technique), *starts)
 
 
 def _name(graph: Graph, path: str, before: str) -> str:

@@ -201,21 +201,14 @@ def check_value(sketch: Settable, path: str, value: object) -> Value:
             raise ParameterError(f"{path}: {why}")
         valid = [*TERRAIN_KEYS, *all_paths(sketch.graph)]
         raise ParameterError(f"no parameter '{path}' in sketch {sketch.name}{nearest(path, valid)}")
-    if targets[0].parameter.widget.kind == "file" and _may_be_array(value):
+    is_array = hasattr(value, "__array__") or hasattr(value, "__array_interface__")
+    is_array &= not isinstance(value, str | bytes | os.PathLike)
+    if is_array and targets[0].parameter.widget.kind == "file":
         from playground.sketch.arrays import stored  # loads NumPy, which few loads need
 
-        return stored(value, targets[0].parameter, _registry_at(sketch.graph, targets[0].path), path)
+        kernel = dict(sketch.graph.kernels)[targets[0].path.rpartition(".")[0]]
+        return stored(value, targets[0].parameter, kernel.registry, path)
     return coerce(targets[0].parameter, value, path)
-
-
-def _may_be_array(value: object) -> bool:
-    is_path = isinstance(value, str | bytes | os.PathLike)
-    return not is_path and (hasattr(value, "__array__") or hasattr(value, "__array_interface__"))
-
-
-def _registry_at(graph: Graph, path: str) -> str:
-    """Return the source that makes the texels of a parameter's kernel; "" for a kernel of its own."""
-    return dict(graph.kernels)[path.rpartition(".")[0]].registry
 
 
 def effective_values(technique: Technique) -> dict[str, Value]:

@@ -296,10 +296,6 @@ def _read(path: Path) -> str:
         raise DataError(f"cannot be read: {error}", file=path) from None
 
 
-def _kind(path: Path) -> str:
-    return "an elevation file" if is_elevation(path) else "a shader"
-
-
 def write_over(
     path: Path, file: Sketch, change: Callable[[str], str], is_right: Callable[[Sketch], bool]
 ) -> None:
@@ -312,7 +308,8 @@ def write_over(
     """
     path = path.resolve()  # a link stays a link: what it leads to is written
     if path.suffix != ".toml":
-        raise ReadOnlySketch(f"{_kind(path)} opened alone has no sketch file to save into", file=path)
+        kind = "an elevation file" if is_elevation(path) else "a shader"
+        raise ReadOnlySketch(f"{kind} opened alone has no sketch file to save into", file=path)
     if path.is_relative_to(GLSL.resolve()):
         raise ReadOnlySketch("this sketch belongs to the playground itself", file=path)
     if not os.access(path, os.W_OK) or not os.access(path.parent, os.W_OK):

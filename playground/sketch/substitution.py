@@ -142,8 +142,7 @@ class _Substitution:
             return "something is wired to a pass inside"
         if path in self.set_inside:
             return "a parameter inside is set"
-        starts = initial_names(technique) if isinstance(technique, Kernel) else {}
-        if variant.kind != "draws" and any(wires.get(name) for name in starts):
+        if variant.kind != "draws" and any(wires.get(name) for name in initial_names(technique)):
             return "it takes no initial state"
         unread = {*input_names(technique)} - {*input_names(variant.technique)}
         lacking = sorted(name for name in unread if wires.get(name))

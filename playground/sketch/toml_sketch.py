@@ -114,7 +114,9 @@ def _mask(file: TomlFile, sketch: Sketch, table: Mapping[str, Any], key_path: Ke
         if _is_rectangle(item):
             mask.append((item[0], item[1], item[2], item[3]))
         elif isinstance(item, str) and item.endswith(MASK_ENDING):
-            _refuse_outside(file, sketch, item, key_path)
+            if is_absolute(item) or leads_outside(item, Path(sketch.folder)):
+                message = f"mask = {spell(item)}: it leads outside the sketch's folder"
+                raise file.error(message, *key_path, "mask")
             mask.append(item)
         elif isinstance(item, str):
             try:
@@ -134,11 +136,6 @@ def _mask(file: TomlFile, sketch: Sketch, table: Mapping[str, Any], key_path: Ke
 def _is_rectangle(item: object) -> bool:
     numbers = isinstance(item, list) and len(item) == 4 and all(type(v) is int for v in item)
     return numbers and item[2] > 0 and item[3] > 0  # type: ignore[index]
-
-
-def _refuse_outside(file: TomlFile, sketch: Sketch, text: str, key_path: KeyPath) -> None:
-    if is_absolute(text) or leads_outside(text, Path(sketch.folder)):
-        raise file.error(f"mask = {spell(text)}: it leads outside the sketch's folder", *key_path, "mask")
 
 
 _LATEST = 1e6  # [s]

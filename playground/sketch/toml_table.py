@@ -139,9 +139,7 @@ def _places_in(text: str) -> TomlPlaces:
     return TomlPlaces(text)
 
 
-@TEXTS.cached()
-def _table_of(text: str) -> Mapping[str, Any]:
-    return tomllib.loads(text)
+_table_of = TEXTS.cached()(tomllib.loads)  # once, likewise
 
 
 class TomlFile:

@@ -19,7 +19,7 @@ from __future__ import annotations
 import hashlib
 import json
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from shlex import quote
@@ -139,19 +139,17 @@ def unverified(sketch: Sketch, kinds: Collection[str] = VARIANTS) -> tuple[Omiss
 
 
 @GRAPHS.cached(identities=1)
-def _unverified(graph: Graph, kinds: frozenset[str]) -> tuple[Omission, ...]:
-    return tuple(dict.fromkeys(_unverified_inside(graph, kinds)))
-
-
-def _unverified_inside(technique: Technique, kinds: frozenset[str]) -> Iterator[Omission]:
+def _unverified(technique: Technique, kinds: frozenset[str]) -> tuple[Omission, ...]:
     other = active_variant(technique, kinds)
     runs = Path(other.path).name if other else "the plain form"
-    for variant in technique.variants:
-        if variant.kind in kinds and not is_verified(technique, variant):
-            yield Omission(Path(variant.path).name, why_not(technique, variant), runs=runs)
+    omissions = [
+        Omission(Path(variant.path).name, why_not(technique, variant), runs=runs)
+        for variant in technique.variants
+        if variant.kind in kinds and not is_verified(technique, variant)
+    ]
     if isinstance(technique, Graph) and other is None:
-        for spec in technique.passes:
-            yield from _unverified_inside(spec.technique, kinds)
+        omissions += [each for spec in technique.passes for each in _unverified(spec.technique, kinds)]
+    return tuple(dict.fromkeys(omissions))
 
 
 def why_not(technique: Technique, variant: Variant) -> str:

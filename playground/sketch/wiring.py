@@ -31,15 +31,15 @@ def input_names(technique: Technique) -> tuple[str, ...]:
     return tuple(e.name for e in technique.inputs)
 
 
-def initial_names(kernel: Kernel) -> dict[str, str]:
+def initial_names(technique: Technique) -> dict[str, str]:
     """Map the optional inputs that a repeated kernel or a draw starts from to the outputs they start."""
-    if isinstance(kernel, Draw):
-        return {"initial": kernel.outputs[0].name}
-    if not isinstance(kernel, TexelKernel) or kernel.repeat == "1":
+    if isinstance(technique, Draw):
+        return {"initial": technique.outputs[0].name}
+    if not isinstance(technique, TexelKernel) or technique.repeat == "1":
         return {}
-    if len(kernel.outputs) == 1:
-        return {"initial": kernel.outputs[0].name}
-    return {f"initial_{o.name}": o.name for o in kernel.outputs}
+    if len(technique.outputs) == 1:
+        return {"initial": technique.outputs[0].name}
+    return {f"initial_{o.name}": o.name for o in technique.outputs}
 
 
 def takes_input(technique: Technique, name: str) -> bool:

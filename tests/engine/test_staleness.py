@@ -118,8 +118,8 @@ def test_a_changed_way_of_reading_an_input_runs_it(engine, folder, four):
 
 def test_extent_and_relief_matter_to_texts_that_name_them(engine, four):
     ran_after(engine, four)
-    assert ran_after(engine, replace(four, extent=(2000.0, 1000.0))) == {"slope", "span"}
-    assert ran_after(engine, replace(four, relief=50.0)) == {"span"}
+    assert ran_after(engine, four.with_values({"extent": (2000.0, 1000.0)})) == {"slope", "span"}
+    assert ran_after(engine, four.with_values({"relief": 50.0})) == {"span"}
 
 
 def test_time_matters_to_texts_that_name_it(engine, four):
@@ -130,7 +130,7 @@ def test_time_matters_to_texts_that_name_it(engine, four):
 
 def test_the_size_matters_to_all_but_the_view_of_the_same_frame(engine, four):
     ran_after(engine, four)
-    assert ran_after(engine, replace(four, size=(33, 17))) == {*EVERYTHING, "view"}
+    assert ran_after(engine, four.with_values({"size": (33, 17)})) == {*EVERYTHING, "view"}
 
 
 def test_the_camera_matters_to_what_names_it(engine, folder):
@@ -250,8 +250,8 @@ def test_keys_and_plan_take_little_time(any_engine, four):
 
 
 CHANGES = {
-    "relief": lambda four: replace(four, relief=150.0),
-    "extent": lambda four: replace(four, extent=(2000.0, 1000.0)),
+    "relief": lambda four: four.with_values({"relief": 150.0}),
+    "extent": lambda four: four.with_values({"extent": (2000.0, 1000.0)}),
     "camera": lambda four: four.with_camera(Camera(azimuth=77.0)),
     "a value": lambda four: four.with_values({"light.sun": (90.0, 10.0)}),
     "nothing": lambda four: four,

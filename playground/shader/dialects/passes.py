@@ -147,7 +147,7 @@ class _Passes:
             self.name,
             self.kernels[-1].path,
             (*passes, view),
-            parameters=tuple(_inside(VIEW, name) for name in _parameters_of(view.technique)),
+            parameters=tuple(_inside(VIEW, parameter.name) for parameter in view.technique.parameters),
             inputs=tuple(_inside(VIEW, name) for name in self.inputs),
             title=next((kernel.title for kernel in self.kernels if kernel.title), ""),
             warnings=tuple(self._unread()),
@@ -223,10 +223,6 @@ def stand_in_paths(path: str, sampler: str) -> set[str]:
 def _own_name(shader: str, name: str) -> str:
     """Return the name of one shader's channel or parameter where another shader's is not the same."""
     return f"{shader}_{name}"
-
-
-def _parameters_of(technique: Technique) -> tuple[str, ...]:
-    return tuple(parameter.name for parameter in technique.parameters)
 
 
 def _inside(where: str, name: str) -> Export:

@@ -548,14 +548,12 @@ def _shader(toy: ToyPass, dialect: str) -> Shader:
         parameters=tuple(parameters),
         size=(str(CUBE_SIDE), str(6 * CUBE_SIDE)) if toy.kind == CUBE else None,
         format=_FORMATS[toy.kind],
-        prelude=_prelude(toy.kind, dialect),
+        prelude=(
+            *(("#define SHADER_TOY",) if dialect == "vscode" else ()),
+            *((f"const float k_side = {CUBE_SIDE}.0;",) if toy.kind == CUBE else ()),
+        ),
         keeps=toy.kind != IMAGE,
     )
-
-
-def _prelude(kind: str, dialect: str) -> tuple[str, ...]:
-    lines = (f"const float k_side = {CUBE_SIDE}.0;",) if kind == CUBE else ()
-    return ("#define SHADER_TOY", *lines) if dialect == "vscode" else lines
 
 
 def reading(target: str, sampling: Sampling = OF_BUFFERS) -> ShaderChannel:
