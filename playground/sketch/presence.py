@@ -83,17 +83,13 @@ def _head(source: str) -> str:
     return source.partition(":")[0].partition(".")[0]
 
 
+@GRAPHS.cached(identities=1)
 def is_conditional(technique: Technique) -> bool:
     """Return whether any pass inside may be absent."""
-    return isinstance(technique, Graph) and _is_conditional(technique)
-
-
-@GRAPHS.cached(identities=1)
-def _is_conditional(graph: Graph) -> bool:
-    return (
-        graph.whole is not None
-        or bool(_named_inputs(graph))
-        or any(spec.choices or is_conditional(spec.technique) for spec in graph.passes)
+    return isinstance(technique, Graph) and (
+        technique.whole is not None
+        or bool(_named_inputs(technique))
+        or any(spec.choices or is_conditional(spec.technique) for spec in technique.passes)
     )
 
 
@@ -110,15 +106,14 @@ def sources_of(spec: PassSpec) -> Iterator[tuple[str, tuple[str, ...]]]:
         yield name, choices.get(name, (text,))
 
 
+@GRAPHS.cached(identities=1)
 def deciding_inputs(technique: Technique) -> tuple[str, ...]:
     """Return the inputs of a technique by which some pass in it is present or absent."""
-    return _deciding(technique.written) if isinstance(technique, Graph) else ()
-
-
-@GRAPHS.cached(identities=1)
-def _deciding(graph: Graph) -> tuple[str, ...]:
-    named = _named_inputs(graph) if is_conditional(graph) else set()
-    for export in graph.inputs if is_conditional(graph) else ():
+    if not isinstance(technique, Graph) or not is_conditional(technique):
+        return ()
+    graph = technique.written
+    named = _named_inputs(graph)
+    for export in graph.inputs:
         for head, _, rest in (target.partition(".") for target in export.targets):
             spec = graph.find(head)
             if spec is not None and rest in deciding_inputs(spec.technique):

@@ -86,13 +86,13 @@ class ShaderChannel:
     unfed: str = ""  # what is drawn instead, where the technique is a stand-in: the end of a message
 
 
-def stand_in(kind: str, number: int, unfed: str) -> ShaderChannel:
+def stand_in(kind: str, number: int, unfed: str, sampling: Sampling | None = None) -> ShaderChannel:
     """Return a channel that a stand-in feeds; ``kind`` is a key of ``STAND_INS``."""
     size = SIZES.get(STAND_INS[kind]) or SIZES_OF_SHAPES.get(kind, STAND_IN_SIZE)
     values: tuple[tuple[str, Value], ...] = () if kind in _ALIKE else (("number", number),)
     if kind in _STRENGTHS:
         values = (*values, ("strength", _STRENGTHS[kind]))
-    sampling = _SAMPLINGS.get(kind, SAMPLING)
+    sampling = sampling or _SAMPLINGS.get(kind, SAMPLING)
     return ShaderChannel(use=STAND_INS[kind], values=values, size=size, sampling=sampling, unfed=unfed)
 
 

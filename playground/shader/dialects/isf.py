@@ -84,15 +84,15 @@ class Header:
         text_value = self.table.get(key)
         return " ".join(text_value.split()) if isinstance(text_value, str) else ""
 
-    def unknown(self, keys: Collection[str], valid: Collection[str], what: str) -> Diagnostic | None:
-        """Return a warning of keys that mean nothing, with the nearest of the ``valid`` ones."""
+    def unknown(self, keys: Collection[str], valid: Collection[str], what: str) -> list[Diagnostic]:
+        """Return a warning of keys that mean nothing, if there are any, with the nearest ``valid`` one."""
         strange = [key for key in keys if key not in valid]
         if not strange:
-            return None
+            return []
         hint = nearest(strange[0].upper(), valid)
         hint = hint if "did you mean" in hint else ""
         message = f"{', '.join(strange)} of {what} means nothing here, and is left out{hint}"
-        return self.line_of(strange[0]).diagnostic(message, severity="warning")
+        return [self.line_of(strange[0]).diagnostic(message, severity="warning")]
 
 
 def read_header(source: SourceText) -> Header:
@@ -294,13 +294,11 @@ def read_inputs(header: Header, files: Files, taken: Callable[[str], str]) -> In
             )
             inputs.notes.append(line.diagnostic(message, severity="warning"))
             continue
-        note = header.unknown(entry.keys(), _IN_KEYS, f"input '{name}'")
-        inputs.notes += [note] if note else []
+        inputs.notes += header.unknown(entry.keys(), _IN_KEYS, f"input '{name}'")
         _READERS[kind](_Declared(name, entry, line), inputs)
     for entry in header.items("IMPORTED", named=True):
         name = _name(entry, header, "an imported image", inputs, taken)
-        note = header.unknown(entry.keys(), _IMPORT_KEYS, f"image '{name}'")
-        inputs.notes += [note] if note else []
+        inputs.notes += header.unknown(entry.keys(), _IMPORT_KEYS, f"image '{name}'")
         _import(name, entry, header.line_of_input(name), files, inputs)
     return inputs
 
@@ -412,7 +410,7 @@ def _cube(declared: _Declared, inputs: Inputs) -> None:
 
 def _add_cube(name: str, inputs: Inputs, unfed: str) -> None:
     inputs.cubes.append(name)
-    inputs.channels[name] = replace(stand_in("sky", 0, unfed), sampling=IMAGE)
+    inputs.channels[name] = stand_in("sky", 0, unfed, IMAGE)
 
 
 def _sound(content: int) -> Callable[[_Declared, Inputs], None]:
@@ -432,7 +430,7 @@ def _sound(content: int) -> Callable[[_Declared, Inputs], None]:
 
 def _card(number: int, unfed: str = "a stand-in is drawn; a sketch may wire an image to it") -> ShaderChannel:
     """Return the channel of an image that nothing feeds."""
-    return replace(stand_in("picture", number, unfed), size=OF_PICTURE, sampling=IMAGE)
+    return replace(stand_in("picture", number, unfed, IMAGE), size=OF_PICTURE)
 
 
 _READERS: dict[str, Callable[[_Declared, Inputs], None]] = {
@@ -572,9 +570,7 @@ class _Reader:
         if isinstance(mode, str) and mode.upper() not in _MODES:
             message = f"MODE {mode}: only ISF's own kind is drawn, a fragment shader over the whole picture"
             raise self.header.line_of("MODE").error(message)
-        self.notes: list[Diagnostic] = []
-        note = self.header.unknown(self.header.table.keys(), _KEYS, "the description")
-        self.notes += [note] if note else []
+        self.notes = self.header.unknown(self.header.table.keys(), _KEYS, "the description")
         self.passes = self.header.items("PASSES") or [{}]
         if len(self.passes) > _MAX_PASSES:
             message = f"{len(self.passes)} passes are more than the {_MAX_PASSES} that are drawn"
@@ -640,10 +636,10 @@ class _Reader:
         for table in self.header.items("PERSISTENT_BUFFERS", named=True):
             name = self._target_name(table.get("NAME"), "a persistent buffer")
             kept[name] = table
-            self._note(table, _BUFFER_KEYS, f"buffer '{name}'")
+            self.notes += self.header.unknown(table.keys(), _BUFFER_KEYS, f"buffer '{name}'")
         writers: dict[str, list[Mapping[str, Any]]] = {name: [] for name in kept}
         for index, table in enumerate(self.passes):
-            self._note(table, _PASS_KEYS, f"pass {index}")
+            self.notes += self.header.unknown(table.keys(), _PASS_KEYS, f"pass {index}")
             if table.get("TARGET"):
                 writers.setdefault(
                     self._target_name(table["TARGET"], f"the target of pass {index}"), []
@@ -665,10 +661,6 @@ class _Reader:
         if taken:
             raise line.error(f"{what} cannot be called '{name}': {taken}")
         return name
-
-    def _note(self, table: Mapping[str, Any], keys: Sequence[str], what: str) -> None:
-        note = self.header.unknown(table.keys(), keys, what)
-        self.notes += [note] if note else []
 
     def _size(
         self, pass_table: Mapping[str, Any], target: _Target | None, index: int

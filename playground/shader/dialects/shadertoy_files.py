@@ -203,11 +203,11 @@ def _input(
     if kind == "keyboard":
         return ToyInput(stand_in("keys", 0, ""))
     if kind in _SOUNDS and _is_own(files, source):
-        made = replace(stand_in("sound", 0, ""), use="foreign/sound", values=(("sound", source),))
-        return ToyInput(replace(made, sampling=sampling or OF_BUFFERS))
+        made = stand_in("sound", 0, "", sampling or OF_BUFFERS)
+        return ToyInput(replace(made, use="foreign/sound", values=(("sound", source),)))
     if kind in _SOUNDS:
         unfed = f"it is {_NOT_FED[kind]}, so a made-up sound stands in for it"
-        return ToyInput(replace(stand_in("sound", 0, unfed), sampling=sampling or OF_BUFFERS))
+        return ToyInput(stand_in("sound", 0, unfed, sampling or OF_BUFFERS))
     glsl, form = _TYPES.get(kind, ("sampler2D", "picture" if _PHOTO.search(source) else "noise"))
     if kind in _NOT_FED:
         unfed = f"it is {_NOT_FED[kind]}, so a stand-in is drawn"
@@ -215,8 +215,7 @@ def _input(
         unfed = f"'{source or kind}' is a file of the site, which is not shipped, so a stand-in is drawn"
     else:
         unfed = f"'{kind}' is not known here, so a stand-in is drawn"
-    channel = stand_in(form, number, unfed)
-    return ToyInput(replace(channel, sampling=sampling) if sampling else channel, glsl)
+    return ToyInput(stand_in(form, number, unfed, sampling), glsl)
 
 
 def _target(

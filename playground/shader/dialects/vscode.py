@@ -140,7 +140,7 @@ class Reader:
             return ToyInput(ShaderChannel(sampling=of_pictures), file=file)
         else:
             unfed = f"there is no file '{text}' in this folder, so a stand-in is drawn"
-        return ToyInput(replace(stand_in(form, number, unfed), sampling=of_pictures))
+        return ToyInput(stand_in(form, number, unfed, of_pictures))
 
     def _sound(self, text: str, number: int, channel: shadertoy.ChannelLines) -> ShaderChannel:
         """Return a sound file's spectrum and wave, or those of a made-up one."""
@@ -149,7 +149,7 @@ class Reader:
             file = path_found.relative_to(self.files.root.resolve()).as_posix()
             return ShaderChannel("", "foreign/sound", (("sound", file),), SIZES["foreign/sound"], sampling)
         unfed = f"there is no file '{text}' in this folder, so a made-up sound stands in for it"
-        return replace(stand_in("sound", 0, unfed), sampling=sampling)
+        return stand_in("sound", 0, unfed, sampling)
 
     def _cube(self, text: str, channel: shadertoy.ChannelLines, number: int) -> ToyInput:
         """Return a cube map of six files, or a sky."""
@@ -169,7 +169,7 @@ class Reader:
                     )
                     return ToyInput(made, "samplerCube")
         unfed = f"'{text}' is not there with all of px nx py ny pz nz for {{}}, so a stand-in is drawn"
-        return ToyInput(replace(stand_in("sky", number, unfed), sampling=sampling), "samplerCube")
+        return ToyInput(stand_in("sky", number, unfed, sampling), "samplerCube")
 
     def _found(self, text: str, line: Line) -> Path | None:
         """Return the file that a line names, inside the folder; None where there is none."""
