@@ -11,8 +11,9 @@ A text whose conditions depend on the driver has two readings: see ``readings``.
 
 from __future__ import annotations
 
+import operator
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -26,17 +27,24 @@ _TOKEN = re.compile(
     r"\s*(0[xX][0-9a-fA-F]+|\d+|[A-Za-z_]\w*|<<|>>|<=|>=|==|!=|&&|\|\||[-+~!*/%<>&^|()])([uU]?)"
 )
 _OF_THE_DRIVER = re.compile(r"(?:GL_(?!ES$)|__)\w*")
-_LEVELS: tuple[tuple[str, ...], ...] = (
-    ("||",),
-    ("&&",),
-    ("|",),
-    ("^",),
-    ("&",),
-    ("==", "!="),
-    ("<", ">", "<=", ">="),
-    ("<<", ">>"),
-    ("+", "-"),
-    ("*", "/", "%"),
+
+
+def _quotient(left: int, right: int) -> int:
+    """Return a quotient of whole numbers, towards 0."""
+    return abs(left) // abs(right) * (1 if (left < 0) == (right < 0) else -1)
+
+
+_LEVELS: tuple[Mapping[str, Callable[[int, int], int]], ...] = (
+    {"||": lambda left, right: bool(left or right)},
+    {"&&": lambda left, right: bool(left and right)},
+    {"|": operator.or_},
+    {"^": operator.xor},
+    {"&": operator.and_},
+    {"==": operator.eq, "!=": operator.ne},
+    {"<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge},
+    {"<<": operator.lshift, ">>": operator.rshift},
+    {"+": operator.add, "-": operator.sub},
+    {"*": operator.mul, "/": _quotient, "%": lambda left, right: left - _quotient(left, right) * right},
 )
 """Operators of two numbers, those that bind least first."""
 _MAX_DEPTH = 32
@@ -329,9 +337,9 @@ class _Expression:
         if level == len(_LEVELS):
             return self._single(depth + 1)
         left = self._level(level + 1, depth)
-        while self.at < len(self.tokens) and (operator := self.tokens[self.at]) in _LEVELS[level]:
+        while self.at < len(self.tokens) and (sign := self.tokens[self.at]) in _LEVELS[level]:
             self.at += 1
-            left = _worked_out(str(operator), left, self._level(level + 1, depth))
+            left = _worked_out(str(sign), level, left, self._level(level + 1, depth))
         return left
 
     def _single(self, depth: int) -> int | None:
@@ -373,42 +381,17 @@ def _tokens(text: str) -> list[str]:
     return tokens
 
 
-def _worked_out(operator: str, left: int | None, right: int | None) -> int | None:
+def _worked_out(sign: str, level: int, left: int | None, right: int | None) -> int | None:
     """Return the number of an operator; of what cannot be known only where the other side decides."""
-    if operator == "&&":
-        if 0 in (left, right):
-            return 0
-        return None if None in (left, right) else 1
-    if operator == "||":
-        if (left is not None and left) or (right is not None and right):
-            return 1
-        return None if None in (left, right) else 0
-    if left is None or right is None:
+    if sign == "&&" and 0 in (left, right):
+        return 0
+    if sign == "||" and (left or right):
+        return 1
+    if left is None or right is None or (sign in ("/", "%") and not right):
         return None
-    if operator in ("/", "%"):
-        if not right:
-            return None
-        quotient = abs(left) // abs(right) * (1 if (left < 0) == (right < 0) else -1)
-        return quotient if operator == "/" else left - quotient * right
-    if operator in ("<<", ">>"):
-        if not 0 <= right <= _MAX_SHIFT:
-            return None
-        return left << right if operator == "<<" else left >> right
-    results = {
-        "|": left | right,
-        "^": left ^ right,
-        "&": left & right,
-        "==": left == right,
-        "!=": left != right,
-        "<": left < right,
-        ">": left > right,
-        "<=": left <= right,
-        ">=": left >= right,
-        "+": left + right,
-        "-": left - right,
-        "*": left * right,
-    }
-    return int(results[operator])
+    if sign in ("<<", ">>") and not 0 <= right <= _MAX_SHIFT:
+        return None
+    return int(_LEVELS[level][sign](left, right))
 
 
 def value_of(text: str) -> int | None:

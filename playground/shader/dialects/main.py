@@ -128,36 +128,30 @@ class _Viewer:
                 result += self._flood(viewer_pass, size)
             else:
                 result.append(
-                    self._shader(
-                        viewer_pass.name,
-                        (viewer_pass.define,),
-                        target=viewer_pass.name,
-                        size=size,
-                        own=viewer_pass,
-                    )
+                    self._shader(viewer_pass.name, (viewer_pass.define,), size=size, own=viewer_pass)
                 )
         background = ("BACKGROUND",) if self.changes("BACKGROUND") else ()
         if not post:
-            return [*result, self._shader(VIEW, background, format="rgba8")]
-        own = {"u_scene": ShaderChannel()}
-        result.append(self._shader(_SCENE, background, target=_SCENE, format="rgba8", channels=own))
-        return [*result, self._shader(VIEW, ("POSTPROCESSING",), format="rgba8")]
+            return [*result, self._shader(VIEW, background)]
+        result.append(self._shader(_SCENE, background, channels={"u_scene": ShaderChannel()}))
+        return [*result, self._shader(VIEW, ("POSTPROCESSING",))]
 
     def _shader(
         self,
         name: str,
         macros: tuple[str, ...],
         *,
-        target: str = "",
         size: Size = None,
-        format: str = "rgba32f",
         own: _Pass | None = None,
         channels: Mapping[str, ShaderChannel] | None = None,
         names: Names | None = None,
         repeat: str = "",
         feeds: str = "",
     ) -> Shader:
-        """Return the text with some macros defined, as a pass; ``own`` is the pass that it is the text of."""
+        """Return the text with some macros defined, as a pass; ``own`` is the pass that it is the text of.
+
+        Others read each by its name, but the picture; the scene has 8 bits as well.
+        """
         made = Rewritten(self._source(macros), self.text.prelude)
         defined = {**self.given_macros, **dict.fromkeys(macros, "")}
         before = (*(f"#define {n} {v}".rstrip() for n, v in defined.items()), *self.declared)
@@ -171,11 +165,11 @@ class _Viewer:
             name,
             made,
             rules,
-            target=target,
+            target="" if name == VIEW else name,
             channels={**self._buffers(own), **(channels or {})},
             size=size,
-            format=format,
-            keeps=bool(target),
+            format="rgba8" if name in (VIEW, _SCENE) else "rgba32f",
+            keeps=name != VIEW,
             repeat=repeat,
             feeds=feeds,
         )
@@ -219,24 +213,15 @@ class _Viewer:
     def _flood(self, viewer_pass: _Pass, size: Size) -> list[Shader | Made]:
         """Return the pass of the seeds, and the rounds of jumps after it."""
         seeds = f"{viewer_pass.name}_seeds"
-        first = self._shader(seeds, (viewer_pass.define,), target=seeds, size=size, own=viewer_pass)
+        first = self._shader(seeds, (viewer_pass.define,), size=size, own=viewer_pass)
         algorithm = self._algorithm(_FLOODS)
         if not algorithm:
-            return [
-                first,
-                Made(
-                    viewer_pass.name,
-                    "foreign/jump_flood",
-                    {"initial": seeds},
-                    target=viewer_pass.name,
-                    size=size,
-                ),
-            ]
+            reads = {"initial": seeds}
+            return [first, Made(viewer_pass.name, "foreign/jump_flood", reads, viewer_pass.name, size)]
         width, height = size or ("size.x", "size.y")
         rounds = self._shader(
             viewer_pass.name,
             algorithm,
-            target=viewer_pass.name,
             size=size,
             channels={"u_floodSrc": ShaderChannel(target=seeds, sampling=_SEED)},
             names={"u_floodIndex": ("int", "iteration"), "u_floodTotal": ("int", "iterations")},
@@ -256,7 +241,7 @@ class _Viewer:
         algorithm = self._algorithm(_PYRAMIDS)
         foot = f"{viewer_pass.name}_foot"
         pyramid: list[Shader | Made] = [
-            self._shader(foot, (viewer_pass.define,), target=foot, size=size, own=viewer_pass),
+            self._shader(foot, (viewer_pass.define,), size=size, own=viewer_pass),
         ]
         width, height = size or ("size.x", "size.y")
         downs = [foot, *(f"{viewer_pass.name}_down{level}" for level in range(LEVELS))]
@@ -264,29 +249,28 @@ class _Viewer:
         def size_of(level: int) -> tuple[str, str]:
             return f"max({width} // {2**level}, 1)", f"max({height} // {2**level}, 1)"
 
-        def add(name: str, target: str, level: int, reads: tuple[str, str], repeat: str, below: int) -> None:
+        def add(name: str, level: int, reads: tuple[str, str], repeat: str, below: int) -> None:
             if not algorithm:
                 use = "foreign/pyramid_up" if repeat else "foreign/pyramid_down"
                 inputs = dict(zip(("level", "coarser") if repeat else ("finer",), reads, strict=False))
                 feeds = "level" if repeat else ""
-                pyramid.append(Made(name, use, inputs, target, size_of(below), repeat, feeds))
+                pyramid.append(Made(name, use, inputs, name, size_of(below), repeat, feeds))
                 return
-            pyramid.append(self._level(name, target, level, reads, size_of(below), repeat, below, algorithm))
+            pyramid.append(self._level(name, level, reads, size_of(below), repeat, below, algorithm))
 
         for level in range(LEVELS):
-            add(downs[level + 1], downs[level + 1], level, (downs[level], ""), "", level + 1)
+            add(downs[level + 1], level, (downs[level], ""), "", level + 1)
         coarser = downs[LEVELS]
         for level in reversed(range(LEVELS)):
             name = viewer_pass.name if level == 0 else f"{viewer_pass.name}_up{level}"
             repeat = f"0 + (min({width}, {height}) >= {2 ** (level + 2)})"
-            add(name, name, level, (downs[level], coarser), repeat, level)
+            add(name, level, (downs[level], coarser), repeat, level)
             coarser = name
         return pyramid
 
     def _level(
         self,
         name: str,
-        target: str,
         level: int,
         reads: tuple[str, str],
         size: tuple[str, str],
@@ -310,7 +294,6 @@ class _Viewer:
         return self._shader(
             name,
             algorithm,
-            target=target,
             size=size,
             channels=channels,
             names=names,
