@@ -125,16 +125,14 @@ class Techniques:
         """Return what ``use`` names, as ``read_technique`` does."""
         named = (use, folder, root) if use.startswith("./") else (use, GLSL, GLSL)
         if named not in self.techniques:
-            self.techniques[named] = self._read(*_locate(use, folder, root), use)
+            path, limit = _locate(use, folder, root)
+            is_graph = path.suffix == ".toml"
+            technique = self.graph(path, use, limit) if is_graph else self.shader(path, limit)
+            if technique is None:
+                message = "it has no #pragma kernel, source or draw to run"
+                raise SketchError(f"'{use}' is a library file: {message}")
+            self.techniques[named] = technique
         return self.techniques[named]
-
-    def _read(self, path: Path, limit: Path, use: str) -> Technique:
-        if path.suffix == ".toml":
-            return self.graph(path, use, limit)
-        technique = self.shader(path, limit)
-        if technique is None:
-            raise SketchError(f"'{use}' is a library file: it has no #pragma kernel, source or draw to run")
-        return technique
 
     def shader(self, path: Path, folder: Path, dialect: str = "") -> Technique | None:
         """Return a shader file's kernel, or the passes of another tool's shader; None for a library file.
