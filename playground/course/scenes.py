@@ -20,8 +20,7 @@ from playground.sketch.map_sketch import Map
 from playground.sketch.model import MAX_SIDE, Shot, Sketch, Value
 from playground.sketch.replace_technique import with_texts
 from playground.sketch.techniques import Techniques
-from playground.sketch.toml_graph import read_set
-from playground.sketch.toml_sketch import read_camera, read_steps
+from playground.sketch.toml_sketch import read_camera, read_set, read_steps
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.toml_text import KeyPath
 

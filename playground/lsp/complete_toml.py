@@ -15,7 +15,7 @@ from playground.sketch.assign import all_paths, find_targets
 from playground.sketch.find import shipped_names
 from playground.sketch.keyframes import EASES
 from playground.sketch.model import Parameter, Technique
-from playground.sketch.toml_graph import TECHNIQUE_KEYS
+from playground.sketch.toml_sketch import TECHNIQUE_KEYS
 from playground.sketch.wiring import input_names, output_names
 
 _CHOICES: dict[str, tuple[object, ...]] = {

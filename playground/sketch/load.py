@@ -47,8 +47,7 @@ from playground.sketch.techniques import (
     read_technique,
     technique_beside,
 )
-from playground.sketch.toml_graph import TECHNIQUE_KEYS
-from playground.sketch.toml_sketch import SKETCH_KEYS, read_sketch
+from playground.sketch.toml_sketch import SKETCH_KEYS, TECHNIQUE_KEYS, read_sketch
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.toml_text import text_of
 from playground.sketch.wiring import output_names

@@ -37,7 +37,7 @@ from playground.sketch.model import (
     Technique,
     TexelKernel,
 )
-from playground.sketch.toml_graph import read_graph
+from playground.sketch.toml_sketch import read_graph
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.variants import check_shape, content_of, verified, without_variants
 from playground.sketch.wiring import outputs_with_formats
