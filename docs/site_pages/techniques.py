@@ -12,9 +12,8 @@ from playground.commands.entries import techniques as listed
 from playground.paths import GLSL
 from playground.shader.kernel import Variant
 from playground.sketch.model import Graph, Kernel, Technique, kernels_of
-from playground.sketch.presence import deciding_inputs, form_of
 from playground.sketch.techniques import Techniques
-from playground.sketch.wiring import input_names
+from playground.sketch.wiring import deciding_inputs, form_of, input_names
 
 from .markdown import code, escaped, fenced, folded, table
 from .shots import picture_of

@@ -23,7 +23,7 @@ from playground.engine.results import UNWIRED, Result
 from playground.engine.software import Choices
 from playground.shader import expressions
 from playground.shader.expressions import ExpressionError, Number
-from playground.shader.options import Buffer
+from playground.shader.kernel import Buffer
 from playground.shader.wrap import COMPUTE
 from playground.sketch.model import ComputeVariant
 

@@ -197,8 +197,7 @@ def _readers(plan: Plan, source: Step) -> str:
 
 def _wired(plan: Plan, step: Step) -> set[str]:
     """Return the inputs that something feeds besides the stand-ins that another tool's shader comes with."""
-    from playground.shader.dialects.foreign import STAND_INS
-    from playground.shader.dialects.passes import stand_in_paths
+    from playground.shader.dialects.foreign import STAND_INS, stand_in_paths
 
     def is_stand_in(name: str, source: Source) -> bool:
         if not isinstance(source, Ref) or source.path not in stand_in_paths(step.path, name):

@@ -16,9 +16,8 @@ from playground.lsp.names import locals_of
 from playground.lsp.shader import Shader, is_code, library_declared, shader_of, word_at
 from playground.paths import GLSL, SKETCHES
 from playground.shader.header import FALLBACKS, MODIFIERS
-from playground.shader.kernel import PRAGMAS, options_of
+from playground.shader.kernel import FORMATS, PRAGMAS, Option, options_of
 from playground.shader.libraries import libraries
-from playground.shader.options import FORMATS, Option
 from playground.shader.outline import code_of
 from playground.shader.reserved_names import GLSL_WORDS
 from playground.shader.widgets import WIDGETS

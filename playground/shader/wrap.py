@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from playground.errors import ShaderError
 from playground.shader.kernel import (
     DRIVERS,
+    Buffer,
     ComputeVariant,
     Draw,
     ForeignShader,
@@ -24,7 +25,6 @@ from playground.shader.kernel import (
     TexelKernel,
     VertexShader,
 )
-from playground.shader.options import Buffer
 from playground.shader.outline import outline
 from playground.shader.own_shaders import TRIANGLE, own_part
 from playground.shader.reserved_names import (

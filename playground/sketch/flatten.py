@@ -4,7 +4,7 @@ The result names no sizes and no pixels: ``engine.plan`` adds those. Wiring foll
 rule at every level: an input takes what its pass wires, else what the technique's own
 caller wires through ``[inputs]``, else the latest earlier pass of its name, else the
 latest earlier pass with an output of its name, but for an input that decides which passes
-are there (see ``presence``). What is wired to a path inside a technique
+are there (see ``wiring``). What is wired to a path inside a technique
 wins over what is wired to its export.
 
 Every technique is in its canonical form; ``substitution`` puts fast variants in place of some.
@@ -26,14 +26,14 @@ from playground.errors import SketchError, nearest
 from playground.memo import GRAPHS
 from playground.paths import shown
 from playground.shader.expressions import counts_frames, follows_time
-from playground.shader.kernel_cache import replaced
+from playground.shader.header import replaced
 from playground.shader.reserved_names import CLOCKED
 from playground.sketch.assign import effective_values, find_targets, resolve, why_absent
 from playground.sketch.flat import Fed, Flat, GraphShape, Leaf, Loop, Node, Ref, Source, leaves_of
 from playground.sketch.follows import follow, rules_of
 from playground.sketch.model import Graph, Kernel, PassSpec, PlainFragment, Sketch, Technique
-from playground.sketch.presence import deciding_inputs
 from playground.sketch.wiring import (
+    deciding_inputs,
     initial_names,
     inner,
     input_names,

@@ -42,7 +42,7 @@ from playground.shader.widgets import Value as Value
 from playground.sketch.assign import TERRAIN_KEYS, check_value
 from playground.sketch.keyframes import Keyframe as Keyframe
 from playground.sketch.keyframes import at
-from playground.sketch.presence import as_wired
+from playground.sketch.wiring import as_wired
 
 Given = str | int | Mapping[str, object]
 

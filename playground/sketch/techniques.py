@@ -23,8 +23,8 @@ from playground.errors import PlaygroundError, ShaderError, SketchError, nearest
 from playground.files import irregularity
 from playground.paths import GLSL, shown
 from playground.shader.dialects import EXPORT, OWN, is_export, read_foreign
+from playground.shader.header import parsed_kernel, replaced
 from playground.shader.kernel import Variant
-from playground.shader.kernel_cache import parsed_kernel, replaced
 from playground.shader.source import EncodingError
 from playground.sketch.find import shipped_names
 from playground.sketch.model import (

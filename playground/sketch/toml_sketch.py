@@ -12,8 +12,7 @@ from typing import Any
 from playground.allowed_files import is_absolute, is_variant, leads_outside
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, shown
-from playground.shader.kernel import Export
-from playground.shader.options import read_agreement
+from playground.shader.kernel import Export, read_agreement
 from playground.shader.parameter import coerce, spell
 from playground.sketch import toml_table, wiring
 from playground.sketch.assign import (
@@ -45,10 +44,9 @@ from playground.sketch.model import (
     Value,
     tolerance_of,
 )
-from playground.sketch.presence import sources_of
 from playground.sketch.toml_table import CAMERA, KEYFRAME, TomlFile
 from playground.sketch.toml_text import KeyPath
-from playground.sketch.wiring import check_graph
+from playground.sketch.wiring import check_graph, sources_of
 
 TECHNIQUE_KEYS = tuple(key for key in toml_table.TECHNIQUE if key not in toml_table.SKETCH)
 """What a technique's TOML may hold and a sketch's may not."""

@@ -30,8 +30,7 @@ from playground.errors import SketchError, nearest
 from playground.json_text import read_json
 from playground.memo import FILES, GRAPHS
 from playground.paths import GLSL, shown
-from playground.shader.kernel import Variant, with_inner
-from playground.shader.options import Bound
+from playground.shader.kernel import Bound, Variant, with_inner
 from playground.shader.source import read_text
 from playground.sketch.model import (
     VARIANTS,

@@ -52,7 +52,6 @@ from playground.sketch.model import (
     Technique,
     kernels_of,
 )
-from playground.sketch.presence import deciding_inputs, form_of, missing_input
 from playground.sketch.substitution import omitted
 from playground.sketch.techniques import (
     Techniques,
@@ -71,6 +70,7 @@ from playground.sketch.variants import (
     without_variants,
 )
 from playground.sketch.warnings import warnings_of_sketch
+from playground.sketch.wiring import deciding_inputs, form_of, missing_input
 from playground.verify.standalone import standalone_sketch, with_pictures
 from playground.verify.warnings import kernel_warnings, shadowed_by_files, warnings_of_kernel
 

@@ -22,8 +22,7 @@ from playground.errors import PlaygroundError, SketchError, nearest
 from playground.files import write_file
 from playground.paths import GLSL, shown
 from playground.shader import expressions
-from playground.shader.kernel import Variant, with_inner
-from playground.shader.options import Bound, bound_of
+from playground.shader.kernel import Bound, Variant, bound_of, with_inner
 from playground.sketch.assign import all_paths, resolve
 from playground.sketch.find import find, shipped_names, shipped_sketches
 from playground.sketch.load import load

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.shader.options import FORMATS
+from playground.shader.kernel import FORMATS
 
 from ..sketch_texts import passes
 

@@ -19,7 +19,7 @@ from playground.engine.textures import (
     write_texture,
 )
 from playground.errors import ContextError
-from playground.shader.options import FORMATS
+from playground.shader.kernel import FORMATS
 
 from ..cases import each
 

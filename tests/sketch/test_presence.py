@@ -10,9 +10,8 @@ from playground.errors import ParameterError, SketchError
 from playground.paths import GLSL
 from playground.sketch.assign import shown_parameters
 from playground.sketch.flatten import flatten
-from playground.sketch.presence import as_wired, deciding_inputs, form_of, missing_input
 from playground.sketch.techniques import read_technique
-from playground.sketch.wiring import input_names
+from playground.sketch.wiring import as_wired, deciding_inputs, form_of, input_names, missing_input
 
 NUMBER = """
 #pragma kernel(output = "{name}:r32f")

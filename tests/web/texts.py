@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from playground.paths import GLSL
-from playground.shader.kernel_cache import parsed_kernel
+from playground.shader.header import parsed_kernel
 from playground.sketch.model import Kernel
 
 

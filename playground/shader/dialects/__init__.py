@@ -20,8 +20,7 @@ from playground.shader.kernel import Graph
 from playground.shader.source import read_text
 
 if TYPE_CHECKING:
-    from playground.shader.dialects.foreign import Files, Made, Shader
-    from playground.shader.dialects.passes import Read
+    from playground.shader.dialects.foreign import Files, Made, Read, Shader
 
 OWN = "own"
 EXPORT = ".json"
@@ -138,8 +137,7 @@ def read_foreign(
 
     Raises ``SketchError`` or ``ShaderError`` for what is wrong in the text.
     """
-    from playground.shader.dialects.foreign import Files
-    from playground.shader.dialects.passes import graph_of_shaders
+    from playground.shader.dialects.foreign import Files, graph_of_shaders
 
     key = (read_foreign, path, root, dialect)
     cached: tuple[Graph | None, Files] | None = FILES.get(key) if not instead else None

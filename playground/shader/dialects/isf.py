@@ -23,8 +23,16 @@ from playground.paths import shown
 from playground.shader import expressions
 from playground.shader.declarations import is_declared, uniforms
 from playground.shader.dialects.es import Rewritten, rewritten
-from playground.shader.dialects.foreign import STAND_INS, Files, Names, Rules, Shader, ShaderChannel, stand_in
-from playground.shader.dialects.passes import VIEW
+from playground.shader.dialects.foreign import (
+    STAND_INS,
+    VIEW,
+    Files,
+    Names,
+    Rules,
+    Shader,
+    ShaderChannel,
+    stand_in,
+)
 from playground.shader.expressions import MAX_LETTERS, ExpressionError
 from playground.shader.header import with_axes
 from playground.shader.parameter import Parameter, Sampling, spell

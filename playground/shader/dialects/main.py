@@ -17,8 +17,7 @@ from functools import cached_property
 from playground.shader.declarations import uniforms, vertex_outputs
 from playground.shader.dialects import shadertoy
 from playground.shader.dialects.es import Rewritten, rewritten, version_of
-from playground.shader.dialects.foreign import Files, Made, Names, Rules, Shader, ShaderChannel
-from playground.shader.dialects.passes import VIEW
+from playground.shader.dialects.foreign import VIEW, Files, Made, Names, Rules, Shader, ShaderChannel
 from playground.shader.parameter import Sampling
 from playground.shader.preprocessor import WEBGL, Conditions, live_source, macros_of
 from playground.shader.reserved_names import DEPTH, PLAIN_UNIFORMS, SIZES, VALUE

@@ -21,6 +21,7 @@ from playground.errors import ShaderError, nearest
 from playground.shader.declarations import Declarations, is_declared
 from playground.shader.dialects.es import rewritten
 from playground.shader.dialects.foreign import (
+    VIEW,
     Files,
     Names,
     Rules,
@@ -28,7 +29,6 @@ from playground.shader.dialects.foreign import (
     ShaderChannel,
     picture_parameter,
 )
-from playground.shader.dialects.passes import VIEW
 from playground.shader.parameter import Sampling, spell
 from playground.shader.preprocessor import WEBGL_2, Token, live_source, readings
 from playground.shader.reserved_names import SIZES

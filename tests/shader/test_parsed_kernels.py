@@ -7,7 +7,7 @@ import os
 import pytest
 
 from playground.errors import ShaderError
-from playground.shader.kernel_cache import parsed_kernel
+from playground.shader.header import parsed_kernel
 from playground.sketch.techniques import read_kernel
 
 KERNEL = """#include "part.glsl"
