@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
-from playground.engine.cache_keys import Keys
+from playground.engine.cache_keys import Keys, StepKey
 from playground.engine.plan import Plan
 from playground.engine.results import Result
 from playground.engine.runner import Runner
@@ -34,8 +34,7 @@ class FrameRecord:
         See ``StepKey.difference``; ("the pass",) where that frame had none of this path, nothing where the
         key is the same: its textures had been dropped.
         """
-        before = self.before.steps.get(path)
-        return ("the pass",) if before is None else self.keys.steps[path].difference(before)
+        return _reasons(self.keys.steps[path], self.before.steps.get(path))
 
     def plus(self, before: FrameRecord) -> FrameRecord:
         """Return the record with the counts of an earlier drawing of the same frame added."""
@@ -49,15 +48,25 @@ class FrameRecord:
         )
 
     def counted_as(self, other: FrameRecord) -> FrameRecord:
-        """Return the record with the counts of another frame."""
+        """Return the record with the counts of another frame, and why passes ran for it."""
         return replace(
             self,
+            before=other.before,
             ran=other.ran,
             iterations=other.iterations,
             texels=other.texels,
             times=other.times,
             triangles=other.triangles,
         )
+
+
+def _reasons(key: StepKey, before: StepKey | None) -> tuple[str, ...]:
+    return ("the pass",) if before is None else key.difference(before)
+
+
+def why(key: StepKey, before: StepKey | None) -> str:
+    """Return as text why a step ran that had another key, or none, in the frame before."""
+    return ", ".join(_reasons(key, before)) or "its textures were dropped"
 
 
 class FrameSource(Protocol):

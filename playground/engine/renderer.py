@@ -31,7 +31,7 @@ from playground.engine.context import (
 from playground.engine.disk_caching import DiskCaching, choose
 from playground.engine.execution import Execution, last_uses, would_run
 from playground.engine.eye_height import EyeHeight
-from playground.engine.frame_record import FrameRecord
+from playground.engine.frame_record import FrameRecord, why
 from playground.engine.gl_calls import Timer
 from playground.engine.non_finite import FiniteCheck, NotFinite
 from playground.engine.painted_images import PaintedFiles
@@ -373,8 +373,9 @@ class Renderer:
         self.runs[step.path] += 1
         record.ran.append(step.path)
         if iteration is None and _log.isEnabledFor(logging.DEBUG):
-            why = ", ".join(record.reasons(step.path)) or "its textures were dropped"
-            _log.debug("ran %s: %s", step.path, why)
+            _log.debug(
+                "ran %s: %s", step.path, why(record.keys.steps[step.path], record.before.steps.get(step.path))
+            )
         steps = max((result.settled or step.repeat) - first, 0)
         record.iterations[step.path] += steps
         record.texels += step.size[0] * step.size[1] * max(steps, 1)

@@ -52,10 +52,16 @@ def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: T
         if changed:
             session.drafts.run_plain(plain)
     own = {spec.name for spec in sketch.graph.passes}
-    ran, idle = theme.colour(theme.ACCENT), theme.colour(theme.INK)
+
+    def name(path: str) -> None:
+        ran = path in engine.record.ran
+        imgui.text_colored(theme.colour(theme.ACCENT if ran else theme.INK), path)
+        if why := inspection.reasons.text(path):
+            imgui.set_item_tooltip(why)
+
     rows = [
         (
-            partial(imgui.text_colored, ran if path in engine.record.ran else idle, path),
+            partial(name, path),
             partial(imgui.text_disabled, f"{runs} ×"),
             partial(imgui.text, f"{session.times[path]:.2f} ms" if path in session.times else ""),
         )

@@ -25,6 +25,7 @@ from playground.workbench.channels import channels
 from playground.workbench.commands import Commands
 from playground.workbench.edits import Draft
 from playground.workbench.inspect.pass_graph import cost_of
+from playground.workbench.inspect.run_reasons import RunReasons
 from playground.workbench.open_files import OpenFiles, editor_name
 from playground.workbench.parameter_list import Group, Item, Section
 from playground.workbench.session import Session
@@ -53,7 +54,8 @@ class Sections:
         if memory.filter and not sections:
             imgui.text_disabled("no parameter is like that")
         rows = Rows(session, bench.notices, memory, bench.interface.ahead, values, look, bench.controllers)
-        drawing = _Drawing(Path(sketch.folder), rows, bench.commands, bench.files)
+        reasons = bench.inspection.reasons
+        drawing = _Drawing(Path(sketch.folder), rows, bench.commands, bench.files, reasons)
         main = memory.listing.main(draft) if not memory.filter else ()
         if main:
             drawing.main(main)
@@ -111,6 +113,7 @@ class _Drawing:
     rows: Rows
     commands: Commands
     files: OpenFiles
+    reasons: RunReasons
 
     @property
     def memory(self) -> Memory:
@@ -151,9 +154,9 @@ class _Drawing:
             position, theme.packed(theme.ACCENT if ran else theme.DIM), text
         )
         if imgui.is_item_hovered():
-            imgui.set_tooltip(
-                "How often its kernels ran; green: for this very picture\nRight click: its files"
-            )
+            lines = ["How often its kernels ran; green: for this very picture"]
+            lines += [self.reasons.text(spec.name), "Right click: its files"]
+            imgui.set_tooltip("\n".join(filter(None, lines)))
         _files(spec, self.files)
         if section is not None:
             self._reset(spec.name, section.items)

@@ -7,10 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from imgui_bundle import implot
+from imgui_bundle import imgui, implot
 
+from playground.engine.cache_keys import Keys, StepKey
 from playground.engine.engine import Engine
+from playground.engine.frame_record import FrameRecord
 from playground.workbench.inspect.frame_costs import Record
+from playground.workbench.inspect.run_reasons import RunReasons
 
 from ..variants import trust
 from .desk import Bare
@@ -144,3 +147,40 @@ def test_the_switch_runs_the_plain_form_and_is_there_only_where_there_is_another
         assert bare.session.drafts.plain == plain and bare.session.plan is not None
         assert (bare.session.plan.step("height") is not None) == plain
         assert (bare.session.plan.step("height.fast.height") is None) == plain
+
+
+def test_a_row_says_why_its_pass_ran_last(bare: Bare, monkeypatch: pytest.MonkeyPatch) -> None:
+    reasons = bare.bench.inspection.reasons
+    bare.session.drafts.set("height.level", 0.25)
+    bare.run_frames(2)
+    assert reasons.text("height") == "Last ran: value level"
+    bare.click("Cost###costs")
+    bare.session.drafts.set("height.level", 0.75)
+    bare.run_frames(2)
+    assert reasons.text("height") == "Last ran: value level"
+    assert reasons.text("view") == "Last ran: input height"
+    bare.session.drafts.set("view.grid", 9)
+    bare.run_frames(2)
+    assert reasons.text("height") == "Last ran: value level"  # it did not run for the last picture
+    assert reasons.text("view") == "Last ran: value grid"
+    tooltips: list[str] = []
+    monkeypatch.setattr(imgui, "set_item_tooltip", tooltips.append)
+    bare.run_frames()
+    assert {"Last ran: value level", "Last ran: value grid"} <= set(tooltips)
+    monkeypatch.setattr(imgui, "set_tooltip", tooltips.append)
+    bare.point("View###pass")
+    assert any("\nLast ran: value grid\n" in text for text in tooltips)
+
+
+def test_of_what_is_inside_a_technique_each_has_a_line() -> None:
+    inner = {f"light.{n}": StepKey("", "", "", "", (("value", n),)) for n in "abcdefgh"}
+    reasons = RunReasons()
+    reasons.add(FrameRecord(keys=Keys(inner), ran=[*inner, *inner]))
+    assert reasons.text("light.b") == "Last ran: the pass"
+    assert reasons.text("light").split("\n") == [
+        *(f"{n} last ran: the pass" for n in "abcdef"),
+        "and 2 more",
+    ]
+    assert reasons.text("lig") == ""
+    reasons.add(FrameRecord(keys=Keys({"view": inner["light.a"]}), ran=["view"]))
+    assert reasons.text("light") == ""  # it is in the sketch no more

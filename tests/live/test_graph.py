@@ -199,3 +199,14 @@ def test_the_panel_s_head_has_a_button_for_it_and_room_for_all(
         assert not graph.on
     finally:
         bare.close()
+
+
+def test_a_node_says_why_its_pass_ran_last(bare: Bare, monkeypatch: pytest.MonkeyPatch) -> None:
+    bare.key(imgui.Key.g)
+    bare.session.drafts.set("colour.tint", (0.1, 0.2, 0.3))
+    bare.run_frames(40)  # thumbnails are drawn meanwhile, which is no picture
+    tooltips: list[str] = []
+    monkeypatch.setattr(imgui, "set_tooltip", tooltips.append)
+    for node, why in (("height", "the pass"), ("colour", "value tint"), ("view", "input colour")):
+        bare.point(f"node {node}")
+        assert tooltips[-1].endswith(f"\nLast ran: {why}")

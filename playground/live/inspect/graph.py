@@ -11,6 +11,7 @@ from playground.live.draw import QUIET, Area, styled
 from playground.live.panel_rows import fitting
 from playground.live.theme import Theme
 from playground.workbench.inspect.pass_graph import Wiring, cost_of
+from playground.workbench.inspect.run_reasons import RunReasons
 from playground.workbench.inspect.thumbnails import Thumbnails
 from playground.workbench.inspect.toggles import Inspection
 from playground.workbench.session import Session
@@ -26,6 +27,7 @@ class _Drawing:
     wiring: Wiring
     session: Session
     thumbnails: Thumbnails
+    reasons: RunReasons
     look: Theme
     origin: ImVec2
     high: float = 0.0
@@ -52,7 +54,8 @@ def draw_graph(session: Session, inspection: Inspection, look: Theme, area: Area
             corner = imgui.get_cursor_screen_pos()
             lines = 3 if session.engine.options.profiling else 2
             high = (_THUMB + 8) * scale + lines * imgui.get_text_line_height()
-            _nodes(_Drawing(graph.wiring(sketch), session, graph.thumbnails, look, corner, high))
+            wiring, reasons = graph.wiring(sketch), inspection.reasons
+            _nodes(_Drawing(wiring, session, graph.thumbnails, reasons, look, corner, high))
         imgui.end()
 
 
@@ -94,7 +97,7 @@ def _node(node: str, ref: str, drawing: _Drawing) -> None:
         session.show(None if is_view else ref)
     hovered = imgui.is_item_hovered()
     if hovered:
-        imgui.set_tooltip(_tooltip(node, session))
+        imgui.set_tooltip("\n".join(filter(None, [_tooltip(node, session), drawing.reasons.text(node)])))
     shown = session.view.map.ref == ref if session.view.map is not None else node == "view"
     draw = imgui.get_window_draw_list()
     draw.add_rect_filled(corner, far, theme.packed(theme.RAISED if hovered else theme.FIELD), 6 * scale)

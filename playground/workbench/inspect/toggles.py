@@ -12,6 +12,7 @@ from playground.workbench.inspect.histogram import Counter
 from playground.workbench.inspect.inspector import Inspector
 from playground.workbench.inspect.legend import Colour, colours_of
 from playground.workbench.inspect.pass_graph import Wiring, wiring_of
+from playground.workbench.inspect.run_reasons import RunReasons
 from playground.workbench.inspect.thumbnails import APART, Thumbnails
 from playground.workbench.session import Session
 
@@ -63,6 +64,7 @@ class Inspection:
     session: Session
     inspector: Inspector = field(init=False)
     record: Record = field(default_factory=Record)
+    reasons: RunReasons = field(default_factory=RunReasons)
     costs_shown: bool = False  # the costs are on the screen in this frame
     counter: Counter = field(init=False)
     compare: Compare = field(init=False)
@@ -92,7 +94,10 @@ class Inspection:
         self.session.picture.needs_all_pixels = self.inspector.on
 
     def update(self) -> None:
-        """Record the costs of the last picture; passes are timed only while their times are shown."""
+        """Record the last picture: why its passes ran, and its costs.
+
+        Passes are timed only while their times are shown.
+        """
         session = self.session
         engine, before = session.engine, self._recorded
         if self.costs_shown and engine.options.profiling and session.draws != before and before >= 0:
@@ -102,6 +107,7 @@ class Inspection:
             self.record.clear()
             session.times.clear()
         engine.options.profiling = self.costs_shown
+        self.reasons.add(engine.record)
         if self.spread_shown:
             self.counter.go_on()
         else:
