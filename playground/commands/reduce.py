@@ -118,7 +118,7 @@ def reduce(
     device: options.Device = "",
 ) -> None:
     """Shrink a sketch that fails to the smallest that still fails."""
-    from playground.reduce.initial_case import Question
+    from playground.reduce.initial_case import Criterion, Question
 
     apart = read_option("--tolerance", tolerance, within(0.0, 1e9), "a number, 0 or more, as 0.01")
     most = read_option("--tries", tries, within(0, 10**9), "a whole number; 0 for no end")
@@ -138,19 +138,21 @@ def reduce(
     renderer: Renderer = ctx.obj.or_else(software, device)
     question = Question(
         sketch=moment.sketch,
-        kind=kind,
+        criterion=Criterion(
+            kind=kind,
+            pattern=_pattern(error),
+            command=command,
+            tolerance=apart or 0.0,
+            anywhere=anywhere,
+        ),
         shot=shot if kind == "shot" else "",
         frame=read_pixels(size) or moment.size or _FRAME,
         time=moment.time,
         steps=moment.steps,
         path=path,
         driver=read_driver(driver) if driver else "",
-        pattern=_pattern(error),
-        command=command,
         environment=_environment(against),
         other_device=read_device(against_device),
-        tolerance=apart or 0.0,
-        anywhere=anywhere,
         software=renderer.software,
         device=renderer.device,
         limit=seconds or 10.0,

@@ -233,7 +233,7 @@ class _Next(NamedTuple):
 
 
 def _take_daylight(engine: Engine, plot: Plot, hour: float, scene: Scene) -> None:
-    if plot.has_daylight:
+    if plot.light.has_daylight:
         scene.take_daylight(engine.texture(plot.at((0, 0), hour), "daylight"))
 
 

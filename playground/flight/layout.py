@@ -55,6 +55,16 @@ class View:
 
 
 @dataclass(frozen=True)
+class PlotLight:
+    """How a sketch lights its terrain."""
+
+    has_daylight: bool = False  # by a daylight
+    gain: float = 0.0  # what the sun's light is multiplied by
+    ambient: float = 0.0  # the same of the sky's light
+    has_visibility: bool = False  # whether the light says what of the sun is visible
+
+
+@dataclass(frozen=True)
 class Plot:
     """A sketch's terrain, cut into parts."""
 
@@ -71,15 +81,12 @@ class Plot:
     )  # pass → first texel, and texels a ground texel
     view: View = View()
     hour: str = ""  # path of the time of day; empty: the sketch has none
-    has_daylight: bool = False
-    gain: float = 0.0  # of the light: what the sun's light is multiplied by
-    ambient: float = 0.0  # the same of the sky's light
+    light: PlotLight = PlotLight()
     outdoors: dict[str, Value] | None = field(default=None, hash=False)
     """What the view sets of air and sky; None where they are not a daylight's."""
     trees: dict[str, float] | None = field(default=None, hash=False)
     """What the view sets of trees, or how they are; None where there are none."""
     density: int = 1  # [texels] to an interval
-    has_visibility: bool = False  # whether the light says what of the sun is visible
 
     @property
     def width(self) -> float:
@@ -137,13 +144,15 @@ def plot_of(sketch: Sketch, engine: Engine) -> Plot:
         shares={name: (float(apron * times), times / finest) for name, times in lit.items()},
         view=_view(sketch, leaves),
         hour=hour if _value(sketch, hour, leaves) is not None else "",
-        has_daylight=DAYLIGHT in names,
-        gain=_number(sketch, f"{LIGHT}.gain", leaves),
-        ambient=_number(sketch, f"{LIGHT}.ambient", leaves),
+        light=PlotLight(
+            has_daylight=DAYLIGHT in names,
+            gain=_number(sketch, f"{LIGHT}.gain", leaves),
+            ambient=_number(sketch, f"{LIGHT}.ambient", leaves),
+            has_visibility=_has_visibility(sketch),
+        ),
         outdoors=outdoors,
         trees=_trees(sketch, leaves, outdoors) if DENSITY in names else None,
         density=finer.get(DENSITY, 1),
-        has_visibility=_has_visibility(sketch),
     )
 
 

@@ -230,7 +230,7 @@ class Parts:
         """Cut how densely trees stand, and what of the sun is visible there."""
         self._cutter.sunny(woods)
         self._cutter.woods(woods, self.engine.texture(sketch, DENSITY), 0)
-        if self.plot.has_visibility:
+        if self.plot.light.has_visibility:
             self._cutter.woods(woods, self.engine.texture(sketch, VISIBILITY), 1)
         woods.build_mipmaps()
 
@@ -240,7 +240,7 @@ class Parts:
             return 0.0, 0.0, 0.0
         if self._sky_at is None or self._sky_at[0] != hour:
             red, green, blue = daylight_of(self.engine.read(sketch, DAYLIGHT)).sky
-            times = self.plot.ambient
+            times = self.plot.light.ambient
             self._sky_at = hour, (times * red, times * green, times * blue)
         return self._sky_at[1]
 

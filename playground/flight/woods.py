@@ -95,8 +95,8 @@ class Woods:
         values: dict[str, Any] = {name: self._trees[name] for name in names}
         values |= {"whole": whole, "reach": BEYOND * whole, "cell": self._cell, "day": light.day}
         values |= {"base": self.plot.base, "leaf_colours": self._colours(light.day)}
-        values["sun_light"] = tuple(self.plot.gain * n for n in light.sun)
-        values["sky_light"] = tuple(self.plot.ambient * n for n in light.sky)
+        values["sun_light"] = tuple(self.plot.light.gain * n for n in light.sun)
+        values["sky_light"] = tuple(self.plot.light.ambient * n for n in light.sky)
         values["level_eye"] = tuple(at - to for at, to in zip(eye, level, strict=True))
         return values | {"room": self._choose(parts, eye, lens)}
 

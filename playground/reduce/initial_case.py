@@ -40,23 +40,30 @@ KINDS = ("", "shot", "drivers", "against", "nan", "error", "crash", "hang", "com
 
 
 @dataclass(frozen=True, kw_only=True)
+class Criterion:
+    """What failing means."""
+
+    kind: str = ""  # one of KINDS
+    pattern: str = ""  # of an error's message
+    command: str = ""
+    tolerance: float = 0.0
+    anywhere: bool = False  # NaN at other texels than before counts too
+
+
+@dataclass(frozen=True, kw_only=True)
 class Question:
     """What fails, and how to look for it."""
 
     sketch: Sketch
-    kind: str = ""  # one of KINDS
+    criterion: Criterion = Criterion()
     shot: str = ""
     frame: tuple[int, int] = (64, 36)  # pixels
     time: float = 0.0  # [s]
     steps: Mapping[str, int] = field(default_factory=dict)
     path: str = ""  # the pass to look at; "": the first that fails
     driver: str = ""  # "": both, one after the other
-    pattern: str = ""  # of an error's message
-    command: str = ""
     environment: Mapping[str, str] = field(default_factory=dict)  # of the other side
     other_device: int | None = None
-    tolerance: float = 0.0
-    anywhere: bool = False  # NaN at other texels than before counts too
     software: bool = False
     device: int | None = None
     limit: float = LIMIT  # [s] a candidate
@@ -86,7 +93,7 @@ class CandidateBench:
         self._folder = Path(self._stack.enter_context(TemporaryDirectory(prefix="playground-reduce-")))
         make = {"software": question.software, "limit": question.limit}
         self.processes = [self._stack.enter_context(CandidateProcess(device=question.device, **make))]  # type: ignore[arg-type]
-        if question.kind == "against":
+        if question.criterion.kind == "against":
             device = question.device if question.other_device is None else question.other_device
             other = CandidateProcess(device=device, environment=question.environment, **make)  # type: ignore[arg-type]
             self.processes.append(self._stack.enter_context(other))
@@ -115,7 +122,7 @@ class CandidateBench:
             again = probe.find(candidate)
             if again is None or not failure.same(finding, again):
                 raise DataError(f"it fails only sometimes ({finding.kind}): one try proves nothing")
-            if question.kind == "command":
+            if question.criterion.kind == "command":
                 return InitialCase(candidate, finding, probe, ())
             renderers = tuple(self.processes[number].info for number in range(len(self.processes)))
             return InitialCase(candidate, finding, probe, renderers)
@@ -126,12 +133,12 @@ class CandidateBench:
     def _possible(self, case: Case) -> Iterator[tuple[FailureKind, Case]]:
         """Yield what may be the failure, and where, in the order in which it is looked for."""
         question = self.question
-        if question.kind == "command":
-            yield Commanded(question.command), self._chosen(case)[-1]
-        elif question.kind == "shot":
+        if question.criterion.kind == "command":
+            yield Commanded(question.criterion.command), self._chosen(case)[-1]
+        elif question.criterion.kind == "shot":
             yield self._off_reference(), case
-        elif question.kind:
-            for failure in self._failures(question.kind):
+        elif question.criterion.kind:
+            for failure in self._failures(question.criterion.kind):
                 yield from ((failure, candidate) for candidate in self._chosen(case))
         else:
             # A pass may fail in any way before the next is drawn, which may take long.
@@ -162,22 +169,22 @@ class CandidateBench:
                 "here",
                 " ".join(f"{k}={v}" for k, v in question.environment.items()) or "the other device",
             )
-            return [Differs((Side(0, driver), Side(1, driver)), names, question.tolerance)]
+            return [Differs((Side(0, driver), Side(1, driver)), names, question.criterion.tolerance)]
         compute = self.processes[0].info.compute
         if kind == "drivers":
             if not compute:
-                if question.kind:
+                if question.criterion.kind:
                     opengl = self.processes[0].info.opengl
                     raise DataError(f"this context is {opengl}; the compute driver needs 4.3")
                 return []
             sides = (Side(0, FRAGMENT), Side(0, COMPUTE))
-            return [Differs(sides, (FRAGMENT, COMPUTE), question.tolerance)]
+            return [Differs(sides, (FRAGMENT, COMPUTE), question.criterion.tolerance)]
         drivers = [question.driver] if question.driver else [FRAGMENT, *([COMPUTE] if compute else [])]
         if kind == "nan":
-            return [NotFinite(driver, question.anywhere) for driver in drivers]
+            return [NotFinite(driver, question.criterion.anywhere) for driver in drivers]
         if kind == "error":
-            return [Refused(question.pattern, driver) for driver in drivers]
-        word = kind if question.kind else ""  # a hang counts too where no kind was named
+            return [Refused(question.criterion.pattern, driver) for driver in drivers]
+        word = kind if question.criterion.kind else ""  # a hang counts too where no kind was named
         return [Died(word, driver) for driver in drivers]
 
     def _off_reference(self) -> FailureKind:
@@ -216,7 +223,7 @@ class CandidateBench:
 def _nothing(question: Question) -> str:
     """Return the message that nothing fails, in the words of the question."""
     name = question.sketch.name
-    if question.kind == "shot":
+    if question.criterion.kind == "shot":
         return (
             f"shot '{question.shot}' of {name} is off its reference, but not once its techniques are inlined;"
             " a compute shader that replaces a whole technique may be the cause: try --driver fragment"
@@ -226,9 +233,9 @@ def _nothing(question: Question) -> str:
         "drivers": "both drivers give the same",
         "against": "both sides give the same",
         "nan": "every value of every pass is finite",
-        "error": f"the compiler refuses nothing with a message that {question.pattern!r} finds",
+        "error": f"the compiler refuses nothing with a message that {question.criterion.pattern!r} finds",
         "crash": "the driver does not crash",
         "hang": f"nothing takes longer than {question.limit:g} s",
         "command": "the command says that all is well",
-    }[question.kind]
+    }[question.criterion.kind]
     return f"{name} does not fail: {nothing}"

@@ -130,7 +130,7 @@ def to_reproduce(question: Question, folder: Path, case: Case, failure: FailureK
     ending = ".npy" if look else ".png"
     lines = []
     for index, side in enumerate(failure.sides):
-        other = index > 0 and question.kind == "against"
+        other = index > 0 and question.criterion.kind == "against"
         pairs = question.environment.items() if other else ()
         device = question.other_device if other and question.other_device is not None else question.device
         before = "".join(f"{key}={quoted(value)} " for key, value in pairs)

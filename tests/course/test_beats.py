@@ -70,7 +70,7 @@ def test_no_beat_has_more_to_read_than_a_class_can(language: str) -> None:
             where = f"{lesson.name}: {beat}"
             text = beat.shown.split("\n\n")[0]
             assert words(text) <= MAX_WORDS or len(sentences(text)) == 1, where
-            assert beat.code.count("\n") < CODE_LINES, where
+            assert beat.code is None or beat.code.text.count("\n") < CODE_LINES, where
             items = beat.board.count("\n") + 1 if beat.board.lstrip()[:1] in "-*|" else 1
             assert words(beat.board) <= BOARD_WORDS or items == 1, where
             assert beat.shown or beat.has_board, where
@@ -100,7 +100,7 @@ def test_answers_and_fixes_come_after_what_asks_for_them(language: str) -> None:
                 assert beat.right < 0 or beat.board != early, block.name
         for block in lesson.blocks:
             if isinstance(block, Code):
-                parts = [beat.code for beat in beats if beat.kind == "code" and beat.file == block.file]
+                parts = [beat.code.text for beat in beats if beat.code and beat.code.file == block.file]
                 assert excerpt(block.file, block.anchor).text in "\n".join(parts), block.name
 
 

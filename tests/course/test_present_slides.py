@@ -11,7 +11,7 @@ import pytest
 from playground.course.library import LANGUAGES
 from playground.course.read import read_lesson, summaries
 from playground.course.scenes import Sketches
-from playground.course.talk.beat import Beat
+from playground.course.talk.beat import Beat, Listing
 from playground.course.talk.beats import beats_of
 from playground.course.talk.faces import Face
 from playground.course.talk.slide import (
@@ -46,8 +46,8 @@ def test_every_beat_of_every_lesson_fits_in_large_letters(language: str) -> None
         body = body_of(beat, FULL_HD)
         if body is not None:
             assert body.size >= MIN_LETTER_HEIGHT and body.height <= high and body.width <= wide + 1, where
-        if beat.code:
-            assert code_size(beat, FULL_HD) >= MIN_LETTER_HEIGHT, where
+        if beat.code is not None:
+            assert code_size(beat.code, FULL_HD) >= MIN_LETTER_HEIGHT, where
         elif beat.has_board:
             board = board_text(beat, FULL_HD)
             assert board.size >= MIN_LETTER_HEIGHT and board.height <= FULL_HD.picture[1], where
@@ -70,8 +70,9 @@ def test_letters_grow_with_the_screen(size: tuple[int, int]) -> None:
 
 def test_code_of_a_hundred_columns_is_whole_at_its_full_width() -> None:
     line = "vec3 " + "a" * 94 + ";"
-    beat = Beat("code", 0, "", code="\n".join([line] * 20), file="x.glsl", line=101)
-    size = code_size(beat, FULL_HD)
+    code = Listing("\n".join([line] * 20), "x.glsl", 101)
+    beat = Beat("code", 0, "", code=code)
+    size = code_size(code, FULL_HD)
     assert size >= MIN_LETTER_HEIGHT
     image = board_of(beat, FULL_HD)
     assert image is not None

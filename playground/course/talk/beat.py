@@ -24,6 +24,15 @@ class Still:
 
 
 @dataclass(frozen=True)
+class Listing:
+    """Code, and where it is from."""
+
+    text: str
+    file: str = ""  # in glsl/
+    line: int = 0  # of the first line there; 0: lines have no numbers
+
+
+@dataclass(frozen=True)
 class Beat:
     """What is on the screen between two presses of Next."""
 
@@ -35,9 +44,7 @@ class Beat:
     shown: Markdown = ""  # in the strip
     board: Markdown = ""  # over the picture
     formula: Markdown = ""  # over the picture's lower part
-    code: str = ""  # over the picture
-    file: str = ""  # that the code is from, in glsl/
-    line: int = 0  # of the code's first line there
+    code: Listing | None = None  # over the picture
     choices: tuple[Markdown, ...] = ()  # over the picture, below the board's text
     right: int = -1  # of the choices, where the answer is shown
     names: tuple[str, ...] = ()  # of the pictures of a comparison that is shown: one, or two
@@ -49,7 +56,7 @@ class Beat:
     @property
     def has_board(self) -> bool:
         """Whether something stands over the picture."""
-        return bool(self.board or self.code or self.choices)
+        return bool(self.board or self.code is not None or self.choices)
 
 
 def texts_of_beat(beat: Beat) -> tuple[Markdown, ...]:

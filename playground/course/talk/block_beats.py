@@ -24,7 +24,7 @@ from playground.course.model import (
     Steps,
 )
 from playground.course.scenes import comparable
-from playground.course.talk.beat import BOTH, Beat, Still
+from playground.course.talk.beat import BOTH, Beat, Listing, Still
 from playground.course.talk.labels import labels_of
 from playground.course.talk.sentences import shown_of, words
 
@@ -83,7 +83,7 @@ def _prose(block: Prose, formula: Markdown) -> Iterator[Beat]:
     if block.kind == "code":
         lines = [line for line in text.strip().split("\n") if not line.startswith("```")]
         for shared in _shared(lines):
-            yield Beat("code", 0, "", code="\n".join(shared))
+            yield Beat("code", 0, "", code=Listing("\n".join(shared)))
     elif block.kind == "list":
         for part in _listed(text):
             yield Beat("board", 0, "", board=part, notes=part)
@@ -155,8 +155,8 @@ def _code(block: Code, label: str) -> Iterator[Beat]:
         name = excerpt_text.file
         if len(parts) > 1:
             name += f", {label.format(number + 1, len(parts))}"
-        beat = _told("code", block.caption, label=name, file=excerpt_text.file)
-        beat = replace(beat, code="\n".join(part), line=line)
+        code = Listing("\n".join(part), excerpt_text.file, line)
+        beat = _told("code", block.caption, label=name, code=code)
         line += len(part)
         yield beat if number == 0 else replace(beat, notes="")
 

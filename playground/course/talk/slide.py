@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from PIL import Image, ImageDraw
 
-from playground.course.talk.beat import Beat
+from playground.course.talk.beat import Beat, Listing
 from playground.course.talk.code_colours import coloured
 from playground.course.talk.faces import Face
 from playground.course.talk.typeset import (
@@ -125,8 +125,8 @@ def board_of(beat: Beat, sizes: Sizes) -> Image.Image | None:
     width, height = sizes.picture
     if beat.has_board:
         image = Image.new("RGBA", (width, height), (*_GROUND, _BOARD_ALPHA))
-        if beat.code:
-            _code(image, beat, sizes)
+        if beat.code is not None:
+            _code(image, beat.code, sizes)
         else:
             board_text(beat, sizes).paint(image, *_centred(board_text(beat, sizes), sizes))
         return image
@@ -152,11 +152,11 @@ def board_text(beat: Beat, sizes: Sizes) -> Laid:
     return fitted(words, (_TITLE * scale, MIN_LETTER_HEIGHT * scale), _board_room(sizes))
 
 
-def code_size(beat: Beat, sizes: Sizes) -> float:
-    """Return a code beat's letter height [pixels], as large as fits; maybe below ``MIN_LETTER_HEIGHT``."""
+def code_size(code: Listing, sizes: Sizes) -> float:
+    """Return a listing's letter height [pixels], as large as fits; maybe below ``MIN_LETTER_HEIGHT``."""
     scale = sizes.scale
     wide, high = _board_room(sizes)
-    lines = beat.code.split("\n")
+    lines = code.text.split("\n")
     columns = max(map(len, lines)) + _NUMBERS + 1
     per_pixel = Face("code", 100.0).width("m") / 100.0
     across = wide / columns
@@ -223,20 +223,20 @@ def help_of(rows: tuple[tuple[str, str], ...], sizes: Sizes) -> Image.Image:
     return image
 
 
-def _code(image: Image.Image, beat: Beat, sizes: Sizes) -> None:
-    size = code_size(beat, sizes)
+def _code(image: Image.Image, code: Listing, sizes: Sizes) -> None:
+    size = code_size(code, sizes)
     face, draw = Face("code", size), ImageDraw.Draw(image)
     letter = face.width("m")
-    lines = coloured(beat.code)
+    lines = coloured(code.text)
     wide, high = sizes.picture
-    columns = max(map(len, beat.code.split("\n"))) + (_NUMBERS + 1 if beat.line else 0)
+    columns = max(map(len, code.text.split("\n"))) + (_NUMBERS + 1 if code.line else 0)
     left = max((wide - columns * letter) / 2, _SIDE * sizes.scale)
     top = (high - len(lines) * size * _SPACING) / 2
     for number, line in enumerate(lines):
         baseline = top + (number + 0.78) * size * _SPACING
         x = left
-        if beat.line:
-            mark = str(beat.line + number)
+        if code.line:
+            mark = str(code.line + number)
             paint_text(draw, mark, (x + (_NUMBERS - len(mark)) * letter, baseline), face, DIM)
             x += (_NUMBERS + 1) * letter
         for text, ink in line:

@@ -43,7 +43,7 @@ def read_of(beat: Beat) -> Markdown:
 
 def seconds_of(beat: Beat) -> float:
     """Return how long a beat is on [s], by what there is to read."""
-    lines = beat.code.count("\n") + 1 if beat.code else 0
+    lines = beat.code.text.count("\n") + 1 if beat.code is not None else 0
     return max(words(read_of(beat)) * 60 / WORDS_A_MINUTE + lines * _CODE_LINE, MIN_SECONDS)
 
 

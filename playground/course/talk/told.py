@@ -40,8 +40,8 @@ def html_of(beat: Beat) -> str:
     if beat.choices and beat.board:
         parts.append(_html(beat.board))
     parts.append(_html(beat.notes or beat.shown))
-    if beat.code:
-        parts.append(str(code_block(beat.code, beat.file or "code")))
+    if beat.code is not None:
+        parts.append(str(code_block(beat.code.text, beat.code.file or "code")))
     return "".join(parts)
 
 
@@ -49,7 +49,8 @@ def _coming(beat: Beat | None) -> str:
     if beat is None:
         return ""
     label = f"**{beat.label}.** " if beat.label else ""
-    return _html(f"{label}{beat.shown or beat.board or beat.file}")
+    file = beat.code.file if beat.code is not None else ""
+    return _html(f"{label}{beat.shown or beat.board or file}")
 
 
 def _html(words: str) -> str:
