@@ -6,10 +6,10 @@ sRGB (`playground.shader.parameter` does), applies ICC profiles, or knows of met
 (`playground.data.elevation` does). Other files of numbers are read by `playground.data.arrays` and
 written by `playground.data.values`.
 
-16-bit PNG: Pillow keeps the precision of grey but not of colour. Reading colour therefore asks Pillow's
-decoder for the high bytes, then for the low bytes; writing is done here, since a PNG without adaptive filters
-is four chunks (W3C PNG specification, third edition, 2025, clauses 5, 9 and 11). TIFFs of 16 bits, or of
-numbers, are tifffile's; those of 8 bits and fewer, with palettes and other colour spaces, are Pillow's.
+16-bit PNG: Pillow keeps the precision of grey but not of colour, which GDAL reads; writing is done here,
+since a PNG without adaptive filters is four chunks (W3C PNG specification, third edition, 2025, clauses 5,
+9 and 11). TIFFs of 16 bits, or of numbers, are tifffile's; those of 8 bits and fewer, with palettes and other
+colour spaces, are Pillow's.
 Source: TIFF 6.0 (Adobe 1992), sections 8 and 18 for photometry and alpha, tag 274 for the orientation.
 
 WebP and TIFF lose nothing. JPEG has no alpha and loses a little; its colours keep their full resolution.
@@ -35,6 +35,7 @@ from numpy.typing import NDArray
 
 from playground.data.bounds import refuse_bomb, refuse_too_many, webp_size
 from playground.data.content_hash import content_key
+from playground.data.place import gdal
 from playground.errors import DataError
 from playground.files import checked_file, reading, reason, write_file
 from playground.memo import FILES
@@ -237,7 +238,7 @@ def read_image(path: str | Path) -> Image:
     """
     path = checked_file(path)
     with reading(path) as handle:
-        depth, _ = _png_header(handle)
+        depth = _png_depth(handle)
         pixels: NDArray[np.uint8] | NDArray[np.float32]
         if is_deep_tiff(handle):
             deep = tiff_samples(handle, path)
@@ -265,7 +266,7 @@ def read_png(path: str | Path) -> tuple[NDArray[np.uint8], dict[str, str]]:
     """
     path = checked_file(path)
     with reading(path) as handle:
-        depth, _ = _png_header(handle)
+        depth = _png_depth(handle)
         if not depth:
             raise DataError("not a PNG file; expected one, as write_png makes them", file=path)
         picture = open_picture(handle, path)
@@ -287,7 +288,7 @@ def read_samples(path: str | Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
     """
     path = checked_file(path)
     with reading(path) as handle:
-        if not _png_header(handle)[0]:
+        if not _png_depth(handle):
             raise DataError("not a PNG file, despite its name; expected one", file=path)
         return _png_samples(handle, path)
 
@@ -303,18 +304,18 @@ def read_texts(path: str | Path) -> dict[str, str]:
         return {str(k): v for k, v in open_picture(handle, path).info.items() if isinstance(v, str)}
 
 
-def _png_header(handle: BinaryIO) -> tuple[int, int]:
-    # (bit depth, colour type), (0, 0) for what is not a PNG; leaves the handle at the start.
+def _png_depth(handle: BinaryIO) -> int:
+    """Return the bits of a number of a PNG, 0 for what is not one; leaves the handle at the start."""
     start = handle.read(26)
     handle.seek(0)
-    return (start[24], start[25]) if start.startswith(PNG_START) and len(start) == 26 else (0, 0)
+    return start[24] if start.startswith(PNG_START) and len(start) == 26 else 0
 
 
 def open_picture(handle: BinaryIO, path: Path) -> _Picture:
     """Open a picture that is being read, and judge its size; its pixels are not decoded yet."""
     import PIL.Image
 
-    depth = _png_header(handle)[0]
+    depth = _png_depth(handle)
     size = webp_size(handle.read(30))
     handle.seek(0)
     if size is not None:
@@ -344,10 +345,11 @@ def _eight_bit(picture: _Picture) -> NDArray[np.uint8]:
 
 
 def _png_samples(handle: BinaryIO, path: Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
-    depth, kind = _png_header(handle)
+    depth = _png_depth(handle)
     picture = open_picture(handle, path)
     if depth == 16:
-        return _sixteen_bit(handle, path, picture, kind)
+        grey = picture.mode.startswith("I")
+        return np.array(picture, dtype=np.uint16)[..., None] if grey else _sixteen_bit(handle)
     if picture.mode == "P":
         picture = picture.convert("RGBA" if "transparency" in picture.info else "RGB")
     elif picture.mode == "1":
@@ -356,28 +358,13 @@ def _png_samples(handle: BinaryIO, path: Path) -> NDArray[np.uint8] | NDArray[np
     return samples.reshape(*samples.shape[:2], -1)
 
 
-def _sixteen_bit(handle: BinaryIO, path: Path, picture: _Picture, kind: int) -> NDArray[np.uint16]:
-    if kind == 0:
-        return np.array(picture, dtype=np.uint16)[..., None]
-    if kind == 4:  # grey and alpha: the four bytes of a pixel pass for RGBA
-        pairs = np.ascontiguousarray(_decoded(picture, "RGBA", "RGBA")).view(">u2")
-        return pairs.astype(np.uint16)
-    mode = "RGB" if kind == 2 else "RGBA"
-    # Unpackers made for the two byte orders: on the same file they give either byte.
-    high = _decoded(picture, mode, f"{mode};16B").astype(np.uint16)
+def _sixteen_bit(handle: BinaryIO) -> NDArray[np.uint16]:
+    """Return the numbers of a PNG of 16 bits and several channels, whose size has been judged."""
+    from rasterio.io import MemoryFile
+
     handle.seek(0)
-    low = _decoded(open_picture(handle, path), mode, f"{mode};16L")
-    return np.asarray((high << 8) | low, dtype=np.uint16)
-
-
-def _decoded(picture: _Picture, mode: str, raw_mode: str) -> NDArray[np.uint8]:
-    from PIL import ImageFile
-
-    assert isinstance(picture, ImageFile.ImageFile)
-    if picture.mode != mode:
-        raise ValueError(f"Pillow opens this PNG as {picture.mode}, expected {mode}")
-    picture.tile = [tile._replace(args=raw_mode) for tile in picture.tile]
-    return np.array(picture, dtype=np.uint8)
+    with gdal(), MemoryFile(handle.read()) as file, file.open(driver="PNG") as raster:
+        return np.ascontiguousarray(np.moveaxis(raster.read(), 0, -1))
 
 
 def _four_channels(samples: NDArray[Any]) -> NDArray[Any]:
