@@ -74,14 +74,14 @@ def accept(folder: Path, record: Record, *, also: bool = False) -> Change:
     position = _place(record)
     pixels = _picture(folder, record)
     there = accepted_in(position, record.shot)
-    if digests_of(there) != record.references:
+    if digests_of(there) != record.expected.references:
         if any(_shows(path, pixels) for path in there):
             return Change(record.name, None)
         raise DataError(f"{record.name}: {_changed(record, there)} since it was checked; run the tests again")
     before = {path: read_regular(path) for path in there}
     written = _further(position, record.shot, there) if also and there else position / f"{record.shot}.png"
     make_folder(position)
-    write_png(written, pixels, text=record.texts)
+    write_png(written, pixels, text=record.actual.texts)
     removed = () if also else tuple(path for path in there if path != written)
     for path in removed:
         path.unlink()
@@ -133,23 +133,23 @@ def choose(records: list[Record], patterns: list[str]) -> list[Record]:
 
 def _place(record: Record) -> Path:
     """Return the folder of a record's references; raise ``DataError`` for none that can be one."""
-    home = Path(record.home)
+    home = Path(record.expected.home)
     if home.name != FOLDER or ".." in home.parts or not _SLUG.fullmatch(record.renderer or "-"):
         raise DataError(f"{record.name}: its record does not say where its references belong")
-    root = Path(record.root)
-    base = root if record.root and root.is_absolute() and root.is_dir() else Path.cwd()
+    root = Path(record.run.root)
+    base = root if record.run.root and root.is_absolute() and root.is_dir() else Path.cwd()
     return base / home / record.sketch / record.renderer
 
 
 def _picture(folder: Path, record: Record) -> NDArray[np.uint8]:
-    if "actual" not in record.pictures:
+    if "actual" not in record.actual.pictures:
         raise DataError(f"{record.name}: there is no picture of it in {shown(folder)}; run the tests again")
-    path = folder / record.pictures["actual"]
+    path = folder / record.actual.pictures["actual"]
     try:
         data = read_regular(path)
     except OSError:
         raise DataError(f"{record.name}: its picture is not there any more; run the tests again") from None
-    if digest_of(data) != record.digest:
+    if digest_of(data) != record.actual.digest:
         raise DataError(f"{record.name}: its picture has changed since it was checked; run the tests again")
     return read_png(path)[0]
 
@@ -163,8 +163,8 @@ def _shows(path: Path, pixels: NDArray[np.uint8]) -> bool:
 
 def _changed(record: Record, there: list[Path]) -> str:
     names = {path.name for path in there}
-    gone = sorted(record.references.keys() - names)
-    new = sorted(names - record.references.keys())
+    gone = sorted(record.expected.references.keys() - names)
+    new = sorted(names - record.expected.references.keys())
     if gone:
         return f"the reference {gone[0]} has gone"
     return f"the reference {new[0]} has come" if new else "the reference has changed"

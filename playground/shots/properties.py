@@ -21,19 +21,19 @@ from playground.shots.results import Record
 
 def properties_of(folder: Path, record: Record) -> list[tuple[str, object]]:
     """Return the properties of a record that was written into the results folder ``folder``."""
-    root = Path(record.root)
+    root = Path(record.run.root)
     properties = {
         SHOT: f"{record.sketch}/{record.shot}",
         "shot.result": record.word,
         "shot.renderer": record.renderer,
-        "shot.reference": record.reference,
-        "shot.stands-in": record.stands_in,
+        "shot.reference": record.expected.reference,
+        "shot.stands-in": record.expected.stands_in,
         **{f"shot.score.{name}": f"{value:.6g}" for name, value in record.numbers.items()},
         **{
             f"shot.picture.{word}": (folder.relative_to(root) / name).as_posix()
             if folder.is_relative_to(root)
             else str(folder / name)
-            for word, name in record.pictures.items()
+            for word, name in record.actual.pictures.items()
         },
     }
     return [(name, value) for name, value in properties.items() if value]

@@ -27,7 +27,11 @@ from playground.shots.results import (
     FRAMES,
     PASSED,
     PICTURES,
+    Actual,
+    CheckRun,
+    Expected,
     Record,
+    Rules,
     digests_of,
     read_result,
     write_result,
@@ -72,26 +76,33 @@ class Recorder:
         record = replace(
             record,
             renderer=own,
-            tier=outcome.tier,
-            tolerance=str(outcome.tolerance or ""),
-            tolerated=("needed" if outcome.tolerated else "not needed")
-            if outcome.tolerance and outcome.ok
-            else "",
-            masked=outcome.masked,
-            tone=frame.tone if frame else "",
-            reference=_from(self.root, reference.path) if reference else "",
-            stands_in=stands_in,
-            catches=_CATCHES.get(outcome.tier, ""),
-            size=comparison.size,
-            expected_size=comparison.expected_size,
             place=perceived.place if perceived else comparison.position,
             numbers=_numbers(outcome),
-            texts=reference_texts(outcome.fingerprint, outcome.case.sketch.name, name),
-            expected_texts=reference.text if reference else {},
             fingerprint=outcome.differences,
-            compared=reference.path.name if reference else "",
-            references=references,
-            command=command,
+            rules=Rules(
+                tier=outcome.tier,
+                tolerance=str(outcome.tolerance or ""),
+                tolerated=("needed" if outcome.tolerated else "not needed")
+                if outcome.tolerance and outcome.ok
+                else "",
+                masked=outcome.masked,
+                tone=frame.tone if frame else "",
+                catches=_CATCHES.get(outcome.tier, ""),
+            ),
+            expected=replace(
+                record.expected,
+                reference=_from(self.root, reference.path) if reference else "",
+                stands_in=stands_in,
+                compared=reference.path.name if reference else "",
+                references=references,
+                size=comparison.expected_size,
+                texts=reference.text if reference else {},
+            ),
+            actual=Actual(
+                size=comparison.size,
+                texts=reference_texts(outcome.fingerprint, outcome.case.sketch.name, name),
+            ),
+            run=replace(record.run, command=command),
         )
         if stands_in:
             node.user_properties.append((STOOD_IN, stands_in))
@@ -105,8 +116,8 @@ class Recorder:
 
     def failed(self) -> frozenset[str]:
         """Return what failed when it was last checked, before this run, as `name_of` gives it."""
-        earlier = [record for record in records_in(self.folder) if record.run != self.run]
-        return frozenset(r.name for r in earlier if r.root == str(self.root) and not r.ok)
+        earlier = [record for record in records_in(self.folder) if record.run.name != self.run]
+        return frozenset(r.name for r in earlier if r.run.root == str(self.root) and not r.ok)
 
     def name_of(self, case: ShotCase) -> str:
         """Return what a shot's record is called: its folder in the results, and its own name."""
@@ -126,13 +137,13 @@ class Recorder:
         """Remove what a test has left in earlier runs: it runs again, and may check other pictures."""
         try:
             folder_name = self._place(case)
-            own = [record for record in self._earlier[folder_name] if record.node == typed(node)]
+            own = [record for record in self._earlier[folder_name] if record.run.node == typed(node)]
             self._earlier[folder_name] = [
                 record for record in self._earlier[folder_name] if record not in own
             ]
             for record in own:
                 # Another test may have left one of that name meanwhile.
-                if record.root == str(self.root) and self._before(folder_name, record.shot) == record:
+                if record.run.root == str(self.root) and self._before(folder_name, record.shot) == record:
                     drop(self.folder, record)
         except (DataError, OSError):
             pass
@@ -163,11 +174,16 @@ class Recorder:
             folder_name = self._place(case)
             record = replace(record, folder="" if folder_name == record.sketch else folder_name)
             before = self._before(folder_name, record.shot)
-            if before and before.run == record.run and before.node != record.node and not before.ok:
+            if (
+                before
+                and before.run.name == record.run.name
+                and before.run.node != record.run.node
+                and not before.ok
+            ):
                 # Two tests check pictures of one name: what passed may not hide what failed.
                 if record.ok:
                     return ""
-                record = replace(record, sentence=f"{record.sentence}; {before.node} failed as well")
+                record = replace(record, sentence=f"{record.sentence}; {before.run.node} failed as well")
             written = write_result(self.folder, record, pictures)
             node.user_properties += properties_of(self.folder, written)
         except (DataError, OSError) as error:
@@ -195,7 +211,7 @@ class Recorder:
             gone = [r for r in there if shots and r.shot not in shots and file_of(r, self.root) == own]
             for record in gone:
                 drop(self.folder, record)
-            self._earlier[folder_name] = [r for r in there if r.run != self.run and r not in gone]
+            self._earlier[folder_name] = [r for r in there if r.run.name != self.run and r not in gone]
         return folder_name
 
     def _begun(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> Record:
@@ -204,12 +220,10 @@ class Recorder:
             shot=case.shot.name,
             word=word,
             sentence=sentence,
-            root=str(self.root),
-            home=_home(case, self.root),
-            node=typed(node),
-            seconds=seconds,
-            when=time.time(),
-            run=self.run,
+            expected=Expected(home=_home(case, self.root)),
+            run=CheckRun(
+                root=str(self.root), node=typed(node), seconds=seconds, when=time.time(), name=self.run
+            ),
         )
 
 
@@ -271,19 +285,21 @@ def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[
         home = path.parent / SCREENSHOTS
         folder_name = place_of(recorder.folder, path.name, home)
         # Of the same run as what its tests have left, which may have run in other processes.
-        runs = {record.when: record.run for record in records_in(recorder.folder)}
+        runs = {record.run.when: record.run.name for record in records_in(recorder.folder)}
         record = Record(
             sketch=path.name,
             shot="references",
             word="error",
             sentence=first,
-            root=str(recorder.root),
-            home=str(home),
             error=rest,
-            node=f"{_from(recorder.root, path)}::references",
-            when=time.time(),
-            run=runs[max(runs)] if runs else "",
             folder="" if folder_name == path.name else folder_name,
+            expected=Expected(home=str(home)),
+            run=CheckRun(
+                root=str(recorder.root),
+                node=f"{_from(recorder.root, path)}::references",
+                when=time.time(),
+                name=runs[max(runs)] if runs else "",
+            ),
         )
         write_result(recorder.folder, record, {})
     except (DataError, OSError) as error:

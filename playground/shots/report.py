@@ -74,7 +74,7 @@ class _Pictures:
     def take(self, record: Record) -> None:
         """Embed a failure's pictures, all or none of them."""
         files: dict[str, str] = {}
-        for name in record.pictures.values():
+        for name in record.actual.pictures.values():
             try:
                 data = read_regular(self.folder / name)
             except OSError:
@@ -91,7 +91,7 @@ class _Pictures:
 
     def source(self, record: Record, kind: str) -> str:
         """Return a picture's data URL, or "" where the page has a link."""
-        return self.urls.get(record.pictures[kind], "")
+        return self.urls.get(record.actual.pictures[kind], "")
 
     def notes(self) -> list[str]:
         """Return what is not inside, a message each."""

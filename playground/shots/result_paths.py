@@ -59,7 +59,7 @@ def records_in(folder: Path, folder_name: str = "*") -> Iterator[Record]:
 
 def file_of(record: Record, root: Path) -> Path:
     """Return the sketch or the test file that a record is of; ``root`` is where the tests were started."""
-    return Path(os.path.normpath(root / record.node.partition("::")[0]))
+    return Path(os.path.normpath(root / record.run.node.partition("::")[0]))
 
 
 def clean(folder: Path, root: Path, complete: Mapping[Path, Collection[str]]) -> None:
@@ -71,7 +71,7 @@ def clean(folder: Path, root: Path, complete: Mapping[Path, Collection[str]]) ->
     """
     for record in list(records_in(folder)):
         file = file_of(record, root)
-        if record.root != str(root) or not record.node:
+        if record.run.root != str(root) or not record.run.node:
             continue
         if not file.exists() or record.shot not in complete.get(file, (record.shot,)):
             drop(folder, record)

@@ -23,7 +23,7 @@ import hashlib
 import json
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import MISSING, asdict, dataclass, field, fields, replace
+from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -59,42 +59,74 @@ _SKETCH = r"(?!\.{1,2}$)[^/\\\0]+"
 
 
 @dataclass(frozen=True, kw_only=True)
+class Rules:
+    """How strictly a picture was compared."""
+
+    tier: str = ""  # in a few words
+    tolerance: str = ""  # that the shot declares, with its reason; "" for the usual one
+    tolerated: str = ""  # "needed" or "not needed" where it declares one and passed
+    masked: tuple[str, ...] = ()  # what is not compared: rectangles, images, textures
+    tone: str = ""  # how floats were shown; "" for bytes, and floats from 0 to 1
+    catches: str = ""  # what that tier can catch and what it cannot, in a message
+
+
+@dataclass(frozen=True, kw_only=True)
+class Expected:
+    """What a picture was held against."""
+
+    reference: str = ""  # the file: from the root if it is inside, else whole
+    stands_in: str = ""  # whose references stood in for its renderer's, and by what; "" for its own
+    home: str = ""  # the screenshots/ folder of its references: from the root if it is inside, else whole
+    compared: str = ""  # file name of the reference; "" for none
+    references: dict[str, str] = field(default_factory=dict)  # accepted file's name → its SHA-256, then
+    size: tuple[int, int] | None = field(default=None, metadata={"key": "expected_size"})  # [pixels]
+    texts: dict[str, str] = field(  # the reference's fingerprint
+        default_factory=dict, metadata={"key": "expected_texts"}
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Actual:
+    """The picture that was drawn."""
+
+    size: tuple[int, int] | None = None  # [pixels] width and height
+    texts: dict[str, str] = field(default_factory=dict)  # the fingerprint of what drew it
+    pictures: dict[str, str] = field(default_factory=dict)  # one of PICTURES → its file, from the folder
+    digest: str = ""  # SHA-256 of its file
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckRun:
+    """The test that checked a shot, and when."""
+
+    root: str = ""  # the folder that the tests were started in, whole
+    node: str = ""  # pytest's node id, as tests/test_shots.py::test_shot[hills/dawn]
+    command: str = ""  # what accepts the picture, for a shell
+    seconds: float = 0.0  # [s] that taking and comparing took
+    when: float = 0.0  # [s since 1970, UTC] when it was checked
+    name: str = field(
+        default="", metadata={"key": "run"}
+    )  # of the run of the tests; the same for all its processes
+
+
+@dataclass(frozen=True, kw_only=True)
 class Record:
-    """What came of one checked shot. Everything in it is plain text and numbers."""
+    """What came of one checked shot. Everything in it is plain text and numbers; its JSON has no groups."""
 
     sketch: str  # its name: a folder here, and in screenshots/
     shot: str  # its name, without dots
     word: str  # "same" passed; else differs, crowded, structure, size, blank, nan, gl-error, missing, …
     sentence: str  # what was found, for a person
     renderer: str = ""  # slug of what drew it, as "llvmpipe"; "" where nothing was drawn
-    tier: str = ""  # how strictly it was compared, in a few words
-    tolerance: str = ""  # that the shot declares, with its reason; "" for the usual one
-    tolerated: str = ""  # "needed" or "not needed" where it declares one and passed
-    masked: tuple[str, ...] = ()  # what is not compared: rectangles, images, textures
-    tone: str = ""  # how floats were shown; "" for bytes, and floats from 0 to 1
-    reference: str = ""  # the file it was held against: from the root if it is inside, else whole
-    stands_in: str = ""  # whose references stood in for its renderer's, and by what; "" for its own
-    catches: str = ""  # what that tier can catch and what it cannot, in a message
     numbers: dict[str, float] = field(default_factory=dict)  # what was measured, by name with its unit
-    size: tuple[int, int] | None = None  # [pixels] width and height of the actual picture
-    expected_size: tuple[int, int] | None = None  # [pixels] of the reference
     place: tuple[int, int] | None = None  # [pixels] x and y, from the top left, of the worst one
-    texts: dict[str, str] = field(default_factory=dict)  # the fingerprint of what drew it now
-    expected_texts: dict[str, str] = field(default_factory=dict)  # the reference's fingerprint
-    fingerprint: tuple[str, ...] = ()  # how the two differ, a message each
-    root: str = ""  # the folder that the tests were started in, whole
-    home: str = ""  # the screenshots/ folder of its references: from the root if it is inside, else whole
-    compared: str = ""  # file name of the reference it was held against; "" for none
-    references: dict[str, str] = field(default_factory=dict)  # accepted file's name → its SHA-256, then
-    pictures: dict[str, str] = field(default_factory=dict)  # one of PICTURES → its file, from the folder
-    digest: str = ""  # SHA-256 of the actual picture's file
+    fingerprint: tuple[str, ...] = ()  # how what drew the two differs, a message each
     error: str = ""  # what the child process printed before it failed
-    node: str = ""  # pytest's node id, as tests/test_shots.py::test_shot[hills/dawn]
-    command: str = ""  # what accepts it, for a shell
-    seconds: float = 0.0  # [s] that taking and comparing took
-    when: float = 0.0  # [s since 1970, UTC] when it was checked
-    run: str = ""  # names the run of the tests; the same for all its processes
     folder: str = ""  # its folder here, where a sketch of the same name has the plain one; else ""
+    rules: Rules = Rules()
+    expected: Expected = Expected()
+    actual: Actual = Actual()
+    run: CheckRun = CheckRun()
 
     @property
     def place_name(self) -> str:
@@ -117,11 +149,36 @@ class Record:
         return hashlib.sha256(to_json(self).encode()).hexdigest()[:24]
 
 
+_GROUPS: dict[str, type[Any]] = {"rules": Rules, "expected": Expected, "actual": Actual, "run": CheckRun}
+
+
+def _fields() -> dict[str, tuple[str, Field[Any]]]:
+    """Return each field by its name in a record's JSON, with the group that it is in; "": in none."""
+    own = {f.name: ("", f) for f in fields(Record) if f.name not in _GROUPS}
+    grouped = ((group, f) for group, kind in _GROUPS.items() for f in fields(kind))
+    return own | {f.metadata.get("key", f.name): (group, f) for group, f in grouped}
+
+
+def flat(record: Record) -> dict[str, Any]:
+    """Return what a record holds, by its names in JSON; ``record_of`` gives the same record back."""
+    return {
+        key: getattr(getattr(record, group) if group else record, f.name)
+        for key, (group, f) in _fields().items()
+    }
+
+
+def record_of(values: Mapping[str, Any]) -> Record:
+    """Return the record of some values by their names in JSON."""
+    groups: dict[str, dict[str, Any]] = {group: {} for group in ("", *_GROUPS)}
+    for key, value in values.items():
+        group, f = _fields()[key]
+        groups[group][f.name] = value
+    return Record(**groups.pop(""), **{group: _GROUPS[group](**held) for group, held in groups.items()})
+
+
 def to_json(record: Record) -> str:
     """Return a record as JSON; `from_json` gives the same record back."""
-    return (
-        json.dumps({"format": FORMAT} | asdict(record), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-    )
+    return json.dumps({"format": FORMAT} | flat(record), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def from_json(text: str, file: str | Path = "a record") -> Record:
@@ -152,8 +209,8 @@ def from_json(text: str, file: str | Path = "a record") -> Record:
             text = text if len(text) < 60 else text[:57] + "…"
             raise DataError(f"'{name}' in a record is {expected}; found {text}", file=file)
         values[name] = tuple(value) if isinstance(value, list) else value
-    record = Record(**values)
-    for word, name in record.pictures.items():
+    record = record_of(values)
+    for word, name in record.actual.pictures.items():
         if name != _picture_name(record, word):
             expected = _picture_name(record, word)
             raise DataError(f"picture '{word}' in a record is {expected}; found {name}", file=file)
@@ -180,12 +237,12 @@ def write_result(folder: Path, record: Record, pictures: Mapping[str, NDArray[np
         if word not in pictures:
             (folder / name).unlink(missing_ok=True)
             continue
-        data = encode_png(pictures[word], record.texts if word == "actual" else {})
+        data = encode_png(pictures[word], record.actual.texts if word == "actual" else {})
         write_file(folder / name, data)
         files[word] = name
         if word == "actual":
             digest = digest_of(data)
-    whole = replace(record, pictures=files, digest=digest)
+    whole = replace(record, actual=replace(record.actual, pictures=files, digest=digest))
     write_file(result_path(folder, whole), to_json(whole))
     return whole
 
@@ -302,7 +359,7 @@ _TESTS_OF_TYPES: dict[str, tuple[str, Callable[[Any], bool]]] = {
     ),
     "tuple[int, int] | None": ("two numbers of pixels", _is_pair_from(1)),
 }
-_TESTS = {f.name: _TESTS_OF_TYPES[str(f.type)] for f in fields(Record)} | {
+_TESTS = {key: _TESTS_OF_TYPES[str(f.type)] for key, (_, f) in _fields().items()} | {
     "sketch": ("the name of a sketch", _matches(_SKETCH)),
     "shot": ("the name of a shot", _matches(_SHOT)),
     "folder": ("the name of a folder", _matches(f"(?:{_SKETCH})?")),
@@ -312,4 +369,6 @@ _TESTS = {f.name: _TESTS_OF_TYPES[str(f.type)] for f in fields(Record)} | {
         lambda value: _is_object_of(_is_text)(value) and value.keys() <= set(PICTURES),
     ),
 }
-_REQUIRED = {f.name for f in fields(Record) if f.default is MISSING and f.default_factory is MISSING}
+_REQUIRED = {
+    key for key, (_, f) in _fields().items() if f.default is MISSING and f.default_factory is MISSING
+}

@@ -36,7 +36,7 @@ class ReviewSession:
     def records(self) -> dict[str, Record]:
         """Return the records as they are now, by "sketch/shot"; raise ``DataError``."""
         records = {record.name: record for record in read_results(self.folder)}
-        self._pictures = {name for record in records.values() for name in record.pictures.values()}
+        self._pictures = {name for record in records.values() for name in record.actual.pictures.values()}
         return records
 
     def page(self) -> str:
@@ -102,4 +102,4 @@ class ReviewSession:
 
 def _picture_url(record: Record, kind: str) -> str:
     """Return a picture's address; with the stamp, so that no older one is shown for it."""
-    return f"picture/{quote(record.pictures[kind])}?{record.stamp}"
+    return f"picture/{quote(record.actual.pictures[kind])}?{record.stamp}"

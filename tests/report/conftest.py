@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from playground.data.image_files import encode_png
 from playground.shots.compare import compare, difference_picture
 from playground.shots.references import accepted_in
-from playground.shots.results import Record, digests_of, write_result
+from playground.shots.results import Record, digests_of, record_of, write_result
 
 from .pictures import BEFORE, TEXTS
 
@@ -49,7 +49,7 @@ def leave(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Reco
             }
             assert actual is not None
             pictures |= {"expected": expected, "difference": difference_picture(actual, expected)}
-        record = Record(sketch=sketch, shot=shot, **values | fields)  # type: ignore[arg-type]
+        record = record_of({"sketch": sketch, "shot": shot, **values, **fields})
         return write_result(tmp_path / "results", record, {} if record.ok else pictures)
 
     return leave

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,7 @@ from playground.cli import main
 from playground.data.image_files import encode_png, read_png
 from playground.errors import DataError, ParameterError
 from playground.shots.accept import accept, choose, undo
-from playground.shots.results import Record, read_results
+from playground.shots.results import Record, flat, read_results, record_of
 
 from .pictures import TEXTS, picture
 
@@ -120,7 +119,7 @@ def test_accepting_twice_says_that_it_is_done_already(leave) -> None:
 
 def test_a_picture_that_has_gone_or_changed_is_refused(leave) -> None:
     record = leave(actual=picture(1), expected=picture(2))
-    path = RESULTS / record.pictures["actual"]
+    path = RESULTS / record.actual.pictures["actual"]
     path.write_bytes(encode_png(picture(5)))
     with pytest.raises(DataError, match="its picture has changed since it was checked"):
         accept(RESULTS, record)
@@ -174,7 +173,7 @@ def test_results_of_this_machine_are_accepted_from_any_folder(leave, tmp_path: P
     [{"home": ""}, {"home": "../screenshots"}, {"home": "pictures"}, {"renderer": "../x"}, {"renderer": "A"}],
 )
 def test_a_record_cannot_lead_elsewhere(leave, change: dict[str, str]) -> None:
-    record = replace(leave(actual=picture(1)), **change)
+    record = record_of(flat(leave(actual=picture(1))) | change)
     with pytest.raises(DataError, match="does not say where its references belong"):
         accept(RESULTS, record)
 

@@ -21,7 +21,7 @@ from playground.markup import Markup, tag
 from playground.shots.page.labels import MEANINGS
 from playground.shots.page.shot import CAPTIONS
 from playground.shots.report import report_html, write_report
-from playground.shots.results import NEVER_ACCEPTED, Record, read_results
+from playground.shots.results import NEVER_ACCEPTED, Actual, Record, flat, read_results, record_of
 
 from .pictures import BEFORE, TEXTS, picture
 
@@ -72,7 +72,7 @@ def test_every_picture_is_inside_and_shows_what_was_drawn(leave) -> None:
     now, before = picture(1), picture(2)
     record = leave(actual=now, expected=before)
     page = made()
-    difference = read_png(Path("results") / record.pictures["difference"])[0]
+    difference = read_png(Path("results") / record.actual.pictures["difference"])[0]
     shown = {}
     for kind, pixels in {"actual": now, "expected": before, "difference": difference}.items():
         index = next(
@@ -119,10 +119,10 @@ def test_no_text_of_a_record_becomes_markup(leave) -> None:
         sketch=EVIL,
         shot="<b>",
         numbers={EVIL: 1.0},
-        texts=texts,
-        expected_texts=texts,
         fingerprint=(EVIL,),
         renderer=EVIL,
+        actual=replace(record.actual, texts=texts),
+        expected=replace(record.expected, texts=texts),
     )
     for records in (
         [failing],
@@ -196,14 +196,18 @@ def test_every_word_has_its_own_explanation(leave) -> None:
     for word, meaning in MEANINGS.items():
         if word == "same":
             continue
-        page = Page(report_html([replace(record, word=word, tier="")], Path("results")))
+        page = Page(report_html([record_of(flat(record) | {"word": word, "tier": ""})], Path("results")))
         assert page.text("p", class_="meaning") == meaning.sentence
         sentences.add(meaning.sentence)
         commands = [text for _, text in page.all("code")]
         assert bool(commands) is (word not in NEVER_ACCEPTED)
         assert meaning.broken is (word in NEVER_ACCEPTED)
     assert len(sentences) == len(MEANINGS) - 1
-    page = Page(report_html([replace(record, tier="same build", catches="Any change.")], Path("results")))
+    page = Page(
+        report_html(
+            [record_of(flat(record) | {"tier": "same build", "catches": "Any change."})], Path("results")
+        )
+    )
     assert page.text("p", class_="meaning").endswith(" Any change.")
     assert page.text("span", class_="tier") == "same build"
 
@@ -229,7 +233,7 @@ def test_pictures_of_passed_shots_are_left_out_and_too_many_become_links(leave, 
     for number in range(4):
         leave(f"a/shot-{number}", picture(number), picture(number + 10))
     records = read_results(Path("results"))
-    item = sum((Path("results") / name).stat().st_size for name in records[0].pictures.values())
+    item = sum((Path("results") / name).stat().st_size for name in records[0].actual.pictures.values())
     html = report_html(records, Path("results"), Path("../results"), most=int(item * 1.4 * 2.5))
     page = Page(html)
     assert len(page.all("img")) == 6
@@ -247,7 +251,7 @@ def test_three_hundred_records_stay_small(leave) -> None:
 
 def test_a_picture_that_has_gone_is_reported(leave) -> None:
     record = leave(actual=picture(1), expected=picture(2))
-    (Path("results") / record.pictures["expected"]).unlink()
+    (Path("results") / record.actual.pictures["expected"]).unlink()
     page = made()
     assert "1 picture could not be read: hills/dawn.expected.png" in page.text("p", class_="note")
     assert len(page.all("img")) == 2
@@ -271,7 +275,7 @@ def test_every_kind_of_picture_has_its_caption(leave) -> None:
                 shot="b",
                 word="differs",
                 sentence="x",
-                pictures={k: f"a/b.{k}.png" for k in CAPTIONS},
+                actual=Actual(pictures={k: f"a/b.{k}.png" for k in CAPTIONS}),
             )
         ],
         Path("results"),

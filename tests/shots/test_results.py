@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,45 +15,49 @@ from playground.errors import DataError
 from playground.shots.results import (
     PICTURES,
     Record,
+    flat,
     from_json,
     read_result,
     read_results,
+    record_of,
     result_path,
     to_json,
     write_result,
 )
 
-FULL = Record(
-    sketch="hills & dales",
-    shot="dawn",
-    word="differs",
-    sentence="max difference 12 of 255, at x = 3, y = 1 from the top left",
-    renderer="llvmpipe",
-    tier="same build",
-    tolerance="noise, 8 of 255 at 100 % of the pixels (grain)",
-    tolerated="needed",
-    masked=("4 × 2 pixels at x = 0, y = 0",),
-    tone="reinhard",
-    reference="screenshots/hills/llvmpipe/dawn.png",
-    stands_in="drawn by apple-m1, compared by structure only with llvmpipe's references",
-    catches="anything over one level",
-    numbers={"max difference [levels]": 12, "over [%]": 0.25},
-    size=(6, 4),
-    expected_size=(6, 4),
-    place=(3, 1),
-    texts={"renderer": "llvmpipe (LLVM 15.0.6)", "sketch": "hills – Hügel"},
-    expected_texts={"renderer": "llvmpipe (LLVM 14.0.0)"},
-    fingerprint=("LLVM 15.0.6 drew it now, LLVM 14.0.0 the reference",),
-    root="/a/terrain",
-    home="screenshots",
-    compared="dawn.2.png",
-    references={"dawn.png": "ab" * 32, "dawn.2.png": "cd" * 32},
-    error="<script>alert(1)</script>\n\x1b[31mred",
-    node="tests/test_shots.py::test_shot[hills/dawn]",
-    command="pytest --shots-update 'tests/test_shots.py::test_shot[hills/dawn]'",
-    seconds=0.25,
-    when=1.75e9,
-    run="abc",
+FULL = record_of(
+    dict(
+        sketch="hills & dales",
+        shot="dawn",
+        word="differs",
+        sentence="max difference 12 of 255, at x = 3, y = 1 from the top left",
+        renderer="llvmpipe",
+        tier="same build",
+        tolerance="noise, 8 of 255 at 100 % of the pixels (grain)",
+        tolerated="needed",
+        masked=("4 × 2 pixels at x = 0, y = 0",),
+        tone="reinhard",
+        reference="screenshots/hills/llvmpipe/dawn.png",
+        stands_in="drawn by apple-m1, compared by structure only with llvmpipe's references",
+        catches="anything over one level",
+        numbers={"max difference [levels]": 12, "over [%]": 0.25},
+        size=(6, 4),
+        expected_size=(6, 4),
+        place=(3, 1),
+        texts={"renderer": "llvmpipe (LLVM 15.0.6)", "sketch": "hills – Hügel"},
+        expected_texts={"renderer": "llvmpipe (LLVM 14.0.0)"},
+        fingerprint=("LLVM 15.0.6 drew it now, LLVM 14.0.0 the reference",),
+        root="/a/terrain",
+        home="screenshots",
+        compared="dawn.2.png",
+        references={"dawn.png": "ab" * 32, "dawn.2.png": "cd" * 32},
+        error="<script>alert(1)</script>\n\x1b[31mred",
+        node="tests/test_shots.py::test_shot[hills/dawn]",
+        command="pytest --shots-update 'tests/test_shots.py::test_shot[hills/dawn]'",
+        seconds=0.25,
+        when=1.75e9,
+        run="abc",
+    )
 )
 PIXELS = np.arange(4 * 6 * 4, dtype=np.uint8).reshape(4, 6, 4)
 
@@ -61,7 +65,7 @@ PIXELS = np.arange(4 * 6 * 4, dtype=np.uint8).reshape(4, 6, 4)
 def test_every_field_of_the_example_says_something() -> None:
     """So that a field that is lost on the way cannot go unseen."""
     alone = {"pictures", "digest", "folder"}  # what write_result fills in; tested by itself
-    assert not [f.name for f in fields(Record) if not getattr(FULL, f.name) and f.name not in alone]
+    assert not [name for name, value in flat(FULL).items() if not value and name not in alone]
 
 
 OTHER = replace(FULL, folder="hills & dales-1a2b3c4d")
@@ -83,14 +87,17 @@ def test_a_result_is_there_with_its_pictures_and_again_without(tmp_path: Path) -
     pictures = {word: PIXELS + np.uint8(number) for number, word in enumerate(PICTURES)}
     written = write_result(folder, FULL, pictures)
     assert read_results(folder) == [written]
-    assert written.pictures == {word: f"hills & dales/dawn.{word}.png" for word in PICTURES}
-    assert written.digest == hashlib.sha256((folder / written.pictures["actual"]).read_bytes()).hexdigest()
+    assert written.actual.pictures == {word: f"hills & dales/dawn.{word}.png" for word in PICTURES}
+    assert (
+        written.actual.digest
+        == hashlib.sha256((folder / written.actual.pictures["actual"]).read_bytes()).hexdigest()
+    )
     for word, pixels in pictures.items():
-        read, texts = read_png(folder / written.pictures[word])
+        read, texts = read_png(folder / written.actual.pictures[word])
         np.testing.assert_array_equal(read, pixels)
-        assert texts == (FULL.texts if word == "actual" else {})
+        assert texts == (FULL.actual.texts if word == "actual" else {})
     passed = write_result(folder, replace(FULL, word="same"), {})
-    assert passed.pictures == {} and passed.digest == ""
+    assert passed.actual.pictures == {} and passed.actual.digest == ""
     assert [p.name for p in (folder / FULL.sketch).iterdir()] == ["dawn.json"]
 
 
@@ -113,11 +120,11 @@ def test_two_sketches_of_one_name_stand_side_by_side(tmp_path: Path) -> None:
     written = [write_result(tmp_path, record, {"actual": PIXELS}) for record in (FULL, OTHER)]
     assert read_results(tmp_path) == written
     assert [record.name for record in written] == ["hills & dales/dawn", "hills & dales-1a2b3c4d/dawn"]
-    assert len({record.pictures["actual"] for record in written}) == 2
+    assert len({record.actual.pictures["actual"] for record in written}) == 2
 
 
 def test_a_stamp_distinguishes_one_result_from_the_next() -> None:
-    assert FULL.stamp == replace(FULL).stamp != replace(FULL, when=FULL.when + 1).stamp
+    assert FULL.stamp == replace(FULL).stamp != record_of(flat(FULL) | {"when": FULL.run.when + 1}).stamp
 
 
 @pytest.mark.parametrize(

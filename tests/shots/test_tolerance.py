@@ -198,8 +198,11 @@ def test_a_sketchs_shot_has_a_tolerance_and_a_mask(accepted: Run, edit: Edit) ->
     result.assert_outcomes(passed=1, deselected=2)
     result.stdout.fnmatch_lines(["slope/bright: the tolerance is not needed: *"])
     left = read_result(Path("shots-report/slope/bright.json"))
-    assert left.tolerance == "noise, 8 of 255 at 100 % of the pixels (the grain)"
-    assert left.tolerated == "not needed" and left.masked == ("4 × 32 pixels at x = 0, y = 0", "height")
+    assert left.rules.tolerance == "noise, 8 of 255 at 100 % of the pixels (the grain)"
+    assert left.rules.tolerated == "not needed" and left.rules.masked == (
+        "4 × 32 pixels at x = 0, y = 0",
+        "height",
+    )
     # x / 32 is more than half from x = 17 on; with the rectangle that is 4 + 15 of the 32 columns.
     assert left.sentence.endswith(f"{19 * 32} pixels (59.4 %) are masked")
     edit("slope.toml", "[0, 0, 4, 32]", "[0, 0, 32, 32]")
@@ -255,8 +258,8 @@ def test_a_check_of_a_test_has_a_tolerance_and_a_mask_that_its_report_shows(
     edit("test_sea.py", "1.0}", "0.9}")
     run("test_sea.py").assert_outcomes(failed=2)
     left = read_result(Path("shots-report/test_sea.py/ramp.json"))
-    assert left.place == (3, 20) and left.masked == ("10 × 5 pixels at x = 0, y = 0", "sky.png")
-    pictures = {word: read_png(Path("shots-report") / file)[0] for word, file in left.pictures.items()}
+    assert left.place == (3, 20) and left.rules.masked == ("10 × 5 pixels at x = 0, y = 0", "sky.png")
+    pictures = {word: read_png(Path("shots-report") / file)[0] for word, file in left.actual.pictures.items()}
     assert np.array_equal(pictures["masked"][5:30], pictures["actual"][5:30])
     assert (pictures["masked"][30:] != pictures["actual"][30:]).any(axis=2).all()
     assert not pictures["difference"][30:, :, :3].any() and pictures["difference"][20, 3, :3].all()

@@ -108,20 +108,20 @@ def _facts(records: Sequence[Record], notes: Sequence[str]) -> Markup:
     ]
     summary: list[Markup] = []
     builds = Counter(
-        ", ".join(record.texts[key] for key in _BUILD if key in record.texts) or record.renderer
+        ", ".join(record.actual.texts[key] for key in _BUILD if key in record.actual.texts) or record.renderer
         for record in records
         if record.renderer
     )
     for build, number in builds.most_common():
         summary.append(tag("li", f"drawn by {build}{f' ({number})' if len(builds) > 1 else ''}"))
-    checked = [record.when for record in records if record.when]
+    checked = [record.run.when for record in records if record.run.when]
     if checked:
         summary.append(tag("li", f"checked {moment(max(checked))}"))
-        latest = max(records, key=lambda record: record.when).run
-        older = sum(record.run != latest for record in records)
+        latest = max(records, key=lambda record: record.run.when).run.name
+        older = sum(record.run.name != latest for record in records)
         if older:
             notes = [*notes, f"{counted(older, 'shot')} of them in an earlier run."]
-    taken = sum(record.seconds for record in records)
+    taken = sum(record.run.seconds for record in records)
     if taken:
         summary.append(tag("li", f"took {taken:.3g} s"))
     return joined(

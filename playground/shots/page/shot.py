@@ -68,7 +68,7 @@ def chip(word: str) -> Markup:
 
 def can_be_accepted(record: Record) -> bool:
     """Whether a reference may be made of what was drawn."""
-    return not record.ok and record.word not in NEVER_ACCEPTED and "actual" in record.pictures
+    return not record.ok and record.word not in NEVER_ACCEPTED and "actual" in record.actual.pictures
 
 
 def accept_command(record: Record, folder: str) -> str:
@@ -80,7 +80,7 @@ def accept_command(record: Record, folder: str) -> str:
 def failure(record: Record, setting: ShotPageContext) -> Markup:
     """Return the article on a shot that failed."""
     heading = f"title-{anchor(record)}"
-    explained = (meaning(record.word).sentence, record.catches)
+    explained = (meaning(record.word).sentence, record.rules.catches)
     return tag(
         "article",
         tag(
@@ -93,7 +93,7 @@ def failure(record: Record, setting: ShotPageContext) -> Markup:
                 tabindex=-1,
             ),
             chip(record.word),
-            tag("span", record.tier, class_="tier") if record.tier else None,
+            tag("span", record.rules.tier, class_="tier") if record.rules.tier else None,
             _buttons(record) if setting.review and can_be_accepted(record) else None,
         ),
         tag("p", class_="message", role="status") if setting.review else None,
@@ -126,10 +126,10 @@ def _verdict(record: Record) -> str:
 def _pictures(record: Record, setting: ShotPageContext) -> Markup | None:
     figures = []
     for kind, caption in CAPTIONS.items():
-        if kind not in record.pictures:
+        if kind not in record.actual.pictures:
             continue
         source = setting.source(record, kind)
-        size = record.expected_size if kind == "expected" else record.size
+        size = record.expected.size if kind == "expected" else record.actual.size
         width, height = size or (None, None)
         if source:
             shown = tag(
@@ -141,7 +141,9 @@ def _pictures(record: Record, setting: ShotPageContext) -> Markup | None:
                 loading="lazy",
             )
         else:
-            shown = tag("a", record.pictures[kind], href=quote(setting.results + record.pictures[kind]))
+            shown = tag(
+                "a", record.actual.pictures[kind], href=quote(setting.results + record.actual.pictures[kind])
+            )
         figures.append(tag("figure", tag("figcaption", caption), shown, data_kind=kind))
     return tag("div", *figures, class_="pictures") if figures else None
 
@@ -163,7 +165,7 @@ def _buttons(record: Record) -> Markup:
         "div",
         tag("button", "Accept", type="button", data_do="accept", class_="main", disabled=True),
         tag("button", "Accept as further", type="button", data_do="also", disabled=True)
-        if record.references
+        if record.expected.references
         else None,
         tag("button", "Undo", type="button", data_do="undo", disabled=True),
         class_="buttons",
@@ -182,11 +184,11 @@ def _accepting(record: Record, setting: ShotPageContext) -> Markup:
         return tag("section", tag("p", why), class_="accepting")
     parts: list[Markup] = [tag("h3", "If this is right")]
     commands = [("accepts this very picture", accept_command(record, setting.folder))]
-    if record.references:
+    if record.expected.references:
         also = f"{accept_command(record, setting.folder)} --also"
         commands.append(("accepts it in addition to those accepted so far", also))
-    if record.command:
-        commands.append(("takes it again and accepts that", record.command))
+    if record.run.command:
+        commands.append(("takes it again and accepts that", record.run.command))
     rows = [
         tag(
             "li",
@@ -206,23 +208,23 @@ def _figures(record: Record) -> Markup:
         x, y = record.place
         whole = " of all frames" if FRAMES in record.numbers else ""
         rows.append(("Worst pixel", f"x = {x}, y = {y} from the top left{whole}"))
-    for name, size in (("Size", record.size), ("Expected size", record.expected_size)):
-        if size and (name == "Size" or size != record.size):
+    for name, size in (("Size", record.actual.size), ("Expected size", record.expected.size)):
+        if size and (name == "Size" or size != record.actual.size):
             rows.append((name, f"{size[0]} × {size[1]} pixels"))
-    reference = f"{record.home}/{record.sketch}/{record.renderer}/{record.compared}"
-    if record.compared not in record.references:  # another renderer's, or none
-        other = record.expected_texts.get("renderer", "another renderer")
-        reference = f"{record.compared}, drawn by {other}" if record.compared else "none"
+    reference = f"{record.expected.home}/{record.sketch}/{record.renderer}/{record.expected.compared}"
+    if record.expected.compared not in record.expected.references:  # another renderer's, or none
+        other = record.expected.texts.get("renderer", "another renderer")
+        reference = f"{record.expected.compared}, drawn by {other}" if record.expected.compared else "none"
     if record.renderer:
         rows.append(("Reference", reference))
-    if len(record.references) > 1:
-        rows.append(("Accepted so far", ", ".join(record.references)))
-    if record.node:
-        rows.append(("Test", record.node))
-    if record.seconds:
-        rows.append(("Took", f"{record.seconds:.2g} s"))
-    if record.when:
-        rows.append(("Checked", moment(record.when)))
+    if len(record.expected.references) > 1:
+        rows.append(("Accepted so far", ", ".join(record.expected.references)))
+    if record.run.node:
+        rows.append(("Test", record.run.node))
+    if record.run.seconds:
+        rows.append(("Took", f"{record.run.seconds:.2g} s"))
+    if record.run.when:
+        rows.append(("Checked", moment(record.run.when)))
     cells = [tag("tr", tag("th", name, scope="row"), tag("td", value)) for name, value in rows]
     return tag("section", tag("h3", "Figures"), tag("table", *cells), class_="figures")
 
@@ -237,30 +239,30 @@ def _rules(record: Record) -> Markup | None:
 def _rule(record: Record) -> tuple[tuple[str, str], ...]:
     """Return what the shot says of its comparison, by name; "" for what it does not say."""
     return (
-        ("Tolerance", record.tolerance),
-        ("Masked", "; ".join(record.masked)),
-        ("Tone", record.tone),
-        ("References", record.stands_in),
+        ("Tolerance", record.rules.tolerance),
+        ("Masked", "; ".join(record.rules.masked)),
+        ("Tone", record.rules.tone),
+        ("References", record.expected.stands_in),
     )
 
 
 def _fingerprints(record: Record) -> Markup | None:
-    if not (record.texts or record.expected_texts):
+    if not (record.actual.texts or record.expected.texts):
         return None
     parts: list[Markup] = [tag("h3", "Fingerprints")]
     if record.fingerprint:
         parts.append(tag("ul", *(tag("li", line) for line in record.fingerprint), class_="differences"))
-    elif record.expected_texts:
-        alike = ", of the same sketch and shaders" if "drawn" in record.texts else ""
+    elif record.expected.texts:
+        alike = ", of the same sketch and shaders" if "drawn" in record.actual.texts else ""
         parts.append(tag("p", f"Both pictures were drawn by the same build{alike}."))
     rows = []
-    for key in dict.fromkeys([*record.expected_texts, *record.texts]):
-        before, now = record.expected_texts.get(key, "–"), record.texts.get(key, "–")
-        differs = bool(record.expected_texts) and before != now
-        cells = [tag("td", before), tag("td", now)] if record.expected_texts else [tag("td", now)]
+    for key in dict.fromkeys([*record.expected.texts, *record.actual.texts]):
+        before, now = record.expected.texts.get(key, "–"), record.actual.texts.get(key, "–")
+        differs = bool(record.expected.texts) and before != now
+        cells = [tag("td", before), tag("td", now)] if record.expected.texts else [tag("td", now)]
         mark = tag("span", " differs", class_="differs") if differs else None
         rows.append(tag("tr", tag("th", _KEYS.get(key, key), mark, scope="row"), *cells))
-    heads = ["", "Expected", "Actual"] if record.expected_texts else ["", "Actual"]
+    heads = ["", "Expected", "Actual"] if record.expected.texts else ["", "Actual"]
     head = tag("thead", tag("tr", *(tag("th", name, scope="col") if name else tag("td") for name in heads)))
     table = tag("table", head, tag("tbody", *rows), class_="fingerprints")
     parts.append(tag("div", table, class_="wide", tabindex=0, role="region", aria_label="Fingerprints"))
@@ -297,5 +299,9 @@ def row(record: Record) -> Markup:
 def passed_row(record: Record) -> Markup:
     """Return the line of a shot that passed."""
     rule = "".join(f"; {name.lower()}: {value}" for name, value in _rule(record) if value)
-    cells = (record.tier, record.sentence + rule, f"{record.seconds:.2g} s" if record.seconds else "")
+    cells = (
+        record.rules.tier,
+        record.sentence + rule,
+        f"{record.run.seconds:.2g} s" if record.run.seconds else "",
+    )
     return tag("tr", tag("th", record.name, scope="row"), *(tag("td", cell) for cell in cells))
