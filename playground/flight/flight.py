@@ -8,6 +8,7 @@ and never what lies under the craft, which is made before it is needed.
 from __future__ import annotations
 
 import math
+from contextlib import ExitStack
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -57,15 +58,19 @@ class Flight:
         self.engine = engine
         self.sketch = sketch
         self.plot: Plot = plot_of(sketch, engine)
-        self.parts = Parts(engine, self.plot, radius)
-        samples_wanted = sketch.picture.samples if samples is None else samples
-        self.scene = Scene(engine, self.plot, max(min(samples_wanted, engine.info.max_samples), 1))
-        self.craft = self._placed(start)
-        self._earlier = self.craft  # whose sky and air are shown
-        self._first, self._first_hour = self.craft, self.parts.hour
         self._next: _Next | None = None
-        self._look()
-        _take_daylight(self.engine, self.plot, self.parts.hour, self.scene)
+        with ExitStack() as begun:
+            self.parts = Parts(engine, self.plot, radius)
+            begun.callback(self.parts.release)
+            samples_wanted = sketch.picture.samples if samples is None else samples
+            self.scene = Scene(engine, self.plot, max(min(samples_wanted, engine.info.max_samples), 1))
+            begun.callback(self.scene.release)
+            self.craft = self._placed(start)
+            self._earlier = self.craft  # whose sky and air are shown
+            self._first, self._first_hour = self.craft, self.parts.hour
+            self._look()
+            _take_daylight(self.engine, self.plot, self.parts.hour, self.scene)
+            begun.pop_all()
 
     def __enter__(self) -> Flight:
         return self

@@ -64,7 +64,14 @@ class Outdoors:
         self._table_hour = math.nan
         self._mean: tuple[float, float] | None = None
         # Where the wind carries the clouds in a second, and how wide their tile is.
-        at = [self._engine.read(self._sketch, "drift", time=time)[0, 0].astype(np.float64) for time in (0, 1)]
+        try:
+            at = [
+                self._engine.read(self._sketch, "drift", time=time)[0, 0].astype(np.float64)
+                for time in (0, 1)
+            ]
+        except BaseException:
+            self._engine.release()
+            raise
         self._still = tuple(float(n) for n in at[0])
         self._wide = self._still[3]
         self._wind = (at[1][:2] - at[0][:2] + self._wide / 2) % self._wide - self._wide / 2

@@ -86,8 +86,14 @@ class Scene:
         self._towards_sun = (0.0, 1.0)
         self._take_air()
         self._surface: Surface | None = None
-        self._outdoors = Outdoors(engine, plot) if self._natural else None
-        self.woods = Woods(engine, plot) if plot.trees is not None else None
+        self._outdoors: Outdoors | None = None
+        self.woods: Woods | None = None
+        try:
+            self._outdoors = Outdoors(engine, plot) if self._natural else None
+            self.woods = Woods(engine, plot) if plot.trees is not None else None
+        except BaseException:
+            self.release()
+            raise
 
     @property
     def _natural(self) -> bool:
