@@ -61,52 +61,17 @@ def resample(
 
 
 def _resized(values: NDArray[np.float64], count: int) -> NDArray[np.float64]:
-    # Along axis 0, to `count` rows.
+    """Return values resized along axis 0, to ``count`` rows."""
     values = np.ascontiguousarray(values)
     if count == len(values):
         return values
-    weights, sources, first, last = taps(len(values), count)
-    result = first[:, None] * values[0] + last[:, None] * values[-1]
-    for start in range(0, count, 64):
-        # A band of results needs a band of sources: small dense products, which are fast.
-        band = slice(start, start + 64)
-        low = int(sources[band].min())
-        dense = np.zeros((len(result[band]), int(sources[band].max()) + 1 - low))
-        np.add.at(dense, (np.arange(len(dense))[:, None], sources[band] - low), weights[band])
-        result[band] += dense @ values[low : low + dense.shape[1]]
-    return np.asarray(result)
+    result = np.empty((count, values.shape[1]))
+    for results, sources, dense in _smooth(len(values), count, 0.0).groups(0, len(values)):
+        np.matmul(dense, values[sources], out=result[results])
+    return result
 
 
-def taps(
-    n: int, count: int, lead: float = 0.0
-) -> tuple[NDArray[np.float64], NDArray[np.intp], NDArray[np.float64], NDArray[np.float64]]:
-    """Return what each of ``count`` results is the sum of: n values, times weights.
-
-    Weights and their sources are (count, taps); what the first and the last value count besides is
-    (count,) each. The first result is ``lead`` values after the first value, the last as far before the last.
-    """
-    ratio, away, index = steps_away(n, count, lead)
-    scale = max(ratio, 1.0)
-    weights = _catmull_rom(away / scale)
-    weights /= weights.sum(axis=1, keepdims=True)
-    if scale > 1.0:
-        # Sampled between its knots the wide kernel has its mean not quite on the place; tilting
-        # the weights (by a term that adds up to zero) puts it there, so that a plane stays one.
-        broad = np.maximum(2.0 - np.abs(away) / scale, 0.0)
-        tilt = broad * (away - (broad * away).sum(axis=1, keepdims=True) / broad.sum(axis=1, keepdims=True))
-        mean = (weights * away).sum(axis=1, keepdims=True)
-        weights -= tilt * (mean / (tilt * away).sum(axis=1, keepdims=True))
-    # Reflected in the points of its edges, the terrain repeats with period p, raised each time by twice
-    # its rise: v[q p + r] = 2 q (v[n-1] - v[0]) + (v[r] if r < n else 2 v[n-1] - v[p - r]).
-    period = 2 * (n - 1)
-    periods, offset = np.divmod(index, period)
-    inside = offset < n
-    first = -2.0 * (weights * periods).sum(axis=1)
-    last = 2.0 * (weights * (periods + ~inside)).sum(axis=1)
-    return np.where(inside, weights, -weights), np.where(inside, offset, period - offset), first, last
-
-
-def steps_away(n: int, count: int, lead: float = 0.0) -> tuple[float, NDArray[np.float64], NDArray[np.intp]]:
+def _steps_away(n: int, count: int, lead: float = 0.0) -> tuple[float, NDArray[np.float64], NDArray[np.intp]]:
     """Return the values from one result to the next, and how far which values are from each result.
 
     Both arrays are (count, taps): the steps, and the values' numbers, which go on beyond the edges.
@@ -189,30 +154,43 @@ class _Axis:
 
 
 def _smooth(n: int, count: int, lead: float) -> _Axis:
-    weights, sources, first, last = taps(n, count, lead)
+    """Return the cubic kernel of ``count`` results of n values.
+
+    The first result is ``lead`` values after the first value, the last as far before the last.
+    """
+    ratio, away, index = _steps_away(n, count, lead)
+    scale = max(ratio, 1.0)
+    weights = _catmull_rom(away / scale)
+    weights /= weights.sum(axis=1, keepdims=True)
+    if scale > 1.0:
+        # Sampled between its knots the wide kernel has its mean not quite on the place; tilting
+        # the weights (by a term that adds up to zero) puts it there, so that a plane stays one.
+        broad = np.maximum(2.0 - np.abs(away) / scale, 0.0)
+        tilt = broad * (away - (broad * away).sum(axis=1, keepdims=True) / broad.sum(axis=1, keepdims=True))
+        mean = (weights * away).sum(axis=1, keepdims=True)
+        weights -= tilt * (mean / (tilt * away).sum(axis=1, keepdims=True))
+    # Reflected in the points of its edges, the terrain repeats with period p, raised each time by twice
+    # its rise: v[q p + r] = 2 q (v[n-1] - v[0]) + (v[r] if r < n else 2 v[n-1] - v[p - r]).
+    period = 2 * (n - 1)
+    periods, offset = np.divmod(index, period)
+    inside = offset < n
+    first = -2.0 * (weights * periods).sum(axis=1)
+    last = 2.0 * (weights * (periods + ~inside)).sum(axis=1)
+    weights, sources = np.where(inside, weights, -weights), np.where(inside, offset, period - offset)
     # What the edges count besides is one more tap each; where it is nothing, it stays with the others.
-    position = sources[:, :1]
-    sources = np.hstack(
-        [
-            sources,
-            *(
-                np.where(extra != 0.0, edge, position[:, 0])[:, None]
-                for extra, edge in ((first, 0), (last, n - 1))
-            ),
-        ]
-    )
-    return _Axis(sources, np.hstack([weights, first[:, None], last[:, None]]))
+    edges = [np.where(extra != 0.0, edge, sources[:, 0]) for extra, edge in ((first, 0), (last, n - 1))]
+    return _Axis(np.column_stack([sources, *edges]), np.column_stack([weights, first, last]))
 
 
 def _hats(n: int, count: int, lead: float) -> _Axis:
-    ratio, away, index = steps_away(n, count, lead)
+    ratio, away, index = _steps_away(n, count, lead)
     weights = np.maximum(1.0 - np.abs(away) / max(ratio, 1.0), 0.0)
     return _inside(n, index, weights)
 
 
 def _boxes(n: int, count: int, lead: float) -> _Axis:
     """Return what tells whether anything is where the smooth kernel reads."""
-    _, away, index = steps_away(n, count, lead)
+    _, away, index = _steps_away(n, count, lead)
     return _inside(n, index, np.ones_like(away))
 
 
