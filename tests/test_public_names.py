@@ -25,7 +25,7 @@ EXPLAINED = {
 }  # fmt: skip
 """What programs call; each has an example."""
 TOOLS = {
-    "borrowed", "cache", "clock", "disk_caching", "draw_above_terrain", "draw_window", "driver_for", "drawn",
+    "borrowed", "cache", "clock", "disk_caching", "draw_above_terrain", "draw_window", "drawn",
     "eye_height", "keys_of", "not_finite_by_pass", "options", "painted",
     "picture_hash", "plain_forms", "plan", "plan_for_window", "recall", "record", "runner", "runs", "stale",
     "texture_of", "warnings",

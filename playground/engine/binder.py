@@ -16,12 +16,12 @@ import numpy as np
 from playground.data.content_hash import content_hash
 from playground.data.image_files import MAX_HALF, read_image
 from playground.engine.camera import unit_vector
-from playground.engine.gl_calls import mirror
+from playground.engine.gl_calls import wrap_sampler
 from playground.engine.plan import Step
 from playground.engine.results import MATCHING, OPEN, Wired, has_unwired, wires_of
 from playground.engine.results import UNWIRED as NOT_WIRED
-from playground.engine.software import Software
 from playground.engine.textures import FACES, Shaped, check_size, copied, drain, shaped_size
+from playground.engine.tuning import Stage, Tuning
 from playground.errors import ContextError
 from playground.memo import Memo
 from playground.paths import shown
@@ -39,8 +39,9 @@ if TYPE_CHECKING:
 
 _SRGB8_ALPHA8 = 0x8C43  # GL_SRGB8_ALPHA8: the sampler decodes, before it filters
 _MAX_FILES = 32
-_ANISOTROPY = 8.0  # of textures with mipmaps; on a software renderer it costs a hundred times as much
 _EXACT = Sampling()  # what reads one texel as it is
+_SINGLE = Sampling(wrap="border")  # likewise, and 0 around the texture
+_WRAPS = {"mirror": 0x8370, "border": 0x812D}  # GL_MIRRORED_REPEAT, GL_CLAMP_TO_BORDER
 _CONSTANTS = {"white": (1, 1, 1, 1), "black": (0, 0, 0, 1), "zero": (0, 0, 0, 0)}
 
 
@@ -58,10 +59,9 @@ class Bound:
 class Binder:
     """Binds textures and sets uniforms on one context."""
 
-    def __init__(self, ctx: moderngl.Context, software: Software | None) -> None:
+    def __init__(self, ctx: moderngl.Context, tuning: Tuning) -> None:
         self.ctx = ctx
-        self._anisotropy = 1.0 if software else min(_ANISOTROPY, float(ctx.max_anisotropy or 1.0))
-        self._software = software
+        self._anisotropy = min(tuning.anisotropy, float(ctx.max_anisotropy or 1.0))
         self._samplers: dict[Sampling, moderngl.Sampler] = {}
         self._constants: dict[str, moderngl.Texture] = {}
         self._shaped: dict[tuple[str, str], Shaped] = {}  # constants, by name and shape
@@ -97,16 +97,16 @@ class Binder:
         step: Step,
         values: Mapping[str, Any],
         inputs: Mapping[str, Wired],
-        wires: tuple[int, ...] | None = None,
+        stage: Stage,
     ) -> int:
         """Set what is the same for all iterations of a step; return the next free texture unit.
 
-        ``wires``: as ``wires_of`` returns them. Where the program was last bound for the very same, uniforms
-        keep their values, and only the textures of the inputs are bound.
+        Where the program was last bound for the very same, uniforms keep their values, and only the textures
+        of the inputs are bound.
         """
-        wires = wires_of(step, inputs) if wires is None else wires
-        if self._software and program.fixed:
-            program.set_all(self._software.values_of(program.fixed, step.kernel, inputs))
+        wires = wires_of(step, inputs)
+        if stage.uniforms:
+            program.set_all(stage.uniforms)
         bound = program.bound
         if (
             isinstance(bound, Bound)
@@ -139,7 +139,8 @@ class Binder:
             uniforms[f"{WIRED}{declared.name}"] = wire != OPEN
             uniforms[f"{MATCHES}{declared.name}"] = wire == MATCHING
             if declared.name in program.uniforms:
-                sampler = self.sampler_of(kernel, declared)
+                single = declared.name in stage.single_texels
+                sampler = self.sampler(_SINGLE if single else declared.sampling)
                 units.append((declared, unit, sampler))
                 program.set(declared.name, unit)
                 self.use(unit, self.wired(declared, inputs), sampler)
@@ -217,11 +218,6 @@ class Binder:
             self._put_back()
         return sampler
 
-    def sampler_of(self, kernel: Kernel, declared: Input) -> moderngl.Sampler:
-        """Return the sampler that reads an input of a kernel."""
-        quicker = self._software.sampler_of(kernel, declared, self._put_back) if self._software else None
-        return quicker or self.sampler(declared.sampling)
-
     def _put_back(self) -> None:
         """Put back the sampler of unit 0, where a new one may have been while it was made."""
         before = self._on_units.get(0)
@@ -275,7 +271,7 @@ class Binder:
         return self._shaped[name, shape]
 
     def _new_sampler(self, sampling: Sampling) -> moderngl.Sampler:
-        linear, around = sampling.filter == "linear", sampling.wrap != "clamp"
+        linear, around = sampling.filter == "linear", sampling.wrap in ("repeat", "mirror")
         shrink = self.ctx.LINEAR if linear else self.ctx.NEAREST
         if sampling.mipmap:
             shrink = self.ctx.LINEAR_MIPMAP_LINEAR if linear else self.ctx.NEAREST_MIPMAP_NEAREST
@@ -284,8 +280,8 @@ class Binder:
         sampler.filter = (shrink, self.ctx.LINEAR if near else self.ctx.NEAREST)
         if linear and sampling.mipmap and self._anisotropy > 1:
             sampler.anisotropy = self._anisotropy
-        if sampling.wrap == "mirror":
-            mirror(self.ctx, sampler)
+        if sampling.wrap in _WRAPS:
+            wrap_sampler(self.ctx, sampler, _WRAPS[sampling.wrap])
         return sampler
 
     def _read(self, path: Path, *, encoded: bool, flip: bool) -> moderngl.Texture:

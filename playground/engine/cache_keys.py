@@ -27,12 +27,12 @@ from typing import Any, NamedTuple
 from playground.data.content_hash import content_hash
 from playground.engine.meshes import mesh_parameters
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_version, sources_of, walk
-from playground.engine.software import read_by_texels_alone
 from playground.engine.source_kinds import Terrain
 from playground.memo import GRAPHS
 from playground.shader.expressions import counts_frames
 from playground.shader.kernel import VertexShader
 from playground.shader.reserved_names import CLOCKED, GIVEN, MATCHES, PRESSED, TOWARDS
+from playground.shader.sampler_reads import read_by_texels_alone
 from playground.sketch.flat import Fed, GraphShape, Ref, Source
 from playground.sketch.model import ComputeVariant, CpuSource, Draw, ForeignShader, Kernel, TexelKernel
 

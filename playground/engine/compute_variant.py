@@ -11,16 +11,17 @@ begins as the input, too.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from math import isqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from playground.engine.gl_calls import Calls
-from playground.engine.kernels import Job, Kernels
+from playground.engine.kernels import Kernels, numbers_of
+from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program
-from playground.engine.results import UNWIRED, Result
-from playground.engine.software import Choices
+from playground.engine.results import UNWIRED, Result, Wired
+from playground.engine.tuning import Choices
 from playground.shader import expressions
 from playground.shader.expressions import ExpressionError, Number
 from playground.shader.kernel import Buffer
@@ -60,47 +61,66 @@ class ComputeVariants:
             spare.buffer.release()
         self._spare.clear()
 
-    def run(self, job: Job) -> Result:
-        """Run a compute variant; the result is the caller's."""
-        step, kernel = job.step, _variant_of(job)
-        storage, software = kernel.storage, self.kernels.software
-        names = job.numbers()
+    def run(
+        self,
+        step: Step,
+        inputs: Mapping[str, Wired],
+        uniforms: Mapping[str, Any],
+        around: LoopIteration | None,
+    ) -> Result:
+        """Run a compute variant; the result is the caller's. The arguments are those of ``Kernels.run``."""
+        kernel = _variant_of(step)
+        storage, names = kernel.storage, numbers_of(step)
         buffers: list[moderngl.Buffer] = []
-        reading: Choices = ()
-        whole = all([output.name in kernel.storage.overwrites for output in kernel.outputs])
+        whole = all([output.name in storage.overwrites for output in kernel.outputs])
         pool = self.kernels.pool
         result = pool.take(step.size, kernel.outputs) if whole else self.kernels.empty(step)
+
+        def program_of(iteration: int, bound: Program | None, reading: Choices) -> Program:
+            """Return the program of an iteration with all that it reads, unless it is ``bound``.
+
+            Where choices are written into it, there is one for each stage: else what the others do would be
+            computed as well, and discarded. One with ``reading`` buffers as textures is another.
+            """
+            stages = (("stage", kernel.stages[iteration]),) if kernel.stages else ()
+            more = (*stages, *reading)
+            program, stage = self.kernels.program(step, COMPUTE, inputs, around, more)
+            if program is not bound:  # a program that was bound before may find other textures on its units
+                self.kernels.binder.bind(program, step, uniforms, inputs, stage)
+            for name, number in stages:
+                program.set(name, number)
+            return program
+
         try:
             repeat = expressions.evaluate(kernel.repeat, names)
             for unit, declared in enumerate(storage.buffers):
-                buffers.append(self._buffer(job, declared, names))
+                buffers.append(self._buffer(step, declared, names))
                 if declared.name == storage.in_place:
-                    self._begin(job, result, declared, buffers[-1])
+                    self._begin(step, inputs, result, declared, buffers[-1])
                 buffers[-1].bind_to_storage_buffer(unit, size=self._size(declared, names))
             named = dict(zip([declared.name for declared in storage.buffers], buffers, strict=True))
-            if software:
-                reading = software.begin_reading(kernel, named)
-            self.kernels.images(result, read=True)
             program: Program | None = None
             active = sum(self._size(b, names) for b in storage.buffers if b.name == storage.active)
             iteration, check = 0, 2
-            while iteration < repeat:
-                groups = expressions.evaluate_pair(kernel.groups, {**names, "iteration": iteration})
-                if not kernel.stages or 0 not in groups:  # a 0: a step that this size does not need
-                    program = self._program(job, iteration, program, reading)
-                    job.count(program, iteration, kernel.repeat, repeat)
-                    program.run(max(groups[0], 1), max(groups[1], 1))
-                iteration += 1
-                if storage.active and iteration == check:
-                    check += 1 + isqrt(iteration)  # as in kernels.py: about √n steps too many
-                    if not any(named[storage.active].read(active)):
-                        iteration = max(iteration, repeat - 1)
+            with self.kernels.tuning.reading(kernel, named) as reading:
+                self.kernels.images(result, read=True)
+                while iteration < repeat:
+                    groups = expressions.evaluate_pair(kernel.groups, {**names, "iteration": iteration})
+                    if not kernel.stages or 0 not in groups:  # a 0: a step that this size does not need
+                        program = program_of(iteration, program, reading)
+                        program.count(kernel.repeat, iteration, repeat, around)
+                        program.run(max(groups[0], 1), max(groups[1], 1))
+                    iteration += 1
+                    if storage.active and iteration == check:
+                        check += 1 + isqrt(iteration)  # as in kernels.py: about √n steps too many
+                        if not any(named[storage.active].read(active)):
+                            iteration = max(iteration, repeat - 1)
             if program is None and repeat > 0:
                 raise kernel.error(f"pass '{step.path}': groups of 0 leave out every step at this size")
             for output in kernel.outputs:
                 if (held := storage.of_output(output.name)) is not None:
                     buffer = buffers[storage.buffers.index(held)]
-                    self._copy(job, held, result.textures[output.name], buffer)
+                    self._copy(step, held, result.textures[output.name], buffer)
         except ExpressionError as error:
             pool.give(result)
             raise kernel.error(f"pass '{step.path}': {error}") from None
@@ -108,34 +128,17 @@ class ComputeVariants:
             pool.give(result)
             raise
         finally:
-            if software and reading:
-                software.end_reading()
             self._runs += 1
             self._spare += [Spare(buffer, self._runs) for buffer in buffers]
             self._trim()
         return result
 
-    def _program(self, job: Job, iteration: int, bound: Program | None, reading: Choices) -> Program:
-        """Return the program of an iteration with all that it reads, if it is not the one that is ``bound``.
-
-        On a software renderer, there is one for each stage: otherwise what the others do would
-        be computed as well, and discarded. One with ``reading`` buffers as textures is another.
-        """
-        step, stages = job.step, _variant_of(job).stages
-        stage = (("stage", stages[iteration]),) if stages else ()
-        program = self.kernels.program(job, COMPUTE, *stage, *reading)
-        if program is not bound:  # a program that was bound before may find other textures on its units
-            self.kernels.binder.bind(program, step, job.uniforms, job.inputs)
-        for name, number in stage:
-            program.set(name, number)
-        return program
-
-    def _buffer(self, job: Job, declared: Buffer, names: dict[str, Number]) -> moderngl.Buffer:
-        kernel = _variant_of(job)
+    def _buffer(self, step: Step, declared: Buffer, names: dict[str, Number]) -> moderngl.Buffer:
+        kernel = _variant_of(step)
         size = self._size(declared, names)
         if size > _MAX_BUFFER:
             message = f"buffer '{declared.name}' would be {size / 2**20:.0f} MiB; 2048 at most"
-            raise kernel.error(f"pass '{job.step.path}': {message}")
+            raise kernel.error(f"pass '{step.path}': {message}")
         fitting = [spare for spare in self._spare if size <= spare.buffer.size <= size * _MAX_SPARE_RATIO]
         if fitting:
             taken = min(reversed(fitting), key=_bytes)
@@ -152,38 +155,45 @@ class ComputeVariants:
         """Return the bytes of a buffer."""
         return max(expressions.evaluate(declared.count, names), 1) * _BYTES.get(declared.type, 4)
 
-    def _begin(self, job: Job, result: Result, declared: Buffer, buffer: moderngl.Buffer) -> None:
+    def _begin(
+        self,
+        step: Step,
+        inputs: Mapping[str, Wired],
+        result: Result,
+        declared: Buffer,
+        buffer: moderngl.Buffer,
+    ) -> None:
         """Fill a buffer with the first input, if that has the step's size: its kernel looks at that first."""
-        kernel = job.step.kernel
-        source = job.inputs.get(kernel.inputs[0].name, UNWIRED).texture
-        if source is None or source.size != job.step.size:
+        kernel = step.kernel
+        source = inputs.get(kernel.inputs[0].name, UNWIRED).texture
+        if source is None or source.size != step.size:
             return
         target = result.textures[kernel.outputs[0].name]
         if (source.dtype, source.components) != (target.dtype, target.components):
             self.kernels.copy_texture(target, source)  # which turns its numbers into the output's
             source = target
-        with self._rows(job, declared, target, buffer, _PACK_ROW_LENGTH) as alignment:
+        with self._rows(step, declared, target, buffer, _PACK_ROW_LENGTH) as alignment:
             source.read_into(buffer, alignment=alignment)
 
-    def _copy(self, job: Job, declared: Buffer, texture: moderngl.Texture, buffer: moderngl.Buffer) -> None:
+    def _copy(self, step: Step, declared: Buffer, texture: moderngl.Texture, buffer: moderngl.Buffer) -> None:
         """Fill an output's texture with its buffer."""
-        with self._rows(job, declared, texture, buffer, _UNPACK_ROW_LENGTH) as alignment:
+        with self._rows(step, declared, texture, buffer, _UNPACK_ROW_LENGTH) as alignment:
             texture.write(buffer, alignment=alignment)
 
     @contextmanager
     def _rows(
-        self, job: Job, declared: Buffer, texture: moderngl.Texture, buffer: moderngl.Buffer, length: int
+        self, step: Step, declared: Buffer, texture: moderngl.Texture, buffer: moderngl.Buffer, length: int
     ) -> Iterator[int]:
         """Yield OpenGL's alignment of a buffer's rows, which are those of a texture, from the south.
 
         OpenGL fills rows up to 8 bytes at most; for more, it is told the ``length`` of a row.
         """
-        aligned, texel = _variant_of(job).storage.aligned, texture.components * 4
+        aligned, texel = _variant_of(step).storage.aligned, texture.components * 4
         row = -(-texture.width * texel // aligned) * aligned
         needed = row * texture.height
         if texture.dtype != "f4" or buffer.size < needed:
             message = f"buffer '{declared.name}' holds {buffer.size} bytes; the output needs {needed}"
-            raise job.step.kernel.error(f"pass '{job.step.path}': {message}, 32 bits a number")
+            raise step.kernel.error(f"pass '{step.path}': {message}, 32 bits a number")
         if aligned <= _MAX_ALIGNMENT:
             yield aligned
             return
@@ -212,9 +222,9 @@ class ComputeVariants:
                 spare.buffer.release()
 
 
-def _variant_of(job: Job) -> ComputeVariant:
-    assert isinstance(job.step.kernel, ComputeVariant)
-    return job.step.kernel
+def _variant_of(step: Step) -> ComputeVariant:
+    assert isinstance(step.kernel, ComputeVariant)
+    return step.kernel
 
 
 def _bytes(spare: Spare) -> int:

@@ -38,9 +38,6 @@ VERSIONS = (430, 410, 330)
 _MAX_DEVICES = 15
 _SOFTWARE = re.compile(r"llvmpipe|softpipe|swrast|software|SwiftShader|Microsoft Basic Render", re.IGNORECASE)
 _OTHER_DEVICES = re.compile(r"requested device index -?\d+, but found ([1-9]\d*)")  # glcontext's words
-_TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3  # glibc's M_TRIM_THRESHOLD and M_MMAP_THRESHOLD
-_MAPPED = 2**23  # [bytes] from which a block goes back to the system as soon as it is freed
-_KEPT = 6 * 2**23  # [bytes] of freed blocks that stay: a frame's triangles are some 30 MiB
 _MESA_VENDOR = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
 _MAX_UNCOLLECTED = 3  # contexts of a thread, from which on garbage is collected before one more is opened
 _QUEUED = "context_gc"  # moderngl's mode in which dropped objects stay in ``Context.objects``
@@ -349,20 +346,6 @@ class _Functions:
 
     def release(self) -> None:
         """Leave the context to the window."""
-
-
-def keep_freed_memory() -> None:
-    """Let the C library keep what it frees, up to 48 MiB of blocks below 8 MiB each.
-
-    llvmpipe allocates the triangles of each frame and frees them. Given back to the system, their pages
-    are made again in the next frame: 7 of 69 ms of a draw of 133,000 triangles. glibc only.
-    """
-    if not sys.platform.startswith("linux"):
-        return
-    setter = getattr(ctypes.CDLL(None), "mallopt", None)
-    if setter is not None:
-        setter(_MMAP_THRESHOLD, _MAPPED)
-        setter(_TRIM_THRESHOLD, _KEPT)
 
 
 def prefer_software() -> None:

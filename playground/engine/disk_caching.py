@@ -9,8 +9,8 @@ saves enough.
 
 What passes cost is measured as they run. Once the terrain has not changed for a moment, the textures
 that are worth it are read back a piece at a time, and the disk cache's own thread writes them: no
-frame waits for either. A pass in between that is needed after all, runs then. On a software renderer
-mipmaps are cached too: a graphics card makes them faster than a disk is read.
+frame waits for either. A pass in between that is needed after all, runs then. Where the renderer takes longer
+to make mipmaps than a disk to give them (``Tuning.mipmap_cost``), they are cached too.
 """
 
 from __future__ import annotations
@@ -26,8 +26,7 @@ from typing import TYPE_CHECKING
 from playground.engine.cache import Cache
 from playground.engine.cache_keys import Keys
 from playground.engine.disk_cache import CachedTextures, DiskCache
-from playground.engine.execution import Execution
-from playground.engine.frame_record import FrameSource
+from playground.engine.execution import Execution, FrameSource
 from playground.engine.gl_calls import read_mipmap, write_mipmaps
 from playground.engine.plan import (
     LoopStep,
@@ -53,7 +52,6 @@ if TYPE_CHECKING:
 
 FLOOR = 20.0  # [ms] that a read must save: less is not visible
 RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum included
-MIPMAPS = 90.0  # [ms] that llvmpipe takes in each process to compile what makes the first mipmaps of a format
 REST = 1.0  # [s] without another piece of terrain before one is written
 PIECE = 4 * 2**20  # [bytes] read back at once
 _MAX_COSTS = 4096
@@ -200,9 +198,8 @@ class DiskCaching:
     def _write_all(self, source: FrameSource, plan: Plan, keys: Keys) -> Iterator[None]:
         """Write what is worth it, a piece at a time; ends early where a texture is gone."""
         passes, costs = passing(plan, source.runner.painted), self._costs
-        more: dict[str, float] = {}
-        if source.runner.info.software:  # one texture whose mipmaps are made again has that compiled again
-            more = {path: MIPMAPS for path, result in source.record.results.items() if result.mipmapped}
+        mipmaps = source.runner.tuning.mipmap_cost
+        more = {path: mipmaps for path, result in source.record.results.items() if result.mipmapped}
         for worth in worth_caching(plan, keys, plan.picture, passes, costs, read_time, self.floor, more):
             step = source.record.keys.steps.get(worth.path)
             if step is None or step.result != worth.key:
@@ -211,7 +208,7 @@ class DiskCaching:
             result = source.record.results.get(worth.path)
             if result is None or worth.key in self.store:
                 continue
-            mipmapped = frozenset(result.mipmapped if source.runner.info.software else ())
+            mipmapped = frozenset(result.mipmapped if mipmaps else ())
             outputs = tuple((o.name, o.format) for o in result.outputs)
             made_for = f"{plan.sketch.name}: {worth.path}"
             cached = CachedTextures(result.size, outputs, worth.cost, made_for, mipmapped=mipmapped)

@@ -18,10 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.gl_calls import copy_depth
-from playground.engine.kernels import Job, Kernels
+from playground.engine.kernels import Kernels, numbers_of
 from playground.engine.lod import CHOOSERS, Chosen, View, ranges
 from playground.engine.meshes import drawn_mesh, mesh_key, mesh_parameters
-from playground.engine.plan import Window
+from playground.engine.plan import LoopIteration, Step, Window
 from playground.engine.programs import Program
 from playground.engine.results import Result, Surface, Wired, started
 from playground.engine.textures import drain, make_framebuffer, read_texture, split_format
@@ -65,24 +65,38 @@ class Draws:
         self._surfaces.clear()
         self._tables.clear()
 
-    def run(self, job: Job) -> Result:
-        """Draw a mesh over what the draw starts from; the result is the caller's."""
-        step, kernel, ctx = job.step, _draw_of(job), self.ctx
-        program = self.kernels.program(job, "draw")
-        loaded, array = self._array(program, job)
-        instances = instances_of(job, self._texels) if step.repeat else 0
-        chosen = self._chosen(job) if loaded.places is not None and step.repeat else None
+    def run(
+        self,
+        step: Step,
+        inputs: Mapping[str, Wired],
+        uniforms: Mapping[str, Any],
+        around: LoopIteration | None,
+        samples: int,
+        *,
+        keeps_surface: bool,
+    ) -> Result:
+        """Draw a mesh over what the draw starts from, with ``samples`` a pixel; the result is the caller's.
+
+        ``keeps_surface``: a later draw goes on from this one. The others are those of ``Kernels.run``.
+        """
+        kernel, ctx = _draw_of(step), self.ctx
+        program, stage = self.kernels.program(step, "draw", inputs, around)
+        loaded, array = self._array(program, step, inputs)
+        instances = instances_of(step, inputs, self._texels) if step.repeat else 0
+        chosen = None
+        if loaded.places is not None and step.repeat:
+            chosen = self._chosen(step, inputs, uniforms)
         pool = self.kernels.pool
-        result = pool.take(step.size, kernel.outputs) if job.samples == 1 else None
+        result = pool.take(step.size, kernel.outputs) if samples == 1 else None
         try:
-            surface = self._target(result) if result is not None else self._surface(job)
-            self._begin(job, kernel, surface)
+            surface = self._target(result) if result is not None else self._surface(step, samples)
+            self._begin(step, kernel, inputs, surface)
             if step.window is not None:
                 self._look_through(step.window, program)
-            self.kernels.binder.bind(program, step, job.uniforms, job.inputs)
+            self.kernels.binder.bind(program, step, uniforms, inputs, stage)
             _enable(ctx, "over" if kernel.over else kernel.depth, kernel.blend)
             for iteration in range(step.repeat):
-                job.count(program, iteration, kernel.repeat, step.whole)
+                program.count(kernel.repeat, iteration, step.whole, around)
                 if chosen is None:
                     if instances:
                         array.render(ctx.TRIANGLES, instances=instances)
@@ -97,11 +111,11 @@ class Draws:
         finally:
             _enable(ctx, "none", "none")
         if result is not None:
-            result.surface = surface if job.keeps_surface else None
+            result.surface = surface if keeps_surface else None
             return result
         result = pool.take(step.size, kernel.outputs)
         ctx.copy_framebuffer(result.framebuffer(ctx), surface.framebuffer)
-        if job.keeps_surface:
+        if keeps_surface:
             result.surface = surface
         else:
             self._surfaces.append(surface)
@@ -123,10 +137,9 @@ class Draws:
         moved = (wide - 2 * x - width) / width, (tall - 2 * y - height) / height
         program.set(ZOOM, (wide / width, tall / height, *moved))
 
-    def _surface(self, job: Job) -> Surface:
+    def _surface(self, step: Step, samples: int) -> Surface:
         """Return something to draw several samples a pixel on: a spare surface if there is one."""
-        size, samples = job.step.size, job.samples
-        formats = tuple([output.format for output in job.step.kernel.outputs])
+        size, formats = step.size, tuple([output.format for output in step.kernel.outputs])
         for spare in self._surfaces:
             if (spare.size, spare.formats, spare.samples) == (size, formats, samples):
                 self._surfaces.remove(spare)
@@ -172,21 +185,21 @@ class Draws:
             raise ContextError(f"the driver refused to draw {what}: {refusal}") from None
         return Surface(framebuffer, colours, depth, size, formats, samples, is_target=samples == 1)
 
-    def _begin(self, job: Job, kernel: Draw, surface: Surface) -> None:
+    def _begin(self, step: Step, kernel: Draw, inputs: Mapping[str, Wired], surface: Surface) -> None:
         """Give a surface what a draw begins with, and bind it."""
         surface.framebuffer.depth_mask = not kernel.over
         if kernel.over:
-            self._take_depth(job, kernel.over, surface)
-        self._start_from(job, kernel, surface)
+            self._take_depth(step, kernel.over, inputs, surface)
+        self._start_from(step, kernel, inputs, surface)
         surface.framebuffer.use()
 
-    def _start_from(self, job: Job, kernel: Draw, surface: Surface) -> None:
+    def _start_from(self, step: Step, kernel: Draw, inputs: Mapping[str, Wired], surface: Surface) -> None:
         """Begin with an earlier draw's samples and depth, with a texture's colours, or with nothing."""
-        wired = job.inputs.get("initial", Wired())
+        wired = inputs.get("initial", Wired())
         # Of what a draw over another's pixels starts from, the depth is that draw's.
         earlier = wired.result.surface if wired.result is not None and not kernel.over else None
         if earlier is not None and (earlier.size, earlier.samples) == (surface.size, surface.samples):
-            _refuse_others(job, wired)
+            _refuse_others(step, wired)
             self.ctx.copy_framebuffer(surface.framebuffer, earlier.framebuffer)
             return
         textures = started(kernel.outputs, wired)
@@ -205,15 +218,15 @@ class Draws:
             if output.name in textures:
                 self._copy_into(surface, unit, textures[output.name])
 
-    def _take_depth(self, job: Job, name: str, surface: Surface) -> None:
+    def _take_depth(self, step: Step, name: str, inputs: Mapping[str, Wired], surface: Surface) -> None:
         """Begin with the depth of the draw whose pixels are drawn over; it is read and not written."""
-        wired = job.inputs.get(name, Wired())
+        wired = inputs.get(name, Wired())
         earlier = wired.result.surface if wired.result is not None else None
         if earlier is None or (earlier.size, earlier.samples) != (surface.size, surface.samples):
             what = (
                 f"a draw of {surface.size[0]} x {surface.size[1]} pixels and {surface.samples} samples each"
             )
-            raise job.step.spec.error(f"pass '{job.step.path}' draws over '{name}', which needs to be {what}")
+            raise step.spec.error(f"pass '{step.path}' draws over '{name}', which needs to be {what}")
         copy_depth(self.ctx, surface.framebuffer, earlier.framebuffer, surface.size)
 
     def _copy_into(self, surface: Surface, unit: int, texture: moderngl.Texture) -> None:
@@ -225,39 +238,40 @@ class Draws:
         self.kernels.copy(single, surface.size, texture)
         single.release()
 
-    def _chosen(self, job: Job) -> Chosen:
+    def _chosen(self, step: Step, inputs: Mapping[str, Wired], uniforms: Mapping[str, Any]) -> Chosen:
         """Return what to draw of a mesh with levels of detail."""
-        kernel, uniforms = _draw_of(job), job.uniforms
+        kernel = _draw_of(step)
         chooser = CHOOSERS[kernel.mesh]
         required = ("clip_from_world", "eye", "extent", "relief")
-        names = {*uniforms, *job.step.values}
+        names = {*uniforms, *step.values}
         missing = [name for name in (*required, *chooser.parameters) if name not in names]
         if missing:
             raise kernel.error(f"mesh '{kernel.mesh}' needs a draw that reads {', '.join(missing)}")
         matrix = np.array(uniforms["clip_from_world"], np.float64).reshape(4, 4).T
-        view = View(matrix, uniforms["eye"], uniforms["extent"], uniforms["relief"], job.step.whole_size)
+        view = View(matrix, uniforms["eye"], uniforms["extent"], uniforms["relief"], step.whole_size)
 
         def tables() -> dict[str, NDArray[np.float32]]:
-            return {name: self._table(job, name) for name in chooser.inputs}
+            return {name: self._table(step, name, inputs) for name in chooser.inputs}
 
-        return chooser.choose(job.step.values, tables, view)
+        return chooser.choose(step.values, tables, view)
 
-    def _table(self, job: Job, name: str) -> NDArray[np.float32]:
+    def _table(self, step: Step, name: str, inputs: Mapping[str, Wired]) -> NDArray[np.float32]:
         """Return the texels of an input, read once each time that they are computed."""
-        result, texture, output = job.inputs.get(name, Wired())
+        result, texture, output = inputs.get(name, Wired())
         if result is None or texture is None:
-            mesh = _draw_of(job).mesh
-            raise job.step.spec.error(f"mesh '{mesh}' at this detail needs the input '{name}' wired")
+            mesh = _draw_of(step).mesh
+            raise step.spec.error(f"mesh '{mesh}' at this detail needs the input '{name}' wired")
         read = self._tables.setdefault(result, {})
         if output not in read:
             read[output] = read_texture(texture)
         return read[output]
 
-    def _array(self, program: Program, job: Job) -> tuple[_Loaded, moderngl.VertexArray]:
-        step = job.step
+    def _array(
+        self, program: Program, step: Step, inputs: Mapping[str, Wired]
+    ) -> tuple[_Loaded, moderngl.VertexArray]:
         try:
-            name = _draw_of(job).mesh
-            key = (name, mesh_key(name, _mesh_values(job)))
+            name = _draw_of(step).mesh
+            key = (name, mesh_key(name, _mesh_values(step, inputs)))
         except (SketchError, ExpressionError) as error:
             raise step.spec.error(str(error)) from None
         if self.finest is not None:
@@ -279,35 +293,35 @@ def _same_outputs(result: Result, surface: Surface, textures: Mapping[str, moder
     return formats == surface.formats and [*result.textures.values()] == [*textures.values()]
 
 
-def _refuse_others(job: Job, wired: Wired) -> None:
+def _refuse_others(step: Step, wired: Wired) -> None:
     """Refuse to go on from a draw of more or fewer outputs, whose samples have no place here."""
     outputs = [output.name for output in wired.result.outputs] if wired.result else []
-    own = [output.name for output in job.step.kernel.outputs]
+    own = [output.name for output in step.kernel.outputs]
     if len(outputs) != len(own) or outputs[0] != wired.output:
-        source = dict(job.step.inputs)["initial"]
+        source = dict(step.inputs)["initial"]
         earlier = source.path if isinstance(source, Ref) else "initial"
         what = f"a draw of {', '.join(outputs)}; it gives {', '.join(own)}, and they must be as many"
-        raise job.step.spec.error(f"pass '{job.step.path}' goes on from '{earlier}', {what}")
+        raise step.spec.error(f"pass '{step.path}' goes on from '{earlier}', {what}")
 
 
-def _draw_of(job: Job) -> Draw:
-    assert isinstance(job.step.kernel, Draw)
-    return job.step.kernel
+def _draw_of(step: Step) -> Draw:
+    assert isinstance(step.kernel, Draw)
+    return step.kernel
 
 
-def _mesh_values(job: Job) -> dict[str, Value]:
+def _mesh_values(step: Step, inputs: Mapping[str, Wired]) -> dict[str, Value]:
     """Return a draw's parameters, and the count that its header computes."""
-    step, kernel = job.step, _draw_of(job)
+    kernel = _draw_of(step)
     if not kernel.count:
         return dict(step.values)
     if "count" not in mesh_parameters(kernel.mesh):
         raise SketchError(f"mesh '{kernel.mesh}' takes no count")
     sizes = {
         f"{name}.size.{axis}": wired.texture.size[k] if wired.texture else 1
-        for name, wired in job.inputs.items()
+        for name, wired in inputs.items()
         for k, axis in enumerate("xy")
     }
-    return {**step.values, "count": expressions.evaluate(kernel.count, job.numbers(**sizes))}
+    return {**step.values, "count": expressions.evaluate(kernel.count, numbers_of(step, **sizes))}
 
 
 def _enable(ctx: Any, depth: str, blend: str) -> None:
@@ -404,21 +418,21 @@ class Texels:
         return tuple(np.frombuffer(read, np.float32).tolist())
 
 
-def instances_of(job: Job, texels: Texels) -> int:
+def instances_of(step: Step, inputs: Mapping[str, Wired], texels: Texels) -> int:
     """Return how often a step's mesh is drawn; 1 where its header does not say.
 
     Raises ``SketchError`` where that is not a whole number from 0 to ``MAX_INSTANCES``.
     """
-    step, kernel = job.step, job.step.kernel
+    kernel = step.kernel
     if not isinstance(kernel, Draw) or not kernel.instances:
         return 1
     if kernel.mesh in CHOOSERS:
         mesh = f"mesh '{kernel.mesh}' is drawn once for each of its tiles"
         raise kernel.error(f"{mesh}; it takes no instances")
-    numbers = job.numbers()
+    numbers = numbers_of(step)
 
     def number(name: str) -> Number:
-        return numbers[name] if name in numbers else _component(job, name, texels)
+        return numbers[name] if name in numbers else _component(step, name, inputs, texels)
 
     try:
         count = expressions.evaluate(kernel.instances, number)
@@ -443,10 +457,10 @@ def counts_instances(technique: Technique, name: str) -> bool:
     return any(spec is not None and counts_instances(spec.technique, rest) for spec, rest in inside)
 
 
-def _component(job: Job, name: str, texels: Texels) -> Number:
+def _component(step: Step, name: str, inputs: Mapping[str, Wired], texels: Texels) -> Number:
     """Return a component of an input's first texel, of a name as ``list.x``."""
     declared, _, component = name.partition(".")
-    wired, step = job.inputs.get(declared, Wired()), job.step
+    wired = inputs.get(declared, Wired())
     if wired.result is None:
         raise ExpressionError(f"names '{declared}', to which nothing is wired")
     texels_read = texels.of(wired.result, wired.output)

@@ -1,27 +1,34 @@
 """Run the passes of one plan in order: cached results are taken, stale ones computed, loops iterate.
 
+What ran, what it gave and what it took is the frame's ``FrameRecord``.
+
 What an iteration of a loop computes belongs to the loop until its next iteration is done; all else
 belongs to the cache. A pass inside a loop that does not change with it runs once.
 """
 
 from __future__ import annotations
 
+import logging
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 from playground.engine.cache import Cache
-from playground.engine.cache_keys import Keys
+from playground.engine.cache_keys import Keys, StepKey
+from playground.engine.gl_calls import Timer
 from playground.engine.loops import LoopState, Replay, iteration_of, replay_of
 from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step, sources_of, walk
 from playground.engine.results import UNWIRED, Cached, Result, Wired, started
 from playground.engine.runner import Runner
-from playground.engine.unfinished import Deadline
+from playground.engine.unfinished import Deadline, Piece
+from playground.errors import OpenGLFault
 from playground.shader.expressions import follows_time
 from playground.sketch.flat import Fed, Ref, Source
 from playground.sketch.model import Draw, ForeignShader, TexelKernel
 
-Compute = Callable[[Step, Mapping[str, Wired], LoopIteration | None, Result | None], Result]
-"""Runs a step: its inputs, where it is in the loops around it, the same step after fewer to go on from."""
+_log = logging.getLogger(__name__)
 
 Timed = Callable[[str, str], AbstractContextManager[None]]
 """Measures what the step or the loop of that path and that key takes."""
@@ -29,26 +36,118 @@ Timed = Callable[[str, str], AbstractContextManager[None]]
 _REPLAYED_FROM = 2  # the iteration from which on a loop's run as the one before: what is fed back is its own
 
 
+@dataclass
+class FrameRecord:
+    """One frame; before the first there is no plan."""
+
+    plan: Plan | None = None
+    keys: Keys = field(default_factory=Keys)
+    before: Keys = field(default_factory=Keys)  # of the frame before, whatever it was of
+    results: Mapping[str, Result] = field(default_factory=dict)  # by path; valid until the next frame
+    ran: list[str] = field(default_factory=list)  # paths of the passes that ran, in order
+    iterations: Counter[str] = field(default_factory=Counter)  # of each pass that ran, by path
+    texels: int = 0  # computed
+    times: dict[str, float] = field(default_factory=dict)  # [ms] of each pass that ran, while profiling
+    triangles: int = 0  # drawn; of what is cached, none
+
+    def count(self, step: Step, iterations: int, triangles: int) -> None:
+        """Count a run of a step."""
+        self.ran.append(step.path)
+        self.iterations[step.path] += iterations
+        self.texels += step.size[0] * step.size[1] * max(iterations, 1)
+        self.triangles += triangles
+
+    def count_replayed(self, steps: Sequence[Step], times: int) -> None:
+        """Count the iterations of a loop, each of which ran some steps once."""
+        for step in steps:
+            self.iterations[step.path] += times
+            self.texels += step.size[0] * step.size[1] * times
+        self.ran += [step.path for step in steps] * times
+
+    def reasons(self, path: str) -> tuple[str, ...]:
+        """Return why a step ran again: what of its key is another than in the frame before, by name.
+
+        See ``StepKey.difference``; ("the pass",) where that frame had none of this path, nothing where the
+        key is the same: its textures had been dropped.
+        """
+        return _reasons(self.keys.steps[path], self.before.steps.get(path))
+
+    def plus(self, before: FrameRecord) -> FrameRecord:
+        """Return the record with the counts of an earlier drawing of the same frame added."""
+        return replace(
+            self,
+            ran=[*before.ran, *(path for path in self.ran if path not in before.ran)],
+            iterations=before.iterations + self.iterations,
+            texels=before.texels + self.texels,
+            times={p: before.times.get(p, 0.0) + self.times.get(p, 0.0) for p in before.times | self.times},
+            triangles=before.triangles + self.triangles,
+        )
+
+    def counted_as(self, other: FrameRecord) -> FrameRecord:
+        """Return the record with the counts of another frame, and why passes ran for it."""
+        return replace(
+            self,
+            before=other.before,
+            ran=other.ran,
+            iterations=other.iterations,
+            texels=other.texels,
+            times=other.times,
+            triangles=other.triangles,
+        )
+
+
+def _reasons(key: StepKey, before: StepKey | None) -> tuple[str, ...]:
+    return ("the pass",) if before is None else key.difference(before)
+
+
+def why(key: StepKey, before: StepKey | None) -> str:
+    """Return as text why a step ran that had another key, or none, in the frame before."""
+    return ", ".join(_reasons(key, before)) or "its textures were dropped"
+
+
+class FrameSource(Protocol):
+    """What draws frames, as far as those need it that look at the last one."""
+
+    @property
+    def record(self) -> FrameRecord:
+        """The last frame's."""
+
+    @property
+    def runner(self) -> Runner:
+        """What runs the passes, with its context and its pool of textures."""
+
+    def borrowed(self) -> AbstractContextManager[None]:
+        """Lend the context, made current."""
+
+    def recall(self, plan: Plan) -> None:
+        """Make an earlier frame the last one again."""
+
+
 class Execution:
-    """One frame's run over a plan."""
+    """One frame's run over a plan; what ran goes into its ``record``.
+
+    ``piece`` may stop it between passes, ``deadline`` between iterations of loops that follow the time.
+    With a ``timer`` the time of each pass is measured.
+    """
 
     def __init__(
         self,
-        keys: Keys,
+        record: FrameRecord,
         cache: Cache,
         runner: Runner,
-        compute: Compute,
-        driver_for: Callable[[Step], str],
+        *,
+        piece: Piece,
+        deadline: Deadline,
+        timer: Timer | None = None,
     ) -> None:
-        self.keys = keys
+        self.record = record
+        self.keys = record.keys
         self.cache = cache
         self.runner = runner
-        self.compute = compute
-        self.driver_for = driver_for
+        self.piece = piece
+        self.deadline = deadline
+        self.timer = timer
         self.timed: Timed | None = None
-        self.deadline: Deadline | None = None  # of loops that follow the time
-        # Called with steps of a loop and how often they ran since; None: each is computed by itself.
-        self.replayed: Callable[[Sequence[Step], int], None] | None = None
         self.ended: Callable[[Step, Result], None] | None = None  # called with each step that was computed
         self.last_uses: Mapping[str, Sequence[Step]] = {}  # what to drop once a node has run, by its path
         self.results: dict[str, Result] = {}  # by the step's path; valid until the next frame
@@ -125,7 +224,7 @@ class Execution:
             result = self.cache.take(before)
         else:
             with self.timed(step.path, key) if self.timed else nullcontext():
-                result = self.compute(step, inputs, None, earlier)
+                result = self._run_step(step, inputs, None, earlier)
             if self.ended is not None:
                 self.ended(step, result)
         self.cache.put(key, Cached({step.path: result}))
@@ -135,16 +234,43 @@ class Execution:
             self.cache.note_progress(step.path, unfinished, key, step.repeat)
         return result
 
+    def _run_step(
+        self,
+        step: Step,
+        inputs: Mapping[str, Wired],
+        around: LoopIteration | None,
+        start: Result | None,
+    ) -> Result:
+        """Run a step, and record that and how it ran; arguments as those of ``Runner.run``."""
+        if around is None:
+            self.piece.check()
+        record, runner, first = self.record, self.runner, (start.settled or start.iterations) if start else 0
+        continued = record.plan is not None and step.path in record.plan.continued
+        objects, drawn = runner.pool.made + runner.programs.compiled, runner.draws.drawn
+        key = "" if around is not None else self.keys.computed(step.path)
+        with self.timer.measure(record.times, step.path) if self.timer else nullcontext():
+            result = runner.run(step, inputs, around=around, start=start, keeps_surface=continued, key=key)
+        if objects != runner.pool.made + runner.programs.compiled:
+            # What has run without an error before will do so again, and a query waits for the driver.
+            error = runner.ctx.error
+            if error != "GL_NO_ERROR":
+                raise OpenGLFault(f"pass '{step.path}': OpenGL reports {error}")
+        record.count(step, max((result.settled or step.repeat) - first, 0), runner.draws.drawn - drawn)
+        if around is None and _log.isEnabledFor(logging.DEBUG):
+            reasons = why(record.keys.steps[step.path], record.before.steps.get(step.path))
+            _log.debug("ran %s: %s", step.path, reasons)
+        return result
+
     def _read(self, step: Step, inputs: Mapping[str, Wired]) -> str:
         """Return all that a step's textures depend on, where its key may change without that; "" elsewhere.
 
         Of an input of which it reads single texels, as of a daylight the day of the year, these are all. Only
-        on a software renderer, which reads them back anyway: there they are uniforms.
+        where they are read back anyway: see ``Tuning``.
         """
-        by_texels, software = self.keys.steps[step.path].by_texels, self.runner.software
-        if not by_texels or software is None:
+        by_texels = self.keys.steps[step.path].by_texels
+        if not by_texels:
             return ""
-        texels = software.texels_read(step.kernel, inputs)
+        texels = self.runner.tuning.texels_read(step.kernel, inputs)
         return "" if texels is None else f"{by_texels} {texels}"  # where 0 is not -0
 
     def _earlier(self, step: Step, unfinished: str) -> Result | None:
@@ -222,18 +348,18 @@ class Execution:
 
     def _check_deadline(self, state: LoopState) -> None:
         """Stop a loop that follows the time where the deadline has passed."""
-        if self.deadline is not None and state.follows_time:
+        if state.follows_time:
             done = state.iterations
             self.deadline.check(done - state.started_at, done, state.loop.repeat)
 
     def _replay_of(self, loop: LoopStep, fed: Mapping[Fed, Wired]) -> Replay | None:
         """Return what runs a loop's next iterations as its last one ran, if they do."""
         runner = self.runner
-        if self.replayed is None or runner.before_step is not None or runner.pool.clears:
+        if self.timer is not None or runner.before_step is not None or runner.pool.clears:
             return None
         nodes = self._changing(loop, 0)
         return replay_of(
-            loop, nodes, lambda source: self._wired(source, fed), runner.kernels, self.driver_for
+            loop, nodes, lambda source: self._wired(source, fed), runner.kernels, runner.driver_for
         )
 
     def _replay(self, replay: Replay, state: LoopState, frame: int | None) -> None:
@@ -242,8 +368,7 @@ class Execution:
             state.replay(replay, frame, lambda: self._check_deadline(state))
         finally:
             self.results |= state.results
-            if self.replayed is not None:
-                self.replayed(replay.steps, state.iterations - first)
+            self.record.count_replayed(replay.steps, state.iterations - first)
 
     def _changing(self, loop: LoopStep, iteration: int) -> list[PlanNode]:
         """Return what an iteration of a loop computes again."""
@@ -269,7 +394,7 @@ class Execution:
                 owned |= state.take()
         else:
             inputs = {name: self._input(node, name, source, fed) for name, source in node.inputs}
-            owned[node.path] = self.results[node.path] = self.compute(node, inputs, iteration, None)
+            owned[node.path] = self.results[node.path] = self._run_step(node, inputs, iteration, None)
 
     def _input(self, step: Step, name: str, source: Source | None, fed: Mapping[Fed, Wired]) -> Wired:
         """Return what an input reads; of what is fed back, before the first iteration, perhaps zeros.

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 _ACTIVE, _TEXTURE0 = "glActiveTexture", 0x84C0
 _SAMPLER_BINDING = 0x8919
 _WRAPS = (0x2802, 0x2803, 0x8072)  # GL_TEXTURE_WRAP_S, T and R
-_MIRRORED, _CLAMP_TO_BORDER = 0x8370, 0x812D
 _TEXTURE_2D, _INTERNAL_FORMAT = 0x0DE1, 0x1003
 _PACK_ALIGNMENT, _UNPACK_ALIGNMENT = 0x0D05, 0x0CF5
 _CHANNELS = {1: 0x1903, 2: 0x8227, 4: 0x1908}  # GL_RED, GL_RG, GL_RGBA
@@ -110,17 +109,8 @@ def _texel(texture: moderngl.Texture) -> int:
     return texture.components * int(texture.dtype[-1])
 
 
-def mirror(ctx: moderngl.Context, sampler: moderngl.Sampler) -> None:
-    """Let a sampler repeat a texture mirrored; it is taken off unit 0 again."""
-    _wrap(ctx, sampler, _MIRRORED)
-
-
-def surround(ctx: moderngl.Context, sampler: moderngl.Sampler) -> None:
-    """Let a sampler give 0 outside of a texture; it is taken off unit 0 again."""
-    _wrap(ctx, sampler, _CLAMP_TO_BORDER)
-
-
-def _wrap(ctx: moderngl.Context, sampler: moderngl.Sampler, mode: int) -> None:
+def wrap_sampler(ctx: moderngl.Context, sampler: moderngl.Sampler, mode: int) -> None:
+    """Set how a sampler goes on outside of a texture, by OpenGL's number; it is taken off unit 0 again."""
     call, name = Calls(ctx), ctypes.c_int()
     sampler.use(0)
     call.activate(0)

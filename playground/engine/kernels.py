@@ -8,8 +8,6 @@ lattice ever more closely fills, in fragment, as small a part of its textures as
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextlib import nullcontext
-from dataclasses import dataclass
 from math import isqrt
 from typing import TYPE_CHECKING, Any
 
@@ -19,10 +17,10 @@ from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Swap, Wired, wires_of
-from playground.engine.software import FIRST_PART, Software
 from playground.engine.textures import make_framebuffer
+from playground.engine.tuning import Choices, Stage, Tuning
 from playground.shader import expressions
-from playground.shader.expressions import FRAME_RATE, ExpressionError, Number, counts_frames
+from playground.shader.expressions import ExpressionError, Number
 from playground.shader.own_shaders import own_shader
 from playground.shader.parameter import Sampling
 from playground.shader.reserved_names import DEPTH, ELEMENT, PART, PRESSED, SIZES, VALUE, WINDOW
@@ -33,8 +31,6 @@ from playground.sketch.wiring import initial_names
 if TYPE_CHECKING:
     import moderngl
 
-    from playground.engine.software import Software
-
 _BLOCK = 4  # texels a side that one fragment compares
 _TARGET = (Output("k_changed", "r8"),)
 
@@ -43,13 +39,13 @@ class Settling:
     """Compares the steps of repeats on one context."""
 
     def __init__(
-        self, ctx: moderngl.Context, programs: Programs, binder: Binder, pool: Pool, *, software: bool
+        self, ctx: moderngl.Context, programs: Programs, binder: Binder, pool: Pool, *, waits: bool
     ) -> None:
         self.ctx = ctx
         self.programs = programs
         self.binder = binder
         self.pool = pool
-        self.software = software
+        self.waits = waits  # for each answer, else for that to the comparison before
         self.compared = 0  # so far
         self._query: Any = None  # read before it is used again
 
@@ -93,7 +89,7 @@ class Watch:
         if earlier is not None and not earlier.samples:
             return True
         self._asked = self._settling.compare(now, before, self._unit)
-        return self._settling.software and not self._asked.samples
+        return self._settling.waits and not self._asked.samples
 
 
 _SAMPLERS = frozenset(
@@ -105,91 +101,96 @@ _SHAPES = {0x8B5D: "line", 0x8B5F: "volume", 0x8B60: "cube", 0x8DC1: "layers"}
 """GL_SAMPLER_1D, 3D, CUBE and 2D_ARRAY, with the shapes of what they read."""
 
 
-@dataclass(slots=True)
-class Job:
-    """One step about to run, with all it reads."""
-
-    step: Step
-    uniforms: Mapping[str, Any]  # what the engine gives, by name
-    inputs: Mapping[str, Wired]
-    loop_iteration: LoopIteration | None = None  # where it is in the loops around it
-    start: Result | None = None  # the same step after fewer iterations, to go on from; it is used up
-    samples: int = 1  # of a draw
-    keeps_surface: bool = False  # a later draw goes on from this one
-    key: str = ""  # what its textures depend on; in a loop none
-
-    def count(self, program: Program, iteration: int, repeat: str, whole: int, at_once: int = 1) -> None:
-        """Set a kernel's iteration: its own where it repeats, else that of the loop around it."""
-        now, total, around = iteration, whole, self.loop_iteration
-        if repeat == "1" and around is not None and around.whole:
-            now, total = around.number, around.whole
-        counted: dict[str, Any] = {"iteration": now, "iterations": total, "until": now + at_once}
-        if counts_frames(repeat):
-            counted["time"] = now / FRAME_RATE
-        program.set_all(counted)
-
-    def numbers(self, **more: Number) -> dict[str, Number]:
-        """Return what the expressions of a header may name."""
-        width, height = self.step.whole_size
-        numbers: dict[str, Number] = {"size.x": width, "size.y": height, **more}
-        return numbers | {k: v for k, v in self.step.values.items() if isinstance(v, int | float)}
+def numbers_of(step: Step, **more: Number) -> dict[str, Number]:
+    """Return what the expressions of a step's header may name."""
+    width, height = step.whole_size
+    numbers: dict[str, Number] = {"size.x": width, "size.y": height, **more}
+    return numbers | {k: v for k, v in step.values.items() if isinstance(v, int | float)}
 
 
 class Kernels:
     """Runs kernels and plain shaders on one context."""
 
-    def __init__(
-        self, ctx: moderngl.Context, programs: Programs, binder: Binder, pool: Pool, software: Software | None
-    ) -> None:
+    def __init__(self, ctx: moderngl.Context, pool: Pool, tuning: Tuning) -> None:
         self.ctx = ctx
-        self.software = software  # None: the renderer is a GPU
-        self.programs = programs
-        self.binder = binder
         self.pool = pool
-        # Within it, a program is drawn over the whole of a framebuffer.
-        self.filling = software.filling if software else nullcontext()
-        self.settling = Settling(ctx, programs, binder, pool, software=software is not None)
+        self.tuning = tuning
+        self.programs = Programs(ctx, tuning)
+        self.binder = Binder(ctx, tuning)
+        self.settling = Settling(ctx, self.programs, self.binder, pool, waits=tuning.waits)
         # Programs of this frame's steps, by the step's identity; the step is held with it.
-        self._known: dict[tuple[int, str, tuple[int, ...]], tuple[Step, Program]] = {}
+        self._known: dict[tuple[int, str, tuple[int, ...]], tuple[Step, Program, Stage]] = {}
         self._frame = 0
 
-    def run(self, job: Job, driver: str) -> Result:
-        """Run a kernel by a driver; the result is the caller's."""
-        step = job.step
+    def release(self) -> None:
+        """Release programs, samplers, and the textures of files."""
+        self.tuning.release()
+        self.binder.release()
+        self.programs.release()
+
+    def run(
+        self,
+        step: Step,
+        driver: str,
+        inputs: Mapping[str, Wired],
+        uniforms: Mapping[str, Any],
+        around: LoopIteration | None,
+        start: Result | None,
+    ) -> Result:
+        """Run a kernel by a driver; the result is the caller's.
+
+        ``uniforms`` are what the engine gives, by name; ``around`` is where the step is in the loops around
+        it; ``start`` the same step after fewer iterations, to go on from, which is used up.
+        """
         kernel = step.kernel
         assert isinstance(kernel, TexelKernel)
-        wires = wires_of(step, job.inputs)
-        program = self._known_program(job, driver, wires)
-        if job.start is not None and job.start.settled:
-            job.start.iterations = step.repeat
-            return job.start
-        state = self._initial(job)
+        program, stage = self._known_program(step, driver, inputs, around)
+        if start is not None and start.settled:
+            start.iterations = step.repeat
+            return start
+        state = self._initial(step, inputs) if start is None else dict(start.textures)
         if step.repeat == 0:
             return self._untouched(step, state)
-        if driver == FRAGMENT and self.software and self.software.runs_in_parts(kernel):
-            return self._in_parts(self.software, job, program, state, wires)
-        unit = self.binder.bind(program, step, job.uniforms, job.inputs, wires)
+        if stage.first is not None:
+            first = self.programs.get(kernel, driver, stage.first.choices)
+            result = self.pool.take(step.size, kernel.outputs)
+            with stage.first.drawing(result):
+                for part in (first, program):
+                    unit = self.binder.bind(part, step, uniforms, inputs, stage)
+                    self.binder.previous(self.binder.previous_units(part, kernel, unit), state)
+                    part.count(kernel.repeat, 0, step.whole, around)
+                    with self.tuning.filling:
+                        part.fill()
+            result.iterations = step.repeat
+            return result
+        unit = self.binder.bind(program, step, uniforms, inputs, stage)
         if driver == COMPUTE and kernel.visits:
-            return self._in_place(job, kernel, program, state)
-        return self._alternately(job, kernel, program, driver, state, unit)
+            return self._in_place(step, kernel, program, start or self._untouched(step, state), around)
+        return self._alternately(step, kernel, program, driver, state, unit, start, around)
 
-    def _known_program(self, job: Job, driver: str, wires: tuple[int, ...]) -> Program:
-        """Return the program of a step: the one that it had before in this frame, wired so."""
+    def _known_program(
+        self, step: Step, driver: str, inputs: Mapping[str, Wired], around: LoopIteration | None
+    ) -> tuple[Program, Stage]:
+        """Return the program of a step and how it runs: as before in this frame, where it is wired so."""
         if self._frame != self.programs.frame:
             self._frame = self.programs.frame
             self._known.clear()
-        key = id(job.step), driver, wires
+        key = id(step), driver, wires_of(step, inputs)
         if key not in self._known:
-            self._known[key] = job.step, self.program(job, driver)
-        return self._known[key][1]
+            self._known[key] = step, *self.program(step, driver, inputs, around)
+        return self._known[key][1:]
 
-    def program(self, job: Job, driver: str, *more: tuple[str, int]) -> Program:
-        """Return the program of a step; on a software renderer one with ``more`` written into it as well."""
-        if self.software is None:
-            return self.programs.get(job.step.kernel, driver)
-        in_loop = job.loop_iteration is not None
-        choices = self.software.choices(job.step, job.inputs, driver, in_loop=in_loop)
-        return self.programs.get(job.step.kernel, driver, (*choices, *more))
+    def program(
+        self,
+        step: Step,
+        driver: str,
+        inputs: Mapping[str, Wired],
+        around: LoopIteration | None,
+        more: Choices = (),
+    ) -> tuple[Program, Stage]:
+        """Return the program of a step and how it runs; ``more`` is written into it, if anything is."""
+        stage = self.tuning.stage(step, inputs, driver, in_loop=around is not None)
+        return self.programs.get(step.kernel, driver, (*stage.choices, *more)), stage
 
     def draw_utility_shader(
         self, shader: str, target: moderngl.Framebuffer, source: moderngl.Texture, **uniforms: Any
@@ -230,9 +231,19 @@ class Kernels:
         framebuffer.clear()
         return result
 
-    def plain(self, job: Job, usual: Mapping[str, tuple[float, ...]]) -> Result:
-        """Run a plain shader; ``usual`` are the uniforms that such shaders know under several names."""
-        step, kernel = job.step, job.step.kernel
+    def plain(
+        self,
+        step: Step,
+        inputs: Mapping[str, Wired],
+        uniforms: Mapping[str, Any],
+        around: LoopIteration | None,
+        usual: Mapping[str, tuple[float, ...]],
+    ) -> Result:
+        """Run a plain shader; ``usual`` are the uniforms that such shaders know under several names.
+
+        The others are those of ``run``.
+        """
+        kernel = step.kernel
         driver = COMPUTE if isinstance(kernel, PlainCompute) else FRAGMENT
         foreign = kernel if isinstance(kernel, ForeignShader) else None
         program = self.programs.get(kernel, driver)
@@ -241,13 +252,13 @@ class Kernels:
         for parameter in kernel.parameters:
             value = step.values[parameter.name]
             if parameter.widget.kind != "file":
-                program.set(parameter.name, job.uniforms.get(f"{PRESSED}{parameter.name}", value))
+                program.set(parameter.name, uniforms.get(f"{PRESSED}{parameter.name}", value))
             elif parameter.name in program.uniforms or foreign:
                 texture = self.binder.file_texture(parameter, value, encoded=True)
                 sizes[parameter.name] = (*texture.size, 1)
                 unit = self.binder.texture(program, parameter.name, unit, texture, parameter.sampling)
         for declared in kernel.inputs:
-            readable, sizes[declared.name] = self.binder.shaped(declared, job.inputs)
+            readable, sizes[declared.name] = self.binder.shaped(declared, inputs)
             if declared.name in program.uniforms:
                 unit = self.binder.texture(program, declared.name, unit, readable, declared.sampling)
         origin = step.window.origin if step.window is not None else (0, 0)
@@ -256,10 +267,10 @@ class Kernels:
         for name, meaning in kernel.usual:
             kind = getattr(program.uniforms.get(name), "gl_type", 0)  # of another type it is the text's own
             if kind in _NUMBERS or (kind in _MATRICES and meaning.startswith("identity")):
-                _set_fitting(program, name, usual.get(meaning) or _numbers(meaning, job, sizes))
+                _set_fitting(program, name, usual.get(meaning) or _numbers(meaning, step, around, sizes))
         fed = {parameter.name for parameter in kernel.parameters if parameter.type == "sampler2D"}
-        inputs = {declared.name: declared for declared in kernel.inputs}
-        fed |= inputs.keys()
+        declared_inputs = {declared.name: declared for declared in kernel.inputs}
+        fed |= declared_inputs.keys()
         for name, uniform in program.uniforms.items():
             kind = getattr(uniform, "gl_type", 0)
             if name in fed or kind not in _SAMPLERS:
@@ -267,11 +278,11 @@ class Kernels:
             # A channel that nothing feeds. Two kinds of samplers may not share a unit, used or not.
             count = int(getattr(uniform, "array_length", 1))
             program.write(name, unit if count == 1 else [*range(unit, unit + count)])
-            elements = [inputs.get(f"{name}{ELEMENT}{number}") for number in range(count)]
+            elements = [declared_inputs.get(f"{name}{ELEMENT}{number}") for number in range(count)]
             for element in elements if count > 1 else [None]:
                 readable = self.binder.shaped_constant("black", _SHAPES.get(kind, ""))
                 if element is not None:
-                    readable, _ = self.binder.shaped(element, job.inputs)
+                    readable, _ = self.binder.shaped(element, inputs)
                 unit = self.binder.unit(unit, readable, element.sampling if element else Sampling())
         result = self.empty(step)
         if isinstance(kernel, PlainCompute):
@@ -286,30 +297,31 @@ class Kernels:
 
     def _alternately(
         self,
-        job: Job,
+        step: Step,
         kernel: TexelKernel,
         program: Program,
         driver: str,
         state: Mapping[str, moderngl.Texture],
         unit: int,
+        start: Result | None,
+        around: LoopIteration | None,
     ) -> Result:
-        step = job.step
-        iteration = job.start.iterations if job.start else 0
-        at_once = 1 if kernel.at_once == "1" else max(self._evaluated("at_once", kernel.at_once, job), 1)
+        iteration = start.iterations if start else 0
+        at_once = 1 if kernel.at_once == "1" else _at_once(step, kernel)
         # Where there is something to begin with, texels off the lattice count as well.
         lattice = kernel.fills_lattice and driver == FRAGMENT and not state
         shift = 0
         watch = self.settling.watch(iteration, unit + len(kernel.outputs)) if kernel.until else None
         previous = self.binder.previous_units(program, kernel, unit)
-        with Swap(self.pool, step.size, kernel.outputs, job.start) as swap, self.filling:
+        with Swap(self.pool, step.size, kernel.outputs, start) as swap, self.tuning.filling:
             while iteration < step.repeat:
                 count = min(at_once, step.repeat - iteration)
                 result, before = swap.target(), swap.before
                 self.binder.previous(previous, state)
-                job.count(program, iteration, kernel.repeat, step.whole, count)
+                program.count(kernel.repeat, iteration, step.whole, around, count)
                 if driver == FRAGMENT:
                     program.set("k_previous_shift", shift)
-                    names = job.numbers(iterations=step.whole)
+                    names = numbers_of(step, iterations=step.whole) if lattice else {}
                     shift = shift_after(kernel, step.path, iteration, names) if lattice else 0
                     program.set("k_shift", shift)
                 self.write(program, driver, result, shift)
@@ -331,33 +343,6 @@ class Kernels:
         utility_shader.iterations = step.repeat
         return utility_shader
 
-    def _in_parts(
-        self,
-        software: Software,
-        job: Job,
-        program: Program,
-        state: Mapping[str, moderngl.Texture],
-        wires: tuple[int, ...],
-    ) -> Result:
-        """Run a kernel once: first the part of it that ends early, then the rest where it did not."""
-        step = job.step
-        result = self.pool.take(step.size, step.kernel.outputs)
-        with software.drawing_once(result):
-            for part in (self.program(job, FRAGMENT, FIRST_PART), program):
-                unit = self.binder.bind(part, step, job.uniforms, job.inputs, wires)
-                self.binder.previous(self.binder.previous_units(part, step.kernel, unit), state)
-                job.count(part, 0, step.kernel.repeat, step.whole)
-                with self.filling:
-                    part.fill()
-        result.iterations = step.repeat
-        return result
-
-    def _evaluated(self, what: str, text: str, job: Job, **more: Number) -> int:
-        try:
-            return expressions.evaluate(text, job.numbers(**more))
-        except ExpressionError as error:
-            raise job.step.kernel.error(f"pass '{job.step.path}': {what} {error}") from None
-
     def bound_for(self, step: Step, driver: str, inputs: Mapping[str, Wired]) -> tuple[Program, Bound] | None:
         """Return the program of a step that has just run, and what it is bound for.
 
@@ -365,10 +350,8 @@ class Kernels:
         since, where it reads image files or its own last iteration, or is drawn in two parts.
         """
         wires = wires_of(step, inputs)
-        _, program = self._known.get((id(step), driver, wires), (None, None))
-        if program is None:
-            return None
-        if driver == FRAGMENT and self.software and self.software.runs_in_parts(step.kernel):
+        _, program, stage = self._known.get((id(step), driver, wires), (None, None, None))
+        if program is None or stage is None or stage.first is not None:
             return None
         bound = program.bound
         if not isinstance(bound, Bound) or bound.step is not step or bound.wires != wires:
@@ -379,7 +362,7 @@ class Kernels:
     def write(self, program: Program, driver: str, result: Result, shift: int = 0) -> None:
         """Run a program over all texels of a result, or where they lie 2**shift apart.
 
-        Fragments are drawn within ``filling``.
+        Fragments are drawn within the tuning's ``filling``.
         """
         width, height = result.size
         if driver == COMPUTE:
@@ -394,15 +377,18 @@ class Kernels:
             self.ctx.viewport = (0, 0, width, height)
 
     def _in_place(
-        self, job: Job, kernel: TexelKernel, program: Program, state: Mapping[str, moderngl.Texture]
+        self,
+        step: Step,
+        kernel: TexelKernel,
+        program: Program,
+        result: Result,
+        around: LoopIteration | None,
     ) -> Result:
-        step = job.step
-        result = job.start or self._untouched(step, state)
         result.rewrite(self.ctx)
         self.images(result, read=True)
         for iteration in range(result.iterations, step.repeat):
-            job.count(program, iteration, kernel.repeat, step.whole)
-            names = job.numbers(iteration=iteration, iterations=step.whole)
+            program.count(kernel.repeat, iteration, step.whole, around)
+            names = numbers_of(step, iteration=iteration, iterations=step.whole)
             try:
                 cells = expressions.evaluate_pair(kernel.visits, names)
             except ExpressionError as error:
@@ -414,14 +400,11 @@ class Kernels:
         result.iterations = step.repeat
         return result
 
-    def _initial(self, job: Job) -> dict[str, moderngl.Texture]:
-        """Return the state before the first iteration to run, by output; what is missing is zero."""
-        if job.start is not None:
-            return dict(job.start.textures)
-        step = job.step
+    def _initial(self, step: Step, inputs: Mapping[str, Wired]) -> dict[str, moderngl.Texture]:
+        """Return the state before the first iteration, by output; what is missing is zero."""
         textures: dict[str, moderngl.Texture] = {}
         for name, output in initial_names(step.kernel).items():
-            texture = job.inputs.get(name, NOT_WIRED).texture
+            texture = inputs.get(name, NOT_WIRED).texture
             if texture is None:
                 continue
             if texture.size != step.size:
@@ -462,15 +445,24 @@ def _shares(whole: tuple[int, int], *pairs: tuple[int, int]) -> tuple[float, ...
     return tuple(number / side for pair in pairs for number, side in zip(pair, whole, strict=True))
 
 
-def _numbers(meaning: str, job: Job, sizes: Mapping[str, tuple[int, int, int]]) -> tuple[float, ...]:
+def _at_once(step: Step, kernel: TexelKernel) -> int:
+    """Return how many iterations of a kernel run at once."""
+    try:
+        return max(expressions.evaluate(kernel.at_once, numbers_of(step)), 1)
+    except ExpressionError as error:
+        raise kernel.error(f"pass '{step.path}': at_once {error}") from None
+
+
+def _numbers(
+    meaning: str, step: Step, around: LoopIteration | None, sizes: Mapping[str, tuple[int, int, int]]
+) -> tuple[float, ...]:
     """Return what a uniform is given whose meaning depends on its own step: see ``reserved_names``."""
     if meaning.startswith(VALUE):
         return (float(meaning.removeprefix(VALUE)),)
     if meaning.startswith(DEPTH):
         halved = int(meaning.removeprefix(DEPTH))
-        return (float(min(max(min(job.step.whole_size).bit_length() + halved - 2, 0), _MAX_LEVELS)),)
+        return (float(min(max(min(step.whole_size).bit_length() + halved - 2, 0), _MAX_LEVELS)),)
     if meaning in ("iteration", "iterations"):
-        around = job.loop_iteration
         number, whole = (around.number, around.whole) if around is not None else (0, 1)
         return (float(number if meaning == "iteration" else whole),)
     return _size(meaning, sizes)

@@ -341,7 +341,7 @@ class Replay:
 
     def __init__(self, kernels: Kernels, steps: Sequence[Step], passes: Sequence[_Pass]) -> None:
         self.steps = steps
-        self.filling = kernels.filling  # iterations run within it
+        self.filling = kernels.tuning.filling  # iterations run within it
         self._kernels = kernels
         self._passes = passes
 

@@ -25,7 +25,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.engine.frame_record import FrameSource
+from playground.engine.execution import FrameSource
 from playground.engine.plan import LoopStep, Plan, Step, every_node
 from playground.engine.results import Result, Wired
 from playground.engine.textures import read_bands, split_format
@@ -134,7 +134,7 @@ class FiniteCheck:
         wide, inputs = again
         runner = self.source.runner
         # Of a kernel the fragment driver has the same text for any format, so nothing is compiled.
-        made = runner.run(wide, FRAGMENT, inputs)
+        made = runner.run(wide, inputs, driver=FRAGMENT)
         try:
             for output in result.outputs:
                 if not output.format.endswith("f"):

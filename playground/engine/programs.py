@@ -21,10 +21,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 from unicodedata import name as name_of
 
-from playground.engine.software import QUICKER, Choices, fixed_texel, specialise
+from playground.engine.plan import LoopIteration
+from playground.engine.tuning import Choices, Tuning
 from playground.errors import Diagnostic, ShaderError
 from playground.memo import GRAPHS, Memo
 from playground.paths import shown
+from playground.shader.expressions import FRAME_RATE, counts_frames
 from playground.shader.own_shaders import TRIANGLE
 from playground.shader.reserved_names import FETCHES
 from playground.shader.source import Line, SourceText
@@ -190,8 +192,6 @@ class Program:
         self.bound: object = None  # what its uniforms were last bound for: see ``Binder.bind``
         self._last: dict[str, Any] = {}  # the values that uniforms have
         self.arrays: dict[object, moderngl.VertexArray] = {}  # by mesh; None: the whole picture
-        # Uniforms that are texels of inputs, and which: see ``software``.
-        self.fixed = [(name, *of) for name in self.uniforms if (of := fixed_texel(name)) is not None]
         self.frame = 0  # when it was last used
         self._corners: moderngl.Buffer | None = None
 
@@ -208,6 +208,19 @@ class Program:
             uniform = uniforms.get(name)
             if uniform is not None and last.get(name, self) is not value:
                 uniform.value = last[name] = value
+
+    def count(
+        self, repeat: str, iteration: int, whole: int, around: LoopIteration | None, at_once: int = 1
+    ) -> None:
+        """Set a kernel's iteration: its own where it repeats, else that of the loop around it."""
+        number, total = iteration, whole
+        if repeat == "1" and around is not None and around.whole:
+            number, total = around.number, around.whole
+        self.set("iteration", number)
+        self.set("iterations", total)
+        self.set("until", number + at_once)
+        if counts_frames(repeat):
+            self.set("time", number / FRAME_RATE)
 
     def write(self, name: str, value: Any) -> None:
         """Set a uniform that there is to numbers in a list or a tuple of their own."""
@@ -243,8 +256,9 @@ class Program:
 class Programs:
     """Programs of one context, by kernel and by text."""
 
-    def __init__(self, ctx: moderngl.Context) -> None:
+    def __init__(self, ctx: moderngl.Context, tuning: Tuning) -> None:
         self.ctx = ctx
+        self._write = tuning.write
         self.compile_times: dict[str, float] = {}  # [ms] of each program compiled, by file
         self.compiled = 0  # how many programs were compiled
         self.frame = 0  # frames begun: programs of the current one stay
@@ -259,11 +273,11 @@ class Programs:
         return len(self._by_text)
 
     def get(self, kernel: Kernel, driver: str, choices: Choices = ()) -> Program:
-        """Return the program of a kernel, some of its checkboxes and menus written in as constants.
+        """Return the program of a kernel, with what is chosen written into its text.
 
         Raises ``ShaderError`` where its text is wrong.
         """
-        plain, wrapped, text = _wrapped(kernel, driver, self.ctx.version_code, choices)
+        plain, wrapped, text = _wrapped(kernel, driver, self.ctx.version_code, choices, self._write)
         if text not in self._by_text:
             start = time.perf_counter()
             self._keep(text, self._compiled(plain, wrapped, choices))
@@ -276,11 +290,10 @@ class Programs:
 
         So a driver's complaints name what the author wrote.
         """
-        own = tuple([choice for choice in choices if choice[0] not in QUICKER])
         try:
             return compile_wrapped(self.ctx, wrapped)
         except ShaderError:
-            as_written = specialise(plain, own)
+            as_written = self._write(plain, choices, plainly=True)
             if _texts(as_written) == _texts(wrapped):
                 raise
             program = compile_wrapped(self.ctx, as_written)
@@ -318,11 +331,11 @@ class Programs:
 
 @GRAPHS.cached(identities=1)
 def _wrapped(
-    kernel: Kernel, driver: str, version: int, choices: Choices
+    kernel: Kernel, driver: str, version: int, choices: Choices, write: Callable[[Wrapped, Choices], Wrapped]
 ) -> tuple[Wrapped, Wrapped, tuple[str, ...]]:
     """Return a kernel's text for a driver as it is written, as it is compiled first, and what that is."""
     plain = wrap(kernel, driver, version)
-    wrapped = specialise(plain, choices) if choices else plain
+    wrapped = write(plain, choices) if choices else plain
     if isinstance(kernel, PlainFragment):
         from playground.shader.zero_values import with_zeros
 

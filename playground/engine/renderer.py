@@ -11,53 +11,47 @@ import logging
 import threading
 import weakref
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from playground.engine.cache import Cache
 from playground.engine.cache_keys import KeyMaker, Keys
 from playground.engine.context import (
     ContextInfo,
     context_info,
-    keep_freed_memory,
     make_current,
     release_context,
     report_leak,
 )
 from playground.engine.disk_caching import DiskCaching, choose
-from playground.engine.execution import Execution, last_uses, would_run
+from playground.engine.execution import Execution, FrameRecord, last_uses, would_run
 from playground.engine.eye_height import EyeHeight
-from playground.engine.frame_record import FrameRecord, why
 from playground.engine.gl_calls import Timer
 from playground.engine.non_finite import FiniteCheck, NotFinite
 from playground.engine.painted_images import PaintedFiles
-from playground.engine.picture_hash import PictureHasher
 from playground.engine.plain_forms import PlainForms, warn
-from playground.engine.plan import LoopIteration, Plan, PlanRequest, Step, Window, needed
+from playground.engine.plan import Plan, PlanRequest, Step, Window, needed
 from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.planner import planned
-from playground.engine.results import Pool, Result, Wired
+from playground.engine.results import Pool
 from playground.engine.runner import Runner
+from playground.engine.software import Software
+from playground.engine.tuning import Tuning
 from playground.engine.unfinished import Deadline, Piece
 from playground.engine.window import windowed
-from playground.errors import ContextError, Diagnostic, OpenGLFault
+from playground.errors import ContextError, Diagnostic
 from playground.paths import shown
 from playground.shader.kernel import DRIVERS
+from playground.shader.reserved_names import MOMENT
 from playground.shader.wrap import COMPUTE, FRAGMENT
 from playground.sketch.flat import Ref
 from playground.sketch.load import opened
-from playground.sketch.model import (
-    MAX_PICTURE_SIDE,
-    MAX_SIDE,
-    ComputeVariant,
-    PlainCompute,
-    Sketch,
-    TexelKernel,
-)
+from playground.sketch.model import MAX_PICTURE_SIDE, MAX_SIDE, Kernel, Sketch
+from playground.sketch.variants import compiled_text
 
 if TYPE_CHECKING:
     import moderngl
@@ -65,6 +59,7 @@ if TYPE_CHECKING:
 _log = logging.getLogger(__name__)
 
 CACHE_BYTES = 768 * 2**20
+_DIGITS = 9  # of numbers in floating point, in the hash of a picture
 _POOL_SHARE = 8  # spare textures may take an eighth of what the cache may
 
 
@@ -98,10 +93,7 @@ class Renderer:
         self._ctx = ctx
         self._info: ContextInfo = context_info(ctx)
         _log.debug("opened %s: %s (%s)", self._info.opengl, self._info.renderer, self._info.version)
-        if self._info.software:
-            keep_freed_memory()
-        self._computes = self._info.compute  # whether there are compute shaders
-        if driver == COMPUTE and not self._computes:
+        if driver == COMPUTE and not self._info.compute:
             raise ContextError(f"this context is {self._info.opengl}; compute needs 4.3")
         self._driver = driver
         self.options = RunOptions()
@@ -110,17 +102,17 @@ class Renderer:
         pool = Pool(ctx, cache_bytes // _POOL_SHARE)
         self.cache = Cache(cache_bytes, pool)
         self.painted = PaintedFiles()  # painted in this process, in place of their files
-        self.runner = Runner(ctx, self._info, pool, self.painted)
+        tuning = Software(ctx) if self._info.software else Tuning()
+        self.runner = Runner(ctx, self._info, driver, pool, self.painted, tuning)
         self.warnings = PlanWarnings(lambda: self.runner.inputs)
         self.disk_caching: DiskCaching | None = None  # None: nothing is cached on disk
         self.eye_height = EyeHeight()  # over the terrain, in the last frame
         self.plain_forms = PlainForms(
-            notice, compute=self._computes and driver != FRAGMENT, software=self._info.software
+            notice, compute=self._info.compute and driver != FRAGMENT, software=self._info.software
         )
         self._keys = KeyMaker(content=self.painted.content)
         self._hasher = PictureHasher()
         self._finite = FiniteCheck(self)
-        self._piece = Piece(None, ctx.finish)
         self._timer: Timer | None = None
         self._context = _ContextUse(self, owns=owns_context)
 
@@ -232,7 +224,7 @@ class Renderer:
     def drawn(self) -> str:
         """Return a hash of what the last frame's picture was drawn from; "" before the first.
 
-        The same on every machine: see ``engine.picture_hash``.
+        The same on every machine: see ``PictureHasher``.
         """
         plan = self.record.plan
         return "" if plan is None else self.picture_hash(plan)
@@ -256,10 +248,10 @@ class Renderer:
     def picture_hash(self, plan: Plan) -> str:
         """Return a hash of what a plan's picture is drawn from, the same on every machine.
 
-        See ``engine.picture_hash``.
+        See ``PictureHasher``.
         """
         with self._supposing(plan):
-            return self._hasher.hash_of(plan, self.driver_for, self.runner.given_for_key)
+            return self._hasher.hash_of(plan, self.runner.driver_for, self.runner.given_for_key)
 
     def stale(
         self,
@@ -280,7 +272,7 @@ class Renderer:
     def keys_of(self, plan: Plan) -> Keys:
         """Return what each pass's textures depend on: see ``cache_keys``."""
         with self._supposing(plan):
-            return self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
+            return self._keys.keys_of(plan, self.runner.driver_for, self.runner.given_for_key)
 
     @contextmanager
     def _supposing(self, plan: Plan) -> Iterator[None]:
@@ -296,25 +288,33 @@ class Renderer:
 
     def _texture(self, plan: Plan, ref: Ref) -> moderngl.Texture:
         """Run what a texture needs and return it, with the context left as it was found."""
+        runner, options, finish = self.runner, self.options, self._ctx.finish
         self.plain_forms.report(plan.sketch, plan.lacking)
         self.record = record = FrameRecord(plan, before=self.record.keys)
         self.cache.begin()
-        self.runner.set_frame(plan)
-        self.runner.programs.frame += 1
-        record.keys = self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
-        execution = Execution(record.keys, self.cache, self.runner, self._compute, self.driver_for)
-        execution.replayed = None if self.options.profiling else self._count_replayed
-        execution.deadline = Deadline(self.options.patience, self._ctx.finish)
-        self._piece = Piece(self.options.piece, self._ctx.finish)
-        self.runner.works.waits = self.options.patience is None
-        self.runner.works.keep(record.keys.computed)
-        with self.borrowed():
-            if not self.options.keeps:
-                self._run_once(execution, plan, ref)
-            elif self.disk_caching is not None:
-                execution.run(self.disk_caching.begin(execution, plan, ref))
-            else:
-                execution.run(needed(plan.nodes, ref))
+        runner.set_frame(plan)
+        runner.programs.frame += 1
+        record.keys = self._keys.keys_of(plan, runner.driver_for, runner.given_for_key)
+        execution = Execution(
+            record,
+            self.cache,
+            runner,
+            piece=Piece(options.piece, finish),
+            deadline=Deadline(options.patience, finish),
+            timer=self._timer_of() if options.profiling else None,
+        )
+        runner.works.waits = options.patience is None
+        runner.works.keep(record.keys.computed)
+        try:
+            with self.borrowed():
+                if not options.keeps:
+                    self._run_once(execution, plan, ref)
+                elif self.disk_caching is not None:
+                    execution.run(self.disk_caching.begin(execution, plan, ref))
+                else:
+                    execution.run(needed(plan.nodes, ref))
+        finally:
+            self.runs.update(record.ran)
         self.cache.end()
         record.results = execution.results
         self.warnings.look(plan)
@@ -340,68 +340,6 @@ class Renderer:
                 yield
             finally:
                 self.runner.binder.tidy()
-
-    def _compute(
-        self,
-        step: Step,
-        inputs: Mapping[str, Wired],
-        iteration: LoopIteration | None,
-        start: Result | None,
-    ) -> Result:
-        """Run a step, and record that and how it ran."""
-        if iteration is None:
-            self._piece.check()
-        record, runner, first = self.record, self.runner, (start.settled or start.iterations) if start else 0
-        continued = record.plan is not None and step.path in record.plan.continued
-        objects, drawn = runner.pool.made + runner.programs.compiled, runner.draws.drawn
-        timed = self._timer_of().measure(record.times, step.path) if self.options.profiling else nullcontext()
-        with timed:
-            result = runner.run(
-                step,
-                self.driver_for(step),
-                inputs,
-                iteration=iteration,
-                start=start,
-                keeps_surface=continued,
-                key="" if iteration is not None else record.keys.computed(step.path),
-            )
-        if objects != runner.pool.made + runner.programs.compiled:
-            # What has run without an error before will do so again, and a query waits for the driver.
-            error = self._ctx.error
-            if error != "GL_NO_ERROR":
-                raise OpenGLFault(f"pass '{step.path}': OpenGL reports {error}")
-        self.runs[step.path] += 1
-        record.ran.append(step.path)
-        if iteration is None and _log.isEnabledFor(logging.DEBUG):
-            _log.debug(
-                "ran %s: %s", step.path, why(record.keys.steps[step.path], record.before.steps.get(step.path))
-            )
-        steps = max((result.settled or step.repeat) - first, 0)
-        record.iterations[step.path] += steps
-        record.texels += step.size[0] * step.size[1] * max(steps, 1)
-        record.triangles += runner.draws.drawn - drawn
-        return result
-
-    def _count_replayed(self, steps: Sequence[Step], times: int) -> None:
-        """Record that steps of a loop ran so often, once in each iteration."""
-        record = self.record
-        for step in steps:
-            self.runs[step.path] += times
-            record.iterations[step.path] += times
-            record.texels += step.size[0] * step.size[1] * times
-        record.ran += [step.path for step in steps] * times
-
-    def driver_for(self, step: Step) -> str:
-        """Choose by which driver the kernel of a step runs."""
-        kernel = step.kernel
-        if isinstance(kernel, ComputeVariant | PlainCompute):
-            if not self._computes:
-                message = f"'{kernel.name}' is a compute shader; this context is {self._info.opengl}"
-                raise ContextError(f"{message}, and compute needs 4.3")
-            return COMPUTE
-        if not isinstance(kernel, TexelKernel) or not self._computes or self._driver == FRAGMENT:
-            return FRAGMENT
-        return COMPUTE if self._driver == COMPUTE or kernel.visits else FRAGMENT
 
     def _timer_of(self) -> Timer:
         self._context.check()
@@ -471,3 +409,52 @@ def _is_alive(framebuffer: moderngl.Framebuffer) -> bool:
     import moderngl
 
     return not isinstance(framebuffer.mglo, moderngl.InvalidObject)
+
+
+def _compiled_text(kernel: Kernel) -> str:
+    return compiled_text(kernel.source.code)
+
+
+class PictureHasher:
+    """Computes in one hash what a picture is drawn from, the same on every machine and in every year.
+
+    It is a pass's key (see ``cache_keys``) with two things smoothed out. A text counts by its tokens, as
+    the compiler takes it, so that comments, line ends and spaces say nothing. What the engine works
+    out in floating point, the camera's matrices above all, counts to nine digits, since the last
+    ones differ between mathematical libraries.
+
+    What a file is called and where it lies, and the order of a TOML's tables, say nothing either;
+    a number, a size, a wire, the form that runs (a plain text or a fast variant, and by which driver)
+    and a byte of an image do. It explains a picture that differs; by itself it fails no comparison, so a
+    fast variant that was renewed leaves every reference good whose picture it still draws.
+    """
+
+    def __init__(self) -> None:
+        self._keys = KeyMaker(_compiled_text)
+
+    def hash_of(
+        self, plan: Plan, driver: Callable[[Step], str], uniforms_of: Callable[[Step], Mapping[str, Any]]
+    ) -> str:
+        """Return the hash of what a plan's picture is made from; arguments as ``KeyMaker`` takes them."""
+
+        def smoothed(step: Step) -> dict[str, Any]:
+            return {n: value if n == MOMENT else rounded(value) for n, value in uniforms_of(step).items()}
+
+        keys = self._keys.keys_of(plan, driver, smoothed).result(plan.picture.path)
+        times = plan.sketch.picture.supersample
+        return keys if times == 1 else f"{keys} reduced {times} times"
+
+
+def rounded(value: Any) -> Any:
+    """Return a number, or a tuple of them, to nine digits of the largest; anything else as it is."""
+    if isinstance(value, tuple | list):
+        most = max((abs(float(v)) for v in value), default=0.0)
+        return tuple(_to_digits(float(v), most) for v in value)
+    return _to_digits(value, abs(value)) if isinstance(value, float) else value
+
+
+def _to_digits(value: float, most: float) -> str:
+    if most == 0.0:
+        return "0"
+    share = round(value / most, _DIGITS) + 0.0  # no -0.0
+    return f"{share:.{_DIGITS}f} of {most:.{_DIGITS}g}"

@@ -13,25 +13,32 @@ import numpy as np
 
 from playground.data.live_inputs import LiveInputs, Now
 from playground.data.media import bands_at
-from playground.engine.binder import Binder
 from playground.engine.camera import unit_vector
 from playground.engine.compute_variant import ComputeVariants
 from playground.engine.context import ContextInfo
 from playground.engine.draws import Draws
-from playground.engine.kernels import Job, Kernels, usual_of
+from playground.engine.kernels import Kernels, usual_of
 from playground.engine.painted_images import Painted, PaintedFiles, PaintedTextures, channels_of
 from playground.engine.plan import LoopIteration, Plan, Step, error_at
-from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
-from playground.engine.software import Software
 from playground.engine.source_kinds import Material, SourceKind
 from playground.engine.sources import source_kind
 from playground.engine.textures import read_texture, split_format, write_texture
+from playground.engine.tuning import Tuning
 from playground.engine.unfinished import Arrays, SourceWorks, Task
-from playground.errors import DataError
+from playground.errors import ContextError, DataError
 from playground.shader.expressions import FRAME_RATE, last_frame_at
 from playground.shader.reserved_names import MOMENT, NEUTRAL, OF_THE_TERRAIN, PRESSED
-from playground.sketch.model import ComputeVariant, CpuSource, Draw, Kernel, PlainShader, TexelKernel
+from playground.shader.wrap import COMPUTE, FRAGMENT
+from playground.sketch.model import (
+    ComputeVariant,
+    CpuSource,
+    Draw,
+    Kernel,
+    PlainCompute,
+    PlainShader,
+    TexelKernel,
+)
 
 if TYPE_CHECKING:
     import moderngl
@@ -43,11 +50,19 @@ class Runner:
     """Runs steps on one context."""
 
     def __init__(
-        self, ctx: moderngl.Context, info: ContextInfo, pool: Pool, painted: PaintedFiles | None = None
+        self,
+        ctx: moderngl.Context,
+        info: ContextInfo,
+        driver: str,
+        pool: Pool,
+        painted: PaintedFiles,
+        tuning: Tuning,
     ) -> None:
         self.ctx = ctx
         self.info = info
+        self.driver = driver  # see ``Engine``
         self.pool = pool
+        self.tuning = tuning
         # Uniforms of plain shaders; what has a window and a clock sets them before each frame.
         self.mouse = (0.0, 0.0, 0.0, 0.0)  # pixels from the lower left, then where it was pressed
         self.hover = (0.0, 0.0)  # pixels from the lower left, pressed or not
@@ -56,13 +71,11 @@ class Runner:
         self.inputs = LiveInputs()
         self.delta = 1 / 60  # [s] since the last one
         self.date = (1970.0, 0.0, 1.0, 0.0)  # year, month from 0, day, seconds
-        self.programs = Programs(ctx)
-        self.software = Software(ctx) if info.software else None
-        self.binder = Binder(ctx, self.software)
-        self.kernels = Kernels(ctx, self.programs, self.binder, pool, self.software)
+        self.kernels = Kernels(ctx, pool, tuning)
+        self.programs, self.binder = self.kernels.programs, self.kernels.binder
         self.compute_variants = ComputeVariants(ctx, self.kernels)
         self.draws = Draws(ctx, self.kernels)
-        self.painted = PaintedFiles() if painted is None else painted
+        self.painted = painted
         self.paint = PaintedTextures(ctx)
         self.works = SourceWorks()
         self.before_step: Callable[[Step], None] | None = None  # called before each step runs
@@ -98,10 +111,7 @@ class Runner:
         self.paint.release()
         self.draws.release()
         self.compute_variants.release()
-        if self.software:
-            self.software.release()
-        self.binder.release()
-        self.programs.release()
+        self.kernels.release()
 
     def given_for(self, step: Step, frame: int | None = None) -> dict[str, Any]:
         """Return what the engine gives besides the parameters and the iteration, where the text names it.
@@ -144,52 +154,68 @@ class Runner:
 
     def _samples_for(self, kernel: Kernel) -> int:
         """Return how many samples a pixel of a draw has here."""
-        assert self._plan is not None, "look_at() comes first"
+        assert self._plan is not None, "set_frame() comes first"
         own = kernel.samples if isinstance(kernel, Draw) else 0
         return max(min(own or self._plan.sketch.picture.samples, self.info.max_samples), 1)
+
+    def driver_for(self, step: Step) -> str:
+        """Return by which driver the kernel of a step runs."""
+        kernel, computes = step.kernel, self.info.compute
+        if isinstance(kernel, ComputeVariant | PlainCompute):
+            if not computes:
+                message = f"'{kernel.name}' is a compute shader; this context is {self.info.opengl}"
+                raise ContextError(f"{message}, and compute needs 4.3")
+            return COMPUTE
+        if not isinstance(kernel, TexelKernel) or not computes or self.driver == FRAGMENT:
+            return FRAGMENT
+        return COMPUTE if self.driver == COMPUTE or kernel.visits else FRAGMENT
 
     def run(
         self,
         step: Step,
-        driver: str,
         inputs: Mapping[str, Wired],
         *,
-        iteration: LoopIteration | None = None,
+        driver: str = "",
+        around: LoopIteration | None = None,
         start: Result | None = None,
         keeps_surface: bool = False,
         key: str = "",
     ) -> Result:
         """Run a step and return its textures, which are the caller's.
 
-        ``iteration`` is where it is in the loops around it; ``start`` the same step after fewer iterations,
-        which is used up; ``keeps_surface`` says that a later draw goes on from this one; ``key`` is what
-        its textures depend on, "" in a loop.
+        ``driver`` runs its kernel, by default that of ``driver_for``; ``around`` is where it is in the loops
+        around it; ``start`` the same step after fewer iterations, which is used up; ``keeps_surface`` says
+        that a later draw goes on from this one; ``key`` is what its textures depend on, "" in a loop.
         """
-        assert self._plan is not None, "look_at() comes first"
+        assert self._plan is not None, "set_frame() comes first"
+        driver = driver or self.driver_for(step)
         if self.before_step is not None:
             self.before_step(step)
         self.ctx.disable(self._of_draws)
-        if isinstance(step.kernel, TexelKernel):
-            job = Job(step, self._given_now(step, iteration), inputs, iteration, start)
-            with self._placed(step) if step.kernel.file_parameters else _NOTHING:
-                return self.kernels.run(job, driver)
-        frame = iteration.frame if iteration is not None else None
-        uniforms, samples = self.given_for(step, frame), self._samples_for(step.kernel)
-        job = Job(step, uniforms, inputs, iteration, start, samples, keeps_surface, key)
+        kernel = step.kernel
+        if isinstance(kernel, TexelKernel):
+            uniforms = self._given_now(step, around)
+            with self._placed(step) if kernel.file_parameters else _NOTHING:
+                return self.kernels.run(step, driver, inputs, uniforms, around, start)
+        frame = around.frame if around is not None else None
+        uniforms = self.given_for(step, frame)
         with self._placed(step):
-            match step.kernel:
+            match kernel:
                 case Draw():
-                    return self.draws.run(job)
+                    samples = self._samples_for(kernel)
+                    return self.draws.run(
+                        step, inputs, uniforms, around, samples, keeps_surface=keeps_surface
+                    )
                 case ComputeVariant():
-                    return self.compute_variants.run(job)
+                    return self.compute_variants.run(step, inputs, uniforms, around)
                 case CpuSource():
-                    return self._source(job)
-            return self._plain(job)
+                    return self._source(step, inputs, uniforms, key)
+            return self.kernels.plain(step, inputs, uniforms, around, self._usual(step, frame))
 
-    def _given_now(self, step: Step, iteration: LoopIteration | None) -> dict[str, Any]:
+    def _given_now(self, step: Step, around: LoopIteration | None) -> dict[str, Any]:
         """Return what the engine gives a kernel in this frame: the very same in every iteration, if it is."""
-        if iteration is not None and iteration.frame is not None and "time" in step.kernel.engine_uniforms:
-            return self.given_for(step, iteration.frame)
+        if around is not None and around.frame is not None and "time" in step.kernel.engine_uniforms:
+            return self.given_for(step, around.frame)
         step_before, pressed, uniforms = self._known_given.get(id(step), (None, None, {}))
         if step_before is not step or pressed is not self.pressed:
             uniforms = self.given_for(step)
@@ -199,7 +225,7 @@ class Runner:
     @contextmanager
     def _placed(self, step: Step) -> Iterator[None]:
         """Raise an error of a data file at the pass that names it."""
-        assert self._plan is not None, "look_at() comes first"
+        assert self._plan is not None, "set_frame() comes first"
         try:
             yield
         except DataError as error:
@@ -217,14 +243,12 @@ class Runner:
         """Return the time of the frame that a loop is at, else of the picture."""
         return float(self._given["time"]) if frame is None else frame / FRAME_RATE
 
-    def _plain(self, job: Job) -> Result:
-        around = job.loop_iteration
-        return self.kernels.plain(job, self._usual(job.step, around.frame if around else None))
-
-    def _source(self, job: Job) -> Result:
-        step, kind = job.step, source_kind(job.step.kernel.registry)
+    def _source(
+        self, step: Step, inputs: Mapping[str, Wired], uniforms: Mapping[str, Any], key: str
+    ) -> Result:
+        kind = source_kind(step.kernel.registry)
         painted = self._painted_for(step, kind)
-        arrays = self._arrays(job, kind) if painted is None else {}
+        arrays = self._arrays(step, kind, inputs, uniforms, key) if painted is None else {}
         result = self.pool.take(step.size, step.kernel.outputs)
         if painted is not None:
             output = step.kernel.outputs[0]
@@ -239,12 +263,19 @@ class Runner:
             write_texture(result.textures[output.name], arrays[output.name])
         return result
 
-    def _arrays(self, job: Job, kind: SourceKind) -> Arrays:
+    def _arrays(
+        self,
+        step: Step,
+        kind: SourceKind,
+        inputs: Mapping[str, Wired],
+        uniforms: Mapping[str, Any],
+        key: str,
+    ) -> Arrays:
         """Return what a source makes, by its outputs' names."""
-        step, work = job.step, kind.work
+        work = kind.work
         if work is None:
             assert kind.make is not None, "a kind has one of the two"
-            return kind.make(step.values, step.size, job.uniforms.get(MOMENT))
+            return kind.make(step.values, step.size, uniforms.get(MOMENT))
         if self.works.idle:
             width, height = step.size
             return {
@@ -255,14 +286,14 @@ class Runner:
         def task() -> Task:
             wired = {
                 name: wired_input.texture
-                for name, wired_input in job.inputs.items()
+                for name, wired_input in inputs.items()
                 if wired_input.texture is not None
             }
             arrays = {name: read_texture(texture) for name, texture in wired.items()}
-            facts = {name: job.uniforms[name] for name in OF_THE_TERRAIN if name in job.uniforms}
+            facts = {name: uniforms[name] for name in OF_THE_TERRAIN if name in uniforms}
             return lambda report: work(step.values, step.size, Material(arrays, report=report, **facts))
 
-        return self.works.made(step.path, job.key, task)
+        return self.works.made(step.path, key, task)
 
     def _painted_for(self, step: Step, kind: SourceKind) -> Painted | None:
         """Return the picture whose pixels are a source's texels as they are, if it is painted here."""
@@ -297,7 +328,7 @@ class Runner:
 
     def _scene(self, step: Step) -> dict[str, tuple[float, ...]]:
         """Return the sketch's camera and sun, where a step's shader asks for one of them."""
-        assert self._plan is not None, "look_at() comes first"
+        assert self._plan is not None, "set_frame() comes first"
         needs_scene = any(meaning in OF_THE_SCENE for _, meaning in step.kernel.usual)
         return scene_of(self._plan) if needs_scene else {}
 

@@ -151,7 +151,7 @@ def all_errors(
         if isinstance(step.kernel, CpuSource) or len(diagnostics) >= _MAX_DIAGNOSTICS:
             continue
         try:
-            kernel, driver = step.kernel, engine.driver_for(step)
+            kernel, driver = step.kernel, engine.runner.driver_for(step)
             if (id(kernel), driver) in tried:
                 continue
             tried.add((id(kernel), driver))

@@ -13,7 +13,7 @@ means for that:
                           says why. Where a graphics card draws, they say nothing, and are left out of the
                           comparison.
     drawn                 hash of what was drawn: sketch, shot, kernels, values, sizes, wiring,
-                          files (see ``engine.picture_hash``). It never makes a comparison less strict:
+                          files (see ``PictureHasher``). It never makes a comparison less strict:
                           that an edit changed the picture is what the test has to report.
     fonts                 the files of the fonts in a figure. They decide nothing either, and explain much.
     size                  the picture's. Pictures of two sizes are never compared.

@@ -10,6 +10,7 @@ import pytest
 
 from playground.engine.compute_variant import _RECENT
 from playground.engine.engine import Engine
+from playground.engine.software import Software
 from playground.errors import PlaygroundError
 
 from ..sketch_texts import passes
@@ -427,9 +428,9 @@ def test_buffers_are_read_by_functions(any_engine, folder, size, fits, monkeypat
     """By textures on a software renderer, where those may be so long; what a step has written is there."""
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
-    software = any_engine.runner.software
-    if software is not None and not fits:
-        monkeypatch.setattr(software, "max_texels", 16)
+    tuning = any_engine.runner.tuning
+    if isinstance(tuning, Software) and not fits:
+        monkeypatch.setattr(tuning, "max_texels", 16)
     folder.write("fill.glsl", PLAIN_FILL)
     folder.write("fill.comp", READ)
     sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {list(size)}")
@@ -438,9 +439,9 @@ def test_buffers_are_read_by_functions(any_engine, folder, size, fits, monkeypat
     for _ in range(2):  # the second time buffers are used again
         np.testing.assert_array_equal(any_engine.read(sketch, "a"), expected)
         any_engine.cache.clear()
-    if software is not None:
-        assert bool(software._textures) == fits
-        software.release()
+    if isinstance(tuning, Software):
+        assert bool(tuning._textures) == fits
+        tuning.release()
 
 
 def test_a_variants_own_function_of_such_a_name_is_its_own(any_engine, folder):

@@ -231,7 +231,7 @@ except Exception as error:
 
 KEEPS = """
 import ctypes, resource, sys
-from playground.engine.context import keep_freed_memory
+from playground.engine.software import keep_freed_memory
 libc = ctypes.CDLL(None)
 libc.malloc.restype, libc.free.argtypes = ctypes.c_void_p, (ctypes.c_void_p,)
 if sys.argv[1] == "keeps":

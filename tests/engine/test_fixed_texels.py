@@ -9,7 +9,8 @@ from playground.engine import results
 from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
 from playground.engine.results import Result
-from playground.engine.software import FIXED, fixed_texels, specialise
+from playground.engine.software import FIXED, specialise
+from playground.shader.sampler_reads import fixed_texels
 from playground.shader.wrap import FRAGMENT, wrap
 
 from .conftest import Folder, on_both_kinds

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from playground.engine.software import Software
+from playground.engine.tuning import Tuning
 from playground.errors import ShaderError
 
 ASKS = """#pragma kernel(output = "given:rgba32f")
@@ -38,8 +39,8 @@ void main() {
 @pytest.fixture(params=["compiled in", "set as uniforms"])
 def each_engine(request, any_engine):
     """Give an engine that compiles in what is wired, as where the processor draws, and one that does not."""
-    software = Software(any_engine.ctx) if request.param == "compiled in" else None
-    any_engine.runner.kernels.software = software
+    tuning = Software(any_engine.ctx) if request.param == "compiled in" else Tuning()
+    any_engine.runner.kernels.tuning, any_engine.runner.programs._write = tuning, tuning.write
     return any_engine
 
 

@@ -6,6 +6,7 @@ import pytest
 
 from playground.engine.gl_calls import QUERY, WALL, Timer
 from playground.engine.programs import Programs, compile_library, compile_wrapped, explain
+from playground.engine.tuning import Tuning
 from playground.errors import ShaderError
 from playground.shader.header import parse_kernel
 from playground.shader.source import read_source
@@ -34,7 +35,7 @@ def kernel(tmp_path):
 
 @pytest.fixture
 def programs(ctx):
-    made = Programs(ctx)
+    made = Programs(ctx, Tuning())
     made.frame += 1
     yield made
     made.release()

@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 from playground.engine.binder import Binder
+from playground.engine.software import Software
+from playground.engine.tuning import Tuning
 from playground.shader.parameter import Sampling
 
 
@@ -18,7 +20,7 @@ from playground.shader.parameter import Sampling
     ],
 )
 def test_anisotropy_is_for_mipmaps_on_a_graphics_card(ctx, software, sampling, expected):
-    binder = Binder(ctx, software=software)
+    binder = Binder(ctx, Software(ctx) if software else Tuning())
     try:
         assert binder._new_sampler(sampling).anisotropy == min(expected, ctx.max_anisotropy)
     finally:

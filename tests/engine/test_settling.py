@@ -70,7 +70,7 @@ def flood(folder):
 @pytest.mark.parametrize("size", ["1", "2", "33", "[29, 18]", "65"])
 def test_a_flood_ends_few_steps_after_it_has_settled(engine, flood, size, waits):
     """A graphics card is not waited for: there an answer is read at the next comparison."""
-    engine.runner.kernels.settling.software = waits
+    engine.runner.kernels.settling.waits = waits
     result = engine.read(flood(size=f"size = {size}"), "a")
     truth = serpentine(*result.shape)
     np.testing.assert_array_equal(result > 0, truth > 0)

@@ -30,9 +30,10 @@ from playground.engine.disk_cache import (
     listed,
     trim,
 )
-from playground.engine.disk_caching import MIPMAPS, DiskCaching
+from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.engine.gl_calls import read_mipmap
+from playground.engine.software import MIPMAPS
 from playground.engine.textures import levels_of, read_raw
 from playground.errors import ParameterError
 
@@ -644,7 +645,7 @@ def test_a_texture_of_another_size_is_not_taken(cached, folder):
 def test_only_what_costs_more_than_to_read_it_is_cached(any_shelf, worn, monkeypatch):
     costs = {"terrain": 500.0, "worn": 1.0, "light": 100.0}
     monkeypatch.setattr("playground.engine.disk_caching.read_time", lambda size: 4.0)
-    monkeypatch.setattr("playground.engine.disk_caching.MIPMAPS", 0.0)
+    monkeypatch.setattr("playground.engine.software.Software.mipmap_cost", 0.0)
 
     def cached_with(floor: float, **more: float) -> set[str]:
         clear(any_shelf.folder)

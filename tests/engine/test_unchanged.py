@@ -148,7 +148,7 @@ CHANGES += ["relief", "mouse", "repeated.steps", "grown.wide", *VALUES]
 def computed_from_nothing(engine: Engine, plan: Plan) -> Keys:
     maker = KeyMaker(content=engine.painted.content)
     engine.runner.set_frame(plan)
-    return maker.keys_of(plan, engine.driver_for, engine.runner.given_for_key)
+    return maker.keys_of(plan, engine.runner.driver_for, engine.runner.given_for_key)
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])

@@ -11,7 +11,7 @@ from imgui_bundle import imgui, implot
 
 from playground.engine.cache_keys import Keys, StepKey
 from playground.engine.engine import Engine
-from playground.engine.frame_record import FrameRecord
+from playground.engine.execution import FrameRecord
 from playground.workbench.inspect.frame_costs import Record
 from playground.workbench.inspect.run_reasons import RunReasons
 

@@ -15,7 +15,7 @@ from playground._version import __version__
 from playground.data.image_files import write_png
 from playground.engine.context import ContextInfo, processor_in
 from playground.engine.engine import Engine
-from playground.engine.picture_hash import rounded
+from playground.engine.renderer import rounded
 from playground.shots.fingerprint import Fingerprint, fingerprint_of, read_fingerprint
 from playground.shots.references import read_reference, write_reference_in
 from playground.sketch.variants import compiled_text

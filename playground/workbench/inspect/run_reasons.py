@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from playground.engine.cache_keys import StepKey
-from playground.engine.frame_record import FrameRecord, why
+from playground.engine.execution import FrameRecord, why
 
 _MAX_LINES = 6
 

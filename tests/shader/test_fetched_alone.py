@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine.software import fetched_alone
+from playground.shader.sampler_reads import fetched_alone
 from playground.shader.source import SourceText, read_source
 from playground.sketch.model import Input, TexelKernel
 

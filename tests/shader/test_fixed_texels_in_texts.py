@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine.software import fixed_texels, read_by_texels_alone
+from playground.shader.sampler_reads import fixed_texels, read_by_texels_alone
 from playground.shader.source import read_source
 
 HEAD = """uniform sampler2D sun;
