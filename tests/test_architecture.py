@@ -317,6 +317,16 @@ def test_the_engine_names_no_technique():
     assert not wrong, "\n".join(wrong)
 
 
+def test_one_module_chooses_what_a_software_renderer_gains_by():
+    """Whatever is done otherwise there is in one module, behind the ``Tuning`` that an engine is made with."""
+    naming = [
+        path.relative_to(PACKAGE).as_posix()
+        for path in modules()
+        if any(name.startswith("playground.engine.software") for _, name in imported(tree_of(path), path))
+    ]
+    assert naming == ["engine/renderer.py"]
+
+
 def test_a_module_introduces_itself():
     wrong = []
     for path in modules():

@@ -2,7 +2,7 @@ r"""Read the log of an OpenGL driver for a shader: entries with lines, hints, an
 
 Every driver words and numbers its log differently; here all of them become the same
 `LogEntry`. Pure text: no context, no files. Turning a line of the flattened text into
-(file, line) is left to ``engine.programs``.
+(file, line) is left to ``complaints``.
 
 What the drivers count:
 

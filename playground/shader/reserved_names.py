@@ -28,7 +28,7 @@ GIVEN: dict[str, tuple[str, str]] = {
 """Name → (GLSL type, meaning) of what every kernel and draw is given; declared where its text names it."""
 
 SKIPS = "skips_rest"
-"""A function that is true in what a software renderer draws first of a kernel: see ``engine.software``."""
+"""A function that is true in what a software renderer draws first of a kernel: see ``engine.tuning``."""
 RESERVED: frozenset[str] = frozenset({"previous", "kernel", "visit", "vertex", "fragment", SKIPS})
 """Functions that the engine gives or calls; ``previous_`` begins more of them."""
 

@@ -11,9 +11,8 @@ import re
 import unicodedata
 from pathlib import Path
 
-from playground.engine import programs
 from playground.files import write_file
-from playground.shader import driver_log
+from playground.shader import complaints, driver_log
 from playground.shader.reserved_names import FETCHES, GIVEN, GIVEN_INSTEAD, GLSL_WORDS
 
 FILE = Path(__file__).parent / "runtime" / "complaint_words.js"
@@ -105,8 +104,8 @@ def words() -> dict[str, object]:
         "define": _pattern(patterns["define"]),
         "definition": _pattern(patterns["definition"]),
         "runs": _pattern(patterns["runs"]),
-        "defined": _pattern(programs.DEFINED),
-        "chain": _pattern(programs.CHAIN),
+        "defined": _pattern(complaints.DEFINED),
+        "chain": _pattern(complaints.CHAIN),
         "cast": _pattern(patterns["cast"]),
         "types": list(log.TYPES),
         "near": log.NEAR,
@@ -116,10 +115,10 @@ def words() -> dict[str, object]:
         "given": list(GIVEN),
         "known": " ".join(sorted(GLSL_WORDS)),
         "fetches": FETCHES,
-        "foreign": programs.FOREIGN,
-        "nameless": programs.NAMELESS,
-        "characters": {c: unicodedata.name(c, programs.NAMELESS) for c in map(chr, _COPIED)},
-        "pastEnd": programs.PAST_END,
+        "foreign": complaints.FOREIGN,
+        "nameless": complaints.NAMELESS,
+        "characters": {c: unicodedata.name(c, complaints.NAMELESS) for c in map(chr, _COPIED)},
+        "pastEnd": complaints.PAST_END,
     }
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 
 from playground.engine.gl_calls import QUERY, WALL, Timer
-from playground.engine.programs import Programs, compile_library, compile_wrapped, explain
+from playground.engine.programs import Programs, compile_library, compile_wrapped
 from playground.engine.tuning import Tuning
 from playground.errors import ShaderError
+from playground.shader.complaints import explain
 from playground.shader.header import parse_kernel
 from playground.shader.source import read_source
 from playground.shader.wrap import FRAGMENT, wrap

@@ -7,9 +7,10 @@ from pathlib import Path
 import moderngl
 import pytest
 
-from playground.engine.programs import compile_library, compile_wrapped, explain, warnings_of
+from playground.engine.programs import compile_library, compile_wrapped, warnings_of
 from playground.errors import PlaygroundError
 from playground.paths import GLSL
+from playground.shader.complaints import explain
 from playground.shader.driver_log import guess, hint, library
 from playground.shader.reserved_names import GIVEN
 from playground.shader.source import read_source

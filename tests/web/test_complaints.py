@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine.programs import explain
 from playground.errors import Diagnostic
 from playground.paths import shown
+from playground.shader.complaints import explain
 from playground.shader.driver_log import hint, library, parse_log
 from playground.shader.wrap import ShaderStage, Wrapped
 from playground.web import complaint_words
