@@ -318,7 +318,7 @@ def test_the_engine_names_no_technique():
 
 
 def test_one_module_chooses_what_a_software_renderer_gains_by():
-    """Whatever is done otherwise there is in one module, behind the ``Tuning`` that an engine is made with."""
+    """What is done otherwise there is in one module, behind the ``Tuning`` that an engine is made with."""
     naming = [
         path.relative_to(PACKAGE).as_posix()
         for path in modules()

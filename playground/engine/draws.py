@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +23,7 @@ from playground.engine.meshes import drawn_mesh, mesh_key, mesh_parameters
 from playground.engine.plan import LoopIteration, Step, Window
 from playground.engine.programs import Program
 from playground.engine.results import Result, Surface, Wired, started
-from playground.engine.textures import drain, make_framebuffer, read_texture, split_format
+from playground.engine.textures import drain, make_framebuffer, split_format
 from playground.errors import ContextError, SketchError
 from playground.memo import Memo
 from playground.shader import expressions
@@ -50,8 +49,6 @@ class Draws:
         self.finest: int | None = None  # no mesh is finer than this
         self._meshes: Memo[_MeshKey, _Loaded] = Memo("meshes", _MAX_MESHES, dropped=self._release_mesh)
         self._surfaces: list[Surface] = []  # spare, newest last
-        self._tables: WeakKeyDictionary[Result, dict[str, NDArray[np.float32]]] = WeakKeyDictionary()
-        self._texels = Texels(ctx)
         limits = ctx.info["GL_MAX_VIEWPORT_DIMS"]
         self.widest: tuple[int, int] = (int(limits[0]), int(limits[1]))  # [pixels] of a viewport
         self.triangles = 0  # of the last draw of a mesh with levels of detail
@@ -63,7 +60,6 @@ class Draws:
         for surface in self._surfaces:
             surface.release()
         self._surfaces.clear()
-        self._tables.clear()
 
     def run(
         self,
@@ -82,7 +78,7 @@ class Draws:
         kernel, ctx = _draw_of(step), self.ctx
         program, stage = self.kernels.program(step, "draw", inputs, around)
         loaded, array = self._array(program, step, inputs)
-        instances = instances_of(step, inputs, self._texels) if step.repeat else 0
+        instances = instances_of(step, inputs, ctx) if step.repeat else 0
         chosen = None
         if loaded.places is not None and step.repeat:
             chosen = self._chosen(step, inputs, uniforms)
@@ -261,10 +257,7 @@ class Draws:
         if result is None or texture is None:
             mesh = _draw_of(step).mesh
             raise step.spec.error(f"mesh '{mesh}' at this detail needs the input '{name}' wired")
-        read = self._tables.setdefault(result, {})
-        if output not in read:
-            read[output] = read_texture(texture)
-        return read[output]
+        return result.array(output)
 
     def _array(
         self, program: Program, step: Step, inputs: Mapping[str, Wired]
@@ -395,30 +388,7 @@ MAX_INSTANCES = 2**20
 _COMPONENTS = "xyzw"
 
 
-class Texels:
-    """The first texels of results: those in the south-west corner, each read once."""
-
-    def __init__(self, ctx: moderngl.Context) -> None:
-        self.ctx = ctx
-        self._known: WeakKeyDictionary[Result, dict[str, tuple[float, ...]]] = WeakKeyDictionary()
-
-    def of(self, result: Result, output: str) -> tuple[float, ...]:
-        """Return the components of the first texel of an output."""
-        cached = self._known.setdefault(result, {})
-        if output not in cached:
-            cached[output] = self._read(result, output)
-        return cached[output]
-
-    def _read(self, result: Result, output: str) -> tuple[float, ...]:
-        index = [each.name for each in result.outputs].index(output)
-        parts = result.outputs[index].components
-        read = result.framebuffer(self.ctx).read(
-            (0, 0, 1, 1), parts, attachment=index, alignment=1, dtype="f4"
-        )
-        return tuple(np.frombuffer(read, np.float32).tolist())
-
-
-def instances_of(step: Step, inputs: Mapping[str, Wired], texels: Texels) -> int:
+def instances_of(step: Step, inputs: Mapping[str, Wired], ctx: moderngl.Context) -> int:
     """Return how often a step's mesh is drawn; 1 where its header does not say.
 
     Raises ``SketchError`` where that is not a whole number from 0 to ``MAX_INSTANCES``.
@@ -432,7 +402,7 @@ def instances_of(step: Step, inputs: Mapping[str, Wired], texels: Texels) -> int
     numbers = numbers_of(step)
 
     def number(name: str) -> Number:
-        return numbers[name] if name in numbers else _component(step, name, inputs, texels)
+        return numbers[name] if name in numbers else _component(step, name, inputs, ctx)
 
     try:
         count = expressions.evaluate(kernel.instances, number)
@@ -457,19 +427,19 @@ def counts_instances(technique: Technique, name: str) -> bool:
     return any(spec is not None and counts_instances(spec.technique, rest) for spec, rest in inside)
 
 
-def _component(step: Step, name: str, inputs: Mapping[str, Wired], texels: Texels) -> Number:
+def _component(step: Step, name: str, inputs: Mapping[str, Wired], ctx: moderngl.Context) -> Number:
     """Return a component of an input's first texel, of a name as ``list.x``."""
     declared, _, component = name.partition(".")
     wired = inputs.get(declared, Wired())
     if wired.result is None:
         raise ExpressionError(f"names '{declared}', to which nothing is wired")
-    texels_read = texels.of(wired.result, wired.output)
+    texel = wired.result.first_texel(ctx, wired.output)
     index = _COMPONENTS.index(component)
-    if index >= len(texels_read):
+    if index >= len(texel):
         form = next(o.format for o in wired.result.outputs if o.name == wired.output)
         raise ExpressionError(f"names '{name}': '{declared}' has no component {component}; it is {form}")
-    if not math.isfinite(texels_read[index]):
+    if not math.isfinite(texel[index]):
         raise step.spec.error(
-            f"pass '{step.path}': instances: '{declared}' holds {texels_read[index]}; a number was expected"
+            f"pass '{step.path}': instances: '{declared}' holds {texel[index]}; a number was expected"
         )
-    return int(texels_read[index]) if texels_read[index].is_integer() else texels_read[index]
+    return int(texel[index]) if texel[index].is_integer() else texel[index]

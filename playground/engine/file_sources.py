@@ -43,7 +43,7 @@ from playground.data.models import Model, read_model
 from playground.data.place import Georeference
 from playground.data.resample import resample
 from playground.data.vectors import Grid, Line, VectorShape, draw, read_vectors
-from playground.engine.source_kinds import Material, Terrain
+from playground.engine.source_kinds import Material, Terrain, number_of
 from playground.errors import DataError
 from playground.files import replacing
 from playground.memo import FILES, SOURCES, bytes_held
@@ -435,13 +435,13 @@ def make_from_example(
     """Return heights in units of the relief, the lowest 0."""
     (example, coarser), (_, rise) = _example(values), _metres_of_example(values)
     span = example.highest - example.lowest
-    texel = _number(values, "texel")
+    texel = number_of(values, "texel")
     spacing = (texel * coarser, texel * coarser) if texel else example.spacing
     settings = SynthesisSettings(
-        piece=_number(values, "piece"),
-        candidates=int(_number(values, "candidates")),
-        follow=_number(values, "follow"),
-        seed=(int(_number(values, "seed")) + _EXAMPLE_SALT) % 2**32,
+        piece=number_of(values, "piece"),
+        candidates=int(number_of(values, "candidates")),
+        follow=number_of(values, "follow"),
+        seed=(int(number_of(values, "seed")) + _EXAMPLE_SALT) % 2**32,
     )
     guide = material.inputs.get("guide")
     heights = made_like(
@@ -461,14 +461,14 @@ def example_notes(values: Mapping[str, Value]) -> tuple[str, ...]:
     """Return what was assumed of the example."""
     example, _ = _example(values)
     facts = [f"{example.name}: {note}" for note in example.notes]
-    if example.spacing is None and not _number(values, "texel"):
+    if example.spacing is None and not number_of(values, "texel"):
         facts.append(f"{example.name}: it does not say how large it is, so its texels are this terrain's")
     return tuple(facts)
 
 
 def _metres_of_example(values: Mapping[str, Value]) -> tuple[float | None, float | None]:
     """Return the elevation of the example's lowest height, and how far it rises [m]; None: not known."""
-    (example, _), rise = _example(values), _number(values, "rise")
+    (example, _), rise = _example(values), number_of(values, "rise")
     if rise:
         return None, rise
     if example.in_metres and example.highest > example.lowest:
@@ -494,9 +494,3 @@ def _read_example(path: str, _: str) -> tuple[Elevation, float]:
     whole, fewer = (f"{x} x {y}" for x, y in (file.size, size))
     note = f"its {whole} texels are read as {fewer}, enough for an example"
     return replace(elevation, notes=(*elevation.notes, note)), (max(file.size) - 1) / (max(size) - 1)
-
-
-def _number(values: Mapping[str, Value], name: str) -> float:
-    value = values[name]
-    assert isinstance(value, int | float)  # the kernel's file says so
-    return value

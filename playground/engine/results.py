@@ -70,7 +70,8 @@ class Result:
     mipmapped: set[str] = field(default_factory=set)  # outputs whose mipmaps are made
     with_levels: set[str] = field(default_factory=set)  # outputs that had mipmaps when they were others'
     shaped: dict[tuple[str, str], Shaped] = field(default_factory=dict)  # copies, by output and shape
-    texels: dict[str, NDArray[np.float32]] = field(default_factory=dict)  # read back, by output
+    _arrays: dict[str, NDArray[np.float32]] = field(default_factory=dict)  # read back, by output
+    _firsts: dict[str, tuple[float, ...]] = field(default_factory=dict)  # texels, likewise
     own_bytes: int = 0  # of its textures without mipmaps; 0: not counted yet
     _framebuffer: moderngl.Framebuffer | None = None
 
@@ -91,14 +92,28 @@ class Result:
             total += self.target.bytes
         return total
 
+    def array(self, output: str) -> NDArray[np.float32]:
+        """Return the texels of an output as ``read_texture`` does, read back once."""
+        array = self._arrays.get(output)
+        if array is None:
+            array = self._arrays[output] = read_texture(self.textures[output])
+        return array
+
+    def first_texel(self, ctx: moderngl.Context, output: str) -> tuple[float, ...]:
+        """Return the components of an output's texel in the south-west corner, read back once."""
+        if output not in self._firsts:
+            index = [each.name for each in self.outputs].index(output)
+            read = self.framebuffer(ctx).read(
+                (0, 0, 1, 1), self.outputs[index].components, attachment=index, alignment=1, dtype="f4"
+            )
+            self._firsts[output] = tuple(np.frombuffer(read, np.float32).tolist())
+        return self._firsts[output]
+
     def texel(self, output: str, x: int, y: int) -> tuple[float, ...]:
         """Return a texel as a shader fetches it, zeros outside: of floats, read back once."""
-        texels = self.texels.get(output)
-        if texels is None:
-            texels = self.texels[output] = read_texture(self.textures[output])
         if x >= self.size[0] or y >= self.size[1]:
             return (0.0, 0.0, 0.0, 0.0)
-        components = np.atleast_1d(texels[y, x]).astype(float).tolist()
+        components = np.atleast_1d(self.array(output)[y, x]).astype(float).tolist()
         return tuple([*components, *(0.0, 0.0, 0.0, 1.0)[len(components) :]])
 
     def framebuffer(self, ctx: moderngl.Context) -> moderngl.Framebuffer:
@@ -109,7 +124,8 @@ class Result:
 
     def rewrite(self, ctx: moderngl.Context) -> None:
         """Forget what was made of its textures, which are about to be written again."""
-        self.texels.clear()
+        self._arrays.clear()
+        self._firsts.clear()
         self.release_copies()
         for name in self.mipmapped:  # their levels are made again before anybody reads them
             self.textures[name].filter = ctx.LINEAR, ctx.LINEAR

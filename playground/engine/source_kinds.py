@@ -89,11 +89,12 @@ class Recording:
 class SourceKind:
     """One entry of the registry."""
 
-    describe: Callable[[Mapping[str, Value]], Terrain]  # its size: the one it has, where a sketch says none
-    make: Make | None  # None where it has a ``work``
-    files: tuple[str, ...]  # parameters that name files
-    parameters: tuple[str, ...]  # what the kernel's file must declare
     makes: str  # in words, with an article
+    parameters: tuple[str, ...]  # what the kernel's file must declare
+    make: Make | None = None  # or ``work``
+    files: tuple[str, ...] = ()  # parameters that name files
+    # What is known of its terrain; the size is the one it has where a sketch says none.
+    describe: Callable[[Mapping[str, Value]], Terrain] = lambda values: Terrain()
     optional: tuple[str, ...] = ()  # what it may declare besides
     notes: Callable[[Mapping[str, Value]], tuple[str, ...]] = lambda _: ()  # what was assumed, what was lost
     picture: Callable[[Mapping[str, Value], tuple[int, int]], Path | None] = lambda values, size: None
@@ -107,3 +108,17 @@ class SourceKind:
     size: Callable[[Mapping[str, Value]], tuple[int, int] | None] = lambda values: None
     # Why nothing comes, where a window feeds it; "": something may.
     lack: Callable[[Mapping[str, Value], LiveInputs], str] = lambda values, inputs: ""
+
+
+def number_of(values: Mapping[str, Value], name: str) -> float:
+    """Return the value of a parameter that a kernel's file must declare as a number."""
+    value = values[name]
+    assert isinstance(value, int | float)  # the kernel's file says so
+    return value
+
+
+def whole_number_of(values: Mapping[str, Value], name: str) -> int:
+    """Return the value of a parameter that a kernel's file must declare as a whole number."""
+    value = values[name]
+    assert isinstance(value, int)  # the kernel's file says so
+    return value

@@ -14,22 +14,8 @@ from numpy.typing import NDArray
 from playground.data.by_example import ranked
 from playground.data.delaunay import Rules, tables, triangulate
 from playground.engine import file_sources, time_sources
-from playground.engine.file_sources import make_model, read_mask, read_numbers, size_of_model
-from playground.engine.source_kinds import Material, Recording, SourceKind, Terrain
-from playground.engine.time_sources import (
-    LEAD,
-    frames_of_sound,
-    frames_of_video,
-    laps_of_sound,
-    length_of_sound,
-    length_of_video,
-    make_sound,
-    make_video,
-    moment_of_sound,
-    moment_of_video,
-    size_of_sound,
-    size_of_video,
-)
+from playground.engine.file_sources import read_mask, read_numbers
+from playground.engine.source_kinds import Material, Recording, SourceKind, number_of
 from playground.errors import SketchError, nearest
 from playground.sketch.model import Value
 
@@ -45,15 +31,15 @@ def _make_triangulation(
     values: Mapping[str, Value], size: tuple[int, int], moment: None = None
 ) -> dict[str, NDArray[np.float32]]:
     rules = Rules(
-        points=int(_number(values, "points")),
-        seed=int(_number(values, "seed")),
+        points=int(number_of(values, "points")),
+        seed=int(number_of(values, "seed")),
         random_weights=values["weights"] == 1,
         by_flips=values["method"] == 1,
-        flips=int(_number(values, "flips")),
+        flips=int(number_of(values, "flips")),
         displaced=values["heights"] == 1,
-        roughness=_number(values, "roughness"),
+        roughness=number_of(values, "roughness"),
         corners=tuple(map(float, values["corners"])),  # type: ignore[arg-type]
-        proportion=_number(values, "proportion"),
+        proportion=number_of(values, "proportion"),
     )
     return tables(triangulate(rules), size)
 
@@ -90,140 +76,101 @@ def rank_heights(
     """Return of the example in a size (nx, ny): the normal deviate of each texel's rank, and all sorted."""
     value = material.inputs.get("example")
     example = None if value is None else value.reshape(*value.shape[:2], -1)[..., 0].astype(np.float64)
-    normal, in_order = ranked(example, size, _number(values, "widest"), material.report)
+    normal, in_order = ranked(example, size, number_of(values, "widest"), material.report)
     return {"normal": normal.astype(np.float32), "sorted": in_order.astype(np.float32)}
-
-
-def _number(values: Mapping[str, Value], name: str) -> float:
-    value = values[name]
-    assert isinstance(value, int | float)  # the kernel's file says so
-    return value
 
 
 SOURCES: dict[str, SourceKind] = {
     "elevation_file": SourceKind(
-        file_sources.describe,
+        "the elevation file's terrain",
+        ("elevation", "raw_size", "packing", "no_data", "first_row", "metres"),
         file_sources.make,
         ("elevation",),
-        ("elevation", "raw_size", "packing", "no_data", "first_row", "metres"),
-        "the elevation file's terrain",
+        file_sources.describe,
         optional=("longest",),
         notes=file_sources.notes,
     ),
     "delaunay": SourceKind(
-        lambda _: Terrain(),
-        _make_triangulation,
-        (),
-        ("points", "seed", "weights", "method", "flips", "heights", "roughness", "corners", "proportion"),
         "the triangulation",
+        ("points", "seed", "weights", "method", "flips", "heights", "roughness", "corners", "proportion"),
+        _make_triangulation,
     ),
     "example_file": SourceKind(
-        file_sources.describe_example,
-        None,
-        ("elevation",),
-        file_sources.EXAMPLE_PARAMETERS,
         "the terrain",
+        file_sources.EXAMPLE_PARAMETERS,
+        files=("elevation",),
+        describe=file_sources.describe_example,
         notes=file_sources.example_notes,
         inputs=file_sources.EXAMPLE_INPUTS,
         work=file_sources.make_from_example,
     ),
-    "ranked_heights": SourceKind(
-        lambda _: Terrain(),
-        None,
-        (),
-        ("widest",),
-        "the table of ranks",
-        inputs=("example",),
-        work=rank_heights,
-    ),
-    "mask_file": SourceKind(
-        lambda _: Terrain(),
-        _make_mask,
-        ("image",),
-        ("image", "texels"),
-        "the mask",
-        picture=_mask_picture,
-    ),
-    "array_file": SourceKind(
-        lambda _: Terrain(),
-        _make_array,
-        ("array",),
-        ("array",),
-        "the array",
-    ),
+    "ranked_heights": SourceKind("the table of ranks", ("widest",), inputs=("example",), work=rank_heights),
+    "mask_file": SourceKind("the mask", ("image", "texels"), _make_mask, ("image",), picture=_mask_picture),
+    "array_file": SourceKind("the array", ("array",), _make_array, ("array",)),
     "numbers_file": SourceKind(
-        lambda _: Terrain(),
+        "the layer of painted numbers",
+        ("image",),
         _make_numbers,
         ("image",),
-        ("image",),
-        "the layer of painted numbers",
         picture=lambda values, size: Path(str(values["image"])),
     ),
     "vector_file": SourceKind(
-        lambda _: Terrain(),
+        "the mask of what the file draws",
+        ("vectors", "elevation", "width", "polygons"),
         file_sources.make_mask,
         ("vectors", "elevation"),
-        ("vectors", "elevation", "width", "polygons"),
-        "the mask of what the file draws",
         notes=file_sources.mask_notes,
     ),
     "model_file": SourceKind(
-        lambda _: Terrain(),
-        make_model,
-        ("model",),
-        ("model",),
-        "the model",
-        size=size_of_model,
+        "the model", ("model",), file_sources.make_model, ("model",), size=file_sources.size_of_model
     ),
     "video_file": SourceKind(
-        lambda _: Terrain(),
-        make_video,
-        ("video",),
-        ("video", "start", "speed", "loop"),
         "the film",
-        moment=moment_of_video,
+        ("video", "start", "speed", "loop"),
+        time_sources.make_video,
+        ("video",),
+        moment=time_sources.moment_of_video,
         recording=Recording(
-            frames_of_video, length_of_video, {"start": "start", "speed": "speed", "loop": "loop"}
+            time_sources.frames_of_video,
+            time_sources.length_of_video,
+            {"start": "start", "speed": "speed", "loop": "loop"},
         ),
-        size=size_of_video,
+        size=time_sources.size_of_video,
     ),
     "sound_file": SourceKind(
-        lambda _: Terrain(),
-        make_sound,
-        ("sound",),
-        ("sound", "start", "loop", "content"),
         "the sound",
-        moment=moment_of_sound,
+        ("sound", "start", "loop", "content"),
+        time_sources.make_sound,
+        ("sound",),
+        moment=time_sources.moment_of_sound,
         recording=Recording(
-            frames_of_sound, length_of_sound, {"start": "start", "loop": "loop"}, laps_of_sound, LEAD
+            time_sources.frames_of_sound,
+            time_sources.length_of_sound,
+            {"start": "start", "loop": "loop"},
+            time_sources.laps_of_sound,
+            time_sources.LEAD,
         ),
-        size=size_of_sound,
+        size=time_sources.size_of_sound,
     ),
     "keyboard": SourceKind(
-        lambda _: Terrain(),
-        time_sources.make_keys,
-        (),
-        (),
         "the keyboard",
+        (),
+        time_sources.make_keys,
         moment=time_sources.moment_of_keys,
         size=time_sources.size_of_keys,
     ),
     "microphone": SourceKind(
-        lambda _: Terrain(),
-        time_sources.make_microphone,
-        (),
-        ("content",),
         "the microphone",
+        ("content",),
+        time_sources.make_microphone,
         moment=time_sources.moment_of_microphone,
         size=time_sources.size_of_microphone,
         lack=time_sources.lack_of_microphone,
     ),
     "camera": SourceKind(
-        lambda _: Terrain(),
-        time_sources.make_camera,
-        (),
-        ("device", "mirror"),
         "the camera",
+        ("device", "mirror"),
+        time_sources.make_camera,
         moment=time_sources.moment_of_camera,
         size=time_sources.size_of_camera,
         lack=time_sources.lack_of_camera,

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from playground.data import media
 from playground.data.live_inputs import CAMERA, KEYS, MICROPHONE, Heard, KeysNow, LiveInputs, Now, Seen
 from playground.data.media import RATE, Film, Sound, as_pixels, film_of, sound_of
+from playground.engine.source_kinds import number_of, whole_number_of
 from playground.shader.expressions import FRAME_RATE
 from playground.sketch.model import Value
 
@@ -32,7 +33,7 @@ def size_of_video(values: Mapping[str, Value]) -> tuple[int, int]:
 
 def moment_of_video(values: Mapping[str, Value], now: Now) -> int:
     """Return which frame of a film is shown, from 0."""
-    seconds = _number(values, "start") + _number(values, "speed") * now.time
+    seconds = number_of(values, "start") + number_of(values, "speed") * now.time
     return _film(values).frame_at(seconds, loop=bool(values["loop"]))
 
 
@@ -74,7 +75,7 @@ def size_of_content(content: int, channels: int) -> tuple[int, int]:
 
 def moment_of_sound(values: Mapping[str, Value], now: Now) -> int:
     """Return the sample that is about to be heard; before the first and long after the last it stays."""
-    end = max(floor((_number(values, "start") + now.time) * RATE + 1e-6), 0)
+    end = max(floor((number_of(values, "start") + now.time) * RATE + 1e-6), 0)
     length = None if values["loop"] else _sound(values).length(end)
     return end if length is None else min(end, length + media.SPAN)
 
@@ -132,12 +133,6 @@ def shown_of(heard: NDArray[np.float32], content: int, size: tuple[int, int]) ->
     return media.channel(heard)[rows[:, None], columns]
 
 
-def _number(values: Mapping[str, Value], name: str) -> float:
-    value = values[name]
-    assert isinstance(value, int | float)  # the kernel's file says so
-    return value
-
-
 def size_of_keys(values: Mapping[str, Value]) -> tuple[int, int]:
     """Return the texels of the keyboard's texture."""
     return KEYS, 3
@@ -158,7 +153,7 @@ def make_keys(
 
 def size_of_microphone(values: Mapping[str, Value]) -> tuple[int, int]:
     """Return the texels of what is shown of a microphone."""
-    return size_of_content(_whole(values, "content"), 1)
+    return size_of_content(whole_number_of(values, "content"), 1)
 
 
 def moment_of_microphone(values: Mapping[str, Value], now: Now) -> Heard | None:
@@ -172,7 +167,7 @@ def make_microphone(
 ) -> dict[str, NDArray[np.uint8]]:
     """Return what is shown of a microphone; of nothing, silence."""
     heard = moment.samples if moment else np.zeros((1, media.SPAN), np.float32)
-    return {OUTPUT: shown_of(heard, _whole(values, "content"), size)}
+    return {OUTPUT: shown_of(heard, whole_number_of(values, "content"), size)}
 
 
 def lack_of_microphone(values: Mapping[str, Value], inputs: LiveInputs) -> str:
@@ -188,7 +183,7 @@ def size_of_camera(values: Mapping[str, Value]) -> tuple[int, int]:
 
 def moment_of_camera(values: Mapping[str, Value], now: Now) -> Seen | None:
     """Return the camera's picture; None for none."""
-    device = now.inputs.device(CAMERA, _whole(values, "device"))
+    device = now.inputs.device(CAMERA, whole_number_of(values, "device"))
     return device.now if device else None
 
 
@@ -206,11 +201,5 @@ def make_camera(
 
 def lack_of_camera(values: Mapping[str, Value], inputs: LiveInputs) -> str:
     """Return why it is black, if it is."""
-    problem = inputs.problem(CAMERA, _whole(values, "device"))
+    problem = inputs.problem(CAMERA, whole_number_of(values, "device"))
     return f"{problem}; it is black here" if problem else ""
-
-
-def _whole(values: Mapping[str, Value], name: str) -> int:
-    value = values[name]
-    assert isinstance(value, int)  # the kernel's file says so
-    return value

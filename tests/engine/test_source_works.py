@@ -16,7 +16,7 @@ from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.engine.process.worker import Cancelled
 from playground.engine.sandbox import Sandbox, TrySketch
-from playground.engine.source_kinds import Material, SourceKind, Terrain
+from playground.engine.source_kinds import Material, SourceKind
 from playground.engine.unfinished import SourceUnfinished, SourceWorks
 from playground.errors import DataError, PlaygroundError
 
@@ -81,9 +81,7 @@ class Turned:
 @pytest.fixture
 def turned(monkeypatch, folder):
     source = Turned()
-    kind = SourceKind(
-        lambda _: Terrain(), None, (), ("gain",), "the turned", inputs=("given",), work=source.work
-    )
+    kind = SourceKind("the turned", ("gain",), inputs=("given",), work=source.work)
     monkeypatch.setitem(sources.SOURCES, "turned", kind)
     folder.write("ramp.glsl", RAMP)
     folder.write("source.glsl", SOURCE)

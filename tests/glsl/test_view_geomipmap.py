@@ -386,11 +386,11 @@ def test_fewer_triangles_the_more_is_allowed_and_no_errors_for_a_full_grid(engin
 
 
 def test_the_errors_are_read_back_once_for_each_terrain(engine, shown, monkeypatch):
-    from playground.engine import draws
+    from playground.engine import results
 
     times = []
-    right = draws.read_texture
-    monkeypatch.setattr(draws, "read_texture", lambda texture: times.append(1) or right(texture))
+    right = results.read_texture
+    monkeypatch.setattr(results, "read_texture", lambda texture: times.append(1) or right(texture))
     sketch = shown()
     for camera in flight(5):
         engine.draw(sketch.with_camera(camera), size=SIZE)

@@ -13,7 +13,7 @@ from playground.engine import sources
 from playground.engine.engine import Engine
 from playground.engine.process.worker import Cancelled
 from playground.engine.sandbox import SandboxReport
-from playground.engine.source_kinds import SourceKind, Terrain
+from playground.engine.source_kinds import SourceKind
 from playground.live.overlay import behind_text
 from playground.workbench.brush import Brush
 from playground.workbench.painting import Painting
@@ -50,7 +50,7 @@ def gate(monkeypatch, cancelled):
             raise
         return {"height": np.full(size[::-1], values["gain"], np.float32)}
 
-    kind = SourceKind(lambda _: Terrain(), None, (), ("gain",), "the slow", inputs=("given",), work=work)
+    kind = SourceKind("the slow", ("gain",), inputs=("given",), work=work)
     monkeypatch.setitem(sources.SOURCES, "slow", kind)
     yield opened
     opened.set()
