@@ -186,10 +186,8 @@ class Memo(Generic[K, V]):
         return [key for key in self if isinstance(key, tuple) and key and key[0] is inner]
 
 
-TEXTS: Memo[Any, Any] = Memo("texts", 8192)
-"""What a text alone says: its lines, tokens, declarations, tables."""
-NUMBERS: Memo[Any, Any] = Memo("numbers", 8192)
-"""Expressions, parsed and evaluated."""
+TEXTS: Memo[Any, Any] = Memo("texts", 16384)
+"""What a text alone says: its lines, tokens, declarations, tables; expressions and their numbers."""
 FILES: Memo[Any, Any] = Memo("files", 16384)
 """What files say, by path and content, or checked against the file: parsed kernels, sizes, hashes.
 
@@ -214,7 +212,7 @@ def clear() -> None:
 
     An engine's own (programs, meshes, textures) are left alone: they go with its context.
     """
-    for memo in (TEXTS, NUMBERS, FILES, GRAPHS, PLANS, SOURCES, INTERFACE):
+    for memo in (TEXTS, FILES, GRAPHS, PLANS, SOURCES, INTERFACE):
         memo.clear()
 
 

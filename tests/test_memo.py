@@ -124,7 +124,7 @@ def test_the_report_names_every_memo_and_clear_empties_them():
     memo.TEXTS.put("test", 1)
     usage = {each.name: each for each in memo.report()}
     assert usage["texts"].entries >= 1 and usage["texts"].bound == memo.TEXTS.bound
-    assert {"texts", "numbers", "files", "graphs", "plans", "sources", "interface"} <= usage.keys()
+    assert {"texts", "files", "graphs", "plans", "sources", "interface"} <= usage.keys()
     memo.clear()
     assert not len(memo.TEXTS)
 

@@ -7,7 +7,6 @@ replace what is not wired.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +17,7 @@ from playground.data.image_files import MAX_HALF, read_image
 from playground.engine.camera import unit_vector
 from playground.engine.gl_calls import wrap_sampler
 from playground.engine.plan import Step
+from playground.engine.programs import Bound, Program
 from playground.engine.results import MATCHING, OPEN, Wired, has_unwired, wires_of
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.textures import FACES, Shaped, check_size, copied, drain, shaped_size
@@ -33,8 +33,6 @@ from playground.sketch.model import Input, Kernel, Parameter, Value
 if TYPE_CHECKING:
     import moderngl
 
-    from playground.engine.programs import Program
-
     Readable = moderngl.Texture | Shaped
 
 _SRGB8_ALPHA8 = 0x8C43  # GL_SRGB8_ALPHA8: the sampler decodes, before it filters
@@ -43,17 +41,6 @@ _EXACT = Sampling()  # what reads one texel as it is
 _SINGLE = Sampling(wrap="border")  # likewise, and 0 around the texture
 _WRAPS = {"mirror": 0x8370, "border": 0x812D}  # GL_MIRRORED_REPEAT, GL_CLAMP_TO_BORDER
 _CONSTANTS = {"white": (1, 1, 1, 1), "black": (0, 0, 0, 1), "zero": (0, 0, 0, 0)}
-
-
-@dataclass(frozen=True, slots=True)
-class Bound:
-    """What a program's uniforms and samplers are set for."""
-
-    step: Step
-    uniforms: Mapping[str, Any]
-    wires: tuple[int, ...]
-    units: tuple[tuple[Input, int, moderngl.Sampler], ...]  # of textures, by input
-    unit: int  # the next free one
 
 
 class Binder:
@@ -108,12 +95,7 @@ class Binder:
         if stage.uniforms:
             program.set_all(stage.uniforms)
         bound = program.bound
-        if (
-            isinstance(bound, Bound)
-            and bound.step is step
-            and bound.uniforms is values
-            and bound.wires == wires
-        ):
+        if bound and bound.step is step and bound.uniforms is values and bound.wires == wires:
             for declared, unit, sampler in bound.units:
                 self.use(unit, self.wired(declared, inputs), sampler)
             return bound.unit

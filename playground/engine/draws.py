@@ -75,7 +75,8 @@ class Draws:
 
         ``keeps_surface``: a later draw goes on from this one. The others are those of ``Kernels.run``.
         """
-        kernel, ctx = _draw_of(step), self.ctx
+        kernel, ctx = step.kernel, self.ctx
+        assert isinstance(kernel, Draw)
         program, stage = self.kernels.program(step, "draw", inputs, around)
         loaded, array = self._array(program, step, inputs)
         instances = instances_of(step, inputs, ctx) if step.repeat else 0

@@ -22,7 +22,7 @@ from playground.engine.loops import LoopState, Replay, iteration_of, replay_of
 from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step, sources_of, walk
 from playground.engine.results import UNWIRED, Cached, Result, Wired, started
 from playground.engine.runner import Runner
-from playground.engine.unfinished import Deadline, Piece
+from playground.engine.unfinished import Interruption
 from playground.errors import OpenGLFault
 from playground.shader.expressions import follows_time
 from playground.sketch.flat import Fed, Ref, Source
@@ -126,8 +126,7 @@ class FrameSource(Protocol):
 class Execution:
     """One frame's run over a plan; what ran goes into its ``record``.
 
-    ``piece`` may stop it between passes, ``deadline`` between iterations of loops that follow the time.
-    With a ``timer`` the time of each pass is measured.
+    ``interruption`` may stop it. With a ``timer`` the time of each pass is measured.
     """
 
     def __init__(
@@ -136,16 +135,14 @@ class Execution:
         cache: Cache,
         runner: Runner,
         *,
-        piece: Piece,
-        deadline: Deadline,
+        interruption: Interruption,
         timer: Timer | None = None,
     ) -> None:
         self.record = record
         self.keys = record.keys
         self.cache = cache
         self.runner = runner
-        self.piece = piece
-        self.deadline = deadline
+        self.interruption = interruption
         self.timer = timer
         self.timed: Timed | None = None
         self.ended: Callable[[Step, Result], None] | None = None  # called with each step that was computed
@@ -243,7 +240,7 @@ class Execution:
     ) -> Result:
         """Run a step, and record that and how it ran; arguments as those of ``Runner.run``."""
         if around is None:
-            self.piece.check()
+            self.interruption.before_pass()
         record, runner, first = self.record, self.runner, (start.settled or start.iterations) if start else 0
         continued = record.plan is not None and step.path in record.plan.continued
         objects, drawn = runner.pool.made + runner.programs.compiled, runner.draws.drawn
@@ -344,13 +341,13 @@ class Execution:
                 for node in self._changing(loop, iteration):
                     self._run_inside(node, fed, iteration_of(loop, iteration, frame), computed)
             self.results |= state.results
-            self._check_deadline(state)
+            self._after_iteration(state)
 
-    def _check_deadline(self, state: LoopState) -> None:
-        """Stop a loop that follows the time where the deadline has passed."""
+    def _after_iteration(self, state: LoopState) -> None:
+        """Stop a loop that follows the time where that is over."""
         if state.follows_time:
             done = state.iterations
-            self.deadline.check(done - state.started_at, done, state.loop.repeat)
+            self.interruption.after_iteration(done - state.started_at, done, state.loop.repeat)
 
     def _replay_of(self, loop: LoopStep, fed: Mapping[Fed, Wired]) -> Replay | None:
         """Return what runs a loop's next iterations as its last one ran, if they do."""
@@ -365,7 +362,7 @@ class Execution:
     def _replay(self, replay: Replay, state: LoopState, frame: int | None) -> None:
         first = state.iterations
         try:
-            state.replay(replay, frame, lambda: self._check_deadline(state))
+            state.replay(replay, frame, lambda: self._after_iteration(state))
         finally:
             self.results |= state.results
             self.record.count_replayed(replay.steps, state.iterations - first)

@@ -11,10 +11,10 @@ from collections.abc import Mapping
 from math import isqrt
 from typing import TYPE_CHECKING, Any
 
-from playground.engine.binder import Binder, Bound
+from playground.engine.binder import Binder
 from playground.engine.lattice import shift_after
 from playground.engine.plan import LoopIteration, Step
-from playground.engine.programs import Program, Programs
+from playground.engine.programs import Bound, Program, Programs
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Swap, Wired, wires_of
 from playground.engine.textures import make_framebuffer
@@ -354,7 +354,7 @@ class Kernels:
         if program is None or stage is None or stage.first is not None:
             return None
         bound = program.bound
-        if not isinstance(bound, Bound) or bound.step is not step or bound.wires != wires:
+        if bound is None or bound.step is not step or bound.wires != wires:
             return None
         reads_itself = any(f"k_previous_{output.name}" in program.uniforms for output in step.kernel.outputs)
         return None if reads_itself else (program, bound)

@@ -16,9 +16,10 @@ import logging
 import struct
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from playground.engine.plan import LoopIteration
+from playground.engine.plan import LoopIteration, Step
 from playground.engine.tuning import Choices, Tuning
 from playground.errors import Diagnostic, ShaderError
 from playground.memo import GRAPHS, Memo
@@ -27,7 +28,7 @@ from playground.shader.expressions import FRAME_RATE, counts_frames
 from playground.shader.own_shaders import TRIANGLE
 from playground.shader.source import SourceText
 from playground.shader.wrap import COMPUTE, CORNER, FRAGMENT, Wrapped, wrap, wrap_library
-from playground.sketch.model import Kernel, PlainFragment, TexelKernel
+from playground.sketch.model import Input, Kernel, PlainFragment, TexelKernel
 
 if TYPE_CHECKING:
     import moderngl
@@ -67,6 +68,17 @@ _CORNERS = struct.pack("6f", -1.0, -1.0, 3.0, -1.0, -1.0, 3.0)  # of a triangle 
 _SPARE = 64  # programs cached beyond those of the current frame
 
 
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """What a program's uniforms and samplers were last set for: see ``Binder.bind``."""
+
+    step: Step
+    uniforms: Mapping[str, Any]
+    wires: tuple[int, ...]
+    units: tuple[tuple[Input, int, moderngl.Sampler], ...]  # of textures, by input
+    unit: int  # the next free one
+
+
 class Program:
     """A compiled program, its active uniforms, and the vertex arrays made for it."""
 
@@ -74,7 +86,7 @@ class Program:
         self.ctx = ctx
         self.compiled = compiled
         self.uniforms: dict[str, Any] = {name: compiled[name] for name in compiled}
-        self.bound: object = None  # what its uniforms were last bound for: see ``Binder.bind``
+        self.bound: Bound | None = None
         self._last: dict[str, Any] = {}  # the values that uniforms have
         self.arrays: dict[object, moderngl.VertexArray] = {}  # by mesh; None: the whole picture
         self.frame = 0  # when it was last used

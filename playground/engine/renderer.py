@@ -41,7 +41,7 @@ from playground.engine.results import Pool
 from playground.engine.runner import Runner
 from playground.engine.software import Software
 from playground.engine.tuning import Tuning
-from playground.engine.unfinished import Deadline, Piece
+from playground.engine.unfinished import Interruption
 from playground.engine.window import windowed
 from playground.errors import ContextError, Diagnostic
 from playground.paths import shown
@@ -288,7 +288,7 @@ class Renderer:
 
     def _texture(self, plan: Plan, ref: Ref) -> moderngl.Texture:
         """Run what a texture needs and return it, with the context left as it was found."""
-        runner, options, finish = self.runner, self.options, self._ctx.finish
+        runner, options = self.runner, self.options
         self.plain_forms.report(plan.sketch, plan.lacking)
         self.record = record = FrameRecord(plan, before=self.record.keys)
         self.cache.begin()
@@ -299,8 +299,7 @@ class Renderer:
             record,
             self.cache,
             runner,
-            piece=Piece(options.piece, finish),
-            deadline=Deadline(options.patience, finish),
+            interruption=Interruption(self._ctx.finish, options.piece, options.patience),
             timer=self._timer_of() if options.profiling else None,
         )
         runner.works.waits = options.patience is None

@@ -351,11 +351,6 @@ def wires_of(step: Step, inputs: Mapping[str, Wired]) -> tuple[int, ...]:
     return tuple(wires)
 
 
-def are_of_own_size(step: Step, inputs: Mapping[str, Wired]) -> bool:
-    """Return whether each input of a step reads a texture that is as large as those that it makes."""
-    return all(wire == MATCHING for wire in wires_of(step, inputs))
-
-
 def has_unwired(kernel: Kernel, inputs: Mapping[str, Wired]) -> bool:
     """Return whether nothing is wired to some input that may stay so."""
     return any([i.fallback and inputs.get(i.name, UNWIRED).texture is None for i in kernel.inputs])

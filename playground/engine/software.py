@@ -34,8 +34,8 @@ from typing import TYPE_CHECKING
 
 from playground.engine.gl_calls import Calls
 from playground.engine.plan import Step
+from playground.engine.results import MATCHING, Result, Wired, has_unwired, wires_of
 from playground.engine.results import UNWIRED as NOT_WIRED
-from playground.engine.results import Result, Wired, are_of_own_size, has_unwired
 from playground.engine.textures import make_framebuffer, release_framebuffer
 from playground.engine.tuning import Choices, FirstPart, Stage, Tuning
 from playground.memo import GRAPHS
@@ -274,7 +274,7 @@ def _quicker(step: Step, inputs: Mapping[str, Wired], driver: str) -> list[str]:
         quicker -= {OWN_SIZE, PLACE}
     if PLACE in quicker and driver != FRAGMENT:
         quicker -= {PLACE}
-    if OWN_SIZE in quicker and not are_of_own_size(step, inputs):
+    if OWN_SIZE in quicker and not all([wire == MATCHING for wire in wires_of(step, inputs)]):
         quicker -= {OWN_SIZE}
     return sorted(quicker)
 

@@ -33,37 +33,30 @@ class PassesUnfinished(Exception):
     """A picture was stopped between two passes by an engine's ``piece``: the next goes on."""
 
 
-class Piece:
-    """What stops a picture between two passes: where ``over`` says that time is; with None nothing.
+class Interruption:
+    """When a picture stops before it is done; ``finish`` waits for the graphics card, before a clock is read.
 
-    One pass runs at least. ``finish`` waits for the graphics card.
+    Between two passes where ``over`` says that time is, though one runs at least; between two iterations of a
+    loop that follows the time ``seconds`` after the picture was begun. With None never.
     """
 
-    def __init__(self, over: Callable[[], bool] | None, finish: Callable[[], None]) -> None:
-        self._over = over
+    def __init__(
+        self, finish: Callable[[], None], over: Callable[[], bool] | None, seconds: float | None
+    ) -> None:
         self._finish = finish
+        self._over = over
+        self._end = None if seconds is None else time.perf_counter() + seconds
         self._ran = False
 
-    def check(self) -> None:
-        """Raise ``PassesUnfinished`` before a pass runs, where another did and time is over."""
+    def before_pass(self) -> None:
+        """Raise ``PassesUnfinished`` where time is over and another pass ran."""
         if self._over is not None and self._ran:
             self._finish()
             if self._over():
                 raise PassesUnfinished
         self._ran = True
 
-
-class Deadline:
-    """When loops that follow the time are to stop; with None never.
-
-    ``finish`` waits for the graphics card, which otherwise has the work still before it.
-    """
-
-    def __init__(self, seconds: float | None, finish: Callable[[], None]) -> None:
-        self._end = None if seconds is None else time.perf_counter() + seconds
-        self._finish = finish
-
-    def check(self, ran: int, done: int, total: int) -> None:
+    def after_iteration(self, ran: int, done: int, total: int) -> None:
         """Raise ``Unfinished`` where time is over and iterations are left; ``ran`` are those of this run."""
         if self._end is None or done >= total or ran % _EVERY:
             return

@@ -18,7 +18,7 @@ from fractions import Fraction
 from typing import cast
 
 from playground.errors import nearest
-from playground.memo import NUMBERS
+from playground.memo import TEXTS
 from playground.shader.parameter import MAX_SIDE
 
 Number = int | float | Fraction
@@ -51,13 +51,13 @@ def evaluate(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -
     return _cached(text, tuple(names_and_values))
 
 
-@NUMBERS.cached()
+@TEXTS.cached()
 def _cached(text: str, names_and_values: tuple[tuple[str, type, Number], ...]) -> int:
     """Evaluate once for the same names: steps repeat them. Types count: 1 is not 1.0 in 1 / 3."""
     return _evaluated(text, {name: number for name, _, number in names_and_values}.__getitem__, ())
 
 
-@NUMBERS.cached()
+@TEXTS.cached()
 def _names(text: str) -> tuple[str, ...]:
     return tuple(sorted(names_in(text)))
 
@@ -112,13 +112,13 @@ def names_in(text: str) -> frozenset[str]:
     return frozenset(names)
 
 
-@NUMBERS.cached()
+@TEXTS.cached()
 def follows_time(text: str) -> bool:
     """Return whether an expression, or "", names the time or the frames."""
     return bool(text) and not names_in(text).isdisjoint(CLOCKS)
 
 
-@NUMBERS.cached()
+@TEXTS.cached()
 def counts_frames(text: str) -> bool:
     """Return whether an expression, or "", names the frames: its iteration n is at n / 60 seconds."""
     return bool(text) and "frames" in names_in(text)
@@ -167,7 +167,7 @@ def nearest_accepted(accepts: str, size: tuple[int, int]) -> tuple[tuple[int, in
     return tuple(dict.fromkeys([(below[0], below[1]), (above[0], above[1])]))
 
 
-@NUMBERS.cached()
+@TEXTS.cached()
 def split_at_commas(text: str) -> tuple[str, ...]:
     """Split expressions at the commas that are in no bracket."""
     parts: list[str] = []
@@ -190,7 +190,7 @@ def _either(text: str, variable: str, limit: int) -> tuple[int, ...]:
     return tuple(sorted(numbers))
 
 
-@NUMBERS.cached()
+@TEXTS.cached()
 def _values(text: str, variable: str, limit: int) -> tuple[int, ...]:
     check(text, (variable,))
     values: list[int] = []
@@ -208,7 +208,7 @@ def _values(text: str, variable: str, limit: int) -> tuple[int, ...]:
     return tuple(sorted(set(values)))
 
 
-@NUMBERS.cached()
+@TEXTS.cached()
 def parsed(text: str) -> ast.expr:
     """Parse an expression, which may be no expression of these; raise ``ExpressionError``."""
     if len(text) > MAX_LETTERS:

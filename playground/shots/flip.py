@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
-from playground.memo import NUMBERS
+from playground.memo import SOURCES, bytes_held
 from playground.shots.compare import worst_window
 
 Floats = NDArray[np.float32]
@@ -328,7 +328,7 @@ def _along(values: Floats, line: Floats, axis: int) -> Floats:
     return filtered
 
 
-@NUMBERS.cached()
+@SOURCES.cached(weight=bytes_held)
 def _band(line: bytes, count: int) -> Floats:
     """Return the matrix whose rows are a line of weights, each one further along than the last."""
     weights = np.frombuffer(line, np.float32)
