@@ -1,7 +1,6 @@
 """OpenGL's own functions by name, and timers of its work.
 
-On a GPU by timer queries, which are never nested. On software renderers queries are
-wrong (a draw of 275 ms reads 1 ms), so there it is the wall clock between two
+By timer queries, which are never nested; where a renderer's are wrong, by the wall clock between two
 ``finish()`` calls. Only while profiling: both slow a frame down.
 """
 
@@ -126,11 +125,11 @@ WALL, QUERY = "wall clock", "GPU timer"
 class Timer:
     """Measure stretches of work on one context."""
 
-    def __init__(self, ctx: moderngl.Context, *, software: bool) -> None:
+    def __init__(self, ctx: moderngl.Context, *, queries: bool) -> None:
         self._ctx = ctx
-        self._query = None if software else ctx.query(time=True)
+        self._query = ctx.query(time=True) if queries else None
         self._open = False
-        self.clock = WALL if software else QUERY  # which clock the figures come from
+        self.clock = QUERY if queries else WALL  # which clock the figures come from
 
     @contextmanager
     def measure(self, into: dict[str, float], name: str) -> Iterator[None]:

@@ -22,12 +22,12 @@ def silent(sentence: str) -> None:
 class PlainForms:
     """Calls ``notice`` for each fast variant that does not run.
 
-    ``compute`` and ``software`` say whether there are compute shaders, and no GPU.
+    ``compute`` and ``draws`` say whether there are compute shaders, and whether variants replace draws.
     """
 
-    def __init__(self, notice: Callable[[str], None], *, compute: bool, software: bool) -> None:
+    def __init__(self, notice: Callable[[str], None], *, compute: bool, draws: bool) -> None:
         self.notice = notice
-        lacking = {"compute": not compute, "draws": not software}
+        lacking = {"compute": not compute, "draws": not draws}
         self.kinds = tuple(kind for kind in VARIANTS if not lacking.get(kind))
         # Those that may run where a pixel has several samples, or a picture is drawn in parts.
         self.kinds_without_draws = tuple(kind for kind in self.kinds if kind != "draws")

@@ -108,7 +108,7 @@ class Renderer:
         self.disk_caching: DiskCaching | None = None  # None: nothing is cached on disk
         self.eye_height = EyeHeight()  # over the terrain, in the last frame
         self.plain_forms = PlainForms(
-            notice, compute=self._info.compute and driver != FRAGMENT, software=self._info.software
+            notice, compute=self._info.compute and driver != FRAGMENT, draws=tuning.replaces_draws
         )
         self._keys = KeyMaker(content=self.painted.content)
         self._hasher = PictureHasher()
@@ -343,7 +343,7 @@ class Renderer:
     def _timer_of(self) -> Timer:
         self._context.check()
         if self._timer is None:
-            self._timer = Timer(self._ctx, software=self._info.software)
+            self._timer = Timer(self._ctx, queries=self.runner.tuning.has_timers)
         return self._timer
 
 

@@ -98,6 +98,8 @@ class Software(Tuning):
     """What a software renderer gains by, on one context."""
 
     anisotropy = 1.0  # more costs a hundred times as much
+    replaces_draws = True
+    has_timers = False  # a draw of 275 ms reads 1 ms
     mipmap_cost = MIPMAPS
     waits = True
 

@@ -43,6 +43,8 @@ class Tuning:
     """What a graphics card gains by: nothing, and what it does quickly."""
 
     anisotropy = 8.0  # of textures with mipmaps, at most
+    replaces_draws = False  # by variants that are quicker where a processor draws
+    has_timers = True  # queries of the time that work takes, which are right
     mipmap_cost = 0.0  # [ms] of the first mipmaps of a texture in a process; 0: they are not cached on disk
     waits = False  # for each comparison of a repeat's steps, which is there sooner than another step
     filling: AbstractContextManager[None] = nullcontext()  # within it a program fills a whole framebuffer

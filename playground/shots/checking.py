@@ -164,7 +164,7 @@ class Checker:
     def _say_plain_forms(self, node: pytest.Item, case: ShotCase, renderer: ContextInfo) -> None:
         """Report, once in this process, which fast variants do not run."""
         if self._plain_forms is None:
-            self._plain_forms = PlainForms(silent, compute=renderer.compute, software=renderer.software)
+            self._plain_forms = PlainForms(silent, compute=renderer.compute, draws=renderer.software)
         self._plain_forms.notice = lambda sentence: node.user_properties.append((SUMMARY_LINE, sentence))
         self._plain_forms.report(case.sketch)
 
