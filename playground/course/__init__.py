@@ -6,12 +6,12 @@
     model               what a lesson is made of
     document            a file split into front matter and pieces
     read, fences        from a file to a lesson; ``task_fences`` of what a student does
-    translate, status   from a translation to a lesson; what of it is out of date
+    translate           from a translation to a lesson; what of it is out of date
     library, contents   which lessons and languages there are, and their order
     figure_renders      the pictures of a lesson
-    figures             the thesis's figures
+    figures             the thesis's figures, and those at the heads of lessons
     measuring           the numbers of a lesson, by the functions of ``measures``
-    excerpt, bugs       code by a named anchor; the lines around a deliberate bug
+    excerpt             code by a named anchor; the lines around a deliberate bug
     rules               the rules of every lesson
     tasks/              exercises that check themselves, and pictures to match
     exercises/          their starters and model answers

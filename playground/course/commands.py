@@ -1,8 +1,9 @@
-"""Lessons: list them, check them, keep translations up to date."""
+"""Lessons: list, open, present, check, build, hand out and grade them, keep translations up to date."""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,23 +11,259 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from playground.commands import options
-from playground.commands.arguments import FAILED, Renderer, command_group, either, help_text
+from playground.commands.arguments import (
+    FAILED,
+    Renderer,
+    check_parent,
+    command_group,
+    either,
+    help_text,
+    read_pixels,
+)
 from playground.commands.live import check_display, open_window
 from playground.commands.options import flag, positional, value
-from playground.course.grading.commands import HELP as GRADE_HELP
-from playground.course.grading.commands import grade
-from playground.course.handout.commands import HELP as HANDOUT_HELP
-from playground.course.handout.commands import handout
 from playground.course.options import Language, complete_language, complete_lesson, read_language
-from playground.course.talk.commands import HELP as PRESENT_HELP
-from playground.course.talk.commands import present
-from playground.errors import ParameterError, PlaygroundError, SketchError, counted, nearest
+from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, counted, nearest
 from playground.terminal import complain, note, painted, print_json, print_rows, print_table, progress
 
 if TYPE_CHECKING:
+    from playground.course.grading.entries import Submission
+    from playground.course.grading.marks import Graded
+    from playground.course.handout.exercise_files import Assignment
     from playground.course.model import Lesson
     from playground.course.read import Summary
     from playground.engine.engine import Engine
+
+HANDOUT_HELP = help_text(
+    "Write the exercises of lessons as a zip for students: a page without answers, and for each exercise"
+    " that checks itself a folder that the window opens.\n\n"
+    "Students edit one file an exercise and hand the folder in; `playground lesson grade` grades what a class"
+    " has handed in. Model answers are not in the zip. The playground is on no package index: --wheel puts it"
+    " into the zip, --install says in the students' README where they get it.",
+    "playground lesson handout diamond_square -o week3.zip",
+    "playground lesson handout diamond_square --hints --lang fr -o semaine3.zip",
+    "playground lesson handout diamond_square --wheel terrain_shader_playground-0.1.0-py3-none-any.whl",
+    'playground lesson handout diamond_square --install "In room 3 it is installed."',
+    "playground live week3.zip",
+)
+
+
+def handout(
+    ctx: typer.Context,
+    names: Annotated[list[str], positional("NAME", "The lessons.", complete_lesson)],
+    output: Annotated[Path, value("-o --output FILE", "The zip; handout.zip by default.")] = Path(
+        "handout.zip"
+    ),
+    hints: Annotated[bool, flag("--hints", "Put the exercises' hints on the page.")] = False,
+    install: Annotated[str, value("--install LINE", "How students install the playground.")] = "",
+    wheel: Annotated[
+        Path | None, value("--wheel FILE", "A wheel of the playground, to put into the zip.")
+    ] = None,
+    lang: Language = "",
+    software: options.Software = False,
+) -> None:
+    """Write the exercises of lessons as a zip for students."""
+    from playground.course.handout.pack import count_tasks, read_wheel, write_handout
+    from playground.course.read import read_lesson
+
+    output = output.expanduser()
+    if output.is_dir() or output.suffix.lower() != ".zip":
+        raise DataError("a hand-out is written to a name ending in .zip", file=output)
+    check_parent(output, str(output))
+    if wheel is not None:
+        wheel = wheel.expanduser()
+        read_wheel(wheel)
+    language = read_language(lang)
+    lessons = [read_lesson(name, language) for name in dict.fromkeys(names)]
+    renderer: Renderer = ctx.obj.or_else(software)
+    with renderer.open_engine() as engine, progress("drawing", count_tasks(lessons)) as advance:
+        written = write_handout(
+            output, lessons, engine, hints=hints, install=install, wheel=wheel, advance=advance
+        )
+    print(output)
+    exercises = sum(assignment.points > 0 for assignment in written)
+    matches = f", {counted(len(written) - exercises, 'challenge')}" if exercises < len(written) else ""
+    points = counted(sum(assignment.points for assignment in written), "point")
+    if not install and wheel is None:
+        note("README.txt leaves it to you how students install the playground: see --wheel and --install")
+    note(f"{counted(exercises, 'exercise')} to hand in, {points}{matches}")
+
+
+GRADE_HELP = help_text(
+    "Grade a folder of submissions: one folder or zip for each student, as `playground lesson handout` gave"
+    " them out.\n\n"
+    "Writes grades.csv and index.html, a contact sheet with submissions next to expected pictures. Each"
+    " work is judged in a process of its own limits: an endless loop costs its author the points and nobody"
+    " else anything. Without --lesson, those lessons are graded of which something was handed in. Exit"
+    " status 0 when graded, whatever the grades.",
+    "playground lesson grade handed-in -o report",
+    "playground lesson grade handed-in --lesson diamond_square --lang fr -o notes",
+    "playground lesson grade handed-in --json",
+)
+
+
+def grade(
+    ctx: typer.Context,
+    folder: Annotated[Path, positional("FOLDER", "A folder or a zip for each student is in it.")],
+    output: Annotated[Path, value("-o --output FOLDER", "The report; report by default.")] = Path("report"),
+    lessons: Annotated[
+        list[str] | None,
+        value("--lesson NAME", "A lesson to grade; may be repeated.", complete_lesson),
+    ] = None,
+    lang: Language = "",
+    as_json: options.Json = False,
+    software: options.Software = False,
+) -> None:
+    """Grade a folder of submissions."""
+    from playground.course.grading.entries import find_submissions
+    from playground.course.grading.grade import count_works, grade, read_all
+    from playground.course.grading.judges import Judges, Options
+    from playground.course.grading.report import check_folder, write_report
+    from playground.course.handout.exercise_files import assignments_of
+    from playground.course.read import read_lesson
+
+    language, folder, output = read_language(lang), folder.expanduser(), output.expanduser()
+    submissions, others = find_submissions(folder, output)
+    check_folder(output)
+    names = list(dict.fromkeys(lessons or _lessons_handed_in(submissions)))
+    assignments = assignments_of(read_lesson(name, language) for name in names)
+    for name in names:
+        if not any(submission.lesson.name == name for submission in assignments):
+            raise SketchError(f"no exercise of the lesson {name} checks itself, so there is nothing to grade")
+    read = read_all(submissions, assignments)
+    renderer: Renderer = ctx.obj.or_else(software)
+    with (
+        Judges(Options(tuple(names), language, renderer.software, renderer.device)) as judges,
+        progress("grading", count_works(read, assignments)) as advance,
+    ):
+        graded = grade(read, assignments, judges, language, advance)
+        drawn_by = judges.renderer
+    titles = {submission.name: submission.title for submission in assignments}
+    page, kept = write_report(output, graded, titles, language, drawn_by)
+    for name in others:
+        note(f"left out: {name}")
+    if kept is not None:
+        note(f"grades.csv had been changed since the last report; it is kept as {kept}")
+    if as_json:
+        print_json([_as_json(submission) for submission in graded])
+        return
+    _print(graded, assignments)
+    note(f"{page} and {page.with_name('grades.csv')}")
+
+
+def _lessons_handed_in(submissions: Sequence[Submission]) -> list[str]:
+    """Return the lessons of which anything was handed in; raise ``SketchError`` for none."""
+    from playground.course.contents import lesson_names
+    from playground.course.grading.grade import lessons_in
+
+    lessons = lesson_names()
+    names = {name for submission in submissions for name in lessons_in(submission.path, lessons)}
+    if not names:
+        raise SketchError("no submission holds a file of an exercise; name the lessons: --lesson NAME")
+    return [name for name in lessons if name in names]
+
+
+def _as_json(graded: Graded) -> dict[str, object]:
+    return {
+        "student": graded.student,
+        "points": graded.points,
+        "of": graded.of,
+        "exercises": {
+            name: {
+                "points": mark.points,
+                "of": mark.of,
+                **({} if mark.score is None else {"score": mark.score}),
+                "outcome": mark.outcome,
+                "sentences": list(mark.sentences),
+                "note": mark.note,
+                "same_as": list(mark.same_as),
+            }
+            for name, mark in graded.marks.items()
+        },
+    }
+
+
+def _print(graded: Sequence[Graded], assignments: Sequence[Assignment]) -> None:
+    from playground.course.grading.entries import printable
+    from playground.course.grading.marks import spelled_points
+
+    headings = ["student", *(graded.name for graded in assignments), "total", "of"]
+    rows = [
+        [
+            printable(graded.student),
+            *(mark.spelled for mark in graded.marks.values()),
+            spelled_points(graded.points),
+            str(graded.of),
+        ]
+        for graded in graded
+    ]
+    print_table(f"Grades of {counted(len(graded), 'submission')}", headings, rows)
+
+
+PRESENT_HELP = help_text(
+    "Present a lesson to a class: full screen, large type, one thought at a time.\n\n"
+    "Space, PgDn or a clicker goes on; ? shows every key; Esc goes back to the window. The teacher's notes,"
+    " with a clock, are at the address that is printed, for a browser on this machine. --video writes the"
+    " presentation as a film, its notes as subtitles (.srt) next to it, without a window.",
+    "playground lesson present diamond_square",
+    "playground lesson present diamond_square --lang fr --from 12",
+    "playground lesson present diamond_square --video talk.mp4",
+)
+
+FILM_SIZE = (1280, 720)
+"""Pixels of a film, where none are given."""
+
+
+def present(
+    ctx: typer.Context,
+    name: Annotated[str, positional("NAME", "A lesson.", complete_lesson)],
+    lang: Language = "",
+    beat: Annotated[int, value("--from BEAT", "The number of the beat to begin at.")] = 1,
+    no_notes: Annotated[bool, flag("--no-notes", "Without the page of notes, or subtitles.")] = False,
+    video: Annotated[str, value("--video FILE", "Write it as a film: .mp4, .webm or .gif.")] = "",
+    size: options.Size = None,
+    software: options.Software = False,
+) -> None:
+    """Present a lesson to a class."""
+    from playground.course.library import lesson_file
+    from playground.course.read import read_lesson
+    from playground.course.talk.beats import beats_of
+
+    lesson_file(name)  # says so where there is none
+    lesson = read_lesson(name, read_language(lang))
+    count = len(beats_of(lesson))
+    if not 1 <= beat <= count:
+        raise ParameterError(f"--from {beat}: lesson {name} has beats 1 to {count}")
+    renderer, pixels = ctx.obj.or_else(software), read_pixels(size)
+    if video:
+        _film(lesson, beat, video, pixels, renderer, subtitles=not no_notes)
+        return
+    check_display(renderer)
+    from playground.course.talk.stage import Presenting
+
+    presenting = Presenting(beat, notes=not no_notes, say=note)
+    request = {"lesson": name, "language": lesson.language, "present": presenting}
+    open_window(lesson.sketch, pixels, renderer, request=request)
+
+
+def _film(
+    lesson: Lesson,
+    first: int,
+    video: str,
+    size: tuple[int, int] | None,
+    renderer: Renderer,
+    *,
+    subtitles: bool,
+) -> None:
+    """Write the film, and print the paths of what was written."""
+    from playground.course.talk.film import film_of, write_presentation
+
+    film = film_of(lesson, Path(video).expanduser(), size or FILM_SIZE, first=first - 1)
+    film.check()
+    with renderer.open_engine() as engine, progress(f"filming {lesson.name}", len(film.beats)) as done:
+        for path in write_presentation(engine, film, subtitles=subtitles, done=done, notice=note):
+            print(path)
+
 
 HELP = help_text(
     "Lessons on terrain, to read next to the window, in a browser or as notebooks.",

@@ -70,7 +70,7 @@ MAX_WORDS = 60
 """Words that may come before the first picture, so that it is on the first screen."""
 
 MAX_MINUTES = 12
-"""Minutes that reading a lesson may take, by ``reading_time``; its exercises are counted apart."""
+"""Minutes that reading a lesson may take, by ``read.times_of``; its exercises are counted apart."""
 
 EXERCISES = 3
 """Exercises that a lesson has at least."""

@@ -28,8 +28,18 @@ from playground.course.talk.beat import BOTH, Beat, Still, scene_of
 from playground.course.talk.beats import beats_of, first_of_page
 from playground.course.talk.block_beats import BOARD_WORDS, CODE_LINES
 from playground.course.talk.labels import LABELS
-from playground.course.talk.sentences import MAX_WORDS, sentences, shown_of, words
-from playground.course.talk.spoken import LETTERS, MIN_SECONDS, cues_of, plain_text, seconds_of, srt
+from playground.course.talk.spoken import (
+    LETTERS,
+    MAX_WORDS,
+    MIN_SECONDS,
+    cues_of,
+    plain_text,
+    seconds_of,
+    sentences,
+    shown_of,
+    srt,
+    words,
+)
 from playground.engine.engine import Engine
 
 pytestmark = pytest.mark.slow

@@ -14,12 +14,11 @@ import pytest
 from PIL import Image
 
 from playground.course.book import build
-from playground.course.book import images as pictures
+from playground.course.book import build as pictures
 from playground.course.book.blocks import LessonContext, block_html
-from playground.course.book.build import prepare, write_book
+from playground.course.book.build import is_diagram, larger, prepare, write_book
 from playground.course.book.html import MAX_INDENT, formula, line, plain, prose
-from playground.course.book.images import is_diagram, larger
-from playground.course.book.live_files import LiveBook
+from playground.course.book.live import LiveBook
 from playground.course.figure_renders import draw, pictures_of
 from playground.course.figures import thesis_figures
 from playground.course.glossary import terms

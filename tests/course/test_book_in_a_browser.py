@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from playground.course.book import build, images
+from playground.course.book import build
 from playground.course.book.build import prepare, write_book
-from playground.course.book.live_files import LiveBook
+from playground.course.book.live import LiveBook
 from playground.course.measuring import Number
 from playground.course.read import read_lessons
 
@@ -252,7 +252,7 @@ def test_no_page_has_a_serious_fault_for_those_who_read_otherwise(page, book):
 @pytest.fixture
 def bare_book(tmp_path, engine, monkeypatch):
     """Give every page of the course, without its pictures and its numbers, which take minutes."""
-    monkeypatch.setattr(images.Album, "draw", lambda *_: None)
+    monkeypatch.setattr(build.Album, "draw", lambda *_: None)
     monkeypatch.setattr(build, "is_blank", lambda path: False)
     monkeypatch.setattr(
         build,

@@ -20,18 +20,12 @@ import pytest
 
 from playground.cli import main
 from playground.course.grading import judges as handler
-from playground.course.grading.duplicates import alike
-from playground.course.grading.entries import _TOO_MANY
-from playground.course.grading.grade import read_all
-from playground.course.grading.handed_in import lessons_in, read_submission
+from playground.course.grading.entries import _TOO_MANY, find_submissions
+from playground.course.grading.grade import alike, lessons_in, read_all, read_submission
+from playground.course.grading.judges import values_in_toml
 from playground.course.grading.marks import GRADED, MISSING, REFUSED, STOPPED, Graded, Mark, Pair
-from playground.course.grading.page import ReportContext, page
-from playground.course.grading.report import write_report
-from playground.course.grading.submissions import find_submissions
-from playground.course.grading.table import table_bytes
-from playground.course.grading.values_in_toml import values_in_toml
-from playground.course.handout.exercise_files import assignments_of
-from playground.course.handout.normalised import normalised
+from playground.course.grading.report import ReportContext, page, table_bytes, write_report
+from playground.course.handout.exercise_files import assignments_of, normalised
 from playground.course.library import HERE
 from playground.course.model import Challenge
 from playground.course.read import read_lesson

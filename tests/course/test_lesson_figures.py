@@ -13,8 +13,8 @@ from playground.course.figure_renders import broken, draw
 from playground.course.model import Break, Compare, Exercise, Figure, Scene, Slider, Steps
 from playground.course.read import read_lesson
 from playground.course.window.bugs import BROKEN, FIXED, SHOWN
-from playground.course.window.figure_state import edits_of, map_of, steps_of
-from playground.course.window.links import play_on
+from playground.course.window.figure_view import edits_of, map_of, steps_of
+from playground.course.window.panel import play_on
 from playground.course.window.reader import BOTH
 from playground.sketch.find import find
 from playground.workbench.edits import Draft, Edits

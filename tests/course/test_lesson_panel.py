@@ -9,7 +9,7 @@ from imgui_bundle import ImVec2, imgui
 
 from playground import cli
 from playground.course.scenes import Sketches
-from playground.course.window.links import follow
+from playground.course.window.panel import follow
 from playground.sketch.find import find
 
 from .lesson_desk import FILE, value
@@ -155,7 +155,7 @@ def test_links_lead_to_lessons_and_sketches(harness, monkeypatch):
     harness.open(show=False)
     opened: list[str] = []
     monkeypatch.setattr(
-        "playground.course.window.links.webbrowser.open",
+        "playground.course.window.panel.webbrowser.open",
         lambda address: bool(opened.append(address)) or True,
     )
     for address in (

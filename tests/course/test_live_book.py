@@ -12,9 +12,15 @@ import pytest
 from playground.course import model
 from playground.course.book.blocks import LessonContext
 from playground.course.book.build import prepare, write_book
-from playground.course.book.live_blocks import beginning, block_data, lesson_data
-from playground.course.book.live_files import MAX_INLINE_LETTERS, live_book
-from playground.course.book.live_scenes import Library, Scenes
+from playground.course.book.live import (
+    MAX_INLINE_LETTERS,
+    Library,
+    Scenes,
+    beginning,
+    block_data,
+    lesson_data,
+    live_book,
+)
 from playground.course.excerpt import bug_region
 from playground.course.figure_renders import pictures_in
 from playground.course.read import read_lesson
@@ -123,7 +129,7 @@ def test_the_lessons_of_a_book_share_texts_and_kernels(sky_light, of_sky_light):
 
 def test_a_sketch_that_no_page_can_run_stays_a_picture(lesson, monkeypatch):
     """And so does its block; the others are live."""
-    from playground.course.book import live_scenes
+    from playground.course.book import live
     from playground.errors import SketchError
 
     whole = set(lesson_data(lesson, Library())["blocks"])
@@ -133,7 +139,7 @@ def test_a_sketch_that_no_page_can_run_stays_a_picture(lesson, monkeypatch):
             raise SketchError("a compute shader")
         return sketch_data(sketch, *others, **named)
 
-    monkeypatch.setattr(live_scenes, "sketch_data", refuse)
+    monkeypatch.setattr(live, "sketch_data", refuse)
     assert whole - set(lesson_data(lesson, Library())["blocks"]) == {"smooth", "two"}
 
 

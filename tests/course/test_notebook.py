@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from playground.course.book.live_files import widget_page
+from playground.course.book.live import widget_page
 from playground.course.excerpt import BugRegion
 from playground.course.figure_renders import broken, draw
 from playground.course.glossary import terms

@@ -13,7 +13,6 @@ from playground.course.read import read_lesson, summaries
 from playground.course.scenes import Sketches
 from playground.course.talk.beat import Beat, Listing
 from playground.course.talk.beats import beats_of
-from playground.course.talk.faces import Face
 from playground.course.talk.slide import (
     MIN_LETTER_HEIGHT,
     Gauge,
@@ -26,6 +25,7 @@ from playground.course.talk.slide import (
     gauges_of,
     strip_of,
 )
+from playground.course.talk.typeset import Face
 
 FULL_HD = Sizes(1920, 1080)
 

@@ -5,45 +5,201 @@ en/, fr/            a page for each lesson, the contents, the glossary, the thes
 pictures/           all pictures, for all languages
 book.css, book.js, find.js, fonts/
 en/words.js …       what is searched
-live.js, data/ …     what runs where a reader starts a figure: see live_files.py
+live.js, data/ …     what runs where a reader starts a figure: see ``live``
 book.json           the files that were written, so that the next build removes what is no more
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from playground.course import model
 from playground.course.book.blocks import LessonContext, picture_image
-from playground.course.book.gallery import gallery_html
-from playground.course.book.images import Album, is_blank, of_picture
-from playground.course.book.live_files import LiveBook, live_book
+from playground.course.book.live import LiveBook, live_book
 from playground.course.book.page import (
     FIGURES,
     GLOSSARY,
     Book,
     contents_page,
     cover_page,
+    gallery_html,
     gallery_page,
     glossary_page,
     hero_image,
     lesson_page,
+    section_id,
 )
-from playground.course.book.search import Entry, glossary_entries, lesson_entries, words_script
-from playground.course.figure_renders import Picture, pictures_of
+from playground.course.figure_renders import Picture, draw, pictures_of
 from playground.course.figures import FigurePicture, Hero, ThesisFigure, hero_of, thesis_figures
+from playground.course.glossary import alphabetical
 from playground.course.library import interface_labels
+from playground.course.markdown import every_token, parser
 from playground.course.measuring import Number, numbers_of
-from playground.course.model import Lesson
+from playground.course.model import Lesson, Scene
 from playground.course.scenes import Sketches
 from playground.engine.context import context_info
 from playground.engine.engine import Engine
 from playground.errors import DataError
-from playground.files import write_file
+from playground.files import replacing, write_file
 from playground.json_text import read_json
 from playground.markup import Markup
+
+QUALITY = 79
+"""Of WebP: noise in a texture costs most, and errors in it are least visible."""
+
+EFFORT = 50
+"""Of lossless WebP, where quality only means time: more made nothing smaller."""
+
+SHARPER = 1.5
+"""Pixels drawn for each of a page's, each way: screens have more than one."""
+
+
+BLACK = 32.0
+"""Level of 255 that nine tenths of a picture lie below, where there is nothing but black to see."""
+
+MAX_DIAGRAM_COLOURS = 2048
+"""Colours that a diagram has at most; terrain has tens of thousands."""
+
+
+@dataclass
+class Album:
+    """The pictures of a book: their files, and what each shows; equal pictures share a file."""
+
+    folder: Path
+    scenes: dict[str, Scene] = field(default_factory=dict)  # file name → what it shows
+    _known: dict[tuple[object, ...], str] = field(default_factory=dict)
+
+    def add(self, name: str, scene: Scene) -> str:
+        """Note a picture and return its file's name; the same picture under another name has one file."""
+        key = (scene.sketch, scene.pixels, scene.time, scene.steps)
+        if key not in self._known:
+            self._known[key] = f"{name}.webp"
+            self.scenes[f"{name}.webp"] = scene
+        return self._known[key]
+
+    def add_lesson(self, lesson: Lesson) -> dict[str, str]:
+        """Note all pictures of a lesson; return their files' names by their own."""
+        return {
+            picture.name: self.add(f"{lesson.name}-{picture.name}", picture.scene)
+            for picture in pictures_of(lesson)
+        }
+
+    def draw(self, engine: Engine, names: Iterable[str], advance: Callable[[], None]) -> None:
+        """Draw some of the pictures; raise as ``Engine.render`` does."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        before: Future[None] | None = None
+        with ThreadPoolExecutor(1) as aside:  # a picture is stored while the next is drawn
+            for name in names:
+                frame = draw(engine, larger(self.scenes[name]))
+                if before:
+                    before.result()
+                    advance()
+                before = aside.submit(store, self.folder / name, frame.array)
+            if before:
+                before.result()
+                advance()
+
+
+def store(path: Path, picture: NDArray[np.uint8]) -> None:
+    """Write a picture as WebP: a diagram without loss, terrain nearly so."""
+    exact = is_diagram(picture)
+    with replacing(path) as handle:
+        image = Image.fromarray(picture).convert("RGB")
+        if exact:
+            image.save(handle, "WEBP", quality=EFFORT, method=2, lossless=True)
+        else:
+            image.save(handle, "WEBP", quality=QUALITY, method=4)
+
+
+def is_diagram(picture: NDArray[np.uint8]) -> bool:
+    """Whether a picture has few colours: compression damages its thin lines, which terrain tolerates."""
+    colours = picture[..., :3].astype(np.uint32) @ np.array([1, 256, 65536], np.uint32)
+    return np.unique(colours).size <= MAX_DIAGRAM_COLOURS
+
+
+def is_blank(path: Path) -> bool:
+    """Whether a stored picture is as good as black, seen from as far as a stamp."""
+    with Image.open(path) as image:
+        small = image.convert("L").resize((64, 36), Image.Resampling.BOX)
+    return float(np.percentile(np.asarray(small), 90)) < BLACK
+
+
+def larger(scene: Scene) -> Scene:
+    """Return a picture with the pixels that the book draws."""
+    width, height = scene.pixels
+    return replace(scene, pixels=(round(width * SHARPER), round(height * SHARPER)))
+
+
+def of_picture(files: dict[str, str], folder: str) -> Callable[[Picture], str]:
+    """Return what gives a picture's address, from a page's folder."""
+    return lambda picture: f"{folder}/{files[picture.name]}"
+
+
+Entry = tuple[str, str, str, str]
+"""An address in the book, the title of its page, of its section, and its text."""
+
+_HIDDEN = {"answer", "fix", "hint", "solution"}
+"""Fields of blocks that are folded away: a search does not give them away."""
+
+
+_ENDS = ("softbreak", "paragraph_close", "heading_close", "td_close", "th_close")
+
+
+def lesson_entries(lesson: model.Lesson, setting: LessonContext) -> Iterator[Entry]:
+    """Yield the sections of a lesson; what stands before the first is its page."""
+    for number, section in enumerate(lesson.sections):
+        texts = [setting.filled(text) for block in section.blocks for text in _texts(block)]
+        if not number:
+            yield f"{lesson.name}.html", lesson.title, "", _words(lesson.goal, *texts)
+            continue
+        address = f"{lesson.name}.html#{section_id(number, section)}"
+        yield address, lesson.title, _words(section.title), _words(*texts)
+
+
+def glossary_entries(book: Book) -> Iterator[Entry]:
+    """Yield the terms, by all their names in the language of the book."""
+    for term in alphabetical(book.language):
+        names = ", ".join(term.names[book.language])
+        yield f"{GLOSSARY}.html#{term.key}", book.label("glossary"), names, term.meaning[book.language]
+
+
+def words_script(entries: list[Entry]) -> str:
+    """Return the script that gives find.js its texts."""
+    return f"globalThis.bookWords={json.dumps(entries, ensure_ascii=False, separators=(',', ':'))};\n"
+
+
+def _texts(block: model.Block) -> Iterator[str]:
+    for each in model.translated_fields(type(block)):
+        if each.name not in _HIDDEN and each.name != "alt":
+            value = getattr(block, each.name)
+            yield from value if isinstance(value, tuple) else (value,)
+
+
+def _words(*texts: str) -> str:
+    """Return Markdown as its words, code too; of formulas those within a line, signs by their names."""
+    return " ".join(" ".join(map(_plain, texts)).split())
+
+
+def _plain(text: str) -> str:
+    parts = []
+    for token in every_token(parser().parse(text)):
+        if token.type in _ENDS:
+            parts.append(" ")
+        elif token.type == "math_inline":
+            parts.append(re.sub(r"[\\{}]", "", token.content))
+        elif token.type in ("text", "code_inline", "fence", "code_block"):
+            parts.append(token.content)
+    return "".join(parts)
+
 
 MANIFEST = "book.json"
 PICTURES = "pictures"

@@ -8,16 +8,20 @@ in a new process: what went wrong there may be what an earlier work has left beh
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Iterator, Sequence
+import math
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import PurePosixPath, PureWindowsPath
+from typing import Any, cast
 
 import numpy as np
 from PIL import Image
 
-from playground.allowed_files import leads_outside
+from playground.allowed_files import is_absolute, leads_outside
 from playground.course.figure_renders import draw
+from playground.course.grading.entries import printable
 from playground.course.grading.marks import GRADED, REFUSED, Mark, Pair
-from playground.course.grading.values_in_toml import values_in_toml
 from playground.course.handout.exercise_files import Assignment, assignments_of
 from playground.course.model import Challenge, Exercise
 from playground.course.read import read_lesson
@@ -35,7 +39,95 @@ from playground.engine.process.worker import Parent, Service
 from playground.engine.textures import is_lost
 from playground.errors import ContextError, DataError, PlaygroundError, SandboxCrash
 from playground.paths import GLSL, shown
-from playground.sketch.model import Sketch, kernels_of
+from playground.sketch.model import Sketch, Value, kernels_of
+
+_MAX_TOML = 2**17  # characters of a sketch's TOML
+_MAX_VALUE = 200  # characters of a value
+
+
+def values_in_toml(text: str, sliders: Sequence[str]) -> dict[str, Value]:
+    """Return the values that a sketch's TOML sets of some parameters, by their paths; others are left out.
+
+    Raises ``DataError`` in a message for what is no TOML, or names a file elsewhere.
+    """
+    if len(text) > _MAX_TOML:
+        raise DataError(Said("is longer than any sketch: {count} characters", count=len(text)))
+    try:
+        table = tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, ValueError) as error:
+        raise DataError(Said("is no TOML: {why}", why=printable(str(error), 200))) from None
+    except RecursionError:
+        raise DataError(Said("is no sketch: its tables nest too deeply")) from None
+    for name in _texts(table):
+        if _leads_out(name):
+            raise DataError(
+                Said("names '{name}', a file outside of its folder; it was not opened", name=printable(name))
+            )
+    values: dict[str, Value] = {}
+    for path in sliders:
+        owner, _, rest = path.partition(".")
+        value = _under(_settings_of(table, owner), rest) if rest else table.get(path)
+        if value is not None:
+            values[path] = _checked(path, value)
+    return values
+
+
+def _settings_of(table: Mapping[str, Any], owner: str) -> Mapping[str, Any]:
+    """Return what a sketch's TOML sets of one pass; an empty table where it sets nothing."""
+    passes = table.get("pass")
+    candidates = [p for p in passes if isinstance(p, dict)] if isinstance(passes, list) else []
+    named = [p for p in candidates if p.get("name") == owner]
+    if owner == "view" and isinstance(table.get("view"), dict):
+        named.append(table["view"])
+    settings = named[0].get("set") if named else None
+    return settings if isinstance(settings, dict) else {}
+
+
+def _under(settings: Mapping[str, Any], path: str) -> Any:
+    """Return what is under a path, written as one key or as tables in tables; None where nothing is."""
+    if path in settings:
+        return settings[path]
+    first, dot, rest = path.partition(".")
+    inner = settings.get(first)
+    return _under(inner, rest) if dot and isinstance(inner, dict) else None
+
+
+def _checked(path: str, value: Any) -> Value:
+    """Return a value if it is one that a parameter may have; whether it suits is the judge's to say."""
+    if isinstance(value, bool | str) and len(str(value)) <= _MAX_VALUE:
+        return value
+    numbers = (
+        list(value.values()) if isinstance(value, dict) else value if isinstance(value, list) else [value]
+    )
+    plain = all(type(n) in (int, float) and math.isfinite(n) and abs(n) < 2**53 for n in numbers)
+    if not plain or not 0 < len(numbers) <= 16:
+        raise DataError(
+            Said(
+                "sets {path} to a value that is not a number: {value}",
+                path=path,
+                value=printable(repr(value)),
+            )
+        )
+    return cast(Value, value)
+
+
+def _texts(value: object) -> Iterator[str]:
+    waiting = [value]
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, str):
+            yield item
+        elif isinstance(item, dict):
+            waiting += [*item.keys(), *item.values()]
+        elif isinstance(item, list):
+            waiting += item
+
+
+def _leads_out(text: str) -> bool:
+    """Return whether a text, taken for a path, is absolute or climbs out of a folder, on any system."""
+    parts = (*PurePosixPath(text).parts, *PureWindowsPath(text).parts)
+    return is_absolute(text) or ".." in parts
+
 
 WORKERS = 2
 """Processes side by side."""

@@ -7,21 +7,241 @@ pictures/     named after their bytes: equal ones share a file
 
 from __future__ import annotations
 
+import base64
+import csv
 import hashlib
 import io
 import re
-from collections.abc import Sequence
+import unicodedata
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 
 from PIL import Image
 
-from playground.course.grading.marks import Graded
-from playground.course.grading.page import ReportContext, page, table_hash_of
-from playground.course.grading.table import table_bytes
+from playground._version import __version__
+from playground.course.grading.labels import report_labels
+from playground.course.grading.marks import GRADED, Graded, Mark, Pair, spelled_points
+from playground.course.library import Labels
 from playground.errors import DataError
 from playground.files import write_file
+from playground.markup import Markup, joined, tag
 from playground.paths import shown
+
+_FORMULAS = ("=", "+", "-", "@", "\t", "\r", "\n")  # also in their wide forms
+
+
+def table_bytes(graded: Sequence[Graded], exercises: Sequence[str], language: str) -> bytes:
+    """Return the table: a row for each student, the points of each exercise, the total, and of how many.
+
+    A challenge has its score in its column, which counts in no total.
+    """
+    text, label = io.StringIO(newline=""), report_labels(language)
+    rows = csv.writer(text, delimiter=label("separator"))
+    rows.writerow([label("column"), *map(as_text, exercises), label("column_total"), label("column_of")])
+    for graded_submission in graded:
+        numbers = [
+            *(graded_submission.marks[name].spelled for name in exercises),
+            spelled_points(graded_submission.points),
+        ]
+        decimal = [number.replace(".", label("decimal")) for number in numbers]
+        rows.writerow([as_text(graded_submission.student), *decimal, graded_submission.of])
+    return text.getvalue().encode("utf-8-sig", "replace")
+
+
+def as_text(name: str) -> str:
+    """Return a name as a spreadsheet shows it, not as a formula that it computes."""
+    begins = unicodedata.normalize("NFKC", name).lstrip(" ")
+    return f"'{name}" if begins.startswith(_FORMULAS) else name
+
+
+_HERE = Path(__file__).resolve().parent
+_HASH_NAME = "table-sha256"
+_DRIVER_QUOTES = re.compile(r"`(\w+)'")
+_COARSE = 100  # pixels: pictures with fewer are shown texel by texel
+
+
+@dataclass(frozen=True)
+class ReportContext:
+    """What the page is written with."""
+
+    language: str
+    renderer: str  # that drew the pictures
+    file_of: Callable[[bytes], str]  # a picture's address
+    size_of: Callable[[bytes], tuple[int, int]]  # [pixels]
+    table_hash: str = ""  # SHA-256 of the table that the page goes with
+
+    @property
+    def label(self) -> Labels:
+        """The labels in its language."""
+        return report_labels(self.language)
+
+    def number(self, points: float) -> str:
+        """Return points as this language writes them."""
+        return spelled_points(points).replace(".", self.label("decimal"))
+
+
+def page(graded: Sequence[Graded], titles: dict[str, str], setting: ReportContext) -> str:
+    """Return the page as HTML; ``titles`` are those of the exercises by name."""
+    label, style, script = setting.label, _read("report.css"), _read("report.js")
+    mean = sum(graded_submission.points for graded_submission in graded) / max(len(graded), 1)
+    count = label("students", n=len(graded)) if len(graded) != 1 else label("student")
+    of = graded[0].of if graded else 0
+    policy = (
+        f"default-src 'none'; img-src 'self'; style-src '{_policy_hash(style)}';"
+        f" script-src '{_policy_hash(script)}'; base-uri 'none'; form-action 'none'"
+    )
+    head = joined(
+        Markup('<meta charset="utf-8">'),
+        tag("meta", http_equiv="Content-Security-Policy", content=policy),
+        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        tag("meta", name=_HASH_NAME, content=setting.table_hash) if setting.table_hash else None,
+        tag("title", label["title"]),
+        tag("style", Markup(style)),
+    )
+    summary = f"{count} · {label('mean', mean=setting.number(round(mean, 2)), of=of)}"
+    body = joined(
+        tag("header", tag("h1", label["title"]), tag("p", summary)),
+        _tools(label),
+        tag(
+            "main",
+            tag(
+                "ul",
+                *(_student(graded_submission, titles, setting) for graded_submission in graded),
+                class_="students",
+            ),
+        ),
+        tag("footer", tag("p", label("made_by", version=__version__, renderer=setting.renderer))),
+        tag("script", Markup(script)),
+    )
+    whole = tag("html", tag("head", head), tag("body", body), lang=setting.language)
+    return f"<!doctype html>\n{whole}\n"
+
+
+def table_hash_of(text: str) -> str:
+    """Return the hash of the table that a page was written with; "" where it has none."""
+    match = re.search(f'<meta name="{_HASH_NAME}" content="([0-9a-f]{{64}})">', text)
+    return match[1] if match else ""
+
+
+def _tools(label: Labels) -> Markup:
+    def choice(name: str, text: str, options: Sequence[tuple[str, str]]) -> Markup:
+        rows = [tag("option", label[key], value=value) for value, key in options]
+        return tag("label", text, tag("select", *rows, id=name))
+
+    sorts = [("name", "by_name"), ("fewest", "by_points"), ("most", "by_most")]
+    shows = [("all", "all"), ("not-full", "not_full"), ("full", "full"), ("trouble", "trouble")]
+    return tag(
+        "div",
+        choice("sort", label["sort"], sorts),
+        choice("show", label["show"], shows),
+        tag("label", label["find"], tag("input", type="search", id="find")),
+        tag("span", id="shown", role="status", data_text=label["of_shown"]),
+        class_="tools",
+        hidden=True,
+    )
+
+
+def _student(graded_submission: Graded, titles: dict[str, str], setting: ReportContext) -> Markup:
+    states = ["full" if graded_submission.points == graded_submission.of else "not-full"]
+    states += ["trouble"] if any(mark.outcome != GRADED for mark in graded_submission.marks.values()) else []
+    return tag(
+        "li",
+        tag(
+            "h2",
+            tag("bdi", graded_submission.student),
+            _chip(graded_submission.points, graded_submission.of, setting),
+        ),
+        tag(
+            "div",
+            *(_mark(name, titles[name], m, setting) for name, m in graded_submission.marks.items()),
+            class_="marks",
+        ),
+        class_="student",
+        data_name=graded_submission.student,
+        data_points=spelled_points(graded_submission.points),
+        data_states=" ".join(states),
+    )
+
+
+def _chip(points: float, of: int, setting: ReportContext) -> Markup:
+    kind = "full" if points == of else "part" if points else "none"
+    return tag("span", f"{setting.number(points)} / {of}", class_=f"chip {kind}")
+
+
+def _chip_of(mark: Mark, setting: ReportContext) -> Markup:
+    if mark.score is None:
+        return _chip(mark.points, mark.of, setting)
+    kind = "full" if mark.is_full else "part" if mark.score else "none"
+    return tag("span", setting.label("score", score=mark.spelled), class_=f"chip {kind}")
+
+
+def _mark(name: str, title: str, mark: Mark, setting: ReportContext) -> Markup:
+    label = setting.label
+    first, *others = mark.pairs or (None,)
+    further = [_pair(title, pair, setting) for pair in others if pair]
+    sentences = [tag("li", _with_code(sentence)) for sentence in mark.sentences]
+    same = None
+    if mark.same_as:
+        names = _in_list(mark.same_as)
+        same = tag("p", label("same", names=names), class_="note", title=label["same_hint"])
+    return tag(
+        "section",
+        tag("h3", tag("span", title), _chip_of(mark, setting)),
+        _pair(title, first, setting) if first else None,
+        tag("ul", *sentences, class_="sentences") if sentences else None,
+        tag("details", tag("summary", label["more"]), *further) if further else None,
+        same,
+        tag("p", mark.note, class_="note") if mark.note else None,
+        class_="mark",
+        data_exercise=name,
+    )
+
+
+def _with_code(sentence: str) -> Markup:
+    """Return a message, escaped, what is between backticks as code, and what follows its first line too."""
+    first, line_end, quoted = sentence.partition("\n")
+    first = _DRIVER_QUOTES.sub(r"`\1`", first)
+    parts = [tag("code", part) if odd % 2 else joined(part) for odd, part in enumerate(first.split("`"))]
+    return joined(*parts, tag("pre", quoted) if line_end else None)
+
+
+def _in_list(names: Sequence[str], most: int = 6) -> str:
+    shown = ", ".join(names[:most])
+    return shown if len(names) <= most else f"{shown}, +{len(names) - most}"
+
+
+def _pair(title: str, pair: Pair, setting: ReportContext) -> Markup:
+    figures = [
+        _figure(title, setting.label[key], data, setting)
+        for key, data in (("mine", pair.mine), ("wanted", pair.expected))
+    ]
+    return tag("div", *figures, class_="pair")
+
+
+def _figure(title: str, text: str, data: bytes, setting: ReportContext) -> Markup:
+    width, height = setting.size_of(data)
+    coarse = "texels" if max(width, height) < _COARSE else None
+    image = tag(
+        "img",
+        src=setting.file_of(data),
+        alt=f"{title}: {text}",
+        width=width,
+        height=height,
+        loading="lazy",
+        class_=coarse,
+    )
+    return tag("figure", image, tag("figcaption", text))
+
+
+def _read(name: str) -> str:
+    return (_HERE / name).read_text(encoding="utf-8")
+
+
+def _policy_hash(text: str) -> str:
+    return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}"
+
 
 TABLE, PAGE, PICTURES = "grades.csv", "index.html", "pictures"
 _PICTURE = re.compile(r"[0-9a-f]{20}\.webp")

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 from playground.course.handout.labels import handout_labels
-from playground.course.handout.normalised import normalised
 from playground.course.model import Challenge, Exercise, Lesson
 from playground.course.tasks.work import answer_text, starter_text, tasks_of
+
+_COMMENT = re.compile(r"//(?:\\\n|[^\n])*|/\*.*?(?:\*/|\Z)", re.DOTALL)
+_TOKEN = re.compile(r"\w+|[^\w\s]")
+
+
+def normalised(text: str) -> str:
+    """Return a text as its tokens, without comments and without how it is laid out."""
+    return " ".join(_TOKEN.findall(_COMMENT.sub(" ", text)))
 
 
 @dataclass(frozen=True)

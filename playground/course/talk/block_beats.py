@@ -26,7 +26,7 @@ from playground.course.model import (
 from playground.course.scenes import comparable
 from playground.course.talk.beat import BOTH, Beat, Listing, Still
 from playground.course.talk.labels import labels_of
-from playground.course.talk.sentences import shown_of, words
+from playground.course.talk.spoken import shown_of, words
 
 CODE_LINES = 20
 """Lines of a shader that are shown at a time."""

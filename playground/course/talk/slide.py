@@ -10,16 +10,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PIL import Image, ImageDraw
+from pygments.lexers.graphics import GLShaderLexer
+from pygments.token import Comment, Keyword, Name, Number, Operator
 
 from playground.course.talk.beat import Beat, Listing
-from playground.course.talk.code_colours import coloured
-from playground.course.talk.faces import Face
 from playground.course.talk.typeset import (
     ACCENT,
     DIM,
     FIELD,
     INK,
     WARM,
+    Face,
     Laid,
     Rgb,
     fitted,
@@ -27,6 +28,31 @@ from playground.course.talk.typeset import (
 )
 from playground.course.window.markdown_runs import plain
 from playground.memo import INTERFACE
+
+_PLAIN: Rgb = (226, 230, 233)
+_COLOURS: tuple[tuple[object, Rgb], ...] = (
+    (Comment.Preproc, (220, 170, 220)),
+    (Comment, (140, 160, 150)),
+    (Keyword, (126, 186, 240)),
+    (Number, (244, 196, 112)),
+    (Operator, (190, 198, 204)),
+    (Name.Builtin, (126, 220, 200)),
+)
+
+
+@INTERFACE.cached(weight=16)
+def coloured(code: str) -> tuple[tuple[tuple[str, Rgb], ...], ...]:
+    """Return the lines of a shader, each as its parts with their colours, 0..255."""
+    lines: list[list[tuple[str, Rgb]]] = [[]]
+    for kind, text in GLShaderLexer(stripnl=False, ensurenl=False).get_tokens(code):
+        ink = next((rgb for group, rgb in _COLOURS if kind in group), _PLAIN)  # type: ignore[operator]
+        for number, part in enumerate(text.split("\n")):
+            if number:
+                lines.append([])
+            if part:
+                lines[-1].append((part, ink))
+    return tuple(tuple(line) for line in lines)
+
 
 MIN_LETTER_HEIGHT = 28.0
 """The smallest letters, on a screen of 1080 lines [pixels]."""

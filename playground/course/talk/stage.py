@@ -6,7 +6,7 @@ What typesets slides is imported with the first of them: most windows show none.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
@@ -15,17 +15,107 @@ from playground.course.talk.beat import Beat, texts_of_beat, with_texts
 from playground.course.talk.keys import act_on_presentation_keys, help_rows
 from playground.course.talk.labels import labels_of
 from playground.course.talk.notes_link import NotesLink
-from playground.course.talk.overlays import Overlays
-from playground.course.talk.pen import Pen
 from playground.course.talk.presented_pictures import PresentedPictures, Row
-from playground.course.talk.presenter import Presenter
+from playground.course.talk.presenter import Point, Presenter
 from playground.course.window.reader import Reader
 from playground.errors import PlaygroundError
 from playground.live.draw import Area
 from playground.workbench.bench import Workbench
 
 if TYPE_CHECKING:
+    import moderngl
+    from PIL.Image import Image
+
     from playground.course.talk.slide import Sizes
+
+
+@dataclass
+class Overlays:
+    """The images of one context, by name."""
+
+    _known: dict[str, tuple[object, moderngl.Texture | None]] = field(default_factory=dict)
+
+    def knows(self, name: str, key: object) -> bool:
+        """Return whether the image of that name is the one for a key."""
+        return name in self._known and self._known[name][0] == key
+
+    def put(self, name: str, key: object, image: Image | None, ctx: moderngl.Context) -> None:
+        """Take an image for a key, in place of the one before; None: nothing is shown."""
+        before = self._known.get(name, (None, None))[1]
+        if before is not None:
+            before.release()
+        texture = None
+        if image is not None:
+            texture = ctx.texture(image.size, 4, image.tobytes(), alignment=1)
+            texture.filter = (ctx.LINEAR, ctx.LINEAR)
+        self._known[name] = key, texture
+
+    def draw(self, name: str, position: tuple[float, float], density: float) -> None:
+        """Draw an image with its upper left corner at a place, in the window's units."""
+        texture = self._known.get(name, (None, None))[1]
+        if texture is not None:
+            low = ImVec2(*position)
+            high = ImVec2(low.x + texture.size[0] / density, low.y + texture.size[1] / density)
+            imgui.get_background_draw_list().add_image(imgui.ImTextureRef(texture.glo), low, high)
+
+    def release(self) -> None:
+        """Release all; they are made again where they are needed."""
+        cached, self._known = self._known, {}
+        for _, texture in cached.values():
+            if texture is not None:
+                texture.release()
+
+
+_INK = 0xFF3CC8FF  # a warm yellow, as imgui packs it
+_EDGE = 0xB0101010
+_SPOT = 0xFF2020FF
+
+
+@dataclass
+class Pen:
+    """The pen of one window."""
+
+    down: bool = False  # it draws
+
+    def act(self, presenter: Presenter, area: Area) -> None:
+        """Draw while the left button is down."""
+        if not imgui.is_mouse_down(0):
+            self.down = False
+            return
+        position = _place(area)
+        if imgui.is_mouse_clicked(0):
+            self.down = all(0.0 <= side <= 1.0 for side in position)
+            if self.down:
+                presenter.press(position)
+        elif self.down:
+            presenter.draw(position)
+
+    def draw(self, presenter: Presenter, area: Area, scale: float) -> None:
+        """Draw the strokes of the beat, which are as large as the picture in ``area`` makes them."""
+        paint = imgui.get_background_draw_list()
+        for stroke in presenter.strokes.get(presenter.at, []):
+            points: list[ImVec2 | tuple[int | float, int | float] | list[int | float]] = [
+                ImVec2(area[0] + x * area[2], area[1] + y * area[3]) for x, y in stroke
+            ]
+            if len(points) == 1:
+                paint.add_circle_filled(points[0], 6 * scale, _EDGE)
+                paint.add_circle_filled(points[0], 4.5 * scale, _INK)
+                continue
+            paint.add_polyline(points, _EDGE, 9 * scale, 0)
+            paint.add_polyline(points, _INK, 6 * scale, 0)
+
+    def draw_spot(self, scale: float) -> None:
+        """Draw the spot at the mouse."""
+        position, paint = imgui.get_mouse_pos(), imgui.get_foreground_draw_list()
+        for radius, alpha in ((30.0, 0x30), (20.0, 0x60), (12.0, 0xFF)):
+            paint.add_circle_filled(position, radius * scale, (_SPOT & 0x00FFFFFF) | alpha << 24)
+        paint.add_circle_filled(position, 5 * scale, 0xFFE0E0FF)
+
+
+def _place(area: Area) -> Point:
+    mouse = imgui.get_mouse_pos()
+    return (mouse.x - area[0]) / area[2], (mouse.y - area[1]) / area[3]
+
 
 _CLICK = 5.0  # units that the mouse may move while it is pressed, and it is a click all the same
 _HIDES = 2.5  # [s] without a move after which the mouse is hidden

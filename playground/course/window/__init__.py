@@ -6,5 +6,6 @@ reader        which page and figure are shown, questions and answers; ``progress
 figure_view   a figure in the session's view; ``bugs`` broken shaders, ``tasks`` exercises and their scores
 
 Of the panel, by imgui: Markdown becomes runs of one style (``markdown_runs``), runs are broken into lines
-(``line_breaking``), lines are drawn by ``prose``; each kind of block has a function that ``panel`` calls.
+(``line_breaking``), lines are drawn by ``prose``; each kind of block has a function in ``blocks`` that
+``panel`` calls.
 """

@@ -4,20 +4,59 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
+import numpy as np
 from imgui_bundle import ImVec2, imgui
 
 from playground.course.model import Lesson, Markdown
+from playground.course.tasks.verdict import Picture
 from playground.course.window.labels import labels_in
 from playground.course.window.markdown_runs import written
 from playground.course.window.prose import Prose
 from playground.course.window.reader import Reader
-from playground.course.window.small_pictures import SmallPictures
 from playground.live import theme
 from playground.live.draw import button, inked, pushed_id, styled
 from playground.live.panel_memory import Memory
 from playground.live.theme import Theme
+
+if TYPE_CHECKING:
+    import moderngl
+
+_MAX_TEXTURES = 24  # textures that are kept; beyond, all are released and made again where they are drawn
+
+
+@dataclass
+class SmallPictures:
+    """The textures of one context."""
+
+    ctx: moderngl.Context
+    _known: dict[int, tuple[Picture, moderngl.Texture]] = field(default_factory=dict)
+
+    def draw(self, picture: Picture, wide: float) -> None:
+        """Draw a picture (h, w, 3), top row first, so many pixels wide."""
+        if id(picture) not in self._known:
+            if len(self._known) >= _MAX_TEXTURES:
+                self.release()
+            self._known[id(picture)] = picture, self._texture(picture)
+        height, width, _ = picture.shape
+        imgui.image(imgui.ImTextureRef(self._known[id(picture)][1].glo), ImVec2(wide, wide * height / width))
+
+    def release(self) -> None:
+        """Release all textures."""
+        cached, self._known = self._known, {}
+        for _, texture in cached.values():
+            texture.release()
+
+    def _texture(self, picture: Picture) -> moderngl.Texture:
+        height, width, _ = picture.shape
+        data = np.ascontiguousarray(picture).tobytes()
+        texture = self.ctx.texture((width, height), 3, data, alignment=1)
+        texture.filter = (self.ctx.LINEAR, self.ctx.LINEAR)
+        texture.repeat_x = texture.repeat_y = False
+        return texture
+
 
 TEXT = theme.TEXT_SIZE + 1.0
 """Of a lesson's text: it is read at length."""

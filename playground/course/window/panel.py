@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
+import webbrowser
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.course.glossary import linked_term
 from playground.course.library import LANGUAGES
 from playground.course.model import (
     Block,
@@ -25,23 +28,81 @@ from playground.course.model import (
     Steps,
 )
 from playground.course.talk.labels import labels_of
-from playground.course.window.code_blocks import draw_break, draw_code_block
-from playground.course.window.figure_blocks import draw_compare, draw_figure, draw_slider, draw_steps
+from playground.course.window.blocks import (
+    draw_break,
+    draw_challenge,
+    draw_code_block,
+    draw_compare,
+    draw_exercise,
+    draw_figure,
+    draw_measure,
+    draw_prose,
+    draw_question,
+    draw_slider,
+    draw_steps,
+)
 from playground.course.window.formulas import Formulas
-from playground.course.window.links import follow, link_text, play_on
+from playground.course.window.labels import labels_in
 from playground.course.window.markdown_runs import plain, written
-from playground.course.window.page import Page
+from playground.course.window.page import Page, SmallPictures
 from playground.course.window.progress import MAX_WIDTH, MIN_WIDTH
 from playground.course.window.prose import Prose as Texts
-from playground.course.window.questions import draw_exercise, draw_measure, draw_prose, draw_question
 from playground.course.window.reader import Reader
-from playground.course.window.small_pictures import SmallPictures
-from playground.course.window.task_blocks import draw_challenge
+from playground.errors import PlaygroundError
 from playground.live import theme
 from playground.live.draw import SIDE_PANEL, button, inked, styled, window
 from playground.live.panel_memory import Memory
 from playground.live.panel_rows import fitting
 from playground.live.theme import Theme
+from playground.sketch.find import find
+from playground.workbench.history import History
+
+
+def follow(reader: Reader, address: str) -> None:
+    """Open what a link names."""
+    kind, _, name = address.partition(":")
+    if kind == "lesson":
+        reader.open(name)
+    elif kind == "sketch":
+        open_sketch(reader, name)
+    elif kind == "thesis":
+        reader.bench.notices.say(labels_in(reader.language)["thesis_section"].format(name))
+    elif kind == "term":
+        reader.bench.notices.say(link_text(reader, address))
+    elif kind in ("https", "http") and not webbrowser.open(address):
+        reader.bench.notices.say(address)
+
+
+def link_text(reader: Reader, address: str) -> str:
+    """Return what is shown of a link under the mouse: of a term its definition, else its address."""
+    term = linked_term(address)
+    language = reader.lesson.language if reader.lesson else reader.language
+    return term.definition(language) if term else address
+
+
+def play_on(reader: Reader) -> None:
+    """Open the lesson's sketch as the reader's own."""
+    if reader.lesson is not None:
+        open_sketch(reader, reader.lesson.sketch)
+
+
+def open_sketch(reader: Reader, name: str) -> None:
+    """Open a sketch as the reader's own, with the user's edits of the last time."""
+    bench, figure = reader.bench, reader.figure
+    try:
+        path = find(name)
+    except PlaygroundError as error:
+        bench.notices.say(str(error))
+        return
+    reader.playing = ""
+    reader.bugs.close_all(drawn=False)
+    figure.forget_figure()
+    bench.interface.panel_shown = True
+    opens: Callable[[Path], object] = reader.play or bench.commands.open
+    opens(path)
+    if bench.session.drafts.opening:  # else it is open already
+        bench.undo.begin(History())
+
 
 DRAWN: dict[type[Block], Any] = {
     Prose: draw_prose,

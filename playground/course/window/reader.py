@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.course.library import LANGUAGES, preferred_language
+from playground.course.library import LANGUAGES, SOURCE, preferred_language
+from playground.course.measuring import Number, filled, measured, named_in
 from playground.course.model import (
     Block,
     Challenge,
@@ -19,28 +20,122 @@ from playground.course.model import (
     Exercise,
     Figure,
     Lesson,
+    Markdown,
+    Measure,
     Scene,
     Section,
     Slider,
     Steps,
+    texts_of,
 )
-from playground.course.scenes import comparable
+from playground.course.scenes import Sketches, comparable
 from playground.course.tasks.work import answer_text, path_of
-from playground.course.window.bugs import Bugs
-from playground.course.window.catalogue import Catalogue
-from playground.course.window.figure_state import steps_of
-from playground.course.window.figure_view import FigureView
+from playground.course.window.bugs import Bugs, Copies
+from playground.course.window.figure_view import FigureView, steps_of
 from playground.course.window.labels import labels_in
-from playground.course.window.measurements import Numbers
 from playground.course.window.progress import Progress, progress_file, write_progress
-from playground.course.window.shader_copies import Copies
 from playground.course.window.tasks import Tasks
 from playground.errors import PlaygroundError
 from playground.workbench.bench import Workbench
+from playground.workbench.inspect.compare import as_before
+from playground.workbench.session import Session
 from playground.workbench.text_file import unsaved
 
 if TYPE_CHECKING:
     from playground.course.read import Summary
+
+
+@dataclass
+class Catalogue:
+    """The lessons of one window; ``say`` reports errors."""
+
+    say: Callable[[str], None]
+    _sketches: Sketches = field(default_factory=Sketches)
+    _listed: dict[str, list[Summary]] = field(default_factory=dict)  # by language
+    _missing: set[str] = field(default_factory=set)  # lessons reported to have no translation
+
+    def listed(self, language: str) -> list[Summary]:
+        """Return all lessons, in their order."""
+        if language not in self._listed:
+            from playground.course.read import summaries
+
+            try:
+                self._listed[language] = summaries(language)
+            except PlaygroundError as error:
+                self.say(str(error))
+                self._listed[language] = []
+        return self._listed[language]
+
+    def read(self, name: str, language: str, untranslated: str) -> Lesson:
+        """Return a lesson; without a translation in English, and ``untranslated`` is reported once.
+
+        Raises ``SketchError`` for one that is not there or not well written.
+        """
+        from playground.course.read import read_lesson
+
+        try:
+            return read_lesson(name, language, self._sketches)
+        except PlaygroundError:
+            if language == SOURCE:
+                raise
+            lesson = read_lesson(name, SOURCE, self._sketches)
+            if name not in self._missing:
+                self._missing.add(name)
+                self.say(untranslated)
+            return lesson
+
+
+Known = dict[str, Number]
+
+
+@dataclass
+class Numbers:
+    """The results of the measures of the lessons read so far."""
+
+    session: Session
+    results: dict[str, Known] = field(default_factory=dict)  # by lesson and measure
+    failed: dict[tuple[str, str], str] = field(default_factory=dict)  # why there is no number
+    pending: list[tuple[str, Measure]] = field(default_factory=list)
+
+    def want(self, lesson: Lesson, blocks: tuple[Block, ...]) -> None:
+        """Request all numbers that blocks of a lesson show."""
+        names = {name for block in blocks for text in texts_of(block) for name in named_in(text)}
+        names |= {block.name for block in blocks if isinstance(block, Measure)}
+        numbers = self.results.setdefault(lesson.name, {})
+        self.pending = [
+            (lesson.name, measure)
+            for measure in lesson.measures
+            if measure.name in names
+            and measure.name not in numbers
+            and (lesson.name, measure.name) not in self.failed
+        ]
+
+    def waits(self, lesson: Lesson, name: str) -> bool:
+        """Return whether a number is still to be computed."""
+        return any((lesson.name, name) == (other, measure.name) for other, measure in self.pending)
+
+    @property
+    def ready(self) -> bool:
+        """Whether a number is wanted, and the picture rests."""
+        return bool(self.pending) and self.session.is_idle
+
+    def compute(self) -> bool:
+        """Compute the next number that is wanted, where the picture rests; return whether one was."""
+        session = self.session
+        if not self.ready or session.plan is None:
+            return False
+        lesson, measure = self.pending.pop(0)
+        try:
+            with as_before(session.engine, session.plan):
+                self.results[lesson][measure.name] = measured(session.engine, measure)
+        except PlaygroundError as error:
+            self.failed[lesson, measure.name] = error.diagnostics[0].message
+        return True
+
+    def fill(self, text: Markdown, lesson: Lesson) -> Markdown:
+        """Return a text with today's numbers; "…" for one that is not computed yet."""
+        return filled(text, self.results.get(lesson.name, {}), comma=lesson.language == "fr")
+
 
 _STEP, _VALUE = 0.8, 0.5
 """[s] that a step, and a value of a sweep, is shown while it plays."""

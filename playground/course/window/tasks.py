@@ -10,25 +10,172 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from playground.course.model import Challenge, Exercise, Scene
+from playground.course.model import Block, Challenge, Exercise, Scene
 from playground.course.scenes import with_value
-from playground.course.tasks.judge import Match
-from playground.course.tasks.verdict import Verdict
+from playground.course.tasks.judge import Ends, Match, match
+from playground.course.tasks.judge_process import JudgeProcess
+from playground.course.tasks.verdict import Picture, Verdict
 from playground.course.tasks.work import Work, path_of, scene_of, starter, starter_text
+from playground.course.window.bugs import Copies, Copy, line_of
 from playground.course.window.figure_view import FigureView
-from playground.course.window.judging import Judging
 from playground.course.window.progress import Attempt, Progress
-from playground.course.window.scoring import Scoring
-from playground.course.window.shader_copies import Copies, Copy, line_of
 from playground.errors import PlaygroundError
 from playground.sketch.assign import value_of, values_of
 from playground.sketch.model import Sketch, Value, kernels_of
+from playground.workbench.inspect.compare import as_before
 from playground.workbench.notices import Notices
+from playground.workbench.reload_stages import ReloadStage
 from playground.workbench.session import Session
 from playground.workbench.text_file import typed_in
+
+_PAUSE = 0.3  # [s] between two scores at least
+_SHARE = 10.0  # times what a score takes that it waits for the next
+
+
+@dataclass(kw_only=True)
+class Scoring:
+    """The scores of one reader; ``matches`` has the last one of each challenge."""
+
+    session: Session
+    notices: Notices
+    scored: Callable[[Challenge, Match], None]  # called with each score
+    matches: dict[str, Match] = field(default_factory=dict)  # by block
+
+    def __post_init__(self) -> None:
+        self._of: tuple[str, Work] | None = None  # what was scored last
+        self._stale = False  # the picture in view is another than that
+        self._due = 0.0  # when the next score may be computed
+
+    def update(self, block: Challenge, drawn: Work, ends: Ends, now: float) -> bool:
+        """Score the picture in view where it rests and is another than before; return whether that was done.
+
+        ``drawn`` is what the picture is made of: what the sandbox has tried.
+        """
+        session = self.session
+        coming = session.drafts.stage is not ReloadStage.NONE or session.error is not None
+        self._stale = not coming and (block.name, drawn) != self._of
+        if not self._stale or now < self._due or session.plan is None:
+            return False
+        self._of, started = (block.name, drawn), self.notices.now()
+        try:
+            with as_before(session.engine, session.plan):
+                result = match(session.engine, block, drawn, ends, SIDE)
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+            return True
+        took = self.notices.now() - started
+        self._due = started + took + max(_PAUSE, _SHARE * took)
+        self.matches[block.name] = result
+        self.scored(block, result)
+        return True
+
+    def rest(self) -> None:
+        """Wait for nothing: no challenge is in view that can be scored."""
+        self._stale = False
+
+    def patience(self, now: float) -> float:
+        """Return how long nothing needs to be scored [s]."""
+        return max(self._due - now, 0.0) if self._stale else math.inf
+
+    def forget(self, name: str = "") -> None:
+        """Forget the score of a block, or of all: it was of a work that is no more."""
+        self._of = None
+        for block_name in [name] if name else list(self.matches):
+            self.matches.pop(block_name, None)
+
+
+SIDE = 160
+"""Pixels, the longer way, of the pictures that a score compares while one plays."""
+
+
+@dataclass(kw_only=True)
+class Judging:
+    """What the process is asked by one reader, and what has come of it."""
+
+    notices: Notices
+    is_idle: Callable[[], bool]  # whether the picture in view rests
+    received: Callable[[str, Verdict], None]  # called with a block's name and its verdict
+    process: JudgeProcess = field(default_factory=JudgeProcess)
+    verdicts: dict[str, Verdict] = field(default_factory=dict)  # by block
+    ends: dict[str, Ends] = field(default_factory=dict)  # by challenge: what its score lies between
+    judged: dict[str, Work] = field(default_factory=dict)  # by block: what its verdict is on
+    at: str = ""  # the exercise whose work is judged, or is to be
+    _work: tuple[Exercise, Work] | None = None  # that is still to be sent
+    _wanted: list[Challenge] = field(default_factory=list)
+    _sent: str = ""  # the block that the process is at
+    _at_work: Work = field(default_factory=Work)  # the work that it is at, or was last
+
+    @property
+    def busy(self) -> bool:
+        """Whether an answer is to come."""
+        return bool(self._sent or self.at)
+
+    def check(self, block: Exercise, work: Work) -> None:
+        """Have a work judged; ``update`` receives the verdict."""
+        self.at, self._work = block.name, (block, work)
+
+    def want(self, blocks: tuple[Block, ...]) -> None:
+        """Have the pictures to match of a page drawn, while the picture in view rests."""
+        self._wanted = [b for b in blocks if isinstance(b, Challenge) and b.name not in self.ends]
+
+    def target(self, block: Challenge) -> Picture | None:
+        """Return the picture to match; None while it is not drawn yet."""
+        ends = self.ends.get(block.name)
+        return None if ends is None else ends.target
+
+    def update(self) -> bool:
+        """Receive what has come, and send what comes next; return whether anything has come."""
+        came = self._receive()
+        self._send()
+        return came
+
+    def forget(self) -> None:
+        """Forget all, and expect nothing more of the process."""
+        self.at, self._sent, self._work = "", "", None
+        for table in (self.verdicts, self.judged, self.ends, self._wanted):
+            table.clear()
+
+    def close(self) -> None:
+        """End the process; it starts again where it is needed."""
+        self.at, self._sent, self._work = "", "", None
+        self.process.close()
+
+    def _send(self) -> None:
+        if self._sent:
+            return
+        if self._work is not None:
+            (block, work), self._work = self._work, None
+            self._sent, self._at_work = block.name, work
+            self.process.submit(block, work)
+        elif self._wanted and self.is_idle():
+            challenge = self._wanted.pop(0)
+            self._sent = challenge.name
+            self.process.submit(challenge, None, SIDE)
+
+    def _receive(self) -> bool:
+        name, answer = self._sent, None
+        if not name:
+            return False
+        try:
+            answer = self.process.poll()
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+        else:
+            if answer is None:
+                return False
+        self._sent = ""
+        if name == self.at and self._work is None:
+            self.at = ""
+        if isinstance(answer, Ends):
+            self.ends[name] = answer
+        elif isinstance(answer, Verdict):
+            self.verdicts[name], self.judged[name] = answer, self._at_work
+            self.received(name, answer)
+        return True
+
 
 Task = Exercise | Challenge
 
