@@ -2,7 +2,7 @@
 
     texts/en/NAME.md    a lesson; all pictures, numbers and code are named there
     texts/fr/NAME.md    its texts in another language, and nothing else
-    labels/             the labels around lessons in each language
+    labels/             all labels, a catalogue a language; ``language`` reads them
     model               what a lesson is made of
     document            a file split into front matter and pieces
     read, fences        from a file to a lesson; ``task_fences`` of what a student does

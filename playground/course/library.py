@@ -1,14 +1,12 @@
-"""Find lessons, their languages, their texts, and the labels around them."""
+"""Find lessons, their languages and their texts."""
 
 from __future__ import annotations
 
 import os
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 
 from playground.errors import SketchError, nearest
-from playground.memo import INTERFACE
 
 HERE = Path(__file__).resolve().parent
 
@@ -40,21 +38,6 @@ def lesson_file(name: str, language: str = SOURCE) -> Path:
 def lesson_files() -> list[str]:
     """List the names of lessons by their files, in no order of their own."""
     return sorted(path.stem for path in (TEXTS / SOURCE).glob("*.md"))
-
-
-class Labels(dict[str, str]):
-    """The labels around lessons in one language, by key."""
-
-    def __call__(self, key: str, **values: object) -> str:
-        """Return a label with values in its places."""
-        return self[key].format(**values)
-
-
-@INTERFACE.cached()
-def interface_labels(language: str) -> Labels:
-    """Return the labels around lessons in a language."""
-    with (HERE / "labels" / f"{language}.toml").open("rb") as handle:
-        return Labels(tomllib.load(handle))
 
 
 def preferred_language(environment: Mapping[str, str] = os.environ) -> str:

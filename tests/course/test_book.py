@@ -22,7 +22,7 @@ from playground.course.book.live import LiveBook
 from playground.course.figure_renders import draw, pictures_of
 from playground.course.figures import thesis_figures
 from playground.course.glossary import terms
-from playground.course.library import interface_labels
+from playground.course.language import labels
 from playground.course.measuring import numbers_of
 from playground.course.model import Break, Exercise, Question
 from playground.course.notebook.build import notebook_text
@@ -126,7 +126,7 @@ def test_the_cover_leads_into_each_language(book):
     links = page.all("a")
     assert [link["href"] for link in links] == ["en/index.html", "fr/index.html"]
     for language in ("en", "fr"):
-        label = interface_labels(language)
+        label = labels("book", language)
         assert all(label[key] in page.text for key in ("book", "book_goal", "enter"))
 
 
@@ -247,7 +247,7 @@ def test_a_figure_with_sliders_that_no_page_can_run_says_where_they_are(
     write_book(prepare(book, {"en": [lesson], "fr": [french]}, gallery=False), engine)
     for language, option in (("en", ""), ("fr", " --lang fr")):
         page = Page(book / language / "small.html")
-        words = interface_labels(language)
+        words = labels("book", language)
         said = f"{words['in_window']}{words['colon']}playground lesson open small{option}"
         assert page.text.count(said) == 1  # of its figures one has sliders
     assert not (book / "live.js").exists()
@@ -337,7 +337,7 @@ def test_a_picture_that_is_as_good_as_black_is_known(tmp_path):
 def test_a_series_opens_on_the_first_picture_that_shows_something(lesson, french):
     def opens(blank):
         setting = LessonContext(
-            lesson, interface_labels("en"), {}, lambda p: p.name, lambda link: {}, (), blank
+            lesson, labels("book", "en"), {}, lambda p: p.name, lambda link: {}, (), blank
         )
         return re.search(r'data-opens="(\d+)"', block_html(lesson.named["turns"], setting))[1]
 
@@ -376,7 +376,7 @@ def test_plain_words():
 
 
 def test_both_languages_have_the_same_words():
-    english, french = interface_labels("en"), interface_labels("fr")
+    english, french = labels("book", "en"), labels("book", "fr")
     assert english.keys() == french.keys()
     for key, text in english.items():
         places = [part.split("}")[0] for part in text.split("{")[1:]]
@@ -387,12 +387,12 @@ def test_every_word_is_used():
     """A word by a name that is made up would be missed: there are none."""
     package = Path(build.__file__).resolve().parent.parent
     code = "".join(path.read_text(encoding="utf-8") for path in package.rglob("*.py"))
-    assert [key for key in interface_labels("en") if f'"{key}"' not in code and f"'{key}'" not in code] == []
+    assert [key for key in labels("book", "en") if f'"{key}"' not in code and f"'{key}'" not in code] == []
 
 
 def test_french_is_set_as_french_is():
     """No ordinary space before ; : ? ! and within quotation marks."""
-    for key, text in interface_labels("fr").items():
+    for key, text in labels("book", "fr").items():
         assert not re.search(r" [;:?!»]|« ", text), key
 
 

@@ -19,6 +19,7 @@ TEXTS = COURSE / "texts"
 @pytest.mark.slow
 def test_labels_of_lessons_can_be_shown(theme: Theme):
     text = "".join(s for path in COURSE.rglob("*.py") for s in constants(path))
+    text += "".join(path.read_text(encoding="utf-8") for path in (COURSE / "labels").glob("*.toml"))
     assert "→" in text
     for font in (theme.text, theme.bold, theme.italic):
         assert not missing(written(text), font)

@@ -26,11 +26,11 @@ from playground.course.grading.judges import values_in_toml
 from playground.course.grading.marks import GRADED, MISSING, REFUSED, STOPPED, Graded, Mark, Pair
 from playground.course.grading.report import ReportContext, page, table_bytes, write_report
 from playground.course.handout.exercise_files import assignments_of, normalised
+from playground.course.language import in_language, patterns
 from playground.course.library import HERE
 from playground.course.model import Challenge
 from playground.course.read import read_lesson
 from playground.course.tasks.work import answer_text
-from playground.course.translatable import in_language, patterns
 from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.errors import DataError

@@ -15,8 +15,8 @@ import moderngl
 import numpy as np
 import pytest
 
+from playground.course.language import labels
 from playground.course.window.formulas import Formulas, can_set, set_formula
-from playground.course.window.labels import _ALL, labels_in
 from playground.course.window.line_breaking import Extent, broken
 from playground.course.window.markdown_runs import Run, parts_of, plain
 from playground.course.window.progress import (
@@ -255,8 +255,8 @@ def test_what_cannot_be_written_is_reported_in_a_sentence(tmp_path):
 
 
 def test_both_languages_have_the_same_words_with_the_same_places():
-    english, french = _ALL["en"], _ALL["fr"]
-    assert english.keys() == french.keys() and labels_in("xx") is english
+    english, french = labels("window", "en"), labels("window", "fr")
+    assert english.keys() == french.keys() and labels("window", "xx") == english
     for key, words in english.items():
         places = [
             [p[1] for p in string.Formatter().parse(w) if p[1] is not None] for w in (words, french[key])
@@ -265,6 +265,6 @@ def test_both_languages_have_the_same_words_with_the_same_places():
 
 
 def test_french_has_no_breaking_blank_before_its_double_marks():
-    for key, words in _ALL["fr"].items():
+    for key, words in labels("window", "fr").items():
         assert not any(f" {mark}" in words for mark in ":;?!»") and "« " not in words, key
         assert "'" not in words, f"{key}: the apostrophe is ’"

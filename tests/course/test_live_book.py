@@ -23,9 +23,9 @@ from playground.course.book.live import (
 )
 from playground.course.excerpt import bug_region
 from playground.course.figure_renders import pictures_in
+from playground.course.language import labels
 from playground.course.read import read_lesson
 from playground.course.scenes import spelled_value
-from playground.course.tasks.sentences import task_labels
 from playground.sketch.assign import shown_parameters
 from playground.web.blobs import packed_json
 from playground.web.plan import sketch_data
@@ -235,7 +235,7 @@ def test_the_scripts_hold_the_data(book, lesson):
     name, shared = held(book / "glsl.js")
     shared = json.loads(shared)
     for language, say in shared.pop("say").items():
-        assert say.items() <= task_labels(language).items() and "wrong_texture" in say
+        assert say.items() <= labels("tasks", language).items() and "wrong_texture" in say
     assert name == "glsl" and shared == json.loads(json.dumps(library.data()))
     name, result = held(book / "data/small.js")
     result = json.loads(result)

@@ -19,7 +19,7 @@ from playground.course.book.build import prepare, write_book
 from playground.course.document import read_document
 from playground.course.excerpt import bug_region
 from playground.course.figure_renders import broken, draw
-from playground.course.library import interface_labels
+from playground.course.language import labels
 from playground.course.read import read_file
 from playground.course.scenes import with_value
 from playground.course.tasks.work import EXERCISES
@@ -250,7 +250,7 @@ def typed(page, text):
 
 
 def test_a_broken_shader_is_repaired(page, lesson, engine):
-    block, words = lesson.named["fault"], interface_labels("en")
+    block, words = lesson.named["fault"], labels("book", "en")
     region = bug_region(block)
     verdict = "document.querySelector('#fault .verdict').textContent"
     start(page, "fault")
@@ -478,7 +478,7 @@ def test_a_lost_context_is_told_and_its_pictures_come_back(page, lesson, engine)
     page.wait("document.querySelector('#fault .editor-status').textContent === ''")
     typed(page, bug_region(lesson.named["fault"]).broken.replace("8.0", "7.0"))
     verdict = "document.querySelector('#fault .verdict').textContent"
-    page.wait(f"{verdict} === arguments[0]", interface_labels("en")["not_yet"])
+    page.wait(f"{verdict} === arguments[0]", labels("book", "en")["not_yet"])
     before = [picture(page, name) for name in ("land", "fault")]
     page.run("losing.loseContext()")
     page.wait("document.querySelectorAll('.live .recovery').length === 2")

@@ -21,7 +21,8 @@ from playground.course.book.live import widget_page
 from playground.course.excerpt import BugRegion
 from playground.course.figure_renders import broken, draw
 from playground.course.glossary import terms
-from playground.course.library import interface_labels, lesson_files
+from playground.course.language import labels
+from playground.course.library import lesson_files
 from playground.course.measuring import numbers_of
 from playground.course.model import Figure, Prose
 from playground.course.notebook import lesson as notebook_lesson
@@ -109,7 +110,7 @@ def test_a_live_figure_is_not_drawn_here_as_well(opened):
 @pytest.mark.slow
 def test_a_widget_holds_its_figure(opened, lesson):
     """All of it, so that it runs without a kernel; what no page can run is drawn by the kernel."""
-    for name, labels in (
+    for name, names in (
         ("land", []),
         ("turns", 6),
         ("smooth", ["0.1", "0.5", "0.9"]),
@@ -118,7 +119,7 @@ def test_a_widget_holds_its_figure(opened, lesson):
         widget = opened.show(name)
         held = json.loads(gzip.decompress(base64.b64decode(widget.page)))
         assert set(held) == {"block", "sketches", "library"} and held["library"]["kernels"]
-        assert widget.labels == labels or len(widget.labels) == labels
+        assert widget.labels == names or len(widget.labels) == names
     assert widget_page(lesson.named["count"]) == ""
 
 
@@ -139,7 +140,7 @@ def test_controls_of_each_kind_of_block(lesson, opened):
 
 def test_the_sun_is_dragged_by_azimuth_and_elevation(opened):
     block = read_lesson("heightfield").named["land"]
-    controls = controls_of(block, "fr", interface_labels("fr"))
+    controls = controls_of(block, "fr", labels("book", "fr"))
     assert [(c.key, c.label, c.value, c.low, c.high, c.unit) for c in controls[:2]] == [
         ("light.sun:0", "azimut", 105.0, 0.0, 360.0, "°"),
         ("light.sun:1", "élévation", 22.0, -90.0, 90.0, "°"),
@@ -153,7 +154,7 @@ def test_every_slider_of_a_shipped_lesson_can_be_dragged():
     for name in lesson_files():
         for block in read_lesson(name, "en", SKETCHES).blocks:
             if isinstance(block, Figure):
-                keys = {c.key.partition(":")[0] for c in controls_of(block, "en", interface_labels("en"))}
+                keys = {c.key.partition(":")[0] for c in controls_of(block, "en", labels("book", "en"))}
                 assert keys == set(block.sliders), (name, block.name)
 
 
@@ -195,7 +196,7 @@ def test_the_cells_are_the_lesson(lesson, french, engine):
         assert text.count("<details>") == 7
         definition, section = (
             terms()["texel"].definition(item.language),
-            interface_labels(item.language)["glossary"],
+            labels("book", item.language)["glossary"],
         )
         assert f'[texel](#{section} "{definition}")' in text
         assert text.endswith(f"## {section}\n\n- {definition}")

@@ -9,12 +9,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from playground.course.language import labels
 from playground.course.measures import MEASURES
 from playground.course.model import Check
 from playground.course.rules import wrong_pictures
 from playground.course.tasks import work as work_module
 from playground.course.tasks.judge import Wanted, answers, compare, judge
-from playground.course.tasks.sentences import points_of, sentences, task_labels
+from playground.course.tasks.sentences import points_of, sentences
 from playground.course.tasks.verdict import LEVELS, SHARE, score, share_differing
 from playground.course.tasks.work import Work, answer, scene_of, starter, tasks_of
 from playground.errors import SketchError
@@ -349,7 +350,7 @@ def test_a_score_is_linear_between_the_beginning_and_the_picture_asked_for():
 
 @pytest.mark.slow
 def test_both_languages_say_all(task, engine):
-    english, french = task_labels("en"), task_labels("fr")
+    english, french = labels("tasks", "en"), labels("tasks", "fr")
     assert english.keys() == french.keys()
     for key in english:
         fields = re.findall(r"\{(\w+)\}", english[key])

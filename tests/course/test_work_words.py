@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from playground.course.language import labels
 from playground.course.library import LANGUAGES
 from playground.course.model import Check
 from playground.course.tasks.judge import Wanted, compare
-from playground.course.tasks.sentences import sentence_of, task_labels
+from playground.course.tasks.sentences import sentence_of
 
 from ..web.node import MISSING, Node
 
@@ -33,7 +34,7 @@ def said_in_a_page(node: Node, check: Check, outcome: dict[str, Any], language: 
     if check.of:
         page["of"] = {"path": check.of, "output": check.of, "name": check.of}
     sentence = node.call(
-        "work_words.js", "sentence", outcome, page, dict(task_labels(language)), language == "fr"
+        "work_words.js", "sentence", outcome, page, dict(labels("tasks", language)), language == "fr"
     )
     assert isinstance(sentence, str)
     return sentence
@@ -118,6 +119,6 @@ def test_what_is_right_or_is_no_number_or_of_another_size(node: Node):
 def test_what_cannot_be_drawn_is_said_as_it_is(node: Node):
     outcome = {"passed": False, "difference": 0.0, "mistake": "the kernel has no parameter 'a'."}
     said = said_in_a_page(node, Check(hidden=True), outcome, "fr")
-    assert said.startswith(task_labels("fr")["hidden"]) and said.endswith(
+    assert said.startswith(labels("tasks", "fr")["hidden"]) and said.endswith(
         ": the kernel has no parameter 'a'."
     )

@@ -14,7 +14,8 @@ from playground.course import model
 from playground.course.book.html import Anchor, code_block, line, plain, prose
 from playground.course.excerpt import bug_region, excerpt
 from playground.course.figure_renders import Picture, pictures_in
-from playground.course.library import SOURCE, Labels
+from playground.course.language import Labels
+from playground.course.library import SOURCE
 from playground.course.measuring import Number, filled
 from playground.course.scenes import spelled_value
 from playground.course.tasks.work import starter_text

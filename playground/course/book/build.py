@@ -41,7 +41,7 @@ from playground.course.book.page import (
 from playground.course.figure_renders import Picture, draw, pictures_of
 from playground.course.figures import FigurePicture, Hero, ThesisFigure, hero_of, thesis_figures
 from playground.course.glossary import alphabetical
-from playground.course.library import interface_labels
+from playground.course.language import labels
 from playground.course.markdown import every_token, parser
 from playground.course.measuring import Number, numbers_of
 from playground.course.model import Lesson, Scene
@@ -275,7 +275,7 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
     books = [
         Book(
             language=language,
-            label=interface_labels(language),
+            label=labels("book", language),
             lessons=lessons,
             languages=tuple(build.lessons),
             renderer=info.renderer,

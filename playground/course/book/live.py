@@ -13,10 +13,10 @@ from typing import Any
 
 from playground.course import model
 from playground.course.excerpt import bug_region
+from playground.course.language import labels
 from playground.course.library import LANGUAGES
 from playground.course.model import Lesson, Named, Scene
 from playground.course.scenes import spelled_at
-from playground.course.tasks.sentences import task_labels
 from playground.course.tasks.work import answer_text, path_of, starter_text, wanted_scene
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
@@ -383,7 +383,7 @@ def _scripts(data: dict[str, dict[str, Any]], library: Library) -> Iterator[tupl
 
 def _said_in_a_page(language: str) -> dict[str, str]:
     """Return what work_words.js says of works; measures are taken elsewhere."""
-    return {key: text for key, text in task_labels(language).items() if not key.startswith("measure_")}
+    return {key: text for key, text in labels("tasks", language).items() if not key.startswith("measure_")}
 
 
 def blobs_in(data: Any, library: Library) -> set[str]:

@@ -10,10 +10,9 @@ from pathlib import Path
 
 from playground.course.grading.entries import Entry, Submission, entries_of, printable
 from playground.course.grading.judges import Judges, Request, Result, Stopped, no_mark
-from playground.course.grading.labels import report_labels
 from playground.course.grading.marks import MISSING, REFUSED, STOPPED, Graded, Mark, spelled_points
 from playground.course.handout.exercise_files import Assignment, normalised
-from playground.course.translatable import Said, in_language
+from playground.course.language import Said, in_language, labels
 from playground.errors import DataError, SketchError, counted
 
 
@@ -220,7 +219,7 @@ def _mark(
     same: dict[str, dict[str, tuple[str, ...]]],
     student: str,
 ) -> Mark:
-    nothing, label = no_mark(assignment.task), report_labels(language)
+    nothing, label = no_mark(assignment.task), labels("grading", language)
     if file.missing:
         return replace(nothing, outcome=MISSING, sentences=(label["missing"],))
     if file.problem:

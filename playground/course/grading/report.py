@@ -21,9 +21,8 @@ from pathlib import Path
 from PIL import Image
 
 from playground._version import __version__
-from playground.course.grading.labels import report_labels
 from playground.course.grading.marks import GRADED, Graded, Mark, Pair, spelled_points
-from playground.course.library import Labels
+from playground.course.language import Labels, labels
 from playground.errors import DataError
 from playground.files import write_file
 from playground.markup import Markup, joined, tag
@@ -37,7 +36,7 @@ def table_bytes(graded: Sequence[Graded], exercises: Sequence[str], language: st
 
     A challenge has its score in its column, which counts in no total.
     """
-    text, label = io.StringIO(newline=""), report_labels(language)
+    text, label = io.StringIO(newline=""), labels("grading", language)
     rows = csv.writer(text, delimiter=label("separator"))
     rows.writerow([label("column"), *map(as_text, exercises), label("column_total"), label("column_of")])
     for graded_submission in graded:
@@ -75,7 +74,7 @@ class ReportContext:
     @property
     def label(self) -> Labels:
         """The labels in its language."""
-        return report_labels(self.language)
+        return labels("grading", self.language)
 
     def number(self, points: float) -> str:
         """Return points as this language writes them."""

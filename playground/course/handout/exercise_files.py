@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from playground.course.handout.labels import handout_labels
+from playground.course.language import labels
 from playground.course.model import Challenge, Exercise, Lesson
 from playground.course.tasks.work import answer_text, starter_text, tasks_of
 
@@ -57,7 +57,8 @@ class Assignment:
     def title(self) -> str:
         """The lesson, and the exercise's number in it, or that a picture is to be matched."""
         if isinstance(self.task, Challenge):
-            return f"{self.lesson.title}, {handout_labels(self.lesson.language)['challenge'].lower()}"
+            challenge = labels("handout", self.lesson.language)["challenge"]
+            return f"{self.lesson.title}, {challenge.lower()}"
         return f"{self.lesson.title}, {self.lesson.number_of(self.task)}"
 
 

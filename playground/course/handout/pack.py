@@ -29,9 +29,9 @@ from playground.course.book.html import plain, prose
 from playground.course.figure_renders import draw
 from playground.course.glossary import linked_term
 from playground.course.handout.exercise_files import Assignment, assignments_of
-from playground.course.handout.labels import handout_labels
 from playground.course.handout.student_sketch import student_files
-from playground.course.library import SOURCE, Labels
+from playground.course.language import Labels, labels
+from playground.course.library import SOURCE
 from playground.course.measuring import Number, filled, numbers_of
 from playground.course.model import Challenge, Exercise, Lesson, Scene, Task
 from playground.course.tasks.work import scene_of, starter
@@ -89,7 +89,7 @@ def handout_page(
 
     Raises as ``Engine.render`` does.
     """
-    label = handout_labels(lessons[0].language)
+    label = labels("handout", lessons[0].language)
     by_place = {(assignment.lesson.name, assignment.task.name): assignment for assignment in assignments}
     body = [
         tag("h1", label["title"]),
@@ -262,7 +262,7 @@ def read_wheel(path: Path) -> bytes:
 
 
 def _readme(lessons: Sequence[Lesson], assignments: Sequence[Assignment], install: str, wheel: str) -> str:
-    label = handout_labels(lessons[0].language)
+    label = labels("handout", lessons[0].language)
     lines = install.strip().splitlines()
     if not lines:
         lines = label("install_wheel", wheel=wheel).strip().splitlines() if wheel else [label("install_open")]

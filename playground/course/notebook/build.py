@@ -9,9 +9,9 @@ from typing import Any
 from playground.course import model
 from playground.course.excerpt import bug_region, excerpt
 from playground.course.glossary import linked_term, terms_of
-from playground.course.library import SOURCE, THESIS, interface_labels
+from playground.course.language import labels
+from playground.course.library import SOURCE, THESIS
 from playground.course.measuring import Number, filled
-from playground.course.tasks.sentences import task_labels
 from playground.course.tasks.work import checks_itself, starter_text
 from playground.errors import DataError
 from playground.extras import needs
@@ -51,7 +51,7 @@ class _Writer:
         self.lesson = lesson
         self.lessons = lessons
         self.numbers = numbers
-        self.label = interface_labels(lesson.language)
+        self.label = labels("book", lesson.language)
 
     def cells(self) -> Iterator[tuple[str, str]]:
         """Yield all cells."""
@@ -105,7 +105,7 @@ class _Writer:
 
     def task(self, block: model.Exercise | model.Challenge) -> Iterator[tuple[str, str]]:
         """Yield an exercise, its solution folded away; one that checks itself has a cell that does."""
-        say, folded = task_labels(self.lesson.language), []
+        say, folded = labels("tasks", self.lesson.language), []
         if isinstance(block, model.Exercise):
             head = f"{self.label('exercise')} {self.lesson.number_of(block)}"
         else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from playground.course.library import Labels
+from playground.course.language import Labels
 from playground.course.model import Compare, Figure, Scene, Slider, Steps
 from playground.course.scenes import spelled_value, with_value
 from playground.shader.parameter import is_whole

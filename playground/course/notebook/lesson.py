@@ -15,13 +15,14 @@ from playground.course import model
 from playground.course.book.live import widget_page
 from playground.course.excerpt import bug_region
 from playground.course.figure_renders import broken, draw
-from playground.course.library import SOURCE, interface_labels
+from playground.course.language import labels
+from playground.course.library import SOURCE
 from playground.course.measuring import measured
 from playground.course.notebook.controls import controls_of, scene_at
 from playground.course.read import read_lesson
 from playground.course.tasks.judge import Match
 from playground.course.tasks.judge_process import JudgeProcess
-from playground.course.tasks.sentences import points_of, sentences, task_labels
+from playground.course.tasks.sentences import points_of, sentences
 from playground.course.tasks.verdict import (
     SHARE,
     CheckResult,
@@ -84,13 +85,13 @@ class Matched:
     def __str__(self) -> str:
         if self.match.diagnostics:
             return "\n".join(map(str, self.match.diagnostics))
-        say, match = task_labels(self.language), self.match
+        say, match = labels("tasks", self.language), self.match
         said = say("score", score=int(match.score), best=int(self.best), goal=match.goal)
         return f"{said} {say['solved']}" if match.solved else said
 
     def _repr_html_(self) -> str:
         pictures = (("wanted", self.match.target), ("mine", self.match.mine))
-        say = task_labels(self.language)
+        say = labels("tasks", self.language)
         shown = [_picture(picture, say[key]) for key, picture in pictures if picture is not None]
         return joined(tag("p", str(self)), tag("div", *shown))
 
@@ -101,7 +102,7 @@ def _line(text: str) -> Markup:
 
 
 def _compared(result: CheckResult, language: str) -> Markup:
-    label = task_labels(language)
+    label = labels("tasks", language)
     mine, expected = result.mine, result.expected
     assert mine is not None and expected is not None
     shown = [_picture(mine, label["mine"]), _picture(expected, label["wanted"])]
@@ -153,7 +154,7 @@ class NotebookLesson:
 
     def __init__(self, lesson: model.Lesson) -> None:
         self.lesson = lesson
-        self.label = interface_labels(lesson.language)
+        self.label = labels("book", lesson.language)
         self._best: dict[str, float] = {}  # score, by challenge
 
     def show(self, name: str) -> Any:

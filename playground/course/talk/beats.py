@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from playground.course.language import labels
 from playground.course.model import (
     Block,
     Lesson,
@@ -20,7 +21,6 @@ from playground.course.model import (
 )
 from playground.course.talk.beat import Beat, Still
 from playground.course.talk.block_beats import beats_of_block
-from playground.course.talk.labels import labels_of
 
 _TASKS = ("exercise", "challenge")
 
@@ -77,7 +77,7 @@ def first_of_page(beats: tuple[Beat, ...], page: int) -> int:
 def _title(lesson: Lesson) -> Beat:
     """Return the beat that a lesson begins with."""
     return Beat(
-        "title", 0, lesson.title, labels_of(lesson.language)["lesson"], lesson.goal, notes=lesson.goal
+        "title", 0, lesson.title, labels("talk", lesson.language)["lesson"], lesson.goal, notes=lesson.goal
     )
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from playground.course.excerpt import excerpt
+from playground.course.language import labels
 from playground.course.model import (
     Block,
     Break,
@@ -25,7 +26,6 @@ from playground.course.model import (
 )
 from playground.course.scenes import comparable
 from playground.course.talk.beat import BOTH, Beat, Listing, Still
-from playground.course.talk.labels import labels_of
 from playground.course.talk.spoken import shown_of, words
 
 CODE_LINES = 20
@@ -38,7 +38,7 @@ _ROWS = 9  # of a table
 
 def beats_of_block(block: Block, formula: Markdown, lesson: Lesson) -> Iterator[Beat]:
     """Yield the beats of a block, each with a picture only where it brings one."""
-    say = labels_of(lesson.language)
+    say = labels("talk", lesson.language)
     if isinstance(block, Prose):
         yield from _prose(block, formula)
     elif isinstance(block, Figure):
@@ -168,7 +168,7 @@ def _shared(lines: list[str]) -> list[list[str]]:
 
 
 def _bug(block: Break, lesson: Lesson) -> Iterator[Beat]:
-    say = labels_of(lesson.language)
+    say = labels("talk", lesson.language)
     wrong, whole = Still(block.name, 1, broken=True), Still(block.name)
     later = f"**{say['hint']}.** {block.hint}\n\n**{say['fix']}.** {block.fix}"
     yield _told("broken", block.ask, label=say["broken"], aside=later, still=wrong)
@@ -177,7 +177,7 @@ def _bug(block: Break, lesson: Lesson) -> Iterator[Beat]:
 
 
 def _question(block: Question, lesson: Lesson) -> Iterator[Beat]:
-    say = labels_of(lesson.language)
+    say = labels("talk", lesson.language)
     later = f"**{say['answer']}.** {block.answer}"
     yield _told("question", block.ask, label=say["question"], aside=later)
     if block.choices:

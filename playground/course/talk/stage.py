@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.course.language import labels
 from playground.course.talk.beat import Beat, texts_of_beat, with_texts
-from playground.course.talk.keys import act_on_presentation_keys, help_rows
-from playground.course.talk.labels import labels_of
 from playground.course.talk.notes_link import NotesLink
 from playground.course.talk.presented_pictures import PresentedPictures, Row
 from playground.course.talk.presenter import Point, Presenter
 from playground.course.window.reader import Reader
 from playground.errors import PlaygroundError
 from playground.live.draw import Area
+from playground.live.text_field import letters
 from playground.workbench.bench import Workbench
 
 if TYPE_CHECKING:
@@ -396,4 +396,63 @@ class Stage:
             self.pictures.show(beat)
 
     def _say(self, key: str, *arguments: object) -> str:
-        return labels_of(self.reader.language)[key].format(*arguments)
+        return labels("talk", self.reader.language)(key, *arguments)
+
+
+_K = imgui.Key
+
+
+@dataclass(frozen=True)
+class PresentKey:
+    """Keys that do one thing; ``label``: of their name and meaning, "" where the help has neither."""
+
+    label: str
+    keys: tuple[imgui.Key, ...]
+    act: Callable[[Stage], None]
+    typed: str = ""  # letters that do it too, wherever the keyboard has them
+    repeats: bool = False
+
+
+KEYS: tuple[PresentKey, ...] = (
+    PresentKey("next", (_K.right_arrow, _K.space, _K.page_down), lambda stage: stage.presenter.next()),
+    PresentKey("back", (_K.left_arrow, _K.page_up, _K.backspace), lambda stage: stage.presenter.back()),
+    PresentKey("first", (_K.home,), lambda stage: stage.presenter.go(0)),
+    PresentKey("last", (_K.end,), lambda stage: stage.presenter.go(len(stage.presenter.beats))),
+    PresentKey("enter", (_K.enter, _K.keypad_enter), lambda stage: stage.enter()),
+    PresentKey("black", (_K.b, _K.period), lambda stage: stage.presenter.cover("black"), typed="."),
+    PresentKey("white", (_K.w,), lambda stage: stage.presenter.cover("white")),
+    PresentKey("slide", (_K.up_arrow,), lambda stage: stage.slide(1.0), repeats=True),
+    PresentKey("", (_K.down_arrow,), lambda stage: stage.slide(-1.0), repeats=True),
+    PresentKey("laser", (_K.p,), lambda stage: stage.toggle_laser()),
+    PresentKey("pen", (_K.d,), lambda stage: stage.toggle_pen()),
+    PresentKey("erase", (_K.e,), lambda stage: stage.presenter.erase()),
+    PresentKey("notes", (_K.n,), lambda stage: stage.say_address()),
+    PresentKey("full", (_K.f, _K.f11), lambda stage: stage.toggle_full()),
+    PresentKey("help", (_K.h,), lambda stage: stage.toggle_help(), typed="?"),
+    PresentKey("leave", (_K.escape,), lambda stage: stage.presenter.escape()),
+)
+
+
+def help_rows(language: str) -> tuple[tuple[str, str], ...]:
+    """Return the keys and their meanings, in a language."""
+    say = labels("talk_keys", language)
+    return tuple((say[f"{key.label}_key"], say[key.label]) for key in KEYS if key.label)
+
+
+def act_on_presentation_keys(stage: Stage) -> None:
+    """Act on the keys pressed since the last frame."""
+    io = imgui.get_io()
+    if (io.key_ctrl or io.key_super) and imgui.is_key_pressed(_K.q, repeat=False):
+        stage.quit()
+        return
+    if io.key_ctrl or io.key_alt or io.key_super:
+        return
+    typed = letters()
+    for digit in filter(str.isdecimal, typed):
+        stage.type(digit)
+    for key in KEYS:
+        pressed = any(imgui.is_key_pressed(key_code, repeat=key.repeats) for key_code in key.keys)
+        if pressed or (key.typed and key.typed in typed):
+            key.act(stage)
+            if not stage.presenter.on:
+                return

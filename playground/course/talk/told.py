@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from playground.course.book.html import code_block, prose
+from playground.course.language import labels
 from playground.course.talk.beat import Beat
-from playground.course.talk.labels import labels_of
 from playground.course.talk.presenter import Presenter
 from playground.course.window.markdown_runs import plain
 
@@ -15,11 +15,11 @@ _LABELS = ("notes", "following", "over", "pause", "go_on", "reset", "back", "nex
 
 def notes_message(presenter: Presenter, beat: Beat, following: Beat | None, language: str) -> dict[str, Any]:
     """Return what is on, with the beat's and the next one's texts; numbers are in them already."""
-    clock, labels = presenter.clock, labels_of(language)
+    clock, say = presenter.clock, labels("talk", language)
     return {
         "on": presenter.on,
         "language": language,
-        "labels": {key: labels[key] for key in _LABELS},
+        "labels": {key: say[key] for key in _LABELS},
         "lesson": presenter.lesson.title if presenter.lesson else "",
         "at": presenter.at + 1,
         "count": len(presenter.beats),

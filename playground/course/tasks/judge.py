@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.course.figure_renders import draw
+from playground.course.language import Said
 from playground.course.measuring import NoNumberError, measured
 from playground.course.model import Challenge, Check, Exercise, Scene
 from playground.course.tasks.verdict import CheckResult, Picture, Verdict, differing, score, share_differing
 from playground.course.tasks.work import LackingParameter, Work, scene_of, starter, wanted_scene
-from playground.course.translatable import Said
 from playground.engine.engine import Engine
 from playground.errors import Diagnostic, ParameterError, PlaygroundError
 

@@ -3,25 +3,14 @@
 from __future__ import annotations
 
 import math
-import tomllib
-from pathlib import Path
 
-from playground.course.library import Labels
+from playground.course.language import Labels, in_language, labels
 from playground.course.measuring import spelled
 from playground.course.tasks.judge import Match
 from playground.course.tasks.verdict import CheckResult, Verdict
-from playground.course.translatable import in_language
-from playground.memo import INTERFACE
 from playground.shader.parameter import spell
 
 _BRIGHTER = 1.0  # level of 255, in the mean, from which a picture is called brighter or darker
-
-
-@INTERFACE.cached()
-def task_labels(language: str) -> Labels:
-    """Return what is said of works, in a language."""
-    with (Path(__file__).parent / "labels" / f"{language}.toml").open("rb") as handle:
-        return Labels(tomllib.load(handle))
 
 
 def sentences(verdict: Verdict, language: str) -> list[str]:
@@ -35,17 +24,17 @@ def points_of(verdict: Verdict, language: str) -> str:
     """Return the points as "1.5 of 2 points"; in French as "1,5 point sur 2": its plural begins at two."""
     several = verdict.points >= 2 if language == "fr" else verdict.of > 1
     key = "points" if several else "point"
-    return task_labels(language)(key, got=_number(verdict.points, language), of=verdict.of)
+    return labels("tasks", language)(key, got=_number(verdict.points, language), of=verdict.of)
 
 
 def score_of(match: Match, language: str) -> str:
     """Return how near a challenge's picture is as "Score 87 of 100; solved from 95."."""
-    return task_labels(language)("score_of", score=int(match.score), goal=match.goal)
+    return labels("tasks", language)("score_of", score=int(match.score), goal=match.goal)
 
 
 def sentence_of(result: CheckResult, language: str) -> str:
     """Return what comes of one check as a sentence."""
-    say, check = task_labels(language), result.check
+    say, check = labels("tasks", language), result.check
     settings = ", ".join(f"{path} = {_local(spell(value), language)}" for path, value in check.at)
     where = say["hidden"] if check.hidden else say("at", at=settings) if check.at else ""
     message = _found(result, say, language)

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeGuard
 
+from playground.course.language import Said
 from playground.course.library import HERE
 from playground.course.model import Block, Challenge, Exercise, Lesson, Scene, Task
-from playground.course.translatable import Said
 from playground.errors import ParameterError, nearest
 from playground.paths import GLSL
 from playground.shader.source import read_text

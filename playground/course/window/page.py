@@ -12,7 +12,6 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.course.model import Lesson, Markdown
 from playground.course.tasks.verdict import Picture
-from playground.course.window.labels import labels_in
 from playground.course.window.markdown_runs import written
 from playground.course.window.prose import Prose
 from playground.course.window.reader import Reader
@@ -76,7 +75,7 @@ class Page:
 
     def say(self, key: str, *arguments: object) -> str:
         """Return a label of the interface."""
-        return labels_in(self.reader.language)[key].format(*arguments)
+        return self.reader.say(key, *arguments)
 
     def text(self, words: Markdown, *, size: float = TEXT, dim: bool = False) -> None:
         """Draw a text of the lesson, its numbers in their places."""

@@ -12,6 +12,7 @@ from typing import Any
 from imgui_bundle import ImVec2, imgui
 
 from playground.course.glossary import linked_term
+from playground.course.language import labels
 from playground.course.library import LANGUAGES
 from playground.course.model import (
     Block,
@@ -27,7 +28,6 @@ from playground.course.model import (
     Slider,
     Steps,
 )
-from playground.course.talk.labels import labels_of
 from playground.course.window.blocks import (
     draw_break,
     draw_challenge,
@@ -42,7 +42,6 @@ from playground.course.window.blocks import (
     draw_steps,
 )
 from playground.course.window.formulas import Formulas
-from playground.course.window.labels import labels_in
 from playground.course.window.markdown_runs import plain, written
 from playground.course.window.page import Page, SmallPictures
 from playground.course.window.progress import MAX_WIDTH, MIN_WIDTH
@@ -66,7 +65,7 @@ def follow(reader: Reader, address: str) -> None:
     elif kind == "sketch":
         open_sketch(reader, name)
     elif kind == "thesis":
-        reader.bench.notices.say(labels_in(reader.language)["thesis_section"].format(name))
+        reader.bench.notices.say(reader.say("thesis_section", name))
     elif kind == "term":
         reader.bench.notices.say(link_text(reader, address))
     elif kind in ("https", "http") and not webbrowser.open(address):
@@ -220,7 +219,8 @@ def _head(page: Page) -> None:
         reader.toggle()
     with look.font(look.bold, theme.TEXT_SIZE + 5):
         imgui.text_wrapped(written(lesson.title))
-    if page.button(labels_of(reader.language)["present"], labels_of(reader.language)["present_note"]):
+    talk = labels("talk", reader.language)
+    if page.button(talk["present"], talk["present_note"]):
         page.present()
     with look.font(look.text, theme.SMALL):
         minutes = page.say("minutes", lesson.minutes, lesson.exercise_minutes)

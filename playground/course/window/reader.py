@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from playground.course.language import labels
 from playground.course.library import LANGUAGES, SOURCE, preferred_language
 from playground.course.measuring import Number, filled, measured, named_in
 from playground.course.model import (
@@ -32,7 +33,6 @@ from playground.course.scenes import Sketches, comparable
 from playground.course.tasks.work import answer_text, path_of
 from playground.course.window.bugs import Bugs, Copies
 from playground.course.window.figure_view import FigureView, steps_of
-from playground.course.window.labels import labels_in
 from playground.course.window.progress import Progress, progress_file, write_progress
 from playground.course.window.tasks import Tasks
 from playground.errors import PlaygroundError
@@ -172,7 +172,7 @@ class Reader:
             notices=bench.notices,
             copies=copies,
             figure=self.figure,
-            label=lambda key: labels_in(self.language)[key],
+            label=self.say,
         )
         self.tasks = Tasks(
             session=bench.session,
@@ -180,7 +180,7 @@ class Reader:
             copies=copies,
             figure=self.figure,
             progress=self.progress,
-            label=lambda key: labels_in(self.language)[key],
+            label=self.say,
             remember=self.remember,
             clear=self._clear,
             lesson=lambda: self.progress.lesson,
@@ -195,6 +195,10 @@ class Reader:
     def language(self) -> str:
         """The code of the language that is read."""
         return self.progress.language if self.progress.language in LANGUAGES else preferred_language()
+
+    def say(self, key: str, *values: object) -> str:
+        """Return a label of the window in that language, with values in its places."""
+        return labels("window", self.language)(key, *values)
 
     @property
     def section(self) -> Section | None:
@@ -224,7 +228,7 @@ class Reader:
         if language:
             self.progress.language = language
         try:
-            lesson = self._catalogue.read(name, self.language, labels_in(self.language)["untranslated"])
+            lesson = self._catalogue.read(name, self.language, self.say("untranslated"))
         except PlaygroundError as error:
             self.bench.notices.say(str(error))
             return False
@@ -263,7 +267,7 @@ class Reader:
         if not show or first is None:
             return
         if unsaved(self.bench.files.editing) or (self.figure.before_lesson is None and self.figure.changed):
-            self.bench.notices.say(labels_in(self.language)["yours_stays"])
+            self.bench.notices.say(self.say("yours_stays"))
             return
         self.show(first)
 
@@ -295,7 +299,7 @@ class Reader:
             self.playing = ""
             self.bench.interface.panel_shown = self.bench.interface.panel_shown or self._hid
             if self.figure.before_lesson is not None and self.figure.changed:
-                self.bench.notices.say(labels_in(self.language)["not_kept"])
+                self.bench.notices.say(self.say("not_kept"))
         self.remember()
 
     def _make_room(self) -> None:
