@@ -13,6 +13,7 @@
     measuring           the numbers of a lesson, by the functions of ``measures``
     excerpt             code by a named anchor; the lines around a deliberate bug
     rules               the rules of every lesson
+    typeset             Markdown laid out for the window's panel and for slides; as HTML, in ``book.html``
     tasks/              exercises that check themselves, and pictures to match
     exercises/          their starters and model answers
     book/               pages to read offline

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.course.window.markdown_runs import written
+from playground.course.typeset import written
 from playground.live.theme import Theme
 
 from ..live.test_fonts import constants, missing

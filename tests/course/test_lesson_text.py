@@ -16,9 +16,8 @@ import numpy as np
 import pytest
 
 from playground.course.language import labels
+from playground.course.typeset import Extent, Run, broken, parts_of, plain
 from playground.course.window.formulas import Formulas, can_set, set_formula
-from playground.course.window.line_breaking import Extent, broken
-from playground.course.window.markdown_runs import Run, parts_of, plain
 from playground.course.window.progress import (
     MIN_WIDTH,
     Attempt,

@@ -25,7 +25,7 @@ from playground.course.talk.slide import (
     gauges_of,
     strip_of,
 )
-from playground.course.talk.typeset import Face
+from playground.course.talk.slide_text import Face
 
 FULL_HD = Sizes(1920, 1080)
 

@@ -4,7 +4,7 @@ beat        what is on the screen between two presses of Next
 block_beats from a block to its beats
 beats       from a lesson to its beats
 spoken      what of a text is shown large; how long a beat is read, and its notes as subtitles
-typeset     Markdown with formulas, laid out by Pillow; its fonts
+slide_text  texts that are laid out by ``typeset``, painted by Pillow; its fonts
 slide       the strip below the picture and the board over it, for window and film alike
 presenter   which beat is on; ``presented_pictures`` its picture
 stage       the presentation in the window: keys, mouse, pen, what is painted

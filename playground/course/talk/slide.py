@@ -14,7 +14,7 @@ from pygments.lexers.graphics import GLShaderLexer
 from pygments.token import Comment, Keyword, Name, Number, Operator
 
 from playground.course.talk.beat import Beat, Listing
-from playground.course.talk.typeset import (
+from playground.course.talk.slide_text import (
     ACCENT,
     DIM,
     FIELD,
@@ -26,7 +26,7 @@ from playground.course.talk.typeset import (
     fitted,
     paint_text,
 )
-from playground.course.window.markdown_runs import plain
+from playground.course.typeset import plain
 from playground.memo import INTERFACE
 
 _PLAIN: Rgb = (226, 230, 233)

@@ -8,7 +8,7 @@ from playground.course.book.html import code_block, prose
 from playground.course.language import labels
 from playground.course.talk.beat import Beat
 from playground.course.talk.presenter import Presenter
-from playground.course.window.markdown_runs import plain
+from playground.course.typeset import plain
 
 _LABELS = ("notes", "following", "over", "pause", "go_on", "reset", "back", "next", "black", "lost")
 

@@ -5,7 +5,6 @@ Of the reader, without a window:
 reader        which page and figure are shown, questions and answers; ``progress`` remembers it
 figure_view   a figure in the session's view; ``bugs`` broken shaders, ``tasks`` exercises and their scores
 
-Of the panel, by imgui: Markdown becomes runs of one style (``markdown_runs``), runs are broken into lines
-(``line_breaking``), lines are drawn by ``prose``; each kind of block has a function in ``blocks`` that
-``panel`` calls.
+Of the panel, by imgui: ``prose`` draws texts that are laid out by ``typeset``, and ``formulas`` are pictures;
+each kind of block has a function in ``blocks`` that ``panel`` calls, with a ``page`` around it.
 """

@@ -29,9 +29,9 @@ from playground.course.scenes import comparable
 from playground.course.tasks.sentences import points_of, sentence_of
 from playground.course.tasks.verdict import CheckResult, Picture, Verdict, difference_map
 from playground.course.tasks.work import checks_itself, path_of
+from playground.course.typeset import plain, written
 from playground.course.window.bugs import BROKEN, FIXED, SHOWN
 from playground.course.window.figure_view import sketch_path
-from playground.course.window.markdown_runs import plain, written
 from playground.course.window.page import Page
 from playground.course.window.reader import BOTH
 from playground.course.window.tasks import Task

@@ -12,7 +12,7 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.course.model import Lesson, Markdown
 from playground.course.tasks.verdict import Picture
-from playground.course.window.markdown_runs import written
+from playground.course.typeset import written
 from playground.course.window.prose import Prose
 from playground.course.window.reader import Reader
 from playground.live import theme

@@ -28,6 +28,7 @@ from playground.course.model import (
     Slider,
     Steps,
 )
+from playground.course.typeset import plain, written
 from playground.course.window.blocks import (
     draw_break,
     draw_challenge,
@@ -42,7 +43,6 @@ from playground.course.window.blocks import (
     draw_steps,
 )
 from playground.course.window.formulas import Formulas
-from playground.course.window.markdown_runs import plain, written
 from playground.course.window.page import Page, SmallPictures
 from playground.course.window.progress import MAX_WIDTH, MIN_WIDTH
 from playground.course.window.prose import Prose as Texts

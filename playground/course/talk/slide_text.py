@@ -1,9 +1,9 @@
-"""Markdown with formulas, set by Pillow: laid out once, measured, and painted on an image; its fonts."""
+"""Markdown on a slide: laid out once, measured, and painted on an image by Pillow; its fonts."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 
@@ -11,9 +11,8 @@ import imgui_bundle
 from PIL import Image, ImageDraw, ImageFont
 
 from playground.course.model import Markdown
+from playground.course.typeset import FORMULA_SIZE, Extent, Layout, Placed, Run, Spacing, laid_out, written
 from playground.course.window.formulas import set_formula
-from playground.course.window.line_breaking import Extent, Line, Placed, broken
-from playground.course.window.markdown_runs import Run, Runs, TextBlock, parts_of, written
 from playground.memo import INTERFACE
 
 _FONTS = Path(imgui_bundle.__file__).parent / "assets" / "fonts"
@@ -79,53 +78,58 @@ Rgb = tuple[int, int, int]
 INK, DIM, ACCENT, WARM = (232, 236, 239), (158, 168, 174), (142, 205, 142), (244, 196, 112)
 FIELD = (44, 48, 52)
 
-_FORMULA = 1.12  # Latin Modern's letters are smaller than those of a text of one size
-_LEADING, _GAP = 0.16, 0.42  # between lines and between parts, in sizes
-_INDENT, _CELL = 1.1, 1.2
-
-
-@dataclass(frozen=True)
-class _Piece:
-    x: float
-    y: float  # of the line's top
-    line: Line | None = None
-    face_size: float = 0.0
-    ink: Rgb = INK
-    box: tuple[float, float, Rgb] | None = None  # width, height
+_SPACING = Spacing(
+    gap=0.42,
+    close=0.16,
+    leading=0.16,
+    indent=1.1,
+    mark=None,
+    cell=1.2,
+    above_rule=0.15,
+    below_rule=0.25,
+    rule=1 / 16,
+    code=0.0,
+)
+"""In sizes of letters."""
 
 
 @dataclass(frozen=True)
 class Laid:
     """A text that is laid out: how much room it takes, and what paints it."""
 
-    width: float
-    height: float
+    layout: Layout
     size: float  # of its letters [pixels]
-    pieces: tuple[_Piece, ...] = field(repr=False, default=())
+    ink: Rgb
+
+    @property
+    def width(self) -> float:
+        """Its width [pixels]."""
+        return self.layout.width
+
+    @property
+    def height(self) -> float:
+        """Its height [pixels]."""
+        return self.layout.height
 
     def paint(self, image: Image.Image, x: float, y: float) -> None:
         """Paint it on an RGBA image, its upper left corner at a pixel."""
         draw = ImageDraw.Draw(image)
-        for piece in self.pieces:
+        for piece in self.layout.pieces:
             left, top = x + piece.x, y + piece.y
             if piece.box is not None:
-                wide, high, rgb = piece.box
+                wide, high, what = piece.box
+                high, rgb = max(high, 1.0), DIM if what == "rule" else FIELD
                 draw.rounded_rectangle((left, top, left + wide, top + high), high / 6, (*rgb, 255))
             elif piece.line is not None:
                 for placed_run in piece.line.runs:
-                    _paint_run(image, draw, placed_run, left, top + piece.line.ascent, piece)
+                    _paint_run(image, draw, placed_run, left, top + piece.line.ascent, piece.size, self.ink)
 
 
 @INTERFACE.cached(weight=16)
-def laid_out(words: Markdown, size: float, width: float, ink: Rgb = INK) -> Laid:
+def _laid(words: Markdown, size: float, width: float, ink: Rgb) -> Laid:
     """Lay out a text of a size [pixels] in a width [pixels]."""
-    setter = _Setter(size, width, ink)
-    for number, part in enumerate(parts_of(words)):
-        if number:
-            setter.y += size * (_LEADING if part.close else _GAP)
-        setter.add(part)
-    right = max((p.x + (p.line.width if p.line else 0.0) for p in setter.pieces), default=0.0)
-    return Laid(right, setter.y, size, tuple(setter.pieces))
+    layout = laid_out(words, size, width, _SPACING.scaled(size), lambda run, size: _extent(run, size, ink))
+    return Laid(layout, size, ink)
 
 
 def fitted(words: Markdown, sizes: tuple[float, float], room: tuple[float, float], ink: Rgb = INK) -> Laid:
@@ -137,80 +141,22 @@ def fitted(words: Markdown, sizes: tuple[float, float], room: tuple[float, float
     step = max((largest - least) / 8, 0.25)
     size = largest
     while True:
-        texts = laid_out(words, round(size, 2), room[0], ink)
+        texts = _laid(words, round(size, 2), room[0], ink)
         if (texts.height <= room[1] and texts.width <= room[0] + 1) or size <= least:
             return texts
         size = max(size - step, least)
 
 
-class _Setter:
-    def __init__(self, size: float, width: float, ink: Rgb) -> None:
-        self.size, self.width, self.ink = size, width, ink
-        self.y = 0.0
-        self.pieces: list[_Piece] = []
-
-    def add(self, part: TextBlock) -> None:
-        """Add a part below those before."""
-        indent = part.indent * _INDENT * self.size
-        if part.kind == "rule":
-            return
-        if part.kind == "table":
-            self._table(part)
-            return
-        if part.kind == "code":
-            runs_of_lines = [Run(text.replace(" ", "\u00a0"), code=True, alone=True)
-                             for text in part.runs[0].text.split("\n")]  # fmt: skip
-            for run in runs_of_lines:
-                self._lines((run,), indent)
-            return
-        runs = tuple(replace(run, bold=True) for run in part.runs) if part.kind == "heading" else part.runs
-        if part.mark:
-            mark = broken((Run(part.mark),), 1e6, self.extent)[0]
-            self.pieces.append(_Piece(indent - _INDENT * self.size, self.y, mark, self.size, self.ink))
-        self._lines(runs, indent)
-
-    def _lines(self, runs: Runs, left: float) -> None:
-        for number, line in enumerate(broken(runs, self.width - left, self.extent)):
-            self.y += self.size * _LEADING if number else 0.0
-            self.pieces.append(_Piece(left, self.y, line, self.size, self.ink))
-            self.y += line.ascent + line.descent
-
-    def _table(self, part: TextBlock) -> None:
-        gap, count = _CELL * self.size, max(map(len, part.rows), default=0)
-        target = [0.0] * count
-        for row in part.rows:
-            for column, cell in enumerate(row):
-                widths = [line.width for line in broken(cell, 1e6, self.extent)]
-                target[column] = max([target[column], *widths])
-        room = self.width - gap * max(count - 1, 0)
-        shrink = min(room / max(sum(target), 1.0), 1.0)
-        widths = [wide * shrink for wide in target]
-        for number, row in enumerate(part.rows):
-            x, bottom = 0.0, self.y
-            for column, cell in enumerate(row):
-                down = self.y
-                for line in broken(cell, widths[column] + 1, self.extent):
-                    shift = widths[column] - line.width if part.numbers[column] else 0.0
-                    self.pieces.append(_Piece(x + shift, down, line, self.size, self.ink))
-                    down += line.ascent + line.descent
-                bottom = max(bottom, down)
-                x += widths[column] + gap
-            self.y = bottom + self.size * 0.15
-            wide = sum(widths) + gap * max(count - 1, 0)
-            rgb = DIM if number == 0 else FIELD
-            self.pieces.append(_Piece(0.0, self.y, box=(wide, max(self.size / 16, 1.0), rgb)))
-            self.y += self.size * 0.25
-
-    def extent(self, run: Run) -> Extent:
-        """Return how much room a run takes."""
-        if run.formula:
-            formula = _formula(run, self.size, self.ink)
-            if formula is not None:
-                picture, baseline = formula
-                return Extent(picture.width, baseline, picture.height - baseline)
-        face = Face(_style(run), self.size)
-        pad = 2 * _pad(self.size) if run.code and not run.alone and run.text.strip() else 0.0
-        return Extent(face.width(written(run.text)) + pad, face.ascent, face.descent)
+def _extent(run: Run, size: float, ink: Rgb) -> Extent:
+    """Return how much room a run takes [pixels]."""
+    if run.formula:
+        formula = _formula(run, size, ink)
+        if formula is not None:
+            picture, baseline = formula
+            return Extent(picture.width, baseline, picture.height - baseline)
+    face = Face(_style(run), size)
+    pad = 2 * _pad(size) if run.code and not run.alone and run.text.strip() else 0.0
+    return Extent(face.width(written(run.text)) + pad, face.ascent, face.descent)
 
 
 def _paint_run(
@@ -219,12 +165,13 @@ def _paint_run(
     placed_run: Placed,
     x: float,
     baseline: float,
-    piece: _Piece,
+    size: float,
+    ink: Rgb,
 ) -> None:
-    run, extent, size = placed_run.run, placed_run.extent, piece.face_size
+    run, extent = placed_run.run, placed_run.extent
     left = x + placed_run.x
     if run.formula:
-        formula = _formula(run, size, piece.ink)
+        formula = _formula(run, size, ink)
         if formula is not None:
             image.alpha_composite(formula[0], (max(round(left), 0), max(round(baseline - formula[1]), 0)))
             return
@@ -233,7 +180,7 @@ def _paint_run(
         corners = (left, baseline - extent.ascent * 0.92, left + extent.width, baseline + extent.descent)
         draw.rounded_rectangle(corners, size / 8, (*FIELD, 255))
         left += _pad(size)
-    paint_text(draw, text, (left, baseline), Face(_style(run), size), piece.ink)
+    paint_text(draw, text, (left, baseline), Face(_style(run), size), ink)
 
 
 def paint_text(
@@ -258,7 +205,7 @@ def _formula_of(latex: str, size: int, ink: Rgb, display: bool) -> tuple[Image.I
 
 
 def _formula(run: Run, size: float, ink: Rgb) -> tuple[Image.Image, float] | None:
-    return _formula_of(run.text, round(size * _FORMULA), ink, run.alone)
+    return _formula_of(run.text, round(size * FORMULA_SIZE), ink, run.alone)
 
 
 def _style(run: Run) -> str:
