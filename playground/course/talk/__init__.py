@@ -8,5 +8,6 @@ slide_text  texts that are laid out by ``typeset``, painted by Pillow; its fonts
 slide       the strip below the picture and the board over it, for window and film alike
 presenter   which beat is on; ``presented_pictures`` its picture
 stage       the presentation in the window: keys, mouse, pen, what is painted
+notes       the teacher's page of notes: its server, what it is told (``told``), what it may ask for
 film        the presentation as a video with subtitles, without a window
 """

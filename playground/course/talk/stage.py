@@ -13,7 +13,7 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.course.language import labels
 from playground.course.talk.beat import Beat, texts_of_beat, with_texts
-from playground.course.talk.notes_link import NotesLink
+from playground.course.talk.notes import NotesLink
 from playground.course.talk.presented_pictures import PresentedPictures, Row
 from playground.course.talk.presenter import Point, Presenter
 from playground.course.window.reader import Reader

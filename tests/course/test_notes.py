@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 
 from playground import local_server
+from playground.course.talk.notes import MAX_REQUEST_BYTES, Notes
 from playground.errors import ParameterError
-from playground.remote.notes import MAX_REQUEST_BYTES, Notes
 
 from ..crowds import crowd, wait_until_open
 
