@@ -22,7 +22,7 @@ export function valueAt(row, values, place) {
 }
 
 /** A value as a reader sees it: with its unit, in the places that suit the parameter; each part of a
- *  direction has its degrees, as in lessons/values.py.
+ *  direction has its degrees, as in course/scenes.py.
  *  @param {Shown} row @param {Value} value @param {boolean} comma */
 export function spelled(row, value, comma) {
   if (typeof value === "boolean") return write(row, value);

@@ -11,7 +11,7 @@ import { unpackedJson } from "./packed.js";
 /** @typedef {import("./schema.js").Value} Value */
 /** @typedef {import("./schema.js").Leaf} Leaf */
 
-/** A scene: one of a lesson's sketches, and what it sets of that. See live_scenes.py.
+/** A scene: one of a lesson's sketches, and what it sets of that. See course/book/live.py.
  *  @typedef {object} Setting
  *  @property {number} sketch
  *  @property {import("./schema.js").Terrain} [terrain]
@@ -23,7 +23,7 @@ import { unpackedJson } from "./packed.js";
  *  @property {Object<string, Value>} [shown]       by the paths of the rows
  *  @property {Object<string, Leaf["data"]>} [data] by the paths of sources */
 
-/** What a page can run of a lesson's block. See live_blocks.py.
+/** What a page can run of a lesson's block. See course/book/live.py.
  *  @typedef {object} LiveBlock
  *  @property {"figure" | "steps" | "slider" | "compare" | "break" | "exercise"
  *            | "challenge"} kind

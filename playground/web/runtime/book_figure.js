@@ -20,7 +20,7 @@ import { createTimeline, hasTime } from "./timeline.js";
  *  @property {import("./engine.js").Engine} engine
  *  @property {import("./book_recovery.js").Watched} watched   speaks for its figures when the context is lost
  *  @property {Object<string, string>} words
- *  @property {Object<string, string>} [say]         of works that are checked: lessons/tasks/labels
+ *  @property {Object<string, string>} [say]         of works that are checked: [tasks] of course/labels
  *  @property {boolean} comma                    whether numbers have one */
 
 const STEP = 1 / 36; // of the picture's height that an arrow turns: 5 degrees

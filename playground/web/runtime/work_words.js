@@ -1,6 +1,6 @@
 // work_words.js -- what is said of a work that was checked, as playground/course/tasks/sentences.py does.
 //
-// The words are those of lessons/tasks/labels, which a book's scripts hold.
+// The words are those of [tasks] in course/labels, which a book's scripts hold.
 
 import { general } from "./numbers.js";
 import { fill } from "./words.js";
@@ -26,7 +26,7 @@ function sized([width, height, channels], say) {
 }
 
 /** What comes of one check, as a sentence. @param {Outcome} found @param {PageCheck} check
- *  @param {Object<string, string>} say  of lessons/tasks/labels @param {boolean} comma */
+ *  @param {Object<string, string>} say  of [tasks] in course/labels @param {boolean} comma */
 export function sentence(found, check, say, comma) {
   const at = check.said.map(([path, value]) => `${path} = ${local(value, comma)}`).join(", ");
   const where = check.hidden ? say.hidden : at ? fill(say.at, { at }) : "";
