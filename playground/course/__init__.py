@@ -7,7 +7,7 @@
     document            a file split into front matter and pieces
     read, fences        from a file to a lesson; ``task_fences`` of what a student does
     translate           from a translation to a lesson; what of it is out of date
-    library, contents   which lessons and languages there are, and their order
+    library             which lessons and languages there are, and their order
     figure_renders      the pictures of a lesson
     figures             the thesis's figures, and those at the heads of lessons
     measuring           the numbers of a lesson, by the functions of ``measures``

@@ -153,8 +153,8 @@ def grade(
 
 def _lessons_handed_in(submissions: Sequence[Submission]) -> list[str]:
     """Return the lessons of which anything was handed in; raise ``SketchError`` for none."""
-    from playground.course.contents import lesson_names
     from playground.course.grading.grade import lessons_in
+    from playground.course.library import lesson_names
 
     lessons = lesson_names()
     names = {name for submission in submissions for name in lessons_in(submission.path, lessons)}
@@ -383,7 +383,7 @@ def open_(
 
 
 def _lesson_read_last() -> str:
-    from playground.course.contents import lesson_names
+    from playground.course.library import lesson_names
     from playground.course.window.progress import progress_file, read_progress
 
     names, last = lesson_names(), read_progress(progress_file()).lesson

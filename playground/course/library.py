@@ -1,12 +1,15 @@
-"""Find lessons, their languages and their texts."""
+"""Find lessons, their languages and their texts; their order, by the parts of the course."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from playground.errors import SketchError, nearest
+from playground.shader.parameter import spell
+from playground.sketch.toml_table import TomlFile
 
 HERE = Path(__file__).resolve().parent
 
@@ -48,3 +51,59 @@ def preferred_language(environment: Mapping[str, str] = os.environ) -> str:
             code = language[:2].lower()
             return code if code in LANGUAGES else SOURCE
     return SOURCE
+
+
+@dataclass(frozen=True, slots=True)
+class CoursePart:
+    """A part of the course."""
+
+    titles: Mapping[str, str]  # by language
+    lessons: tuple[str, ...]  # names, in their order
+
+
+def course_file() -> Path:
+    """Return the file that holds the course of the lessons: next to the folder of their texts."""
+    return TEXTS.parent / "course.toml"
+
+
+def parts() -> list[CoursePart]:
+    """Return the parts of the course, in their order.
+
+    Raises ``SketchError`` at what is wrong with its file: a part without a title in each language,
+    a lesson that has no text, is named twice, or is in no part.
+    """
+    path = course_file()
+    file = TomlFile(path, path.parent)
+    file.only(file.table, ("part",))
+    names, seen, parts_read = lesson_files(), set[str](), []
+    for index, table in enumerate(file.tables("part")):
+        key_path = ("part", index)
+        file.only(table, ("title", "lessons"), *key_path)
+        titles = file.take(table, "title", dict, {}, *key_path)
+        file.only(titles, tuple(LANGUAGES), *key_path, "title")
+        for code in LANGUAGES:
+            if not file.take(titles, code, str, "", *key_path, "title").strip():
+                raise file.error(f"a part of the course has a title in '{code}'", *key_path)
+        lessons = file.take(table, "lessons", list, [], *key_path)
+        for name in lessons:
+            if not isinstance(name, str) or name not in names:
+                hint = nearest(name, names) if isinstance(name, str) else ""
+                raise file.error(f"no lesson {spell(name)}{hint}", *key_path, "lessons")
+            if name in seen:
+                raise file.error(f"lesson {spell(name)} is in the course twice", *key_path, "lessons")
+            seen.add(name)
+        parts_read.append(CoursePart(titles, tuple(lessons)))
+    if left := [name for name in names if name not in seen]:
+        raise file.error(f"in no part of the course: {', '.join(left)}")
+    return parts_read
+
+
+def lesson_names() -> list[str]:
+    """List the names of all lessons in the course's order; raise as ``parts`` does."""
+    return [name for part in parts() for name in part.lessons]
+
+
+def number_of(name: str) -> int:
+    """Return a lesson's number, from 0; one whose text is elsewhere comes after all others."""
+    names = lesson_names()
+    return names.index(name) if name in names else len(names)

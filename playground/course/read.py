@@ -10,10 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from playground.course.contents import lesson_names, number_of, parts
 from playground.course.document import Document, prose_of, read_document, texts_in
 from playground.course.fences import READERS, open_fence, read_fence
-from playground.course.library import SOURCE, lesson_file
+from playground.course.library import SOURCE, lesson_file, lesson_names, number_of, parts
 from playground.course.markdown import Piece
 from playground.course.model import Block, Lesson
 from playground.course.scenes import Sketches

@@ -1,7 +1,7 @@
 """Typeset Markdown: runs of one style each, broken into lines, laid out part below part.
 
 It needs no font and no device: whoever paints gives the extents of runs, and paints the pieces; the window's
-panel by imgui (``window.prose``), slides by Pillow (``talk.slide_text``).
+panel by imgui (``window.page``), slides by Pillow (``talk.slide_text``).
 """
 
 from __future__ import annotations

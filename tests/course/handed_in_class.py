@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from playground.course.handout.exercise_files import Assignment, assignments_of
-from playground.course.handout.student_sketch import student_files
+from playground.course.handout.pack import student_files
 from playground.course.read import read_lesson
 from playground.course.tasks.work import answer_text, starter_text
 from playground.sketch.save import written_value

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from playground.course import library
-from playground.course.contents import number_of, parts
 from playground.course.document import read_document
+from playground.course.library import number_of, parts
 from playground.course.read import summaries, times_of, words_in
 from playground.course.rules import broken_rules
 from playground.errors import SketchError

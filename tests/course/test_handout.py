@@ -12,7 +12,7 @@ import pytest
 
 from playground.cli import main
 from playground.course.handout.exercise_files import assignments_of
-from playground.course.handout.student_sketch import student_files
+from playground.course.handout.pack import student_files
 from playground.course.read import read_lesson, read_lessons
 from playground.course.tasks.work import Work, answer_text, scene_of
 from playground.sketch.find import unpacked_beside

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from playground.course.contents import lesson_names
 from playground.course.figures import hero_names, hero_of
+from playground.course.library import lesson_names
 from playground.course.scenes import Sketches
 from playground.errors import SketchError
 

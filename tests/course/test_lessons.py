@@ -6,11 +6,10 @@ import re
 
 import pytest
 
-from playground.course.contents import lesson_names
 from playground.course.excerpt import bug_region
 from playground.course.figure_renders import pictures_of, with_bug
 from playground.course.glossary import terms_of
-from playground.course.library import LANGUAGES, SOURCE, TEXTS, lesson_files
+from playground.course.library import LANGUAGES, SOURCE, TEXTS, lesson_files, lesson_names
 from playground.course.measuring import Number, filled
 from playground.course.model import Break, Prose
 from playground.course.read import read_lesson, read_lessons, summaries

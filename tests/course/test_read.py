@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from playground.course.contents import lesson_names
+from playground.course.library import lesson_names
 from playground.course.model import Break, Code, Compare, Exercise, Figure, Measure, Question, Slider, Steps
 from playground.errors import SketchError
 

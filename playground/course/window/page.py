@@ -1,4 +1,4 @@
-"""What every block of a page is drawn with: the reader, the texts, the buttons."""
+"""What every block of a page is drawn with: the reader, texts laid out once for each width, buttons."""
 
 from __future__ import annotations
 
@@ -12,16 +12,157 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.course.model import Lesson, Markdown
 from playground.course.tasks.verdict import Picture
-from playground.course.typeset import written
-from playground.course.window.prose import Prose
+from playground.course.typeset import FORMULA_SIZE, Extent, Layout, Placed, Run, Spacing, laid_out, written
+from playground.course.window.formulas import Formulas
 from playground.course.window.reader import Reader
 from playground.live import theme
 from playground.live.draw import button, inked, pushed_id, styled
 from playground.live.panel_memory import Memory
+from playground.live.panel_rows import explain
 from playground.live.theme import Theme
 
 if TYPE_CHECKING:
     import moderngl
+
+_SPACING = Spacing(
+    gap=9.0,
+    close=4.0,
+    leading=3.0,
+    indent=20.0,
+    mark=6.0,
+    cell=12.0,
+    above_rule=3.0,
+    below_rule=4.0,
+    rule=1.0,
+    code=8.0,
+    least=40.0,
+    headings=(6.0, 4.0, 2.0),
+    centres=True,
+)
+"""In units of scale 1."""
+_PAD = 3.0  # around code in a line
+_CACHED = 400
+
+
+@dataclass
+class Prose:
+    """Draws texts.
+
+    ``follow`` receives the address of a link that is clicked on; ``describe`` returns the tooltip of one.
+    """
+
+    formulas: Callable[[], Formulas]
+    follow: Callable[[str], None]
+    describe: Callable[[str], str]
+    _layouts: dict[object, Layout] = field(default_factory=dict)
+
+    def draw(
+        self,
+        words: str,
+        look: Theme,
+        *,
+        size: float = theme.TEXT_SIZE,
+        ink: int | None = None,
+    ) -> None:
+        """Draw a text where the cursor is, over the width that is left."""
+        wide = imgui.get_content_region_avail().x
+        ink = theme.packed(theme.INK) if ink is None else ink
+        layout = self._layout_of(words, look, size, ink, wide)
+        corner = imgui.get_cursor_screen_pos()
+        imgui.dummy(ImVec2(min(layout.width, wide), max(layout.height, 1.0)))
+        if not imgui.is_item_visible():
+            return
+        draw = imgui.get_window_draw_list()
+        for piece in layout.pieces:
+            x, y = corner.x + piece.x, corner.y + piece.y
+            if piece.box is not None:
+                wide_box, high_box, what = piece.box
+                colour = theme.packed(theme.LINE if what == "rule" else theme.FIELD)
+                draw.add_rect_filled(ImVec2(x, y), ImVec2(x + wide_box, y + high_box), colour, 4 * look.scale)
+            elif piece.line is not None:
+                for run in piece.line.runs:
+                    self._run(run, x, y + piece.line.ascent, piece.size, ink, look)
+
+    # ── layout ───────────────────────────────────────────────────────────────
+
+    def _layout_of(self, words: str, look: Theme, size: float, ink: int, width: float) -> Layout:
+        key = words, size, ink, round(width), look.scale
+        if key not in self._layouts:
+            if len(self._layouts) >= _CACHED:
+                self._layouts.clear()
+
+            def extent(run: Run, size: float) -> Extent:
+                return self._extent(run, size, ink, look)
+
+            self._layouts[key] = laid_out(words, size, width, _SPACING.scaled(look.scale), extent)
+        return self._layouts[key]
+
+    def _extent(self, run: Run, size: float, ink: int, look: Theme) -> Extent:
+        if run.formula:
+            formula = self._formula(run, size, ink, look)
+            if formula is not None:
+                width, height, baseline, _ = formula
+                return Extent(width, baseline, height - baseline)
+        with look.font(*_font(run, size, look)):
+            text = imgui.calc_text_size(written(run.text))
+            ascent = imgui.get_font_baked().ascent
+        pad = 2 * _PAD * look.scale if run.code and not run.alone and run.text.strip() else 0.0
+        return Extent(text.x + pad, ascent, max(text.y - ascent, 0.0))
+
+    def _formula(
+        self, run: Run, size: float, ink: int, look: Theme
+    ) -> tuple[float, float, float, imgui.ImTextureRef] | None:
+        """Return a formula's width, height and baseline in the window's units, and its texture."""
+        density = imgui.get_io().display_framebuffer_scale.x or 1.0
+        letters = size * look.scale * density * FORMULA_SIZE
+        formula = self.formulas().get(run.text, letters, ink, display=run.alone)
+        if formula is None:
+            return None
+        texture, baseline = formula
+        wide, high = texture.size
+        return wide / density, high / density, baseline / density, imgui.ImTextureRef(texture.glo)
+
+    # ── drawing ──────────────────────────────────────────────────────────────
+
+    def _run(self, placed_run: Placed, x: float, baseline: float, size: float, ink: int, look: Theme) -> None:
+        run, extent = placed_run.run, placed_run.extent
+        draw = imgui.get_window_draw_list()
+        low = ImVec2(x + placed_run.x, baseline - extent.ascent)
+        high = ImVec2(low.x + extent.width, baseline + extent.descent)
+        if run.formula:
+            formula = self._formula(run, size, ink, look)
+            if formula is not None:
+                corner = ImVec2(round(low.x), round(low.y))  # on whole pixels, so that it stays sharp
+                draw.add_image(formula[3], corner, ImVec2(corner.x + formula[0], corner.y + formula[1]))
+                return
+        font, size = _font(run, size, look)
+        text = written(run.text)
+        if run.code and not run.alone and text.strip():
+            draw.add_rect_filled(low, high, theme.packed(theme.FIELD), 3 * look.scale)
+            low = ImVec2(low.x + _PAD * look.scale, low.y)
+        if run.link:
+            ink = theme.packed(theme.ACCENT)
+            self._link(run, low, high, baseline)
+        draw.add_text(font, size * look.scale, low, ink, text)
+
+    def _link(self, run: Run, low: ImVec2, high: ImVec2, baseline: float) -> None:
+        draw = imgui.get_window_draw_list()
+        under = imgui.is_window_hovered() and imgui.is_mouse_hovering_rect(low, high)
+        alpha = 1.0 if under else 0.45
+        line = baseline + 2
+        draw.add_line(ImVec2(low.x, line), ImVec2(high.x, line), theme.packed(theme.ACCENT, alpha))
+        if under:
+            imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
+            explain(written(self.describe(run.link)), "")
+            if imgui.is_mouse_released(0) and not imgui.is_mouse_dragging(0):
+                self.follow(run.link)
+
+
+def _font(run: Run, size: float, look: Theme) -> tuple[imgui.ImFont, float]:
+    if run.code or run.formula:
+        return look.code, size
+    return (look.bold if run.bold else look.italic if run.italic else look.text), size
+
 
 _MAX_TEXTURES = 24  # textures that are kept; beyond, all are released and made again where they are drawn
 

@@ -44,8 +44,8 @@ from playground.course.window.blocks import (
 )
 from playground.course.window.formulas import Formulas
 from playground.course.window.page import Page, SmallPictures
+from playground.course.window.page import Prose as Texts
 from playground.course.window.progress import MAX_WIDTH, MIN_WIDTH
-from playground.course.window.prose import Prose as Texts
 from playground.course.window.reader import Reader
 from playground.errors import PlaygroundError
 from playground.live import theme
