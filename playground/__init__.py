@@ -27,11 +27,11 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.api import parameters as parameters
     from playground.api import render as render
     from playground.capture.export import export as export
-    from playground.capture.film import render_video as render_video
     from playground.capture.large import write_large as write_large
     from playground.capture.sequence import render_sequence as render_sequence
     from playground.capture.sheet import render_sweep as render_sweep
     from playground.capture.sweep_data import sweep as sweep
+    from playground.capture.video import render_video as render_video
     from playground.engine.engine import Engine as Engine
     from playground.engine.frame import Frame as Frame
     from playground.errors import ContextError as ContextError
@@ -58,11 +58,11 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
 _NAMES = {
     "playground.api": "headless render parameters",
     "playground.capture.export": "export",
-    "playground.capture.film": "render_video",
     "playground.capture.large": "write_large",
     "playground.capture.sequence": "render_sequence",
     "playground.capture.sheet": "render_sweep",
     "playground.capture.sweep_data": "sweep",
+    "playground.capture.video": "render_video",
     "playground.engine.engine": "Engine",
     "playground.engine.frame": "Frame",
     "playground.errors": "ContextError DataError ParameterError PlainFormWarning PlaygroundError "

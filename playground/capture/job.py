@@ -10,19 +10,17 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 from playground.api import headless
-from playground.capture.film import Film, film_of, write_film
-from playground.capture.large import count_tiles, is_large, write_large
-from playground.capture.sequence import write_sequence
-from playground.capture.sheet import write_sheet
-from playground.capture.sweep import DEFAULT_STEPS, read_sweep, swept
-from playground.capture.video import QUALITY
+from playground.capture.large import save_picture
+from playground.capture.sequence import NumberedFiles
+from playground.capture.series import Series, Sink, write_series
+from playground.capture.sheet import Sheet
+from playground.capture.video import QUALITY, VideoFile
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
 from playground.engine.process.child import Outcome
@@ -51,6 +49,26 @@ class CaptureJob:
     quality: str = QUALITY
     sweeps: tuple[str, ...] = ()  # of a sheet
 
+    def series(self) -> Series:
+        """Return the pictures of a film or a sheet; raise ``ParameterError`` for none."""
+        if self.kind == SHEET:
+            return Series.of_values(self.sketch, self.sweeps, size=self.size, time=self.time)
+        return Series.at_times(
+            self.sketch,
+            seconds=self.seconds,
+            fps=self.fps,
+            size=self.size,
+            start=self.time,
+            steps=self.steps,
+        )
+
+    def target(self) -> AbstractContextManager[Path]:
+        """Reserve a new name for the file, or make a new folder for numbered pictures."""
+        name = re.sub(r"[^\w.-]+", "-", self.sketch.name).strip("-.") or "picture"
+        ends = {PICTURE: ".png", PICTURES: "-frames", FILM: self.ending, SHEET: "-sweep.png"}
+        path = self.folder / f"{name}{ends[self.kind]}"
+        return _new_folder(path) if self.kind == PICTURES else new_name(path)
+
 
 Progress = Callable[[int, int], None]
 """Called with how many parts are done, and of how many; may raise to stop the job."""
@@ -64,71 +82,46 @@ def do(job: CaptureJob, engine: Engine, progress: Progress, notice: Notice) -> P
 
     Raises ``PlaygroundError`` in a message.
     """
-    work = _Work(job, engine, progress, notice)
-    kinds = {PICTURE: work.picture, PICTURES: work.pictures, FILM: work.film, SHEET: work.sheet}
-    return kinds[job.kind]()
+    parts = _Parts(progress)
+    if job.kind == PICTURE:
+        with job.target() as path:
+            save_picture(
+                engine,
+                job.sketch,
+                path,
+                job.size,
+                time=job.time,
+                steps=job.steps,
+                begin=parts.begin,
+                done=parts.advance,
+            )
+        return path
+    series = job.series()
+    with job.target() as path:
+        sinks: dict[str, Sink] = {
+            PICTURES: NumberedFiles(path / "%05d.png"),
+            FILM: VideoFile(path, job.quality),
+            SHEET: Sheet(path),
+        }
+        parts.begin(series.count)
+        write_series(engine, series, sinks[job.kind], done=parts.advance, notice=notice)
+    return path
 
 
-class _Work:
-    """A job at work: what does each kind, and counts the parts that are done."""
+class _Parts:
+    """The parts of a job that are done, reported as they are counted."""
 
-    def __init__(self, job: CaptureJob, engine: Engine, progress: Progress, notice: Notice) -> None:
-        self.job, self.engine, self.notice = job, engine, notice
+    def __init__(self, progress: Progress) -> None:
         self._progress = progress
         self._done = self._of = 0
-        name = re.sub(r"[^\w.-]+", "-", job.sketch.name).strip("-.") or "picture"
-        self._path = job.folder / name
 
-    def _begin(self, of: int) -> None:
+    def begin(self, of: int) -> None:
         self._done, self._of = 0, of
         self._progress(0, of)
 
-    def _advance(self) -> None:
+    def advance(self) -> None:
         self._done += 1
         self._progress(self._done, self._of)
-
-    def picture(self) -> Path:
-        job = self.job
-        at: dict[str, Any] = {"time": job.time, "steps": job.steps}
-        with new_name(f"{self._path}.png") as path:
-            if is_large(self.engine, job.sketch, job.size):
-                self._begin(count_tiles(job.size))
-                return write_large(self.engine, job.sketch, path, job.size, **at, done=self._advance)
-            self._begin(1)
-            self.engine.render(job.sketch, size=job.size, **at).save(path)
-            self._advance()
-        return path
-
-    def pictures(self) -> Path:
-        film = self._film()
-        if film.still:
-            self.notice(film.still)
-        with _new_folder(self._path.with_name(f"{self._path.name}-frames")) as folder:
-            self._begin(film.count)
-            write_sequence(self.engine, film, folder / "%05d.png", done=self._advance)
-        return folder
-
-    def film(self) -> Path:
-        film, quality = self._film(), self.job.quality
-        with new_name(f"{self._path}{self.job.ending}") as path:
-            self._begin(film.count)
-            return write_film(
-                self.engine, film, path, quality=quality, done=self._advance, notice=self.notice
-            )
-
-    def _film(self) -> Film:
-        job = self.job
-        return film_of(
-            job.sketch, seconds=job.seconds, fps=job.fps, size=job.size, start=job.time, steps=job.steps
-        )
-
-    def sheet(self) -> Path:
-        job, sketch = self.job, self.job.sketch.at(self.job.time)
-        rows = swept(sketch, [read_sweep(sketch, text, DEFAULT_STEPS) for text in job.sweeps])
-        with new_name(f"{self._path}-sweep.png") as path:
-            self._begin(sum(map(len, rows)))
-            at: dict[str, Any] = {"size": job.size, "time": job.time}
-            return write_sheet(self.engine, rows, path, **at, done=self._advance, notice=self.notice)
 
 
 @contextmanager

@@ -155,3 +155,28 @@ def write_large(
     with replacing(path) as handle:
         encode_strips(handle, size, rows, text)
     return Path(path)
+
+
+def save_picture(
+    engine: Engine,
+    sketch: Sketch,
+    path: Path,
+    size: tuple[int, int],
+    *,
+    time: float = 0.0,
+    steps: Mapping[str, int] | None = None,
+    text: Mapping[str, str] | None = None,
+    begin: Callable[[int], None] = lambda _: None,
+    done: Callable[[], None] = lambda: None,
+) -> None:
+    """Write a picture as a PNG, whole or not at all: in parts where it is large.
+
+    ``begin`` is called with the number of parts, ``done`` after each; the rest as for ``write_large``.
+    """
+    if is_large(engine, sketch, size):
+        begin(count_tiles(size))
+        write_large(engine, sketch, path, size, time=time, steps=steps, text=text, done=done)
+        return
+    begin(1)
+    engine.render(sketch, size=size, time=time, steps=steps).save(path, dict(text or {}))
+    done()

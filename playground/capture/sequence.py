@@ -1,4 +1,4 @@
-"""Write pictures of a film as numbered PNG files; what is there already may stay.
+"""Write pictures of a series as numbered PNG files; what is there already may stay.
 
 Each file holds, as a text of its own, what its picture depends on. A sequence that goes on
 where it was stopped keeps the files that are whole and of the same sketch, size, time and
@@ -8,18 +8,26 @@ renderer, and draws the others.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
-from contextlib import nullcontext
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 
-from playground.api import headless
-from playground.capture.film import DEFAULT_SIZE, FPS, MAX_FRAMES, Film, frame_uniforms
-from playground.capture.large import is_large, write_large
+from playground.capture.series import (
+    DEFAULT_SIZE,
+    FPS,
+    MAX_FRAMES,
+    Add,
+    Picture,
+    Series,
+    engine_or_own,
+    rate_of,
+    write_series,
+)
 from playground.data.image_files import read_png
 from playground.engine.engine import Engine
-from playground.errors import DataError, ParameterError
+from playground.errors import DataError, ParameterError, counted
 from playground.files import make_folder
 from playground.sketch.load import opened
 from playground.sketch.model import Sketch
@@ -51,48 +59,44 @@ def check_pattern(pattern: str | Path) -> None:
         raise DataError("expected a name for numbered files, as frames/%05d.png", file=str(pattern))
 
 
-def write_sequence(
-    engine: Engine,
-    film: Film,
-    pattern: str | Path,
-    *,
-    numbers: Iterable[int] | None = None,
-    resume: bool = False,
-    done: Callable[[], None] = lambda: None,
-) -> Written:
-    """Write pictures of a film as PNG files, each whole or not at all.
+@dataclass
+class NumberedFiles:
+    """The sink of a series that is PNG files, each whole or not at all.
 
-    ``numbers`` are those of the pictures, all of the film's unless given; ``pattern`` names the
-    files, as ``frames/%05d.png``; its folder is made. With ``resume`` a file that is there
-    and good stays. ``done`` is called after each. Raises ``DataError`` in a message.
+    ``pattern`` names the files, as ``frames/%05d.png``; its folder is made. With ``resume`` a file that is
+    there and good stays.
     """
-    check_pattern(pattern)
-    total = range(film.count) if numbers is None else list(numbers)
-    make_folder(Path(pattern).expanduser().parent)
-    drawn, kept = [], []
-    for number in total:
-        path = numbered(pattern, number)
-        made_of = engine.fingerprint(
-            film.sketch, size=film.size, time=film.time(number), steps=film.steps
-        )  # before it is drawn, so that a mistake in the sketch is reported first
-        if resume and _is_good(path, film.size, made_of):
-            kept.append(path)
-        else:
-            _write(engine, film, number, path, made_of)
-            drawn.append(path)
-        done()
-    return Written(tuple(drawn), tuple(kept))
 
+    pattern: str | Path
+    resume: bool = False
+    drawn: list[Path] = field(default_factory=list)
+    kept: list[Path] = field(default_factory=list)
 
-def _write(engine: Engine, film: Film, number: int, path: Path, made_of: str) -> None:
-    text, time = {MADE_OF: made_of}, film.time(number)
-    with frame_uniforms(engine, film):
-        if is_large(engine, film.sketch, film.size):
-            write_large(engine, film.sketch, path, film.size, time=time, steps=film.steps, text=text)
+    @property
+    def paths(self) -> list[Path]:
+        """The files, those that stayed as well."""
+        return sorted(self.drawn + self.kept)
+
+    @contextmanager
+    def open(self, series: Series, notice: Callable[[str], None]) -> Iterator[Add]:
+        """Write the files; ``notice`` gets a message on those that stayed.
+
+        Raises ``DataError`` for a name without a number.
+        """
+        check_pattern(self.pattern)
+        make_folder(Path(self.pattern).expanduser().parent)
+        yield self._add
+        if self.kept:
+            notice(f"{counted(len(self.kept), 'picture')} kept, {len(self.drawn)} drawn")
+
+    def _add(self, picture: Picture) -> None:
+        path = numbered(self.pattern, picture.number)
+        made_of = picture.fingerprint()  # first, so that a mistake in the sketch is reported first
+        if self.resume and _is_good(path, picture.series.size, made_of):
+            self.kept.append(path)
         else:
-            frame = engine.render(film.sketch, size=film.size, time=time, steps=film.steps)
-            frame.save(path, text)
-    engine.forget_unused()
+            picture.save(path, {MADE_OF: made_of})
+            self.drawn.append(path)
 
 
 def _is_good(path: Path, size: tuple[int, int], made_of: str) -> bool:
@@ -130,7 +134,8 @@ def render_sequence(
     requested = list(numbers)
     if not requested or min(requested) < 0 or max(requested) >= MAX_FRAMES:
         raise ParameterError(f"pictures are numbered from 0 to {MAX_FRAMES - 1}; at least one was expected")
-    rate = fps if isinstance(fps, Fraction) else Fraction(fps).limit_denominator(1001)
-    film = Film(sketch=opened(sketch), count=max(requested) + 1, fps=rate, size=size)
-    with nullcontext(engine) if engine is not None else headless() as used:
-        return write_sequence(used, film, pattern, numbers=requested, resume=resume)
+    series = Series(sketch=opened(sketch), count=max(requested) + 1, fps=rate_of(fps), size=size)
+    sink = NumberedFiles(pattern, resume)
+    with engine_or_own(engine) as used:
+        write_series(used, series, sink, numbers=requested)
+    return Written(tuple(sink.drawn), tuple(sink.kept))

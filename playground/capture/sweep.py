@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 from playground.errors import ParameterError, nearest
 from playground.shader.parameter import coerce, components, expected, is_whole, length_of, read_whole, write
@@ -19,6 +20,7 @@ from playground.sketch.model import Parameter, Sketch, Value
 
 DEFAULT_STEPS = 9
 MAX_PICTURES = 400
+_TURN = {"azimuth": (0.0, 350.0), "elevation": (5.0, 60.0)}  # [degrees] usual ranges
 
 
 @dataclass(frozen=True)
@@ -170,25 +172,35 @@ def _label(parameter: Parameter | None, part: int | None, value: Value) -> str:
     return ",".join(f"{number:.6g}" if isinstance(number, float) else str(number) for number in numbers)
 
 
-def swept(sketch: Sketch, sweeps: Sequence[Sweep]) -> list[list[Swept]]:
-    """Return rows of sketches: the first sweep along a row, the second down the rows, if there is one.
+def sweep_text(path: str, parameter: Parameter, part: str = "") -> str:
+    """Return a sweep of a parameter, or of a part of it, over its range."""
+    axis = parts_of(parameter).index(part) if part else 0
+    low, high = _TURN.get(part, parameter.widget.ends(axis))
+    default = parameter.default
+    if low is None or high is None:
+        number = float(default) if isinstance(default, int | float) else 1.0
+        low, high = 0.0, 2.0 * abs(number) or 1.0
+    if parameter.widget.kind == "menu":
+        return f"{path}={','.join(parameter.widget.choices)}"
+    if parameter.type == "bool":
+        return f"{path}=false,true"
+    where = f"{path}.{part}" if part else path
+    if is_whole(parameter.type):
+        return f"{where}={round(low)}..{round(high)},{min(round(high) - round(low) + 1, 9)}"
+    return f"{where}={low:g}..{high:g},9"
 
-    Raises ``ParameterError`` for more than two sweeps, for two of one parameter's same part,
-    and for more than 400 pictures.
-    """
-    if not 1 <= len(sweeps) <= 2:
-        raise ParameterError(f"{len(sweeps)} sweeps: expected one, or two that make a grid")
-    if len({sweep.path for sweep in sweeps}) < len(sweeps):
-        raise ParameterError(f"two sweeps of {sweeps[0].path}: expected two parameters")
-    count = math.prod(len(sweep.values) for sweep in sweeps)
-    if count > MAX_PICTURES:
-        raise ParameterError(f"{count} pictures are more than the {MAX_PICTURES} that a sheet may have")
-    along, *down = ([(sweep, index) for index in range(len(sweep.values))] for sweep in sweeps)
-    if down:
-        return [[_set(sketch, [value, other]) for value in along] for other in down[0]]
-    columns = columns_of(len(along))
-    alone = [_set(sketch, [value]) for value in along]
-    return [alone[first : first + columns] for first in range(0, len(alone), columns)]
+
+def parts_of(parameter: Parameter) -> tuple[str, ...]:
+    """Return the parts that a parameter is swept by, ("",) for one number, () for what cannot be."""
+    if parameter.type == "sampler2D" or parameter.widget.kind == "file":
+        return ()
+    return components(parameter) or ("",)
+
+
+def combinations(sketch: Sketch, sweeps: Sequence[Sweep]) -> tuple[Swept, ...]:
+    """Return a sketch with each combination of the values of sweeps; those of the first change fastest."""
+    picks = product(*(range(len(sweep.values)) for sweep in reversed(sweeps)))
+    return tuple(_set(sketch, list(zip(sweeps, pick[::-1], strict=True))) for pick in picks)
 
 
 def columns_of(count: int) -> int:
@@ -210,11 +222,6 @@ def _set(sketch: Sketch, chosen: Sequence[tuple[Sweep, int]]) -> Swept:
             sketch = sketch.with_values({sweep.parameter: value})
         caption.append(f"{sweep.path} = {sweep.labels[index]}")
     return Swept(sketch, tuple(caption))
-
-
-def with_one_of_each(sketch: Sketch, chosen: Iterable[tuple[Sweep, int]]) -> Sketch:
-    """Return a sketch with one value, by its place, of each sweep."""
-    return _set(sketch, list(chosen)).sketch
 
 
 def _now(sketch: Sketch, path: str) -> tuple[float, ...]:

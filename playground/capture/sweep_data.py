@@ -13,7 +13,6 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +22,8 @@ from numpy.typing import NDArray
 from playground._version import __version__
 from playground.capture.export_textures import kind_of
 from playground.capture.extensions import HEIGHT
-from playground.capture.sweep import Sweep, sweep_of, with_one_of_each
+from playground.capture.series import SWEEP_SIZE
+from playground.capture.sweep import Sweep, combinations, sweep_of
 from playground.engine.engine import Engine, open_engine
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Plan, checked_pixels, view_height
@@ -38,9 +38,6 @@ if TYPE_CHECKING:
     import xarray
 
 
-DEFAULT_SIZE = (320, 180)
-"""Width and height in pixels of a picture."""
-
 MAX_BYTES = 2**32
 """Bytes that the pictures of a sweep may take."""
 
@@ -53,7 +50,7 @@ def sweep(
     *,
     textures: Sequence[str] | None = None,
     pictures: bool = True,
-    size: tuple[int, int] = DEFAULT_SIZE,
+    size: tuple[int, int] = SWEEP_SIZE,
     time: float = 0.0,
     workers: int | None = None,
     software: bool = False,
@@ -91,16 +88,10 @@ def sweep(
     base, pixels = opened(sketch), checked_pixels(size, MAX_SIDE)
     sweeps = [sweep_of(base, path, value) for path, value in values.items()]
     _check(sweeps, pixels if pictures else (0, 0), workers)
-    picks = list(product(*(range(len(each.values)) for each in sweeps)))
+    measured = None if textures is None else tuple(textures)
     cases = [
-        Case(
-            with_one_of_each(base, zip(sweeps, pick, strict=True)),
-            pixels,
-            time,
-            None if textures is None else tuple(textures),
-            pictures,
-        )
-        for pick in picks
+        Case(each.sketch, pixels, time, measured, pictures)
+        for each in combinations(base, sweeps[::-1])  # so that the last dimension changes fastest
     ]
     count = min(len(cases), workers or min(os.cpu_count() or 1, 4))
     results: list[SweepResult] = []

@@ -8,7 +8,9 @@ each. Alpha is dropped, and counted: ``Video.dropped``.
 
 from __future__ import annotations
 
-from contextlib import ExitStack, suppress
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from types import TracebackType
@@ -17,10 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.capture.encoders import Codec, open_encoder, read_packets
+from playground.capture.series import DEFAULT_SIZE, FPS, Add, Series, engine_or_own, write_series
 from playground.data.image_files import VIDEO_ENDINGS
+from playground.engine.engine import Engine
+from playground.engine.plain_forms import warn
 from playground.errors import DataError, ParameterError, PlaygroundError, counted, nearest
 from playground.files import partial_file, reason, writing
 from playground.paths import shown
+from playground.sketch.model import Sketch
 
 QUALITIES: dict[str, tuple[int, int]] = {
     "low": (30, 44),
@@ -149,6 +155,35 @@ class Video:
         return path
 
 
+@dataclass(frozen=True)
+class VideoFile:
+    """The sink of a series that is a video: each picture is encoded as it is drawn.
+
+    See ``Video`` for what is refused, and for what is left of it when it is interrupted.
+    """
+
+    path: str | Path
+    quality: str = QUALITY
+
+    @property
+    def paths(self) -> list[Path]:
+        """The one file."""
+        return [Path(self.path)]
+
+    def check(self, series: Series) -> None:
+        """Raise ``DataError`` or ``ParameterError`` where no such video can be written."""
+        check_video(Path(self.path).expanduser(), series.size, series.fps, self.quality)
+
+    @contextmanager
+    def open(self, series: Series, notice: Callable[[str], None]) -> Iterator[Add]:
+        """Write the video; ``notice`` gets a message where it could not be checked, or alpha was dropped."""
+        with Video(self.path, series.size, series.fps, series.count, quality=self.quality) as video:
+            yield lambda picture: video.add(picture.array)
+        for note in (video.warning, alpha_note(video.dropped, series.count, "the video")):
+            if note:
+                notice(note)
+
+
 def has_alpha(picture: NDArray[np.uint8]) -> bool:
     """Return whether a picture, (height, width, 3 or 4) bytes, is not opaque somewhere."""
     return picture.shape[2] == 4 and bool((picture[..., 3] < 255).any())
@@ -209,3 +244,33 @@ def _codec(ending: str, quality: str) -> Codec:
         speed = {"row-mt": "1", "deadline": "good", "cpu-used": "3"}
         return Codec("webm", "libvpx-vp9", "yuv420p", {"crf": str(vp9), "b": "0"} | speed)
     return Codec("gif", "gif", "pal8", {})
+
+
+def render_video(
+    sketch: Sketch | str | Path,
+    path: str | Path,
+    *,
+    seconds: float | None = None,
+    fps: float | Fraction = FPS,
+    size: tuple[int, int] = DEFAULT_SIZE,
+    start: float = 0.0,
+    quality: str = QUALITY,
+    engine: Engine | None = None,
+) -> Path:
+    """Render a sketch as a video: ``.mp4`` (H.264), ``.webm`` (VP9) or ``.gif``, by the path's ending.
+
+    ``seconds`` long, to its last keyframe unless given, from ``start``; ``size`` in pixels,
+    both sides even but for ``.gif``; ``quality`` "low", "medium", "high" or "best". Without
+    an ``engine`` one is opened. Needs the extra ``video`` or the program ``ffmpeg`` on PATH.
+    A warning says where all pictures are the same, and where alpha was dropped.
+    ``path`` is returned; a file of that name is replaced at the end. ``sketch`` is a loaded one, or
+    what ``load`` takes; ``fps`` is pictures a second.
+
+        playground.render_video("l_dot_n", "land.mp4", seconds=0.2, fps=10, size=(64, 36))
+
+    Raises ``PlaygroundError`` in a message.
+    """
+    series = Series.at_times(sketch, seconds=seconds, fps=fps, size=size, start=start)
+    with engine_or_own(engine) as used:
+        write_series(used, series, VideoFile(path, quality), notice=warn)
+    return Path(path)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from playground.commands.arguments import Moment, Renderer, output_file, read_option
 from playground.errors import ParameterError, counted
@@ -16,14 +16,13 @@ from playground.sketch.model import DEFAULT_PICTURE
 from playground.terminal import note, progress
 
 if TYPE_CHECKING:
-    from playground.engine.engine import Engine
+    from playground.capture.series import Series, Sink
 
-SWEEP_FPS = Fraction(4)
 _FRAMES = re.compile(r"(\d{1,7})(?:\.\.(\d{1,7}))?")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Series:
+class SeriesOptions:
     """What ``render`` is to make besides one picture; "" and None where it is not."""
 
     video: str = ""
@@ -65,31 +64,73 @@ class Series:
 
 @dataclass(frozen=True, slots=True)
 class SeriesJob:
-    """A series, of which moment of a sketch it is, and where and by what it is drawn."""
+    """A series of a moment of a sketch, where it is written, and by what it is drawn."""
 
-    series: Series
+    options: SeriesOptions
     moment: Moment
     output: str
     size: tuple[int, int] | None
     renderer: Renderer
     driver: str
 
-    @contextmanager
-    def drawing(self, verb: str, total: int) -> Iterator[tuple[Engine, Callable[[], None]]]:
-        """Open the engine, and show the progress of so many pictures."""
+    def make(self) -> None:
+        """Make a video, numbered pictures or a sheet, and print the paths of what was written."""
+        from playground.capture.series import write_series
+
+        series, options = self._series(), self.options
+        verb = "sweeping" if options.sweeps else "drawing" if options.frames else "filming"
         with (
+            self._sink(series) as sink,
             self.renderer.open_engine(driver=self.driver) as engine,
-            progress(f"{verb} {self.moment.sketch.name}", total) as done,
+            progress(f"{verb} {series.sketch.name}", len(options.frames or range(series.count))) as done,
+            _noting_stop(),
         ):
-            yield engine, done
+            write_series(engine, series, sink, numbers=options.frames, done=done, notice=note)
+        for path in sink.paths:
+            print(path)
 
-    def check_video(self, pixels: tuple[int, int], fps: Fraction) -> str:
-        """Return the quality of the video; raise where none can be written like that."""
-        from playground.capture.video import QUALITY, check_video
+    def _series(self) -> Series:
+        """Return what is drawn; raise ``ParameterError`` for what cannot be."""
+        from playground.capture.series import FPS, SWEEP_FPS, SWEEP_SIZE, Series
+        from playground.capture.sweep import DEFAULT_STEPS
 
-        quality = self.series.quality or QUALITY
-        check_video(Path(self.series.video).expanduser(), pixels, fps, quality)
-        return quality
+        options, moment = self.options, self.moment
+        if options.sweeps:
+            if moment.steps:
+                raise ParameterError("--steps is for one picture or a film by time, not for a sweep")
+            return Series.of_values(
+                moment.sketch,
+                options.sweeps,
+                steps=options.steps or DEFAULT_STEPS,
+                fps=options.fps or Fraction(SWEEP_FPS),
+                size=self.size or (DEFAULT_PICTURE if options.video else SWEEP_SIZE),
+                time=moment.time,
+            )
+        size, fps = self.size or moment.size or DEFAULT_PICTURE, options.fps or Fraction(FPS)
+        at: dict[str, Any] = {"fps": fps, "size": size, "start": moment.time, "steps": moment.steps}
+        if options.frames is not None:
+            return Series(sketch=moment.sketch, count=options.frames[-1] + 1, **at)
+        return Series.at_times(moment.sketch, seconds=options.seconds, **at)
+
+    @contextmanager
+    def _sink(self, series: Series) -> Iterator[Sink]:
+        """Return what the series is written into; refuse what could not be written."""
+        from playground.capture.sequence import NumberedFiles, check_pattern
+        from playground.capture.sheet import Sheet
+        from playground.capture.video import QUALITY, VideoFile
+
+        options, name = self.options, self.moment.sketch.name
+        if options.video:
+            video = VideoFile(options.video, options.quality or QUALITY)
+            video.check(series)
+            yield video
+        elif options.frames is not None:
+            pattern = _pattern(self.output, name)
+            check_pattern(pattern)
+            yield NumberedFiles(pattern, options.resume)
+        else:
+            with output_file(self.output, f"{name}-sweep.png", (".png",), "a sheet is") as path:
+                yield Sheet(path)
 
 
 def read_fps(text: str) -> Fraction | None:
@@ -111,91 +152,6 @@ def read_frames(text: str) -> range | None:
         return numbers or None
 
     return read_option("--frames", text, read, "FIRST..LAST, as 0..299")
-
-
-def make_series(job: SeriesJob) -> None:
-    """Make a video, numbered pictures or a sheet, and print the paths of what was written."""
-    if job.series.sweeps:
-        _make_sweep(job)
-    elif job.series.frames is not None:
-        _make_frames(job, job.series.frames)
-    else:
-        _make_video(job)
-
-
-def _make_frames(job: SeriesJob, numbers: range) -> None:
-    from playground.capture.film import FPS, Film
-    from playground.capture.sequence import check_pattern, write_sequence
-
-    moment = job.moment
-    pattern = _pattern(job.output, moment.sketch.name)
-    check_pattern(pattern)
-    pixels = job.size or moment.size or DEFAULT_PICTURE
-    fps = job.series.fps or Fraction(FPS)
-    film = Film(
-        sketch=moment.sketch,
-        count=numbers[-1] + 1,
-        fps=fps,
-        size=pixels,
-        start=moment.time,
-        steps=moment.steps,
-    )
-    if film.still:
-        note(film.still)
-    with job.drawing("drawing", len(numbers)) as (engine, done):
-        sequence = write_sequence(engine, film, pattern, numbers=numbers, resume=job.series.resume, done=done)
-    if sequence.kept:
-        note(f"{counted(len(sequence.kept), 'picture')} kept, {len(sequence.drawn)} drawn")
-    for path in sorted(sequence.drawn + sequence.kept):
-        print(path)
-
-
-def _make_video(job: SeriesJob) -> None:
-    from playground.capture.film import FPS, film_of, write_film
-
-    series, moment = job.series, job.moment
-    pixels, fps = job.size or moment.size or DEFAULT_PICTURE, series.fps or Fraction(FPS)
-    film = film_of(
-        moment.sketch, seconds=series.seconds, fps=fps, size=pixels, start=moment.time, steps=moment.steps
-    )
-    quality = job.check_video(pixels, fps)
-    with job.drawing("filming", film.count) as (engine, done), _noting_stop():
-        print(write_film(engine, film, series.video, quality=quality, done=done, notice=note))
-
-
-def _make_sweep(job: SeriesJob) -> None:
-    from playground.capture import sheet, sweep
-
-    series, moment = job.series, job.moment
-    sketch = moment.sketch.at(moment.time)
-    if moment.steps:
-        raise ParameterError("--steps is for one picture or a film by time, not for a sweep")
-    sweeps = [sweep.read_sweep(sketch, text, series.steps or sweep.DEFAULT_STEPS) for text in series.sweeps]
-    rows = sweep.swept(sketch, sweeps)
-    count = sum(map(len, rows))
-    if series.video:
-        pixels, fps = job.size or DEFAULT_PICTURE, series.fps or SWEEP_FPS
-        quality = job.check_video(pixels, fps)
-        with job.drawing("sweeping", count) as (engine, done), _noting_stop():
-            path = sheet.write_sweep_film(
-                engine,
-                rows,
-                series.video,
-                fps=fps,
-                size=pixels,
-                time=moment.time,
-                quality=quality,
-                done=done,
-                notice=note,
-            )
-            print(path)
-        return
-    with (
-        output_file(job.output, f"{sketch.name}-sweep.png", (".png",), "a sheet is") as path,
-        job.drawing("sweeping", count) as (engine, done),
-    ):
-        size = job.size or sheet.DEFAULT_SIZE
-        print(sheet.write_sheet(engine, rows, path, size=size, time=moment.time, done=done, notice=note))
 
 
 def _pattern(output: str, name: str) -> str:

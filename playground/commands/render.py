@@ -26,7 +26,7 @@ from playground.commands.arguments import (
     read_values,
     within,
 )
-from playground.commands.film import Series, SeriesJob, make_series, read_fps, read_frames
+from playground.commands.film import SeriesJob, SeriesOptions, read_fps, read_frames
 from playground.commands.options import flag, value
 from playground.commands.standard_input import kept
 from playground.commands.standard_output import check_standard_output
@@ -149,7 +149,7 @@ def render(
     """Render a sketch to a file and print its path."""
     from playground.sketch.load import load
 
-    series = Series(
+    series = SeriesOptions(
         video=video,
         seconds=read_option("--seconds", seconds, within(1e-6, 1e7), "a number above 0, as 10"),
         fps=read_fps(fps),
@@ -186,7 +186,7 @@ def render(
         moment = replace(moment, sketch=moment.sketch.with_picture(supersample=times))
     if series.many:
         _note_hidden_defaults(moment.sketch)
-        make_series(SeriesJob(series, moment, output, pixels, renderer, runs_by))
+        SeriesJob(series, moment, output, pixels, renderer, runs_by).make()
     else:
         chosen = pixels or moment.size or DEFAULT_PICTURE
         write_output(moment, Output(output, chosen, texture, profile, runs_by), renderer)

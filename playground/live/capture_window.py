@@ -5,6 +5,7 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 
 from playground.capture.job import FILM, KINDS, PICTURE, PICTURES, SHEET, JobProcess
+from playground.capture.sweep import parts_of, sweep_text
 from playground.capture.video import QUALITIES
 from playground.data.image_files import VIDEO_ENDINGS
 from playground.live import theme
@@ -12,14 +13,7 @@ from playground.live.draw import POPUP_COLOUR, QUIET, button, choose, disabled, 
 from playground.live.panel_rows import row
 from playground.live.theme import Theme
 from playground.paths import shown
-from playground.workbench.captures import (
-    MULTIPLES,
-    Captures,
-    CaptureSettings,
-    open_folder,
-    parts_of,
-    sweep_text,
-)
+from playground.workbench.captures import MULTIPLES, Captures, CaptureSettings, open_folder
 from playground.workbench.edits import Draft
 from playground.workbench.parameter_list import Listing
 

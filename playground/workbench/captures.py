@@ -16,19 +16,16 @@ from fractions import Fraction
 from pathlib import Path
 
 from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, CaptureJob, JobProcess
-from playground.capture.sheet import DEFAULT_SIZE
-from playground.capture.sweep import read_sweep, swept
+from playground.capture.series import SWEEP_SIZE, Series
 from playground.capture.video import QUALITY, check_video
 from playground.errors import DataError, ParameterError, PlaygroundError, counted
 from playground.paths import shown
-from playground.shader.parameter import components, is_whole
-from playground.sketch.model import MAX_PICTURE_SIDE, MAX_SIDE, Parameter, Sketch
+from playground.sketch.model import MAX_PICTURE_SIDE, MAX_SIDE, Sketch
 from playground.workbench.notices import Notices
 from playground.workbench.session import Session
 from playground.workbench.snapshot import save_new
 
 MULTIPLES = (1, 2, 4, 8)
-_TURN = {"azimuth": (0.0, 350.0), "elevation": (5.0, 60.0)}
 
 
 @dataclass
@@ -129,7 +126,7 @@ class Captures:
         capture_settings, picture = self.capture_settings, self.session.picture.texture
         width, height = picture.size if picture is not None else (0, 0)
         if capture_settings.kind == SHEET and capture_settings.multiple:
-            scale = DEFAULT_SIZE[0] * capture_settings.multiple / max(width, 1)
+            scale = SWEEP_SIZE[0] * capture_settings.multiple / max(width, 1)
             return max(round(width * scale), 1), max(round(height * scale), 1)
         size = (
             (width * capture_settings.multiple, height * capture_settings.multiple)
@@ -162,8 +159,7 @@ class Captures:
         if capture_settings.kind == SHEET:
             if not sweeps:
                 raise ParameterError("choose a parameter to sweep, or write one, as light.gain=0.5..3")
-            at = sketch.at(start)
-            swept(at, [read_sweep(at, text) for text in sweeps])
+            Series.of_values(sketch, sweeps, time=start)
             if steps:
                 raise ParameterError("a sheet runs every repeat to its end; set the steps back to all")
         return CaptureJob(
@@ -196,31 +192,6 @@ def seconds_of(capture_settings: CaptureSettings, sketch: Sketch) -> float:
     """Return how long a film is [s]: as long as is wished, else to its last keyframe, else ten."""
     left = sketch.duration - capture_settings.start
     return capture_settings.seconds if capture_settings.seconds > 0.0 else left if left > 0.0 else 10.0
-
-
-def sweep_text(path: str, parameter: Parameter, part: str = "") -> str:
-    """Return a sweep of a parameter, or of a part of it, over its range."""
-    axis = parts_of(parameter).index(part) if part else 0
-    low, high = _TURN.get(part, parameter.widget.ends(axis))
-    default = parameter.default
-    if low is None or high is None:
-        number = float(default) if isinstance(default, int | float) else 1.0
-        low, high = 0.0, 2.0 * abs(number) or 1.0
-    if parameter.widget.kind == "menu":
-        return f"{path}={','.join(parameter.widget.choices)}"
-    if parameter.type == "bool":
-        return f"{path}=false,true"
-    where = f"{path}.{part}" if part else path
-    if is_whole(parameter.type):
-        return f"{where}={round(low)}..{round(high)},{min(round(high) - round(low) + 1, 9)}"
-    return f"{where}={low:g}..{high:g},9"
-
-
-def parts_of(parameter: Parameter) -> tuple[str, ...]:
-    """Return the parts that a parameter is swept by, ("",) for one number, () for what cannot be."""
-    if parameter.type == "sampler2D" or parameter.widget.kind == "file":
-        return ()
-    return components(parameter) or ("",)
 
 
 def open_folder(path: Path) -> str:

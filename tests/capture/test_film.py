@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 import playground.capture.video as video_module
-from playground.capture.film import Film, film_of, frames, render_video, write_film
-from playground.capture.sequence import render_sequence, write_sequence
-from playground.capture.video import QUALITIES, Stopped, Video, count_pictures
+from playground.capture.sequence import NumberedFiles, render_sequence
+from playground.capture.series import Series, write_series
+from playground.capture.video import QUALITIES, Stopped, Video, VideoFile, count_pictures, render_video
 from playground.data.image_files import read_png, write_png
 from playground.engine.engine import Engine
 from playground.errors import ContextError, DataError, ParameterError, PlaygroundWarning
@@ -24,6 +24,7 @@ from playground.extras import install_command
 
 from ..loading import load
 from ..sketch_texts import LIT_NOISE, SMALL_VIEW
+from .series import Arrays, pictures
 
 av = pytest.importorskip("av")
 
@@ -81,8 +82,8 @@ def decoded(path: Path) -> np.ndarray:
 
 
 def test_a_picture_is_that_of_its_number(any_engine: Engine, clock):
-    film = film_of(clock, seconds=0.5, fps=20, size=(4, 2), start=1.0)
-    result = np.stack(list(frames(any_engine, film)))[:, 0, 0]
+    film = Series.at_times(clock, seconds=0.5, fps=20, size=(4, 2), start=1.0)
+    result = np.stack(pictures(any_engine, film))[:, 0, 0]
     times = 1.0 + np.arange(10) / 20
     np.testing.assert_allclose(result[:, 0] / 255, times / 10, atol=0.5 / 255)
     np.testing.assert_array_equal(result[:, 1], 60 + 3 * np.arange(10))
@@ -91,9 +92,9 @@ def test_a_picture_is_that_of_its_number(any_engine: Engine, clock):
 
 
 def test_keyframes_move_what_a_film_shows(any_engine: Engine, keyed):
-    film = film_of(keyed, fps=10, size=(64, 36))
+    film = Series.at_times(keyed, fps=10, size=(64, 36))
     assert film.count == 4, "to the last keyframe"
-    result = list(frames(any_engine, film))
+    result = pictures(any_engine, film)
     for number, picture in enumerate(result):
         alone = any_engine.render(keyed.at(film.time(number)), size=(64, 36))
         np.testing.assert_array_equal(picture, alone.array)
@@ -101,34 +102,37 @@ def test_keyframes_move_what_a_film_shows(any_engine: Engine, keyed):
 
 
 def test_how_long_a_film_is(clock, keyed):
-    assert film_of(clock, seconds=2, fps=Fraction(30000, 1001)).count == 60
-    assert film_of(clock, seconds=2, fps=29.97).fps == Fraction(2997, 100)
+    assert Series.at_times(clock, seconds=2, fps=Fraction(30000, 1001)).count == 60
+    assert Series.at_times(clock, seconds=2, fps=29.97).fps == Fraction(2997, 100)
     with pytest.raises(ParameterError, match="how long"):
-        film_of(clock)
+        Series.at_times(clock)
     with pytest.raises(ParameterError, match="no keyframe after 9 s"):
-        film_of(keyed, start=9.0)
+        Series.at_times(keyed, start=9.0)
     with pytest.raises(ParameterError, match="expected 1 to"):
-        film_of(clock, seconds=0.001)
+        Series.at_times(clock, seconds=0.001)
     with pytest.raises(ParameterError, match="pictures a second"):
-        film_of(clock, seconds=1, fps=0.0)
+        Series.at_times(clock, seconds=1, fps=0.0)
 
 
 @pytest.mark.slow
 def test_a_thousand_pictures_leave_as_many_objects_as_ten(any_engine: Engine, keyed, alive: Counter[str]):
-    film = Film(sketch=keyed, count=10, fps=Fraction(25), size=(32, 18))
-    list(frames(any_engine, film))
+    film = Series(sketch=keyed, count=10, fps=Fraction(25), size=(32, 18))
+    pictures(any_engine, film)
     before, cached = Counter(alive), any_engine.cache.bytes
-    for number, _ in enumerate(
-        frames(any_engine, Film(sketch=keyed, count=1000, fps=Fraction(2500), size=(32, 18)))
-    ):
-        assert number % 100 or alive == before
+    film = Series(sketch=keyed, count=1000, fps=Fraction(2500), size=(32, 18))
+    sink = Arrays()
+
+    def done() -> None:
+        assert len(sink.arrays) % 100 or alive == before
+
+    write_series(any_engine, film, sink, done=done)
     assert alive == before and any_engine.cache.bytes == cached
 
 
 def test_pictures_leave_no_objects(any_engine: Engine, keyed, alive: Counter[str]):
-    list(frames(any_engine, Film(sketch=keyed, count=5, fps=Fraction(25), size=(32, 18))))
+    pictures(any_engine, Series(sketch=keyed, count=5, fps=Fraction(25), size=(32, 18)))
     before, cached = Counter(alive), any_engine.cache.bytes
-    list(frames(any_engine, Film(sketch=keyed, count=60, fps=Fraction(150), size=(32, 18))))
+    pictures(any_engine, Series(sketch=keyed, count=60, fps=Fraction(150), size=(32, 18)))
     assert alive == before and any_engine.cache.bytes == cached
 
 
@@ -203,9 +207,9 @@ def test_an_interrupted_video_is_a_shorter_one(any_engine: Engine, keyed, tmp_pa
         if shown["picture"] == 3:
             raise KeyboardInterrupt
 
-    film = Film(sketch=keyed, count=8, fps=Fraction(10), size=(64, 36))
+    film = Series(sketch=keyed, count=8, fps=Fraction(10), size=(64, 36))
     with pytest.raises(Stopped) as caught:
-        write_film(any_engine, film, tmp_path / "film.mp4", done=done)
+        write_series(any_engine, film, VideoFile(tmp_path / "film.mp4"), done=done)
     path = tmp_path / "film-first-3.mp4"
     assert caught.value.path == path and caught.value.count == 3
     assert decoded(path).shape == (3, 36, 64, 3)
@@ -261,12 +265,9 @@ def test_a_film_that_cannot_be_read_back_is_not_lost(
 
     monkeypatch.setattr(video_module, "count_pictures", fails)
     messages: list[str] = []
-    path = write_film(
-        any_engine,
-        Film(sketch=keyed, count=3, fps=Fraction(10), size=(64, 36)),
-        tmp_path / "film.mp4",
-        notice=messages.append,
-    )
+    path = tmp_path / "film.mp4"
+    film = Series(sketch=keyed, count=3, fps=Fraction(10), size=(64, 36))
+    write_series(any_engine, film, VideoFile(path), notice=messages.append)
     assert decoded(path).shape == (3, 36, 64, 3)
     assert len(messages) == 1 and "was written, but could not be checked" in messages[0]
     assert [path.name for path in tmp_path.glob("*film*")] == ["film.mp4"]
@@ -388,18 +389,18 @@ def test_a_still_film_is_warned_of_before_it_is_made(any_engine: Engine, keyed, 
     """Films that move: by their text, and by keyframes between the first and the last picture."""
     still = replace(keyed, keyframes=())
     noted: list[str] = []
-    film = film_of(still, seconds=0.3, fps=10, size=(32, 18))
-    write_film(any_engine, film, tmp_path / "a.mp4", notice=noted.append)
+    film = Series.at_times(still, seconds=0.3, fps=10, size=(32, 18))
+    write_series(any_engine, film, VideoFile(tmp_path / "a.mp4"), notice=noted.append)
     pictures = decoded(tmp_path / "a.mp4")
     assert np.ptp(pictures.astype(int), axis=0).max() == 0
     assert noted == [film.still] == [f"{SENTENCE}it has no keyframes"]
     moving = (
-        film_of(clock, seconds=0.3, fps=10),
-        film_of(keyed, seconds=0.3, fps=10),
-        film_of(still, seconds=0.1, fps=10),  # of one picture
+        Series.at_times(clock, seconds=0.3, fps=10),
+        Series.at_times(keyed, seconds=0.3, fps=10),
+        Series.at_times(still, seconds=0.1, fps=10),  # of one picture
     )
     assert [each.still for each in moving] == ["", "", ""]
-    later = film_of(keyed, seconds=0.3, fps=10, start=0.5)  # after the last keyframe
+    later = Series.at_times(keyed, seconds=0.3, fps=10, start=0.5)  # after the last keyframe
     assert later.still == f"{SENTENCE}no keyframe changes anything"
     with pytest.warns(PlaygroundWarning, match="all 2 pictures are the same"):
         render_video(still, tmp_path / "b.mp4", seconds=0.1, fps=20, size=(32, 18), engine=any_engine)
@@ -421,35 +422,37 @@ def test_numbered_pictures(any_engine: Engine, keyed, tmp_path: Path):
 
 def test_good_pictures_stay_and_others_are_drawn_anew(any_engine: Engine, keyed, tmp_path: Path):
     pattern = tmp_path / "%d.png"
-    film = Film(sketch=keyed, count=6, fps=Fraction(20), size=(64, 36))
-    write_sequence(any_engine, film, pattern)
+    film = Series(sketch=keyed, count=6, fps=Fraction(20), size=(64, 36))
+    write_series(any_engine, film, NumberedFiles(pattern))
     truth = [read_png(tmp_path / f"{n}.png")[0] for n in range(6)]
     (tmp_path / "1.png").write_bytes((tmp_path / "1.png").read_bytes()[:-200])  # cut short
     write_png(tmp_path / "2.png", truth[0])  # of something else
     (tmp_path / "3.png").unlink()
     (tmp_path / "4.png").write_bytes(b"")
     before = (tmp_path / "0.png").stat().st_mtime_ns
-    sequence = write_sequence(any_engine, film, pattern, resume=True)
+    sequence = NumberedFiles(pattern, resume=True)
+    write_series(any_engine, film, sequence)
     assert [path.name for path in sequence.kept] == ["0.png", "5.png"]
     assert [path.name for path in sequence.drawn] == ["1.png", "2.png", "3.png", "4.png"]
     assert (tmp_path / "0.png").stat().st_mtime_ns == before
     for number in range(6):
         np.testing.assert_array_equal(read_png(tmp_path / f"{number}.png")[0], truth[number])
     # Another sketch or another time: no picture is the one wanted, but where nothing differs.
-    other = Film(sketch=keyed.with_values({"light.gain": 1.25}), count=6, fps=Fraction(20), size=(64, 36))
-    assert not write_sequence(any_engine, other, pattern, resume=True).kept
-    later = Film(sketch=other.sketch, count=6, fps=Fraction(20), size=(64, 36), start=0.1)
-    assert not write_sequence(any_engine, later, pattern, numbers=[0, 1], resume=True).kept
-    without = write_sequence(any_engine, other, pattern, numbers=[3], resume=False)
-    assert len(without.drawn) == 1
+    other = Series(sketch=keyed.with_values({"light.gain": 1.25}), count=6, fps=Fraction(20), size=(64, 36))
+    resumed, again = NumberedFiles(pattern, resume=True), NumberedFiles(pattern)
+    write_series(any_engine, other, resumed)
+    later = Series(sketch=other.sketch, count=6, fps=Fraction(20), size=(64, 36), start=0.1)
+    write_series(any_engine, later, resumed, numbers=[0, 1])
+    assert not resumed.kept
+    write_series(any_engine, other, again, numbers=[3])
+    assert len(again.drawn) == 1
 
 
 @pytest.mark.parametrize("pattern", ["a.png", "%d", "%d-%d.png", "%s.png", "%5.2f.png", "%d.jpg", "%d%%.png"])
 def test_a_name_without_a_number_is_refused(any_engine: Engine, keyed, tmp_path: Path, pattern: str):
     with pytest.raises(DataError, match=r"frames/%05d\.png"):
-        write_sequence(
-            any_engine, Film(sketch=keyed, count=1, fps=Fraction(1), size=(8, 8)), tmp_path / pattern
-        )
+        film = Series(sketch=keyed, count=1, fps=Fraction(1), size=(8, 8))
+        write_series(any_engine, film, NumberedFiles(tmp_path / pattern))
 
 
 def test_a_fingerprint_identifies_the_picture(any_engine: Engine, keyed):

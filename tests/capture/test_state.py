@@ -7,16 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from playground.capture.film import film_of, frames, write_film
-from playground.capture.sequence import write_sequence
-from playground.capture.sheet import pictures
-from playground.capture.sweep import read_sweep, swept
-from playground.capture.video import Video
+from playground.capture.sequence import NumberedFiles
+from playground.capture.series import Series, write_series
+from playground.capture.video import Video, VideoFile
 from playground.engine.engine import Engine
 from playground.shots.suite import render_shot, shots_of
 
 from ..loading import load
 from ..sketch_texts import map_of, passes
+from .series import pictures
 
 TRAIL = """#pragma kernel(output = "trail:r32f")
 uniform sampler2D before;    //! input("zero")
@@ -53,8 +52,8 @@ def sketch(tmp_path: Path):
 
 @pytest.mark.parametrize(("fps", "last"), [(60, 119), (24, 117), (120, 119)])
 def test_a_film_runs_each_frame_once(any_engine: Engine, sketch, fps, last):
-    film = film_of(sketch, seconds=2, fps=fps, size=SIZE)
-    result = list(frames(any_engine, film))
+    film = Series.at_times(sketch, seconds=2, fps=fps, size=SIZE)
+    result = pictures(any_engine, film)
     assert any_engine.runs["trail"] == last + 1
     with Engine(any_engine.ctx) as cold:
         for number in (0, film.count // 2, film.count - 1):
@@ -64,18 +63,19 @@ def test_a_film_runs_each_frame_once(any_engine: Engine, sketch, fps, last):
 
 
 def test_a_film_that_begins_later_runs_what_is_before_it_once(any_engine: Engine, sketch):
-    list(frames(any_engine, film_of(sketch, seconds=0.5, fps=60, size=SIZE, start=1.0)))
+    pictures(any_engine, Series.at_times(sketch, seconds=0.5, fps=60, size=SIZE, start=1.0))
     assert any_engine.runs["trail"] == 60 + 30
 
 
 @pytest.mark.slow
 def test_a_film_rendered_twice_has_the_same_bytes(ctx, sketch, tmp_path: Path):
-    film, written = film_of(sketch, seconds=1, fps=30, size=SIZE), set()
+    film, written = Series.at_times(sketch, seconds=1, fps=30, size=SIZE), set()
     for name in ("one", "two"):
         with Engine(ctx) as engine:
-            written.add(write_film(engine, film, tmp_path / f"{name}.mp4").read_bytes())
+            write_series(engine, film, VideoFile(tmp_path / f"{name}.mp4"))
+            written.add((tmp_path / f"{name}.mp4").read_bytes())
     with Engine(ctx) as engine:
-        drawn = list(frames(engine, film))
+        drawn = pictures(engine, film)
     scraps = np.random.default_rng(1)  # what lies in memory that the encoder gets
     for number in range(40):
         with Video(tmp_path / f"{number}.mp4", SIZE, film.fps, film.count) as video:
@@ -88,15 +88,17 @@ def test_a_film_rendered_twice_has_the_same_bytes(ctx, sketch, tmp_path: Path):
 
 
 def test_a_sequence_runs_each_frame_once_and_goes_on_where_it_stopped(any_engine: Engine, sketch, tmp_path):
-    film, pattern = film_of(sketch, seconds=1, fps=30, size=SIZE), tmp_path / "frames" / "%03d.png"
-    write_sequence(any_engine, film, pattern)
+    film, pattern = Series.at_times(sketch, seconds=1, fps=30, size=SIZE), tmp_path / "frames" / "%03d.png"
+    write_series(any_engine, film, NumberedFiles(pattern))
     assert any_engine.runs["trail"] == 59
     files = sorted((tmp_path / "frames").iterdir())
     first = [file.read_bytes() for file in files]
     for file in files[20:]:
         file.unlink()
     with Engine(any_engine.ctx) as cold:
-        assert len(write_sequence(cold, film, pattern, resume=True).kept) == 20
+        sink = NumberedFiles(pattern, resume=True)
+        write_series(cold, film, sink)
+        assert len(sink.kept) == 20
         assert cold.runs["trail"] == 59, "the frames before those that are missing run once as well"
     assert [file.read_bytes() for file in files] == first
 
@@ -110,10 +112,10 @@ def test_shots_in_the_order_of_their_times_go_on(any_engine: Engine, sketch):
 
 
 def test_a_sheet_of_what_the_state_does_not_depend_on_runs_it_once(any_engine: Engine, sketch):
-    rows = swept(sketch, [read_sweep(sketch, "gain.gain=0.5,1,2", 3)])
-    assert len(list(pictures(any_engine, rows, SIZE, time=1.0))) == 3
+    sheet = Series.of_values(sketch, ["gain.gain=0.5,1,2"], size=SIZE, time=1.0)
+    assert len(pictures(any_engine, sheet)) == 3
     assert any_engine.runs["trail"] == 61
-    rows = swept(sketch, [read_sweep(sketch, "trail.fade=0.05,0.2", 2)])
-    first, other = pictures(any_engine, rows, SIZE, time=1.0)
+    sheet = Series.of_values(sketch, ["trail.fade=0.05,0.2"], size=SIZE, time=1.0)
+    first, other = pictures(any_engine, sheet)
     assert (first != other).any()
     assert any_engine.runs["trail"] == 3 * 61, "with another value, each frame is another"

@@ -8,14 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from playground.capture.sheet import pictures, render_sweep, sheet, write_sheet, write_sweep_film
-from playground.capture.sweep import columns_of, read_sweep, swept
+from playground.capture.series import Series, write_series
+from playground.capture.sheet import Paper, Sheet, render_sweep
+from playground.capture.sweep import columns_of, read_sweep
 from playground.data.image_files import read_png
 from playground.engine.engine import Engine
 from playground.errors import ParameterError
 
 from ..loading import load
 from ..sketch_texts import LIT_NOISE, SMALL_VIEW
+from .series import pictures
 
 SKETCH = "format = 1\nsize = 33\n" + LIT_NOISE + SMALL_VIEW
 
@@ -46,18 +48,18 @@ def test_what_a_sweep_says(sketch):
 
 def test_a_part_of_a_vector_leaves_the_rest(sketch):
     started = sketch.with_values({"light.sun": (200.0, 40.0)})
-    rows = swept(started, [read_sweep(started, "light.sun.elevation=5,60")])
-    overrides = [dict(item.sketch.overrides)["light.sun"] for row in rows for item in row]
+    column = Series.of_values(started, ["light.sun.elevation=5,60"])
+    overrides = [dict(case.sketch.overrides)["light.sun"] for case in column.cases]
     assert overrides == [(200.0, 5.0), (200.0, 60.0)]
-    both = swept(
-        started,
-        [read_sweep(started, "light.sun.elevation=5,60"), read_sweep(started, "light.sun.azimuth=0,90")],
-    )
-    assert [[dict(item.sketch.overrides)["light.sun"] for item in row] for row in both] == [
-        [(0.0, 5.0), (0.0, 60.0)],
-        [(90.0, 5.0), (90.0, 60.0)],
+    grid = Series.of_values(started, ["light.sun.elevation=5,60", "light.sun.azimuth=0,90"])
+    assert grid.columns == 2
+    assert [dict(case.sketch.overrides)["light.sun"] for case in grid.cases] == [
+        (0.0, 5.0),
+        (0.0, 60.0),
+        (90.0, 5.0),
+        (90.0, 60.0),
     ]
-    assert both[1][0].caption == ("light.sun.elevation = 5", "light.sun.azimuth = 90")
+    assert grid.cases[2].caption == ("light.sun.elevation = 5", "light.sun.azimuth = 90")
 
 
 @pytest.mark.parametrize(
@@ -86,24 +88,24 @@ def test_columns(count, columns):
 )
 def test_a_mistake_is_one_sentence(sketch, text, message):
     with pytest.raises(ParameterError) as caught:
-        swept(sketch, [read_sweep(sketch, text)])
+        Series.of_values(sketch, [text])
     assert message in str(caught.value) and "\n" not in str(caught.value)
 
 
 def test_too_many(sketch):
-    first, other = read_sweep(sketch, "light.gain=1..2,21"), read_sweep(sketch, "view.haze=0..1,20")
+    first, other = "light.gain=1..2,21", "view.haze=0..1,20"
     with pytest.raises(ParameterError, match="420 pictures are more than the 400"):
-        swept(sketch, [first, other])
+        Series.of_values(sketch, [first, other])
     with pytest.raises(ParameterError, match="expected two parameters"):
-        swept(sketch, [first, first])
+        Series.of_values(sketch, [first, first])
     with pytest.raises(ParameterError, match="3 sweeps"):
-        swept(sketch, [first, other, first])
+        Series.of_values(sketch, [first, other, first])
 
 
 def test_a_sheet_holds_the_pictures_and_words_below_them(any_engine: Engine, sketch, tmp_path: Path):
-    rows = swept(sketch, [read_sweep(sketch, "light.gain=1,2,3,4")])
-    path = write_sheet(any_engine, rows, tmp_path / "sheet.png", size=(160, 90))
-    png = read_png(path)[0][..., :3]
+    series = Series.of_values(sketch, ["light.gain=1,2,3,4"], size=(160, 90))
+    write_series(any_engine, series, Sheet(tmp_path / "sheet.png"))
+    png = read_png(tmp_path / "sheet.png")[0][..., :3]
     pitch = 90 + (png.shape[0] - 8) // 2 - 90
     assert png.shape[1] == 2 * (160 + 8) + 8
     for number, value in enumerate((1.0, 2.0, 3.0, 4.0)):
@@ -118,26 +120,25 @@ def test_a_sheet_holds_the_pictures_and_words_below_them(any_engine: Engine, ske
 
 
 def test_small_pictures_have_legible_words(sketch):
-    rows = swept(sketch, [read_sweep(sketch, "light.sun.elevation=5..60,4")])
-    grey = np.full((54, 96, 4), 128, np.uint8)
-    result = sheet(rows, iter([grey] * 4))
-    assert (result[8 + 54 : 8 + 54 + 14] > 150).any()
+    paper = Paper(Series.of_values(sketch, ["light.sun.elevation=5..60,4"], size=(96, 54)))
+    for _ in range(4):
+        paper.add(np.full((54, 96, 4), 128, np.uint8))
+    assert (paper.array[8 + 54 : 8 + 54 + 14] > 150).any()
 
 
 def test_pictures_come_in_order_and_the_terrain_is_made_once(any_engine: Engine, sketch):
-    rows = swept(sketch, [read_sweep(sketch, "light.gain=1..4,4")])
-    result = list(pictures(any_engine, rows, (32, 18)))
+    result = pictures(any_engine, Series.of_values(sketch, ["light.gain=1..4,4"], size=(32, 18)))
     means = [picture[..., :3].mean() for picture in result]
     assert means == sorted(means) and any_engine.runs["height"] == 1
 
 
 def test_a_sweep_as_a_film(any_engine: Engine, sketch, tmp_path: Path):
     pytest.importorskip("av")
-    from playground.capture.video import count_pictures
+    from playground.capture.video import VideoFile, count_pictures
 
-    rows = swept(sketch, [read_sweep(sketch, "light.gain=1..4,5")])
-    path = write_sweep_film(any_engine, rows, tmp_path / "a.mp4", fps=Fraction(4), size=(64, 36))
-    assert count_pictures(path) == (5, Fraction(4))
+    series = Series.of_values(sketch, ["light.gain=1..4,5"], size=(64, 36))
+    write_series(any_engine, series, VideoFile(tmp_path / "a.mp4"))
+    assert count_pictures(tmp_path / "a.mp4") == (5, Fraction(4))
 
 
 def test_render_sweep_needs_no_engine(sketch, tmp_path: Path):

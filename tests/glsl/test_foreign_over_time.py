@@ -10,12 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from playground.capture.film import film_of, frames
+from playground.capture.series import Series
 from playground.data import media
 from playground.engine.disk_caching import passing
 from playground.errors import ContextError, DataError, ShaderError
 from playground.extras import install_command
 from playground.sketch.traits import is_animated
+from tests.capture.series import pictures
 from tests.data.films import RATE, colour, own_film, sound, uneven_film
 
 from ..loading import load
@@ -110,8 +111,8 @@ def test_another_film_of_the_same_name_has_its_own_size(any_engine, sketch, tmp_
 
 def test_a_film_of_a_film_is_the_same_twice(any_engine, sketch, tmp_path):
     own_film(tmp_path / "v.mp4", count=12, fps=12)
-    film = film_of(sketch("video", 'video = "v.mp4"'), seconds=1.0, fps=Fraction(8), size=(32, 24))
-    first, second = list(frames(any_engine, film)), list(frames(any_engine, film))
+    film = Series.at_times(sketch("video", 'video = "v.mp4"'), seconds=1.0, fps=Fraction(8), size=(32, 24))
+    first, second = pictures(any_engine, film), pictures(any_engine, film)
     assert len(first) == 8 and all(np.array_equal(a, b) for a, b in zip(first, second, strict=True))
     assert not np.array_equal(first[0], first[4])
 

@@ -14,6 +14,7 @@ import pytest
 
 from playground.api import headless
 from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, do
+from playground.capture.sweep import parts_of, sweep_text
 from playground.data.image_files import read_png
 from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
@@ -21,7 +22,7 @@ from playground.extras import install_command
 from playground.sketch.assign import resolve
 from playground.workbench import captures as capturing
 from playground.workbench.bench import Workbench
-from playground.workbench.captures import Captures, CaptureSettings, parts_of, sweep_text
+from playground.workbench.captures import Captures, CaptureSettings
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 

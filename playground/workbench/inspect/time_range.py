@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from playground.capture.film import FPS
+from playground.capture.series import FPS
 from playground.sketch.model import Sketch
 from playground.workbench.clock import Clock
 
