@@ -14,6 +14,7 @@ from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 from playground.api import headless
 from playground.capture.large import save_picture
@@ -85,16 +86,8 @@ def do(job: CaptureJob, engine: Engine, progress: Progress, notice: Notice) -> P
     parts = _Parts(progress)
     if job.kind == PICTURE:
         with job.target() as path:
-            save_picture(
-                engine,
-                job.sketch,
-                path,
-                job.size,
-                time=job.time,
-                steps=job.steps,
-                begin=parts.begin,
-                done=parts.advance,
-            )
+            at: dict[str, Any] = {"size": job.size, "time": job.time, "steps": job.steps}
+            save_picture(engine, job.sketch, path, **at, begin=parts.begin, done=parts.advance)
         return path
     series = job.series()
     with job.target() as path:

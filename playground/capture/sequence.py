@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 
+from playground.capture.large import save_picture
 from playground.capture.series import (
     DEFAULT_SIZE,
     FPS,
@@ -36,14 +37,6 @@ MADE_OF = "Made of"
 """The text of a PNG that identifies all that its picture depends on."""
 
 _NUMBER = re.compile(r"%(0\d+)?d")
-
-
-@dataclass(frozen=True)
-class Written:
-    """The files of a sequence: those drawn now, and those that were there and stayed."""
-
-    drawn: tuple[Path, ...]
-    kept: tuple[Path, ...] = ()
 
 
 def numbered(pattern: str | Path, number: int) -> Path:
@@ -69,8 +62,8 @@ class NumberedFiles:
 
     pattern: str | Path
     resume: bool = False
-    drawn: list[Path] = field(default_factory=list)
-    kept: list[Path] = field(default_factory=list)
+    drawn: list[Path] = field(default_factory=list)  # now
+    kept: list[Path] = field(default_factory=list)  # that were there
 
     @property
     def paths(self) -> list[Path]:
@@ -91,11 +84,11 @@ class NumberedFiles:
 
     def _add(self, picture: Picture) -> None:
         path = numbered(self.pattern, picture.number)
-        made_of = picture.fingerprint()  # first, so that a mistake in the sketch is reported first
-        if self.resume and _is_good(path, picture.series.size, made_of):
+        made_of = picture.engine.fingerprint(picture.sketch, **picture.at)  # reports mistakes of the sketch
+        if self.resume and _is_good(path, picture.at["size"], made_of):
             self.kept.append(path)
         else:
-            picture.save(path, {MADE_OF: made_of})
+            save_picture(picture.engine, picture.sketch, path, **picture.at, text={MADE_OF: made_of})
             self.drawn.append(path)
 
 
@@ -119,13 +112,13 @@ def render_sequence(
     size: tuple[int, int] = DEFAULT_SIZE,
     resume: bool = False,
     engine: Engine | None = None,
-) -> Written:
+) -> NumberedFiles:
     """Render pictures ``numbers`` of a sketch as PNG files named by ``pattern``, as ``frames/%05d.png``.
 
     Picture n is that of the time n / ``fps`` seconds; ``size`` in pixels. With ``resume``
     good files stay, whose sketch, size and time are the same. Without an ``engine`` one is
-    opened. ``sketch`` is a loaded one, or what ``load`` takes. Returns the paths, those that were
-    drawn and those that stayed.
+    opened. ``sketch`` is a loaded one, or what ``load`` takes. The result has
+    the paths of those that were ``drawn`` and of those that were ``kept``.
 
         written = playground.render_sequence("l_dot_n", "frames/%05d.png", range(2), fps=10, size=(64, 36))
 
@@ -138,4 +131,4 @@ def render_sequence(
     sink = NumberedFiles(pattern, resume)
     with engine_or_own(engine) as used:
         write_series(used, series, sink, numbers=requested)
-    return Written(tuple(sink.drawn), tuple(sink.kept))
+    return sink

@@ -17,13 +17,12 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from playground.api import headless
-from playground.capture.large import save_picture
 from playground.capture.sweep import DEFAULT_STEPS, MAX_PICTURES, Swept, columns_of, combinations, read_sweep
 from playground.engine.engine import Engine
 from playground.errors import ParameterError
@@ -127,7 +126,8 @@ class Series:
     def picture(self, engine: Engine, number: int) -> Picture:
         """Return a picture, from 0, that ``engine`` draws."""
         sketch = self.cases[number].sketch if self.cases else self.sketch
-        return Picture(engine, self, number, sketch, self.time(number))
+        at = {"size": self.size, "time": self.time(number), "steps": self.steps}
+        return Picture(engine, number, sketch, at)
 
     @property
     def still(self) -> str:
@@ -150,43 +150,14 @@ class Picture:
     """One picture of a series, drawn when a sink asks for it."""
 
     engine: Engine
-    series: Series
     number: int  # from 0
     sketch: Sketch
-    time: float  # [s]
+    at: dict[str, Any]  # its size, time and steps, as ``Engine.render`` takes them
 
     @property
     def array(self) -> NDArray[np.uint8]:
         """The picture, (height, width, 4), top row first, sRGB and alpha."""
-        series = self.series
-        with self._frame_delta():
-            frame = self.engine.render(self.sketch, size=series.size, time=self.time, steps=series.steps)
-        return frame.array
-
-    def save(self, path: Path, text: Mapping[str, str]) -> None:
-        """Write it as a PNG with texts, whole or not at all, in parts where it is large."""
-        series = self.series
-        with self._frame_delta():
-            save_picture(
-                self.engine, self.sketch, path, series.size, time=self.time, steps=series.steps, text=text
-            )
-
-    def fingerprint(self) -> str:
-        """Return a hash of all that the picture depends on; raise for a mistake in the sketch."""
-        series = self.series
-        return self.engine.fingerprint(self.sketch, size=series.size, time=self.time, steps=series.steps)
-
-    @contextmanager
-    def _frame_delta(self) -> Iterator[None]:
-        """Set the time between two pictures of a film for plain shaders, in the block."""
-        runner = self.engine.runner
-        before = runner.delta
-        if not self.series.cases:
-            runner.delta = float(1 / self.series.fps)
-        try:
-            yield
-        finally:
-            runner.delta = before
+        return self.engine.render(self.sketch, **self.at).array
 
 
 class Sink(Protocol):
@@ -224,11 +195,22 @@ def write_series(
     """
     if series.still:
         notice(series.still)
-    with sink.open(series, notice) as add:
+    with sink.open(series, notice) as add, _frame_delta(engine, series):
         for number in range(series.count) if numbers is None else numbers:
             add(series.picture(engine, number))
             engine.forget_unused()
             done()
+
+
+@contextmanager
+def _frame_delta(engine: Engine, series: Series) -> Iterator[None]:
+    """Set the time between two pictures of a film for plain shaders, in the block."""
+    before = engine.runner.delta
+    engine.runner.delta = before if series.cases else float(1 / series.fps)
+    try:
+        yield
+    finally:
+        engine.runner.delta = before
 
 
 def rate_of(fps: float | Fraction) -> Fraction:

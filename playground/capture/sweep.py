@@ -21,6 +21,7 @@ from playground.sketch.model import Parameter, Sketch, Value
 DEFAULT_STEPS = 9
 MAX_PICTURES = 400
 _TURN = {"azimuth": (0.0, 350.0), "elevation": (5.0, 60.0)}  # [degrees] usual ranges
+_Target = tuple[str, int | None, Parameter | None]
 
 
 @dataclass(frozen=True)
@@ -30,16 +31,28 @@ class Sweep:
     path: str  # as it was written, with the part
     parameter: str  # path of the parameter
     part: int | None  # which number of a vector; None: all of it
+    declared: Parameter | None  # the parameter; None: a number of the terrain's own
     values: tuple[Value, ...]
     labels: tuple[str, ...]  # each value as text
-    parts: tuple[str, ...] = ()  # what the numbers of a whole vector are called
-    unit: str = ""
-    texts: bool = False  # the values are paths of files, or numbers of a menu's choices
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """What the numbers of a whole vector are called."""
+        if self.part is not None or not isinstance(self.values[0], tuple):
+            return ()
+        return ("x", "y") if self.declared is None else components(self.declared)
+
+    @property
+    def unit(self) -> str:
+        """The unit of its values, "" for none."""
+        metres = self.path in ("relief", "base_elevation")
+        return self.declared.unit if self.declared is not None else "m" if metres else ""
 
     @property
     def is_plain(self) -> bool:
         """Whether its values are numbers or truth values, and mean what they are."""
-        return not self.parts and not self.texts
+        texts = self.declared is not None and self.declared.widget.kind in ("menu", "file")
+        return not self.parts and not texts
 
 
 @dataclass(frozen=True)
@@ -59,54 +72,45 @@ def read_sweep(sketch: Sketch, text: str, steps: int = DEFAULT_STEPS) -> Sweep:
     path, equals, text_range = (each.strip() for each in text.partition("="))
     if not equals or not path or not text_range:
         raise ParameterError(f"sweep {text}: expected PATH=FROM..TO, as light.gain=0.5..3, or PATH=1,2,4")
-    whole_path, part, parameter = _target(sketch, path)
+    _, part, parameter = target = _target(sketch, path)
     try:
-        raw: list[object]
         if ".." in text_range:
-            raw = _range(text_range, steps, parameter, part)
-        else:
-            vector = parameter is not None and part is None and length_of(parameter.type) > 1
-            raw = [each.strip() for each in text_range.split(";" if vector or ";" in text_range else ",")]
-        values, labels = [], []
-        for each in raw:
-            value = _value(sketch, whole_path, part, parameter, each)
-            if value not in values:  # a range of whole numbers may have more steps than numbers
-                values.append(value)
-                labels.append(_label(parameter, part, value))
+            return _sweep(sketch, path, target, _range(text_range, steps, parameter, part))
+        vector = parameter is not None and part is None and length_of(parameter.type) > 1
+        values = text_range.split(";" if vector or ";" in text_range else ",")
+        return _sweep(sketch, path, target, map(str.strip, values))
     except ParameterError as error:
         raise ParameterError(f"sweep {text}: {error.diagnostics[0].message}") from None
-    return Sweep(path, whole_path, part, tuple(values), tuple(labels))
 
 
 def sweep_of(sketch: Sketch, path: str, arguments: object) -> Sweep:
     """Return a sweep of values that Python has, or that a text says; raise ``ParameterError``."""
     if isinstance(arguments, str):
-        sweep = read_sweep(sketch, f"{path}={arguments}")
-        whole_path, part, parameter = _target(sketch, path)
-        values, labels = list(sweep.values), list(sweep.labels)
-    else:
-        whole_path, part, parameter = _target(sketch, path)
-        if not isinstance(arguments, Iterable) or isinstance(arguments, Mapping):
-            raise ParameterError(f"sweep {path}: expected its values, as [1, 2, 4]; found {arguments!r}")
-        values, labels = [], []
-        for each in arguments:
-            value = _value(sketch, whole_path, part, parameter, each)
-            if value in values:
-                raise ParameterError(f"sweep {path}: {_label(parameter, part, value)} is there twice")
-            values.append(value)
-            labels.append(_label(parameter, part, value))
-    if not values:
+        return read_sweep(sketch, f"{path}={arguments}")
+    target = _target(sketch, path)
+    if not isinstance(arguments, Iterable) or isinstance(arguments, Mapping):
+        raise ParameterError(f"sweep {path}: expected its values, as [1, 2, 4]; found {arguments!r}")
+    sweep = _sweep(sketch, path, target, arguments, unique=True)
+    if not sweep.values:
         raise ParameterError(f"sweep {path}: expected one value or more; there is none")
-    names: tuple[str, ...] = ()
-    if part is None and isinstance(values[0], tuple):
-        names = ("x", "y") if parameter is None else components(parameter)
-    kind = parameter.widget.kind if parameter is not None else ""
-    unit = parameter.unit if parameter is not None else {"relief": "m", "base_elevation": "m"}.get(path, "")
-    texts = kind in ("menu", "file")
-    return Sweep(path, whole_path, part, tuple(values), tuple(labels), names, unit, texts)
+    return sweep
 
 
-def _target(sketch: Sketch, path: str) -> tuple[str, int | None, Parameter | None]:
+def _sweep(
+    sketch: Sketch, path: str, target: _Target, values: Iterable[object], *, unique: bool = False
+) -> Sweep:
+    """Return a sweep of values as they are written; one that is there twice is left out, or refused."""
+    whole_path, part, parameter = target
+    labels: dict[Value, str] = {}
+    for each in values:
+        value = _value(sketch, whole_path, part, parameter, each)
+        if value in labels and unique:
+            raise ParameterError(f"sweep {path}: {labels[value]} is there twice")
+        labels.setdefault(value, _label(parameter, part, value))
+    return Sweep(path, whole_path, part, parameter, tuple(labels), tuple(labels.values()))
+
+
+def _target(sketch: Sketch, path: str) -> _Target:
     """Return the parameter that a path names, and which of its numbers; raise ``ParameterError``."""
     if path in TERRAIN_KEYS:
         return path, None, None
