@@ -13,7 +13,7 @@ from playground.live.sliders import slide
 from playground.workbench.brush import ERASER, TOOLS, Brush
 from playground.workbench.painting import MAX_RADIUS, MIN_RADIUS, Painting
 
-_LAYERS = {0: "the first", 1: "the second", 2: "the third", 3: "the fourth", ERASER: "none: erase"}
+_CHANNELS = {0: "the first", 1: "the second", 2: "the third", 3: "the fourth", ERASER: "none: erase"}
 
 
 def draw_paintbox(painting: Painting) -> None:
@@ -32,7 +32,7 @@ def draw_paintbox(painting: Painting) -> None:
             target = choose("##target", painting.target, painting.targets, painting.target, name=str)
             if target is not None:
                 painting.choose(target)
-    brush = _with_tool(painting) if painting.sculpts else _with_layer(painting.brush)
+    brush = _with_tool(painting) if painting.sculpts else _with_channel(painting.brush)
     widths = MIN_RADIUS * painting.side, MAX_RADIUS * painting.side
     for name, note, ends, form in (
         ("radius", "The brush's, on the ground", widths, "%.0f m"),
@@ -45,23 +45,25 @@ def draw_paintbox(painting: Painting) -> None:
             changed: dict[str, Any] = {name: value}
             brush = replace(brush, **changed)
     painting.brush = brush
-    canvas = painting.canvas
-    undoes, redoes = (canvas.can_undo, canvas.can_redo) if canvas is not None else (False, False)
+    layer = painting.layer
+    undoes, redoes = (layer.can_undo, layer.can_redo) if layer is not None else (False, False)
     buttons(
         ("Undo stroke", "Ctrl+Z, while painting", painting.undo, undoes),
         ("Redo stroke", "Ctrl+Shift+Z or Ctrl+Y, while painting", painting.redo, redoes),
         ("Clear", "Remove all paint; that can be undone", painting.clear, True),
     )
-    if canvas is not None:
-        imgui.text_disabled(canvas.path.name)
-        imgui.set_item_tooltip(str(canvas.path))
+    if layer is not None:
+        imgui.text_disabled(layer.path.name)
+        imgui.set_item_tooltip(str(layer.path))
 
 
-def _with_layer(brush: Brush) -> Brush:
-    """Draw the choice of a layer; return the brush as it is chosen."""
+def _with_channel(brush: Brush) -> Brush:
+    """Draw the choice of a mask's channel; return the brush as it is chosen."""
     with row("Layer", "The layer that the brush puts on; erased, the rules show again", fixed=True):
-        layer = choose("##layer", _LAYERS[brush.layer], _LAYERS, brush.layer, name=_LAYERS.__getitem__)
-    return brush if layer is None else replace(brush, layer=layer)
+        channel = choose(
+            "##layer", _CHANNELS[brush.channel], _CHANNELS, brush.channel, name=_CHANNELS.__getitem__
+        )
+    return brush if channel is None else replace(brush, channel=channel)
 
 
 def _with_tool(painting: Painting) -> Brush:

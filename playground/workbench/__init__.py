@@ -15,11 +15,10 @@
     open_files.py, editors.py, text_file.py   files open in an editor
     captures.py         PNGs, large pictures, films
     painting.py         the brush over the picture
-      brush.py          where a stroke reaches
-      canvas.py         an image that is painted on, its file and its strokes undone
+      brush.py          where a stroke reaches, and masks
+      sculpting.py      the brushes of numbers
+      layer.py          an image that is painted on, its file and its strokes undone
       latest_write.py   a file written on a thread
-      painted_mask.py   four weights a texel
-      sculpture.py, sculpting.py, sculpted_ground.py   metres on a ground, and the tools
       erode_tool.py     the tool that runs a technique
     interface.py        which panels are shown, and how large
     memory.py, autosave.py   the file that remembers one sketch, written as one goes

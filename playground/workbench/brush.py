@@ -12,7 +12,7 @@ Part = tuple[slice, slice]
 """Rows and columns of an image."""
 
 ERASER = -1
-"""The layer that takes paint away: the rules below show again."""
+"""The channel that takes paint away: the rules below show again."""
 
 
 Tool = Literal["raise", "lower", "smooth", "flatten", "sharpen", "erase", "erode"]
@@ -23,7 +23,7 @@ TOOLS: tuple[Tool, ...] = get_args(Tool)
 class Brush:
     """What one stroke leaves."""
 
-    layer: int = 3  # of a mask: 0 to 3, or ERASER
+    channel: int = 3  # of a mask: 0 to 3, or ERASER
     radius: float = 60.0  # [m]
     strength: float = 0.6  # 0..1; on a mask what each step of a stroke covers, else a fraction of a rate
     softness: float = 0.7  # share of the radius over which it fades, 0..1
@@ -31,56 +31,55 @@ class Brush:
     level: float | None = None  # that flatten goes to; None: where the stroke begins
 
 
-def reached(
-    size: tuple[int, int],
-    start: tuple[float, float],
-    end: tuple[float, float],
-    extent: tuple[float, float],
-    radius: float,
-) -> Part:
-    """Return the rows and columns that a stroke can touch; no texel where it is off the terrain.
+@dataclass(frozen=True, slots=True)
+class Dab:
+    """A part of a stroke: from one place to another, in some seconds.
 
-    ``size``: (nx, ny) of the image; ``start`` and ``end`` in fractions of the terrain's sides from
-    the south-west; ``extent`` of the terrain and ``radius`` of the brush [m].
+    Places are in fractions of the terrain's sides from the south-west.
     """
-    ends = np.array([start, end], np.float64) * extent
-    metres = spacing_of(size, extent)
-    low = np.floor((ends.min(axis=0) - radius) / metres).astype(int)
-    high = np.ceil((ends.max(axis=0) + radius) / metres).astype(int) + 1
-    columns, rows = (
-        slice(min(max(first, 0), count), max(min(last, count), 0))
-        for first, last, count in zip(low.tolist(), high.tolist(), size, strict=True)
-    )
-    return rows, columns
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+    extent: tuple[float, float]  # [m] of the terrain
+    brush: Brush
+    seconds: float = 0.0
+
+    def reached(self, size: tuple[int, int], margin: float = 0.0) -> Part:
+        """Return the rows and columns that it can touch of an image of (nx, ny) texels, and [m] around.
+
+        There are none where it is off the terrain.
+        """
+        ends, radius = self._ends(), self.brush.radius + margin
+        metres = spacing_of(size, self.extent)
+        low = np.floor((ends.min(axis=0) - radius) / metres).astype(int)
+        high = np.ceil((ends.max(axis=0) + radius) / metres).astype(int) + 1
+        columns, rows = (
+            slice(min(max(first, 0), count), max(min(last, count), 0))
+            for first, last, count in zip(low.tolist(), high.tolist(), size, strict=True)
+        )
+        return rows, columns
+
+    def covered(self, size: tuple[int, int]) -> tuple[Part, NDArray[np.float32]]:
+        """Return which part of an image of (nx, ny) texels it touches, and the fraction of each texel."""
+        rows, columns = self.reached(size)
+        metres, (start, end) = spacing_of(size, self.extent), self._ends()
+        x = np.arange(columns.start, columns.stop) * metres[0]
+        y = np.arange(rows.start, rows.stop)[:, None] * metres[1]
+        way = end - start
+        length = float(way @ way)
+        along = ((x - start[0]) * way[0] + (y - start[1]) * way[1]) / length if length > 0 else 0.0 * (x + y)
+        along = np.clip(along, 0.0, 1.0)
+        distance = np.hypot(x - start[0] - along * way[0], y - start[1] - along * way[1])
+        share = falloff(distance, self.brush.radius, self.brush.softness)
+        return (rows, columns), share.astype(np.float32)
+
+    def _ends(self) -> NDArray[np.float64]:
+        return np.array([self.start, self.end], np.float64) * self.extent
 
 
 def spacing_of(size: tuple[int, int], extent: tuple[float, float]) -> NDArray[np.float64]:
     """Return the distance of two texels east and north [m]: the first and the last are on the edges."""
     return np.asarray(np.array(extent, np.float64) / np.maximum(np.array(size) - 1, 1))
-
-
-def covered(
-    shape: tuple[int, int],
-    start: tuple[float, float],
-    end: tuple[float, float],
-    extent: tuple[float, float],
-    brush: Brush,
-) -> tuple[slice, slice, NDArray[np.float32]]:
-    """Return which rows and columns a stroke touches, and how much of each texel it covers, 0..1.
-
-    ``shape``: (ny, nx) of the image; the others as ``reached`` takes them.
-    """
-    size = shape[1], shape[0]
-    rows, columns = reached(size, start, end, extent, brush.radius)
-    metres, ends = spacing_of(size, extent), np.array([start, end], np.float64) * extent
-    x = np.arange(columns.start, columns.stop) * metres[0]
-    y = np.arange(rows.start, rows.stop)[:, None] * metres[1]
-    way = ends[1] - ends[0]
-    length = float(way @ way)
-    along = ((x - ends[0][0]) * way[0] + (y - ends[0][1]) * way[1]) / length if length > 0 else 0.0 * (x + y)
-    along = np.clip(along, 0.0, 1.0)
-    away = np.hypot(x - ends[0][0] - along * way[0], y - ends[0][1] - along * way[1])
-    return rows, columns, falloff(away, brush.radius, brush.softness).astype(np.float32)
 
 
 def falloff(away: NDArray[np.float64], radius: float, softness: float) -> NDArray[np.float64]:
@@ -89,21 +88,14 @@ def falloff(away: NDArray[np.float64], radius: float, softness: float) -> NDArra
     return np.asarray(share * share * (3 - 2 * share))
 
 
-def stroke(
-    mask: NDArray[np.float32],
-    start: tuple[float, float],
-    end: tuple[float, float],
-    extent: tuple[float, float],
-    brush: Brush,
-) -> tuple[slice, slice]:
-    """Paint from one place to another on a mask (ny, nx, 4), 0..1, in place; return its rows and columns.
+def cover(mask: NDArray[np.float32], dab: Dab) -> None:
+    """Paint on a mask (ny, nx, 4), 0..1, in place.
 
-    The layer takes what it covers from the others: sums stay at most 1 where they were.
+    The brush's channel takes what it covers from the others: sums stay at most 1 where they were.
     """
-    rows, columns, share = covered((mask.shape[0], mask.shape[1]), start, end, extent, brush)
-    part = mask[rows, columns]
-    amount = (share * np.float32(brush.strength))[..., None]
-    part *= 1 - amount
-    if brush.layer != ERASER:
-        part[..., brush.layer] += amount[..., 0]
-    return rows, columns
+    part, share = dab.covered((mask.shape[1], mask.shape[0]))
+    weights, channel = mask[part], dab.brush.channel
+    amount = (share * np.float32(dab.brush.strength))[..., None]
+    weights *= 1 - amount
+    if channel != ERASER:
+        weights[..., channel] += amount[..., 0]

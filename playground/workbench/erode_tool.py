@@ -27,7 +27,7 @@ from playground.errors import ParameterError
 from playground.sketch.model import Kernel, Technique
 from playground.sketch.techniques import read_technique
 from playground.sketch.wiring import input_names, output_names, outputs_with_formats
-from playground.workbench.brush import Brush, Part, falloff, spacing_of
+from playground.workbench.brush import Dab, Part, falloff, spacing_of
 
 if TYPE_CHECKING:
     from playground.engine.engine import Engine
@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 STAMP = 0.05  # [s] of a stroke that each run of the technique makes
 _HALF = 16  # texels of which half a window has a multiple: a side of 32 k + 1
 _MIN_SOFTNESS = 0.25  # of the brush, so that its rim is no step
-
-Position = tuple[float, float]
 
 
 def technique_at(use: str, file: str) -> Technique:
@@ -74,29 +72,26 @@ class ErodeTool:
         """Begin a stroke, dry; heights [m] are counted from a level near it, for their last bits' sake."""
         self._carried, self._owed, self._level = {}, 0.0, level
 
-    def stamps(self, start: Position, end: Position, seconds: float) -> Iterator[Position]:
-        """Yield where the stamps of a part of a stroke are, by time alone: those of a fast one lie apart."""
-        owed = self._owed
+    def stamps(self, dab: Dab) -> Iterator[Dab]:
+        """Yield the stamps of a part of a stroke, by time alone: those of a fast one lie apart."""
+        owed, seconds = self._owed, dab.seconds
         count = int((owed + seconds) / STAMP + 1e-6)
         self._owed = max(owed + seconds - count * STAMP, 0.0)
-        way = np.subtract(end, start)
+        way = np.subtract(dab.end, dab.start)
         for n in range(count):
             share = ((n + 1) * STAMP - owed) / max(seconds, 1e-9)
-            x, y = np.array(start) + way * min(max(share, 0.0), 1.0)
-            yield float(x), float(y)
+            x, y = np.array(dab.start) + way * min(max(share, 0.0), 1.0)
+            position = float(x), float(y)
+            yield Dab(position, position, dab.extent, dab.brush, STAMP)
 
     def change(
-        self,
-        terrain: tuple[NDArray[np.float32], NDArray[np.float32] | None],
-        position: Position,
-        extent: tuple[float, float],
-        brush: Brush,
+        self, terrain: tuple[NDArray[np.float32], NDArray[np.float32] | None], stamp: Dab
     ) -> tuple[Part, NDArray[np.float32]]:
         """Return what one stamp adds to the terrain [m], and to which rows and columns.
 
         ``terrain``: what is painted (ny, nx) [m] and what it is added to, if anything.
         """
-        shape = terrain[0].shape
+        shape, brush, extent, position = terrain[0].shape, stamp.brush, stamp.extent, stamp.start
         spacing = spacing_of((shape[1], shape[0]), extent)
         reach = np.ceil(brush.radius / spacing).astype(int) + 1
         half = -(-reach // _HALF) * _HALF

@@ -1,6 +1,6 @@
 """The brush over the picture: strokes on an image of the sketch, stored in a file of their own.
 
-A canvas is a file parameter that its kernel lets be painted on: a mask of four weights, or one number a
+A layer is a file parameter that its kernel lets be painted on: a mask of four weights, or one number a
 texel. The file that the sketch names is never written to: painting begins a new one in the current
 folder and puts it in its place.
 """
@@ -19,18 +19,17 @@ from numpy.typing import NDArray
 
 from playground.engine.camera import Eye, ground_under, seen_from
 from playground.engine.files import find_file
-from playground.engine.plan import Step, view_height
+from playground.engine.plan import Plan, Step, view_height
 from playground.engine.sources import source_kind
 from playground.engine.textures import split_format
 from playground.errors import DataError, PlaygroundError
 from playground.sketch.assign import resolve, shown_parameters, value_of, values_of
+from playground.sketch.flat import Ref
 from playground.sketch.model import CpuSource, Parameter, Sketch
-from playground.workbench.brush import TOOLS, Brush, Tool
-from playground.workbench.canvas import MAX_TEXELS, Canvas
+from playground.workbench.brush import TOOLS, Brush, Dab, Tool
 from playground.workbench.erode_tool import ErodeTool, technique_at
-from playground.workbench.painted_mask import MAX_SIDE_BY_FILE, Mask
-from playground.workbench.sculpted_ground import ground_of, ground_ref
-from playground.workbench.sculpture import Sculpture, rate_of
+from playground.workbench.layer import MAX_TEXELS, NUMBERS, WEIGHTS, Layer, LayerKind
+from playground.workbench.sculpting import rate_of
 from playground.workbench.session import Session
 
 MIN_RADIUS, DEFAULT_RADIUS, MAX_RADIUS = 0.002, 0.025, 0.25
@@ -38,6 +37,9 @@ MIN_RADIUS, DEFAULT_RADIUS, MAX_RADIUS = 0.002, 0.025, 0.25
 
 CLICK, MAX_DAB_SECONDS = 0.05, 0.25
 """[s] How long a stroke works on the place where it begins, and at most from one frame to the next."""
+
+MAX_SIDE_BY_FILE = 1024
+"""Where the picture follows by the file only: a larger one takes longer to write than the mouse to move."""
 
 SAVES_EVERY = 0.1
 """[s] Where the picture can follow a stroke by its file only; any file is written when the stroke ends."""
@@ -59,14 +61,14 @@ class Painting:
         self.brush = Brush(radius=0.0)
         self._now = now
         self._taken = False  # painting is on
-        self._canvases: dict[str, Canvas] = {}  # by the parameter's path
+        self._layers: dict[str, Layer] = {}  # by the parameter's path
         self._found: tuple[Sketch | None, tuple[str, ...]] = (None, ())
         self._chosen = ""
         self._heights: tuple[object, NDArray[np.float32] | None] = (None, None)  # and of which picture
         self._eroding: ErodeTool | None = None
         self._wake = wake
-        self._reported: dict[Path, int] = {}  # how many writes of a canvas's file have been looked at
-        self._stroke: Canvas | None = None  # what the stroke that goes on is painted on
+        self._reported: dict[Path, int] = {}  # how many writes of a layer's file have been looked at
+        self._stroke: Layer | None = None  # what the stroke that goes on is painted on
         self._last: tuple[float, float] | None = None  # where the stroke is
         self._saved_at = 0.0
         self._moved_at = 0.0
@@ -93,7 +95,7 @@ class Painting:
     def sculpts(self) -> bool:
         """Whether what is painted on has one number a texel: it takes tools in place of layers."""
         step = self._step_of(self.target)
-        return step is not None and _kind_of(step) is Sculpture
+        return step is not None and _kind_of(step) is NUMBERS
 
     @property
     def tools(self) -> tuple[Tool, ...]:
@@ -120,7 +122,7 @@ class Painting:
     @property
     def _adds_metres(self) -> bool:
         step, plan = self._step_of(self.target), self.session.plan
-        return step is not None and plan is not None and ground_ref(plan, step.path) is not None
+        return step is not None and plan is not None and _ground_ref(plan, step.path) is not None
 
     def choose(self, target: str) -> None:
         """Paint on another parameter, by its path."""
@@ -132,16 +134,16 @@ class Painting:
     @property
     def files(self) -> frozenset[Path]:
         """The masks that were begun: they need not be watched."""
-        return frozenset(canvas.path for canvas in self._canvases.values())
+        return frozenset(layer.path for layer in self._layers.values())
 
     @property
-    def canvas(self) -> Canvas | None:
+    def layer(self) -> Layer | None:
         """The mask that was begun for what is painted on, if it is still in its place."""
-        canvas, sketch = self._canvases.get(self.target), self.session.sketch
-        if canvas is None or sketch is None:
+        layer, sketch = self._layers.get(self.target), self.session.sketch
+        if layer is None or sketch is None:
             return None
         value = value_of(sketch, self.target, values_of(sketch))
-        return canvas if str(value) == str(canvas.path) else None
+        return layer if str(value) == str(layer.path) else None
 
     @property
     def side(self) -> float:
@@ -200,9 +202,9 @@ class Painting:
 
     def press(self, position: tuple[float, float]) -> None:
         """Begin a stroke at a place of the picture, in shares from its lower left."""
-        if self.canvas is not None and not self.canvas.holds():
+        if self.layer is not None and not self.layer.holds():
             # Another program has removed the file, or painted on it.
-            self._saved(self.canvas.take_in if self.canvas.path.exists() else self.canvas.save)
+            self._saved(self.layer.take_in if self.layer.path.exists() else self.layer.save)
         plan, step = self.session.plan, self._step_of(self.target)
         if self._heights[1] is None:
             self._heights = None, None  # what could not be read may be there now
@@ -211,61 +213,61 @@ class Painting:
         self._last = self.ground(position)
         if self._last is None:
             return
-        ground = ground_of(self.session, step.path) if step is not None and self.sculpts else None
+        ground = _ground_of(self.session, step.path) if step is not None and self.sculpts else None
         if ground is None and self.sculpts and self._adds_metres:
             self._last = None  # a note says why it cannot be read
             return
-        canvas = self._begun()
-        if canvas is not None:
-            self._hand_over(canvas)
-            if isinstance(canvas, Sculpture):
-                canvas.set_base(ground)
-                if self.brush.tool == "erode" and not self._erodes(canvas):
+        layer = self._begun()
+        if layer is not None:
+            self._hand_over(layer)
+            if self.sculpts:
+                layer.set_base(ground)
+                if self.brush.tool == "erode" and not self._erodes(layer):
                     self._last = None  # a note says why
                     return
-            canvas.begin()
-            self._stroke = canvas
+            layer.begin()
+            self._stroke = layer
             self._saved_at = -SAVES_EVERY
             self._moved_at = self._now() - CLICK
             self.move(position)
 
     def move(self, position: tuple[float, float]) -> None:
         """Go on with the stroke, for as long as it is since the last time; nothing where it has ended."""
-        plan, canvas = self.session.plan, self.canvas
-        if plan is None or plan.terrain.extent is None or canvas is None or canvas is not self._stroke:
+        plan, layer = self.session.plan, self.layer
+        if plan is None or plan.terrain.extent is None or layer is None or layer is not self._stroke:
             return
         now, at = self.ground(position), self._now()
         seconds, self._moved_at = min(at - self._moved_at, MAX_DAB_SECONDS), at
         if now is not None:
             try:
-                canvas.paint(self._last or now, now, plan.terrain.extent, self.brush, seconds)
+                layer.paint(Dab(self._last or now, now, plan.terrain.extent, self.brush, seconds))
             except PlaygroundError as error:
                 self.session.notes.append(str(error))
                 self.release()
                 return
-            if canvas.path in self.session.engine.painted:
+            if layer.path in self.session.engine.painted:
                 self.session.redraw()
             elif at - self._saved_at >= SAVES_EVERY:
-                self._saved(canvas.save)
+                self._saved(layer.save)
                 self._saved_at = at
         self._last = now
 
     def release(self) -> None:
         """End the stroke; until the next press nothing is painted."""
         self._last = self._stroke = None
-        if self.canvas is not None and not self.canvas.saved:
-            self._saved(self.canvas.save)
+        if self.layer is not None and not self.layer.saved:
+            self._saved(self.layer.save)
 
     def follow(self) -> None:
         """Report what went wrong with files that were written meanwhile, and show those that are read."""
-        for canvas in self._canvases.values():
-            ended = canvas.writing.writes
-            if self._reported.get(canvas.path) == ended:
+        for layer in self._layers.values():
+            ended = layer.writing.writes
+            if self._reported.get(layer.path) == ended:
                 continue
-            self._reported[canvas.path] = ended
-            if canvas.writing.error is not None:
-                self.session.notes.append(str(canvas.writing.error))
-            if canvas.path not in self.session.engine.painted:
+            self._reported[layer.path] = ended
+            if layer.writing.error is not None:
+                self.session.notes.append(str(layer.writing.error))
+            if layer.path not in self.session.engine.painted:
                 self.session.redraw()
 
     def settle(self) -> bool:
@@ -273,44 +275,44 @@ class Painting:
 
         Return whether they do.
         """
-        for canvas in self._canvases.values():
-            if not canvas.saved:
-                canvas.save()
-        for canvas in self._canvases.values():
+        for layer in self._layers.values():
+            if not layer.saved:
+                layer.save()
+        for layer in self._layers.values():
             with suppress(PlaygroundError):  # what ``follow`` reports
-                canvas.writing.wait()
+                layer.writing.wait()
         self.follow()
-        return all(canvas.saved for canvas in self._canvases.values())
+        return all(layer.saved for layer in self._layers.values())
 
     def close(self) -> list[str]:
         """End the stroke and wait for the files; return a message for each that could not be written."""
         self.release()
         self.settle()
-        errors = (canvas.writing.error for canvas in self._canvases.values())
+        errors = (layer.writing.error for layer in self._layers.values())
         return [str(error) for error in errors if error is not None]
 
     def undo(self) -> None:
         """Undo the last stroke."""
-        self._edit(self.canvas, Canvas.undo)
+        self._edit(self.layer, Layer.undo)
 
     def redo(self) -> None:
         """Redo the stroke that was undone last."""
-        self._edit(self.canvas, Canvas.redo)
+        self._edit(self.layer, Layer.redo)
 
     def clear(self) -> None:
         """Take all paint away."""
-        self._edit(self._begun(), Canvas.clear)
+        self._edit(self._begun(), Layer.clear)
 
-    def _edit(self, canvas: Canvas | None, act: Callable[[Canvas], None]) -> None:
+    def _edit(self, layer: Layer | None, act: Callable[[Layer], None]) -> None:
         """End the stroke, change a mask and save it; what others have painted on it is read instead."""
         self.release()
-        if canvas is None:
+        if layer is None:
             return
-        if canvas.holds() or not canvas.path.exists():
-            self._saved(lambda: act(canvas))
+        if layer.holds() or not layer.path.exists():
+            self._saved(lambda: act(layer))
             return
-        self._saved(canvas.take_in)
-        self.session.notes.append(f"{canvas.path.name} was changed by another program: it stays as it is now")
+        self._saved(layer.take_in)
+        self.session.notes.append(f"{layer.path.name} was changed by another program: it stays as it is now")
 
     def _saved(self, act: Callable[[], None]) -> None:
         try:
@@ -320,21 +322,21 @@ class Painting:
         self.session.redraw()
 
     def _shows(self, step: Step, path: Path, size: tuple[int, int]) -> bool:
-        """Say whether the picture can show a canvas from memory: a source reads it, texel for texel."""
+        """Say whether the picture can show a layer from memory: a source reads it, texel for texel."""
         if not isinstance(step.kernel, CpuSource) or size != step.size:
             return False
         name = self.target.rpartition(".")[2]
         return source_kind(step.kernel.registry).picture({**step.values, name: str(path)}, size) == path
 
-    def _hand_over(self, canvas: Canvas) -> None:
-        """Have the picture show a canvas from memory, where it can."""
+    def _hand_over(self, layer: Layer) -> None:
+        """Have the picture show a layer from memory, where it can."""
         step, painted = self._step_of(self.target), self.session.engine.painted
-        painted.pop(canvas.path, None)
-        if step is not None and self._shows(step, canvas.path, canvas.size):
-            painted[canvas.path] = canvas
+        painted.pop(layer.path, None)
+        if step is not None and self._shows(step, layer.path, layer.size):
+            painted[layer.path] = layer
 
-    def _erodes(self, canvas: Sculpture) -> bool:
-        """Have a canvas erode by the technique that its parameter names, as its files are now.
+    def _erodes(self, layer: Layer) -> bool:
+        """Have a layer erode by the technique that its parameter names, as its files are now.
 
         Return whether it can; a note says why not.
         """
@@ -350,7 +352,7 @@ class Painting:
         except PlaygroundError as error:
             self.session.notes.append(str(error))
             return False
-        canvas.eroding = self._eroding
+        layer.eroding = self._eroding
         return True
 
     def _parameter(self) -> Parameter:
@@ -365,10 +367,10 @@ class Painting:
             return None
         return plan.step(resolve(sketch.graph, path)[0].path.rpartition(".")[0])
 
-    def _begun(self) -> Canvas | None:
+    def _begun(self) -> Layer | None:
         """Return the mask that is painted on, begun again where the sketch names another file."""
-        if self.canvas is not None:
-            return self.canvas
+        if self.layer is not None:
+            return self.layer
         path, sketch = self.target, self.session.sketch
         step = self._step_of(path)
         if sketch is None or step is None:
@@ -379,19 +381,19 @@ class Painting:
             file = str(value_of(sketch, path, values_of(sketch)))
             of = find_file(file, sketch.folder, leaf.parameter.file, path) if file else None
             most = MAX_TEXELS if self._shows(step, self.folder, step.size) else MAX_SIDE_BY_FILE
-            canvas: Canvas = _kind_of(step).create(self.folder, name, of, step.size, most)
+            layer = Layer.create(self.folder, name, _kind_of(step), step.size, of=of, most=most)
         except PlaygroundError as error:
             self.session.notes.append(str(error))
             return None
-        if path in self._canvases:
+        if path in self._layers:
             self.settle()  # another takes its place, and nobody looks after it any more
-        self._canvases[path] = canvas
-        self._reported[canvas.path] = canvas.writing.writes
-        canvas.writing.ended = self._wake or canvas.writing.ended
-        self.session.data.trust(canvas.path)
-        self.session.drafts.set(path, str(canvas.path))
-        self.session.notes.append(f"painting on {canvas.path.name} in {canvas.path.parent}")
-        return canvas
+        self._layers[path] = layer
+        self._reported[layer.path] = layer.writing.writes
+        layer.writing.ended = self._wake or layer.writing.ended
+        self.session.data.trust(layer.path)
+        self.session.drafts.set(path, str(layer.path))
+        self.session.notes.append(f"painting on {layer.path.name} in {layer.path.parent}")
+        return layer
 
     def _surface(self) -> tuple[Eye, NDArray[np.float32], tuple[float, float], float] | None:
         """Return the eye, the heights, the extent [m] and the relief [m] of the picture's terrain."""
@@ -417,10 +419,34 @@ def _painted(sketch: Sketch | None) -> tuple[str, ...]:
     return tuple(shown.path for shown in sorted(painted, key=lambda shown: not shown.exported))
 
 
-def _kind_of(step: Step) -> type[Mask] | type[Sculpture]:
+def _kind_of(step: Step) -> LayerKind:
     """Return what is painted: a number a texel where a source gives one, else a mask."""
     outputs = step.kernel.outputs
-    is_sculpture = (
+    is_numbers = (
         isinstance(step.kernel, CpuSource) and len(outputs) == 1 and split_format(outputs[0].format)[0] == 1
     )
-    return Sculpture if is_sculpture else Mask
+    return NUMBERS if is_numbers else WEIGHTS
+
+
+def _ground_ref(plan: Plan, step: str) -> Ref | None:
+    """Return the height under what a step gives, by its path; None: it changes no height.
+
+    It is that of the pass that reads the step, before the change: its input ``height``.
+    """
+    for reader in plan.walk():
+        inputs = dict(reader.inputs)
+        height = inputs.get("height")
+        reads = any(isinstance(source, Ref) and source.path == step for source in inputs.values())
+        if reads and isinstance(height, Ref) and height.path != step:
+            return height
+    return None
+
+
+def _ground_of(session: Session, step: str) -> NDArray[np.float32] | None:
+    """Return the heights (ny, nx) [m] under what a step gives; None: it changes no height."""
+    plan = session.plan
+    ref = _ground_ref(plan, step) if plan is not None else None
+    if plan is None or ref is None or plan.terrain.relief is None:
+        return None
+    values = session.read_values(str(ref))
+    return None if values is None else values * np.float32(plan.terrain.relief)

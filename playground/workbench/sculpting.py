@@ -17,87 +17,104 @@ Erode runs a technique instead: see ``erode_tool``.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.workbench.brush import Brush, Part, covered, reached, spacing_of
+from playground.workbench.brush import Brush, Dab, Part, Tool, spacing_of
 
+RISE = 0.5  # [1/s] radii that raise goes at full strength, where metres are painted
+FACTOR = 1.0  # [1/s] how fast it goes where other numbers are
 APPROACH = 10.0  # [1/s] flatten and erase, at full strength
 SHARPEN = 1.0  # [1/s] likewise
 _FINEST = 32  # texels that smooth looks at of a larger brush's radius: its steps grow with their square
 _APART = 0.25  # stamps of a stroke, in radii
 
 
+def rate_of(brush: Brush, *, metres: bool) -> float:
+    """Return how fast raise goes at full strength: metres a second, or numbers."""
+    return RISE * brush.radius if metres else FACTOR
+
+
 def sculpt(
     change: NDArray[np.float32],
     ground: NDArray[np.float32] | None,
-    ends: tuple[tuple[float, float], tuple[float, float]],
-    extent: tuple[float, float],
-    brush: Brush,
+    dab: Dab,
     *,
-    seconds: float,
     rate: float,
     level: float,
 ) -> None:
-    """Change the terrain from one place to another in some seconds, in place.
+    """Change the terrain by a part of a stroke, in place.
 
     ``change`` (ny, nx) is what is painted, ``ground`` what it is added to, in the same unit; None: 0.
-    ``ends`` are shares of the terrain's sides, ``extent`` is in metres. ``rate`` is how fast raise goes
-    at full strength [unit/s], ``level`` what flatten goes to.
+    ``rate`` is how fast raise goes at full strength [unit/s], ``level`` what flatten goes to.
     """
-    start, end = (np.array(position, np.float64) for position in ends)
-    stamps = max(1, math.ceil(float(np.hypot(*((end - start) * extent))) / (_APART * brush.radius)))
+    size, radius = (change.shape[1], change.shape[0]), dab.brush.radius
+    start, end = (np.array(position, np.float64) for position in (dab.start, dab.end))
+    stamps = max(1, math.ceil(float(np.hypot(*((end - start) * dab.extent))) / (_APART * radius)))
     for n in range(stamps):
         x, y = start + (end - start) * (n + 0.5) / stamps
-        _stamp(change, ground, (float(x), float(y)), extent, brush, seconds / stamps, rate, level)
+        position = float(x), float(y)
+        stamp = Dab(position, position, dab.extent, dab.brush, dab.seconds / stamps)
+        part, share = stamp.covered(size)
+        if share.size:
+            weight = dab.brush.strength * share.astype(np.float64)
+            added = BRUSHES[dab.brush.tool](_Stamp(stamp, change, ground, part, weight, rate, level))
+            change[part] += added.astype(np.float32)
 
 
-def _stamp(
-    change: NDArray[np.float32],
-    ground: NDArray[np.float32] | None,
-    position: tuple[float, float],
-    extent: tuple[float, float],
-    brush: Brush,
-    seconds: float,
-    rate: float,
-    level: float,
-) -> None:
-    shape = change.shape[0], change.shape[1]
-    rows, columns, share = covered(shape, position, position, extent, brush)
-    part = rows, columns
-    if not share.size:
-        return
-    weight = brush.strength * share.astype(np.float64)
-    dx, dy = spacing_of((shape[1], shape[0]), extent)
-    match brush.tool:
-        case "raise":
-            added = weight * rate * seconds
-        case "lower":
-            added = -weight * rate * seconds
-        case "erase":
-            added = np.expm1(-APPROACH * weight * seconds) * change[part]
-        case "flatten":
-            added = np.expm1(-APPROACH * weight * seconds) * (_terrain(change, ground, part) - level)
-        case "smooth":
-            radius = min(brush.radius, _FINEST * min(dx, dy))
-            terrain = _terrain(change, ground, part)
-            added = _spread(terrain, weight, radius**2 / 16 * seconds, (dx, dy)) - terrain
-        case "sharpen":
-            sigma = max(brush.radius / 4, dx, dy)
-            around = reached((shape[1], shape[0]), position, position, extent, brush.radius + 3 * sigma)
-            away = _terrain(change, ground, part) - _mean(
-                _terrain(change, ground, around), around, part, sigma, (dx, dy)
-            )
-            added = np.expm1(SHARPEN * weight * seconds) * away
-    change[part] += added.astype(np.float32)
+@dataclass(frozen=True)
+class _Stamp:
+    """One stamp of a brush, at a place of the terrain."""
+
+    dab: Dab
+    change: NDArray[np.float32]
+    ground: NDArray[np.float32] | None
+    part: Part  # that it touches
+    weight: NDArray[np.float64]  # of each texel of the part: strength times falloff, 0..1
+    rate: float
+    level: float
+
+    @property
+    def spacing(self) -> tuple[float, float]:
+        """The distance of two texels east and north [m]."""
+        dx, dy = spacing_of((self.change.shape[1], self.change.shape[0]), self.dab.extent)
+        return float(dx), float(dy)
+
+    def terrain(self, part: Part) -> NDArray[np.float64]:
+        """Return the heights of a part."""
+        heights = self.change[part].astype(np.float64)
+        return heights if self.ground is None else heights + self.ground[part]
+
+    def approached(self, rate: float) -> NDArray[np.float64]:
+        """Return minus the share that is left behind on the way to a goal, at a rate [1/s]."""
+        return np.asarray(np.expm1(rate * self.weight * self.dab.seconds))
 
 
-def _terrain(
-    change: NDArray[np.float32], ground: NDArray[np.float32] | None, part: Part
-) -> NDArray[np.float64]:
-    heights = change[part].astype(np.float64)
-    return heights if ground is None else heights + ground[part]
+def _smooth(stamp: _Stamp) -> NDArray[np.float64]:
+    radius = min(stamp.dab.brush.radius, _FINEST * min(stamp.spacing))
+    terrain = stamp.terrain(stamp.part)
+    return _spread(terrain, stamp.weight, radius**2 / 16 * stamp.dab.seconds, stamp.spacing) - terrain
+
+
+def _sharpen(stamp: _Stamp) -> NDArray[np.float64]:
+    sigma = max(stamp.dab.brush.radius / 4, *stamp.spacing)
+    around = stamp.dab.reached((stamp.change.shape[1], stamp.change.shape[0]), margin=3 * sigma)
+    mean = _mean(stamp.terrain(around), around, stamp.part, sigma, stamp.spacing)
+    return stamp.approached(SHARPEN) * (stamp.terrain(stamp.part) - mean)
+
+
+BRUSHES: dict[Tool, Callable[[_Stamp], NDArray[np.float64]]] = {
+    "raise": lambda stamp: stamp.weight * stamp.rate * stamp.dab.seconds,
+    "lower": lambda stamp: -stamp.weight * stamp.rate * stamp.dab.seconds,
+    "smooth": _smooth,
+    "flatten": lambda stamp: stamp.approached(-APPROACH) * (stamp.terrain(stamp.part) - stamp.level),
+    "sharpen": _sharpen,
+    "erase": lambda stamp: stamp.approached(-APPROACH) * stamp.change[stamp.part],
+}
+"""What each tool adds to the part that a stamp touches; of all but erode, which a technique makes."""
 
 
 def _spread(

@@ -70,8 +70,8 @@ class Undo:
 
     def undo(self) -> None:
         """Undo the last step; while painting, the last stroke."""
-        canvas = self.painting.canvas
-        if self.painting.on and (canvas is None or not canvas.can_undo):
+        layer = self.painting.layer
+        if self.painting.on and (layer is None or not layer.can_undo):
             self.notices.say("no stroke to take back; put the brush down (B) to undo values")
         elif self.painting.on:
             self.painting.undo()
@@ -81,8 +81,8 @@ class Undo:
 
     def redo(self) -> None:
         """Redo the step that was undone last; while painting, the stroke."""
-        canvas = self.painting.canvas
-        if self.painting.on and (canvas is None or not canvas.can_redo):
+        layer = self.painting.layer
+        if self.painting.on and (layer is None or not layer.can_redo):
             self.notices.say("no stroke to paint again; put the brush down (B) to redo values")
         elif self.painting.on:
             self.painting.redo()

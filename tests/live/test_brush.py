@@ -10,7 +10,7 @@ import pytest
 from imgui_bundle import imgui
 
 from playground.live.mouse import PictureMouse
-from playground.workbench.sculpture import Sculpture
+from playground.workbench.layer import NUMBERS
 
 from ..sketch_texts import passes
 from .desk import Bare
@@ -113,10 +113,10 @@ def test_while_the_button_is_down_the_brush_works_without_a_motion(bare: Bare, a
     act()
     for _ in range(4):
         act(down=True)
-        assert isinstance(painting.canvas, Sculpture)
-        heights.append(float(painting.canvas.pixels.max()))
+        assert painting.layer is not None and painting.layer.kind is NUMBERS
+        heights.append(float(painting.layer.pixels.max()))
     assert all(a < b for a, b in pairwise(heights))
     act()
-    assert painting.canvas is not None and painting.canvas.saved and painting.canvas.can_undo
+    assert painting.layer is not None and painting.layer.saved and painting.layer.can_undo
     bare.key(_K.mod_ctrl, _K.z)
-    assert not painting.canvas.pixels.any()
+    assert not painting.layer.pixels.any()

@@ -15,10 +15,10 @@ from playground.engine.on_arrays import OnArrays
 from playground.engine.textures import read_texture
 from playground.errors import ParameterError, SketchError
 from playground.sketch.techniques import read_technique
-from playground.workbench.brush import Brush
+from playground.workbench.brush import Brush, Dab
 from playground.workbench.erode_tool import STAMP, ErodeTool, technique_at
+from playground.workbench.layer import NUMBERS, Layer
 from playground.workbench.painting import Painting
-from playground.workbench.sculpture import Sculpture
 from playground.workbench.session import Session
 
 from ..plans import plans_made_whole
@@ -39,26 +39,26 @@ def hills(seed: int = 3) -> np.ndarray:
     return (900 + 120 * np.sin(X / 110) * np.cos(Y / 150) + rng.normal(0, 1, (NY, NX))).astype(np.float32)
 
 
-def canvas(engine: Engine, tmp_path: Path) -> Sculpture:
-    made = Sculpture(tmp_path / "x.tif", np.zeros((NY, NX), np.float32))
+def layer_of(engine: Engine, tmp_path: Path) -> Layer:
+    made = Layer(tmp_path / "x.tif", np.zeros((NY, NX), np.float32), NUMBERS)
     made.set_base(hills())
     made.eroding = ErodeTool(engine, technique_at("erosion/brush", __file__))
     return made
 
 
-def work(on: Sculpture, *path: tuple[float, float], seconds: float, frames: int = 1, brush: Brush = BRUSH):
+def work(on: Layer, *path: tuple[float, float], seconds: float, frames: int = 1, brush: Brush = BRUSH):
     """Return the change after one stroke along a path at an even pace, painted in so many frames."""
     on.begin()
     times, places = np.linspace(0, 1, len(path)), np.array(path)
     shares = np.linspace(0, 1, frames + 1)
     at = [tuple(float(np.interp(share, times, places[:, axis])) for axis in (0, 1)) for share in shares]
     for a, b in pairwise(at):
-        on.paint(a, b, EXTENT, brush, seconds / frames)  # type: ignore[arg-type]
+        on.paint(Dab(a, b, EXTENT, brush, seconds / frames))  # type: ignore[arg-type]
     return on.pixels.astype(np.float64)
 
 
 def test_under_the_brush_the_terrain_is_worn_and_elsewhere_it_stays(any_engine: Engine, tmp_path: Path):
-    change = work(canvas(any_engine, tmp_path), HERE, HERE, seconds=1.0, frames=4)
+    change = work(layer_of(any_engine, tmp_path), HERE, HERE, seconds=1.0, frames=4)
     away = np.hypot(X - 640, Y - 720)
     assert change.min() < -2 and change.sum() < 0, "what is not laid down again leaves with the water"
     assert (change[away >= 170] == 0).all() and (change[away < 80] != 0).mean() > 0.9
@@ -68,7 +68,7 @@ def test_no_seam_is_at_the_brush_s_rim(any_engine: Engine, tmp_path: Path):
     """Each step changes the bed by the brush's share of some change; a hard brush fades too."""
     for softness in (0.6, 0.0):
         brush = Brush(tool="erode", radius=170.0, strength=0.9, softness=softness)
-        change = work(canvas(any_engine, tmp_path), HERE, HERE, seconds=1.0, brush=brush)
+        change = work(layer_of(any_engine, tmp_path), HERE, HERE, seconds=1.0, brush=brush)
         away = np.hypot(X - 640, Y - 720)
         fade = 170.0 * max(softness, 0.25)
         for depth in (0.1, 0.2, 0.3):  # of the fade, from the rim: the share is 3 d^2 - 2 d^3
@@ -78,7 +78,7 @@ def test_no_seam_is_at_the_brush_s_rim(any_engine: Engine, tmp_path: Path):
 
 def test_a_window_gives_what_the_whole_terrain_gives(any_engine: Engine, tmp_path: Path):
     """Rates count by the clock of the grid's size: scaled, a step on the whole is a step on the window."""
-    on, stamps = canvas(any_engine, tmp_path), 10
+    on, stamps = layer_of(any_engine, tmp_path), 10
     ground = hills()
     work(on, HERE, HERE, seconds=stamps * STAMP)
     clock = (NX - 1) / 64  # of the window's hours a step to the terrain's: 36 texels, filled up to 64
@@ -101,16 +101,16 @@ def test_a_window_gives_what_the_whole_terrain_gives(any_engine: Engine, tmp_pat
     np.testing.assert_allclose(on.pixels, expected, atol=1e-3 * np.abs(expected).max())
 
 
-def waves(engine: Engine, tmp_path: Path, texels: int) -> tuple[Sculpture, float]:
+def waves(engine: Engine, tmp_path: Path, texels: int) -> tuple[Layer, float]:
     """Erode a terrain of 2560 m by a brush of 320 m, of so many texels; return it, and its spacing [m]."""
     spacing = 320.0 / texels
     y, x = np.mgrid[0 : 8 * texels + 1, 0 : 8 * texels + 1] * spacing
     ground = 300 + 120 * np.sin(x / 210) * np.cos(y / 250) + 15 * np.sin(x / 60 + 1) * np.sin(y / 70)
-    on = Sculpture(tmp_path / "x.tif", np.zeros(ground.shape, np.float32))
+    on = Layer(tmp_path / "x.tif", np.zeros(ground.shape, np.float32), NUMBERS)
     on.set_base(ground.astype(np.float32))
     on.eroding = ErodeTool(engine, technique_at("erosion/brush", __file__))
     on.begin()
-    on.paint(HERE, HERE, (2560.0, 2560.0), Brush(tool="erode", radius=320.0, strength=0.9), 0.8)
+    on.paint(Dab(HERE, HERE, (2560.0, 2560.0), Brush(tool="erode", radius=320.0, strength=0.9), 0.8))
     return on, spacing
 
 
@@ -140,7 +140,9 @@ def test_what_a_brush_leaves_has_the_same_shape_on_coarse_and_fine_grids(any_eng
 
 def test_a_stroke_is_the_same_bits_in_however_many_frames(any_engine: Engine, tmp_path: Path):
     path = (0.4, 0.45), (0.55, 0.5), (0.5, 0.6)
-    result = [work(canvas(any_engine, tmp_path), *path, seconds=0.8, frames=frames) for frames in (4, 16, 64)]
+    result = [
+        work(layer_of(any_engine, tmp_path), *path, seconds=0.8, frames=frames) for frames in (4, 16, 64)
+    ]
     assert np.abs(result[0]).max() > 1
     for other in result[1:]:
         np.testing.assert_array_equal(other, result[0])
@@ -149,7 +151,9 @@ def test_a_stroke_is_the_same_bits_in_however_many_frames(any_engine: Engine, tm
 def test_a_fast_stroke_is_the_same_bits_in_however_many_frames(any_engine: Engine, tmp_path: Path):
     """Of 24 radii a second: at each twentieth of a second it erodes once, where the brush then is."""
     path = (0.05, 0.1), (0.9, 0.93)
-    result = [work(canvas(any_engine, tmp_path), *path, seconds=0.4, frames=frames) for frames in (2, 8, 32)]
+    result = [
+        work(layer_of(any_engine, tmp_path), *path, seconds=0.4, frames=frames) for frames in (2, 8, 32)
+    ]
     assert result[0].min() < 0
     for other in result[1:]:
         np.testing.assert_array_equal(other, result[0])
@@ -159,13 +163,13 @@ def test_a_fast_stroke_is_the_same_bits_in_however_many_frames(any_engine: Engin
 def test_at_the_edges_it_wears_what_is_there(
     any_engine: Engine, tmp_path: Path, position: tuple[float, float]
 ):
-    on = canvas(any_engine, tmp_path)
+    on = layer_of(any_engine, tmp_path)
     change = work(on, position, position, seconds=1.0)
     away = np.hypot(X - position[0] * EXTENT[0], Y - position[1] * EXTENT[1])
     assert np.isfinite(change).all() and change.min() < -0.5 and change.sum() < 0
     assert (change[away >= 170] == 0).all()
     # A mirrored terrain is eroded alike: no side is treated as another.
-    other = canvas(any_engine, tmp_path)
+    other = layer_of(any_engine, tmp_path)
     other.set_base(hills()[:, ::-1].copy())
     mirrored = work(other, (1 - position[0], position[1]), (1 - position[0], position[1]), seconds=1.0)
     np.testing.assert_allclose(mirrored[:, ::-1], change, atol=5e-3 * np.abs(change).max())
@@ -173,7 +177,7 @@ def test_at_the_edges_it_wears_what_is_there(
 
 def test_a_brush_that_is_wider_than_the_terrain_works(any_engine: Engine, tmp_path: Path):
     wide = Brush(tool="erode", radius=3000.0, strength=0.9)
-    change = work(canvas(any_engine, tmp_path), HERE, HERE, seconds=0.2, brush=wide)
+    change = work(layer_of(any_engine, tmp_path), HERE, HERE, seconds=0.2, brush=wide)
     assert np.isfinite(change).all() and (change != 0).mean() > 0.9
 
 
@@ -181,7 +185,7 @@ def test_the_engine_keeps_its_frame_and_warm_stamps_compile_nothing(
     any_engine: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     wholes = plans_made_whole(monkeypatch)
-    on = canvas(any_engine, tmp_path)
+    on = layer_of(any_engine, tmp_path)
     work(on, HERE, (0.6, 0.5), seconds=0.3)
     engine, existing = any_engine, []
     for _ in range(2):
@@ -197,23 +201,23 @@ def test_in_a_session_a_stroke_is_seen_saved_and_undone_to_the_bit(
 ) -> None:
     painting.brush = Brush(tool="raise", radius=150.0, strength=1.0)
     stroke(painting, PLACE)
-    canvas = painting.canvas
-    assert isinstance(canvas, Sculpture)
-    raised = canvas.pixels.copy()
+    layer = painting.layer
+    assert layer is not None and layer.kind is NUMBERS
+    raised = layer.pixels.copy()
     painting.brush = Brush(tool="erode", radius=300.0, strength=1.0)
     stroke(painting, (0.4, 0.45), *[(0.6, 0.55)] * 10)
-    worn = canvas.pixels.copy()
+    worn = layer.pixels.copy()
     assert (worn - raised).min() < -0.2
     np.testing.assert_array_equal(read(session, "height.strokes"), worn)
     picture = read_texture(session.frame(PICTURE))  # type: ignore[arg-type]
     session.redraw()
     np.testing.assert_array_equal(read_texture(session.frame(PICTURE)), picture)  # type: ignore[arg-type]
     painting.undo()
-    np.testing.assert_array_equal(canvas.pixels, raised)
+    np.testing.assert_array_equal(layer.pixels, raised)
     painting.redo()
     painting.settle()
-    np.testing.assert_array_equal(canvas.pixels, worn)
-    np.testing.assert_array_equal(read_numbers(canvas.path, canvas.size), worn)
+    np.testing.assert_array_equal(layer.pixels, worn)
+    np.testing.assert_array_equal(read_numbers(layer.path, layer.size), worn)
 
 
 def test_where_no_height_is_there_is_nothing_to_erode(session: Session, painting: Painting) -> None:
@@ -235,7 +239,7 @@ float kernel(ivec2 texel) { return texelFetch(height, texel, 0).r - 2.0; }
 def test_another_technique_may_erode(any_engine: Engine, tmp_path: Path):
     """One that knows nothing of a brush is weighted by it."""
     (tmp_path / "lower.glsl").write_text(OWN)
-    on = canvas(any_engine, tmp_path)
+    on = layer_of(any_engine, tmp_path)
     on.eroding = ErodeTool(any_engine, technique_at("./lower", str(tmp_path / "x.glsl")))
     change = work(on, HERE, HERE, seconds=3 * STAMP)
     away = np.hypot(X - 640, Y - 720)

@@ -273,7 +273,7 @@ class Brush:
     def __init__(self, strokes: int) -> None:
         self.strokes = strokes
         self.undone = 0
-        self.canvas = self
+        self.layer = self
 
     @property
     def can_undo(self) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,9 +16,9 @@ from playground.errors import DataError
 from playground.workbench.captures import Captures
 from playground.workbench.commands import Commands
 from playground.workbench.latest_write import LatestWrite
+from playground.workbench.layer import NUMBERS
 from playground.workbench.notices import Notices
 from playground.workbench.painting import Painting
-from playground.workbench.sculpture import Sculpture
 from playground.workbench.session import Session
 from playground.workbench.sketch_file import SketchFile
 from playground.workbench.undo import Undo
@@ -77,29 +78,29 @@ def test_a_stroke_s_end_waits_for_no_file(
     session: Session, painting: Painting, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stroke(painting, PLACE)
-    canvas = painting.canvas
-    assert isinstance(canvas, Sculpture)
-    before, may_write = canvas.path.read_bytes(), threading.Event()
-    write = Sculpture.write
+    layer = painting.layer
+    assert layer is not None and layer.kind is NUMBERS
+    before, may_write = layer.path.read_bytes(), threading.Event()
+    write = layer.kind.write
 
     def slowly(path: Path, pixels: np.ndarray) -> None:
         assert may_write.wait(10)
         write(path, pixels)
 
-    monkeypatch.setattr(Sculpture, "write", staticmethod(slowly))
+    monkeypatch.setattr(layer, "kind", replace(layer.kind, write=slowly))
     for _ in range(3):
         painting.press(PLACE)
         painting.release()
         painting.undo()
         painting.redo()
-    assert canvas.saved and canvas.holds() and canvas.path.read_bytes() == before
+    assert layer.saved and layer.holds() and layer.path.read_bytes() == before
     threading.Timer(0.05, may_write.set).start()
-    expected = canvas.pixels.copy()
+    expected = layer.pixels.copy()
     painting.press(PLACE)  # goes on while the file is written: what is written is a copy
-    assert not canvas.saved
-    assert painting.settle() and canvas.saved
-    np.testing.assert_array_equal(read_numbers(canvas.path, canvas.size), canvas.pixels)
-    assert (canvas.pixels != expected).any()
+    assert not layer.saved
+    assert painting.settle() and layer.saved
+    np.testing.assert_array_equal(read_numbers(layer.path, layer.size), layer.pixels)
+    assert (layer.pixels != expected).any()
     painting.close()
 
 
@@ -107,19 +108,19 @@ def test_what_cannot_be_written_is_said_once_and_tried_again(
     session: Session, painting: Painting, tmp_path: Path
 ) -> None:
     stroke(painting, PLACE)
-    canvas = painting.canvas
-    assert isinstance(canvas, Sculpture)
+    layer = painting.layer
+    assert layer is not None and layer.kind is NUMBERS
     moved = tmp_path.rename(tmp_path.with_name("moved"))
     session.notes.clear()
     stroke(painting, PLACE)
     for _ in range(3):
         painting.follow()
     assert sum("there is no folder" in note for note in session.notes) == 1
-    assert not canvas.saved and painting.canvas is canvas
+    assert not layer.saved and painting.layer is layer
     assert len(painting.close()) == 1, "nothing is lost without a word"
     moved.rename(tmp_path)
-    assert painting.close() == [] and canvas.saved
-    np.testing.assert_array_equal(read_numbers(canvas.path, canvas.size), canvas.pixels)
+    assert painting.close() == [] and layer.saved
+    np.testing.assert_array_equal(read_numbers(layer.path, layer.size), layer.pixels)
 
 
 def test_a_capture_waits_for_the_file_that_it_reads(
@@ -128,16 +129,16 @@ def test_a_capture_waits_for_the_file_that_it_reads(
     stroke(painting, PLACE)
     painting.press(PLACE)
     captures = Captures(session=session, notices=Notices(), folder=tmp_path, settle=painting.settle)
-    canvas, result = painting.canvas, []
-    assert isinstance(canvas, Sculpture) and not canvas.saved
+    layer, result = painting.layer, []
+    assert layer is not None and layer.kind is NUMBERS and not layer.saved
 
     def job() -> None:
-        result.append(read_numbers(canvas.path, canvas.size))
+        result.append(read_numbers(layer.path, layer.size))
         raise DataError("enough")
 
     monkeypatch.setattr(captures, "job", job)
     captures.start()
-    np.testing.assert_array_equal(result[0], canvas.pixels)
+    np.testing.assert_array_equal(result[0], layer.pixels)
     painting.close()
 
 
@@ -145,12 +146,13 @@ def test_what_is_painted_and_cannot_be_written_is_in_no_capture_and_missed_by_wh
     session: Session, painting: Painting, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stroke(painting, PLACE)
-    write, notices = Sculpture.write, Notices()
+    layer, notices = painting.layer, Notices()
+    assert layer is not None
 
     def fail(path: Path, pixels: np.ndarray) -> None:
         raise DataError("no space left on device")
 
-    monkeypatch.setattr(Sculpture, "write", staticmethod(fail))
+    monkeypatch.setattr(layer, "kind", replace(NUMBERS, write=fail))
     stroke(painting, PLACE)
     captures = Captures(session=session, notices=notices, folder=tmp_path, settle=painting.settle)
     made: list[object] = []
@@ -174,7 +176,7 @@ def test_what_is_painted_and_cannot_be_written_is_in_no_capture_and_missed_by_wh
         session.frame(PICTURE)
         message = notices.items[-1].text
         assert message.startswith(begins) and message.endswith(missed), message
-    monkeypatch.setattr(Sculpture, "write", staticmethod(write))
+    monkeypatch.setattr(layer, "kind", NUMBERS)
     commands.save_values()
     assert not notices.items[-1].text.endswith(missed)
     captures.start()
@@ -186,13 +188,13 @@ ENDS = """
 import sys
 from pathlib import Path
 import numpy as np
-from playground.workbench.brush import Brush
-from playground.workbench.sculpture import Sculpture
-canvas = Sculpture(Path(sys.argv[1]), np.zeros((2000, 2000), np.float32))
+from playground.workbench.brush import Brush, Dab
+from playground.workbench.layer import NUMBERS, Layer
+layer = Layer(Path(sys.argv[1]), np.zeros((2000, 2000), np.float32), NUMBERS)
 for _ in range(5):
-    canvas.begin()
-    canvas.paint((0.5, 0.5), (0.5, 0.5), (9.0, 9.0), Brush(radius=9.0, strength=1.0), 1.0)
-    canvas.save()
+    layer.begin()
+    layer.paint(Dab((0.5, 0.5), (0.5, 0.5), (9.0, 9.0), Brush(radius=9.0, strength=1.0), 1.0))
+    layer.save()
 raise SystemExit(7)
 """
 

@@ -12,9 +12,8 @@ from playground.data.image_files import read_image, read_png, write_png
 from playground.engine.engine import Engine
 from playground.engine.file_sources import read_mask
 from playground.errors import DataError, ShaderError
-from playground.workbench.brush import ERASER, Brush, covered, stroke
-from playground.workbench.canvas import MAX_TEXELS
-from playground.workbench.painted_mask import Mask
+from playground.workbench.brush import ERASER, Brush, Dab, cover
+from playground.workbench.layer import MAX_TEXELS, WEIGHTS, Layer
 from playground.workbench.painting import Painting
 from playground.workbench.session import Session
 
@@ -22,7 +21,7 @@ from ..loading import load
 from ..sketch_texts import passes
 
 EXTENT = (1000.0, 500.0)
-HARD = Brush(layer=1, radius=100.0, strength=1.0, softness=0.0)
+HARD = Brush(channel=1, radius=100.0, strength=1.0, softness=0.0)
 
 
 def empty(ny=51, nx=101):
@@ -42,7 +41,7 @@ def distance_to_segment(ny, nx, start, end):
 )
 def test_a_hard_brush_covers_what_is_within_its_radius(start, end):
     mask = empty()
-    stroke(mask, start, end, EXTENT, HARD)
+    cover(mask, Dab(start, end, EXTENT, HARD))
     away = distance_to_segment(51, 101, start, end)
     sure = np.abs(away - HARD.radius) > 2.0
     np.testing.assert_array_equal(mask[..., 1][sure], (away < HARD.radius)[sure])
@@ -50,9 +49,8 @@ def test_a_hard_brush_covers_what_is_within_its_radius(start, end):
 
 
 def test_a_soft_brush_fades_from_its_middle_to_its_radius():
-    rows, columns, share = covered(
-        (51, 101), (0.5, 0.5), (0.5, 0.5), EXTENT, Brush(radius=200.0, softness=1.0)
-    )
+    brush = Brush(radius=200.0, softness=1.0)
+    (rows, columns), share = Dab((0.5, 0.5), (0.5, 0.5), EXTENT, brush).covered((101, 51))
     middle = share[25 - rows.start]
     assert middle.max() == 1 and middle[0] < 0.05
     half = middle[50 - columns.start :]
@@ -63,16 +61,21 @@ def test_a_soft_brush_fades_from_its_middle_to_its_radius():
 def test_a_layer_takes_from_the_others_and_an_eraser_from_all():
     mask = empty()
     mask[..., 0] = 0.75
-    stroke(mask, (0.5, 0.5), (0.5, 0.5), EXTENT, Brush(layer=3, radius=50.0, strength=0.5, softness=0.0))
+    cover(
+        mask, Dab((0.5, 0.5), (0.5, 0.5), EXTENT, Brush(channel=3, radius=50.0, strength=0.5, softness=0.0))
+    )
     np.testing.assert_allclose(mask[25, 50], [0.375, 0, 0, 0.5], atol=1e-6)
     assert mask.sum(axis=-1).max() <= 1
-    stroke(mask, (0.5, 0.5), (0.5, 0.5), EXTENT, Brush(layer=ERASER, radius=50.0, strength=1.0, softness=0.0))
+    cover(
+        mask,
+        Dab((0.5, 0.5), (0.5, 0.5), EXTENT, Brush(channel=ERASER, radius=50.0, strength=1.0, softness=0.0)),
+    )
     assert (mask[25, 50] == 0).all() and mask[0, 0, 0] == 0.75
 
 
 def test_outside_the_terrain_nothing_is_painted():
     mask = empty()
-    stroke(mask, (3.0, 3.0), (4.0, 3.0), EXTENT, HARD)
+    cover(mask, Dab((3.0, 3.0), (4.0, 3.0), EXTENT, HARD))
     assert (mask == 0).all()
 
 
@@ -80,83 +83,83 @@ SIZE = (128, 64)  # texels of the pass that reads it
 
 
 def test_a_new_mask_has_the_pass_s_size_and_a_new_name(tmp_path: Path):
-    first = Mask.create(tmp_path, "hills-image", None, SIZE)
-    second = Mask.create(tmp_path, "hills-image", None, SIZE)
+    first = Layer.create(tmp_path, "hills-image", WEIGHTS, SIZE)
+    second = Layer.create(tmp_path, "hills-image", WEIGHTS, SIZE)
     assert first.path.name == "hills-image.png" and second.path.name == "hills-image-2.png"
     assert read_image(first.path).size == SIZE
 
 
-def test_a_canvas_has_the_terrain_s_size_and_a_very_large_one_is_held_to_a_bound(tmp_path: Path):
-    canvas = Mask.create(tmp_path, "usual", None, (1025, 513))
-    assert read_image(canvas.path).size == canvas.mask.shape[1::-1] == (1025, 513)
-    canvas = Mask.create(tmp_path, "large", None, (4097, 2049), most=1024)
-    assert read_image(canvas.path).size == (1024, 512)
+def test_a_layer_has_the_terrain_s_size_and_a_very_large_one_is_held_to_a_bound(tmp_path: Path):
+    layer = Layer.create(tmp_path, "usual", WEIGHTS, (1025, 513))
+    assert read_image(layer.path).size == layer.array.shape[1::-1] == (1025, 513)
+    layer = Layer.create(tmp_path, "large", WEIGHTS, (4097, 2049), most=1024)
+    assert read_image(layer.path).size == (1024, 512)
     assert MAX_TEXELS == 2**12 + 1
 
 
-def read_written(canvas: Mask) -> np.ndarray:
-    canvas.writing.wait()
-    return read_image(canvas.path).pixels
+def read_written(layer: Layer) -> np.ndarray:
+    layer.writing.wait()
+    return read_image(layer.path).pixels
 
 
 def test_strokes_are_saved_in_the_file_north_up_and_taken_back_one_by_one(tmp_path: Path):
-    canvas = Mask.create(tmp_path, "mask", None, SIZE)
-    pictures = [read_written(canvas)]
+    layer = Layer.create(tmp_path, "mask", WEIGHTS, SIZE)
+    pictures = [read_written(layer)]
     for x in (0.2, 0.8):
-        canvas.begin()
-        canvas.paint((x, 0.9), (x, 0.95), EXTENT, HARD)
-        canvas.save()
-        pictures.append(read_written(canvas))
+        layer.begin()
+        layer.paint(Dab((x, 0.9), (x, 0.95), EXTENT, HARD))
+        layer.save()
+        pictures.append(read_written(layer))
     north, south = pictures[-1][:16], pictures[-1][-16:]
     assert north[..., 1].max() == 255 and south[..., 1].max() == 0
     assert (pictures[1] != pictures[2]).any()
     for expected in (pictures[1], pictures[0]):
-        assert canvas.can_undo
-        canvas.undo()
-        np.testing.assert_array_equal(read_written(canvas), expected)
-    assert not canvas.can_undo
-    canvas.undo()
+        assert layer.can_undo
+        layer.undo()
+        np.testing.assert_array_equal(read_written(layer), expected)
+    assert not layer.can_undo
+    layer.undo()
     for expected in pictures[1:]:
-        assert canvas.can_redo
-        canvas.redo()
-        np.testing.assert_array_equal(read_written(canvas), expected)
-    assert not canvas.can_redo
-    canvas.redo()
-    np.testing.assert_array_equal(read_written(canvas), pictures[2])
-    canvas.undo()
-    np.testing.assert_array_equal(read_written(canvas), pictures[1])
+        assert layer.can_redo
+        layer.redo()
+        np.testing.assert_array_equal(read_written(layer), expected)
+    assert not layer.can_redo
+    layer.redo()
+    np.testing.assert_array_equal(read_written(layer), pictures[2])
+    layer.undo()
+    np.testing.assert_array_equal(read_written(layer), pictures[1])
 
 
 def test_after_another_stroke_what_was_taken_back_is_not_painted_again(tmp_path: Path):
-    canvas = Mask.create(tmp_path, "mask", None, SIZE)
-    canvas.begin()
-    canvas.paint((0.2, 0.5), (0.2, 0.5), EXTENT, HARD)
-    canvas.undo()
-    assert canvas.can_redo
-    canvas.clear()
-    assert not canvas.can_redo
-    canvas.redo()
-    assert (read_written(canvas) == 0).all()
+    layer = Layer.create(tmp_path, "mask", WEIGHTS, SIZE)
+    layer.begin()
+    layer.paint(Dab((0.2, 0.5), (0.2, 0.5), EXTENT, HARD))
+    layer.undo()
+    assert layer.can_redo
+    layer.clear()
+    assert not layer.can_redo
+    layer.redo()
+    assert (read_written(layer) == 0).all()
 
 
 def test_clearing_can_be_undone(tmp_path: Path):
-    canvas = Mask.create(tmp_path, "mask", None, SIZE)
-    canvas.begin()
-    canvas.paint((0.5, 0.5), (0.5, 0.5), EXTENT, HARD)
-    canvas.save()
-    painted = read_written(canvas)
-    canvas.clear()
-    assert (read_written(canvas) == 0).all()
-    canvas.undo()
-    np.testing.assert_array_equal(read_written(canvas), painted)
+    layer = Layer.create(tmp_path, "mask", WEIGHTS, SIZE)
+    layer.begin()
+    layer.paint(Dab((0.5, 0.5), (0.5, 0.5), EXTENT, HARD))
+    layer.save()
+    painted = read_written(layer)
+    layer.clear()
+    assert (read_written(layer) == 0).all()
+    layer.undo()
+    np.testing.assert_array_equal(read_written(layer), painted)
 
 
 def test_a_mask_that_is_there_is_copied_and_stays_as_it_was(tmp_path: Path):
     pixels = np.random.default_rng(1).integers(0, 256, (SIZE[1], SIZE[0], 4), np.uint8)
     write_png(tmp_path / "old.png", pixels)
-    canvas = Mask.create(tmp_path, "new", tmp_path / "old.png", SIZE)
-    np.testing.assert_array_equal(read_written(canvas), pixels)
-    canvas.clear()
+    layer = Layer.create(tmp_path, "new", WEIGHTS, SIZE, of=tmp_path / "old.png")
+    np.testing.assert_array_equal(read_written(layer), pixels)
+    layer.clear()
     np.testing.assert_array_equal(read_image(tmp_path / "old.png").pixels, pixels)
 
 
@@ -164,25 +167,25 @@ def test_a_mask_of_another_size_takes_the_pass_s(tmp_path: Path):
     pixels = np.zeros((2, 2, 4), np.uint8)
     pixels[0] = [0, 200, 0, 0]  # the north
     write_png(tmp_path / "coarse.png", pixels)
-    canvas = Mask.create(tmp_path, "fine", tmp_path / "coarse.png", SIZE)
-    array = read_written(canvas)
+    layer = Layer.create(tmp_path, "fine", WEIGHTS, SIZE, of=tmp_path / "coarse.png")
+    array = read_written(layer)
     assert array.shape == (SIZE[1], SIZE[0], 4)
     assert array[0, 0, 1] == 200 and array[-1, -1, 1] == 0 and 90 < array[SIZE[1] // 2, 7, 1] < 110
 
 
-def test_a_canvas_that_is_full_of_the_fourth_layer_is_read_back_as_that(tmp_path: Path):
-    canvas = Mask.create(tmp_path, "full", None, SIZE)
-    everything = Brush(layer=3, radius=5000.0, strength=1.0, softness=0.0)
-    canvas.begin()
-    canvas.paint((0.5, 0.5), (0.5, 0.5), EXTENT, everything)
-    canvas.save()
-    canvas.writing.wait()
-    np.testing.assert_array_equal(read_mask(canvas.path, SIZE), np.broadcast_to([0, 0, 0, 1], (64, 128, 4)))
+def test_a_layer_that_is_full_of_the_fourth_layer_is_read_back_as_that(tmp_path: Path):
+    layer = Layer.create(tmp_path, "full", WEIGHTS, SIZE)
+    everything = Brush(channel=3, radius=5000.0, strength=1.0, softness=0.0)
+    layer.begin()
+    layer.paint(Dab((0.5, 0.5), (0.5, 0.5), EXTENT, everything))
+    layer.save()
+    layer.writing.wait()
+    np.testing.assert_array_equal(read_mask(layer.path, SIZE), np.broadcast_to([0, 0, 0, 1], (64, 128, 4)))
 
 
 def test_a_folder_that_is_missing_has_a_sentence(tmp_path: Path):
     with pytest.raises(DataError, match="missing"):
-        Mask.create(tmp_path / "missing", "mask", None, SIZE)
+        Layer.create(tmp_path / "missing", "mask", WEIGHTS, SIZE)
 
 
 SKETCH = (
@@ -222,7 +225,7 @@ def test_a_stroke_over_the_picture_is_painted_under_the_mouse(session: Session, 
     painting = Painting(session, tmp_path)
     assert painting.target == "painted.image"
     painting.toggle()
-    painting.brush = Brush(layer=3, radius=150.0, strength=1.0, softness=0.0)
+    painting.brush = Brush(channel=3, radius=150.0, strength=1.0, softness=0.0)
     position = (0.42, 0.45)
     x, y = painting.ground(position)
     before = session.engine.read(session.sketch, "weights")
@@ -251,14 +254,14 @@ def test_the_file_that_the_sketch_names_is_never_written_to(session: Session, tm
     painting.move((0.6, 0.5))
     painting.release()
     assert (tmp_path / "sketch" / "none.png").read_bytes() == named
-    canvas = painting.canvas
-    assert canvas is not None and canvas.path.parent == tmp_path and painting.files == {canvas.path}
-    assert dict(session.shown.edits.values)["painted.image"] == str(canvas.path)
+    layer = painting.layer
+    assert layer is not None and layer.path.parent == tmp_path and painting.files == {layer.path}
+    assert dict(session.shown.edits.values)["painted.image"] == str(layer.path)
     assert any("painting on" in note for note in session.notes)
     session.drafts.unset("painted.image")
-    assert painting.canvas is None, "the sketch names its own file again"
+    assert painting.layer is None, "the sketch names its own file again"
     painting.press((0.5, 0.5))
-    assert painting.canvas is not None and painting.canvas.path != canvas.path
+    assert painting.layer is not None and painting.layer.path != layer.path
 
 
 def shown(tmp_path: Path, engine: Engine, text: str, *files: tuple[str, str]) -> Session:
@@ -283,7 +286,7 @@ def test_terrain_that_is_not_square_can_be_painted_on(tmp_path: Path, any_engine
         painting.press((0.5, 0.5))
         painting.release()
         session.frame((160, 120))
-        assert session.error is None and painting.canvas is not None and painting.canvas.mask.max() > 0.5
+        assert session.error is None and painting.layer is not None and painting.layer.array.max() > 0.5
     finally:
         session.release()
 
@@ -311,15 +314,15 @@ def test_a_mask_that_was_taken_away_is_written_again(session: Session, tmp_path:
     painting.toggle()
     painting.press((0.5, 0.5))
     painting.release()
-    canvas = painting.canvas
-    assert canvas is not None
+    layer = painting.layer
+    assert layer is not None
     assert painting.settle()
-    canvas.path.unlink()
+    layer.path.unlink()
     painting.press((0.4, 0.5))
     painting.release()
     assert painting.settle()
     session.frame((160, 120))
-    assert canvas.path.exists() and session.error is None
+    assert layer.path.exists() and session.error is None
 
 
 def test_without_its_mask_the_brush_is_off(session: Session, tmp_path: Path) -> None:
@@ -347,19 +350,19 @@ def test_the_picture_follows_each_move_and_the_file_is_written_at_the_end(
     painting = Painting(session, tmp_path)
     painting.toggle()
     painting.press((0.4, 0.5))
-    canvas = painting.canvas
-    assert canvas is not None and canvas.mask.shape[:2] == (128, 128), "the size of the pass that reads it"
+    layer = painting.layer
+    assert layer is not None and layer.array.shape[:2] == (128, 128), "the size of the pass that reads it"
     array = weights(session)
-    file = canvas.path.read_bytes()
+    file = layer.path.read_bytes()
     for position in ((0.45, 0.5), (0.5, 0.5), (0.55, 0.52)):
         painting.move(position)
-        np.testing.assert_array_equal(weights(session), canvas.pixels / np.float32(255))
-    assert not canvas.saved and canvas.path.read_bytes() == file
+        np.testing.assert_array_equal(weights(session), layer.pixels / np.float32(255))
+    assert not layer.saved and layer.path.read_bytes() == file
     assert (weights(session) != array).any()
     painting.release()
-    assert painting.settle() and canvas.saved
+    assert painting.settle() and layer.saved
     seen = weights(session)
-    np.testing.assert_array_equal(seen, read_mask(canvas.path, (128, 128)), "as the file says")
+    np.testing.assert_array_equal(seen, read_mask(layer.path, (128, 128)), "as the file says")
     with Engine(session.engine.ctx, driver=session.engine.driver) as another:
         np.testing.assert_array_equal(another.read(session.sketch, "painted"), seen, "and any other reader")
 
@@ -367,7 +370,7 @@ def test_the_picture_follows_each_move_and_the_file_is_written_at_the_end(
 def test_only_the_part_that_changed_goes_to_the_graphics_card(session: Session, tmp_path: Path) -> None:
     painting = Painting(session, tmp_path)
     painting.toggle()
-    painting.brush = Brush(layer=1, radius=40.0, strength=1.0, softness=0.0)
+    painting.brush = Brush(channel=1, radius=40.0, strength=1.0, softness=0.0)
     painting.press((0.45, 0.5))
     weights(session)
     paint, whole = session.engine.runner.paint, 128 * 128
@@ -381,10 +384,10 @@ def test_only_the_part_that_changed_goes_to_the_graphics_card(session: Session, 
     painting.move((0.5, 0.5))
     painting.move((0.53, 0.5))  # two between two pictures
     painting.release()
-    np.testing.assert_array_equal(weights(session), painting.canvas.pixels / np.float32(255))  # type: ignore[union-attr]
+    np.testing.assert_array_equal(weights(session), painting.layer.pixels / np.float32(255))  # type: ignore[union-attr]
     for act in (painting.undo, painting.redo, painting.clear, painting.undo):
         act()
-        np.testing.assert_array_equal(weights(session), painting.canvas.pixels / np.float32(255))  # type: ignore[union-attr]
+        np.testing.assert_array_equal(weights(session), painting.layer.pixels / np.float32(255))  # type: ignore[union-attr]
 
 
 def test_a_mask_that_others_paint_on_is_read_again(session: Session, tmp_path: Path) -> None:
@@ -392,20 +395,20 @@ def test_a_mask_that_others_paint_on_is_read_again(session: Session, tmp_path: P
     painting.toggle()
     painting.press((0.45, 0.5))
     painting.release()
-    canvas = painting.canvas
-    assert canvas is not None
+    layer = painting.layer
+    assert layer is not None
     weights(session)
     assert painting.settle()
     theirs = np.zeros((128, 128, 4), np.uint8)
     theirs[:, :, 2] = 255
-    write_png(canvas.path, theirs)
+    write_png(layer.path, theirs)
     session.redraw()
     np.testing.assert_array_equal(weights(session), theirs[::-1] / np.float32(255))
     painting.press((0.45, 0.5))
     painting.release()
     array = weights(session)
     assert (array[..., 2] == 1).mean() > 0.9 and array[..., 3].max() > 0.5
-    np.testing.assert_array_equal(array, canvas.pixels / np.float32(255))
+    np.testing.assert_array_equal(array, layer.pixels / np.float32(255))
 
 
 @pytest.mark.parametrize("act", ["undo", "clear"])
@@ -415,19 +418,19 @@ def test_what_others_painted_since_is_not_taken_back(session: Session, tmp_path:
     for _ in range(2):
         painting.press((0.45, 0.5))
         painting.release()
-    canvas = painting.canvas
-    assert canvas is not None
+    layer = painting.layer
+    assert layer is not None
     assert painting.settle()
     theirs = np.zeros((128, 128, 4), np.uint8)
     theirs[:, :, 2] = 255
-    write_png(canvas.path, theirs)
+    write_png(layer.path, theirs)
     getattr(painting, act)()
-    np.testing.assert_array_equal(read_png(canvas.path)[0], theirs)
+    np.testing.assert_array_equal(read_png(layer.path)[0], theirs)
     np.testing.assert_array_equal(weights(session), theirs[::-1] / np.float32(255))
     assert any("was changed by another program" in note for note in session.notes)
 
 
-def test_a_canvas_that_no_source_reads_texel_for_texel_is_followed_by_its_file(
+def test_a_layer_that_no_source_reads_texel_for_texel_is_followed_by_its_file(
     tmp_path: Path, any_engine: Engine
 ) -> None:
     text = SKETCH.replace('set = { image = "none.png" }', 'set = { image = "none.png", texels = [4, 4] }')
@@ -437,35 +440,35 @@ def test_a_canvas_that_no_source_reads_texel_for_texel_is_followed_by_its_file(
         painting = Painting(session, tmp_path, lambda: clock[0])
         painting.toggle()
         painting.press((0.4, 0.5))
-        canvas = painting.canvas
-        assert canvas is not None and canvas.saved and not session.engine.painted
+        layer = painting.layer
+        assert layer is not None and layer.saved and not session.engine.painted
         painting.move((0.45, 0.5))
-        assert not canvas.saved
+        assert not layer.saved
         clock[0] = 1.0
         painting.move((0.5, 0.5))
-        assert canvas.saved
+        assert layer.saved
         painting.move((0.55, 0.5))
         painting.release()
-        assert canvas.saved
+        assert layer.saved
     finally:
         session.release()
 
 
 def test_changes_since_a_version_are_a_rectangle_around_them(tmp_path: Path) -> None:
-    canvas = Mask.create(tmp_path, "mask", None, SIZE)
-    small = Brush(layer=0, radius=20.0, strength=1.0, softness=0.0)
-    assert canvas.changed_since(canvas.version) == (slice(0, 0), slice(0, 0))
+    layer = Layer.create(tmp_path, "mask", WEIGHTS, SIZE)
+    small = Brush(channel=0, radius=20.0, strength=1.0, softness=0.0)
+    assert layer.changed_since(layer.version) == (slice(0, 0), slice(0, 0))
     rng = np.random.default_rng(3)
     versions = []
     for _ in range(300):
-        versions.append((canvas.version, canvas.pixels.copy()))
+        versions.append((layer.version, layer.pixels.copy()))
         position = tuple(rng.uniform(-0.2, 1.2, 2))
-        canvas.paint(position, position, EXTENT, small)
+        layer.paint(Dab(position, position, EXTENT, small))
     for version, before in versions[::17]:
-        rows, columns = canvas.changed_since(version)
+        rows, columns = layer.changed_since(version)
         copy = before.copy()
-        copy[rows, columns] = canvas.pixels[rows, columns]
-        np.testing.assert_array_equal(copy, canvas.pixels)
+        copy[rows, columns] = layer.pixels[rows, columns]
+        np.testing.assert_array_equal(copy, layer.pixels)
 
 
 def test_in_the_sky_no_stroke_begins(session: Session, tmp_path: Path) -> None:
@@ -473,7 +476,7 @@ def test_in_the_sky_no_stroke_begins(session: Session, tmp_path: Path) -> None:
     painting.toggle()
     painting.press((0.5, 0.999))
     painting.move((0.5, 0.998))
-    assert painting.canvas is None and not list(tmp_path.glob("*.png"))
+    assert painting.layer is None and not list(tmp_path.glob("*.png"))
 
 
 def test_the_outline_lies_around_the_place(session: Session, tmp_path: Path) -> None:

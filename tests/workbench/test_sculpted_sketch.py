@@ -12,9 +12,10 @@ from playground.engine.engine import Engine
 from playground.engine.file_sources import read_numbers, write_numbers
 from playground.engine.textures import read_texture
 from playground.errors import DataError
-from playground.workbench.brush import Brush
+from playground.workbench.brush import Brush, Dab
+from playground.workbench.layer import NUMBERS, Layer
 from playground.workbench.painting import CLICK, MAX_DAB_SECONDS, Painting
-from playground.workbench.sculpture import RISE, Sculpture
+from playground.workbench.sculpting import RISE
 from playground.workbench.session import Session
 
 from ..sketch_texts import passes
@@ -97,20 +98,20 @@ def test_what_is_painted_is_added_in_metres(session: Session, painting: Painting
     assert abs(rise[there] - expected) < 0.01
     away = np.hypot(np.arange(97) / 96 * 2000 - x * 2000, (np.arange(65)[:, None] / 64 - y) * 1100)
     assert (rise[away > 150] == 0).all() and (rise[away < 149] > 0).all()
-    canvas = painting.canvas
-    assert isinstance(canvas, Sculpture)
-    exact = before.astype(np.float64) + canvas.pixels.astype(np.float64) / 200.0
+    layer = painting.layer
+    assert layer is not None and layer.kind is NUMBERS
+    exact = before.astype(np.float64) + layer.pixels.astype(np.float64) / 200.0
     np.testing.assert_allclose(after, exact, atol=2e-7 * max(1.0, np.abs(exact).max()))
 
 
 def test_the_brush_works_for_as_long_as_the_button_is_down(session: Session, painting: Painting) -> None:
     stroke(painting, *[PLACE] * 8)
-    canvas = painting.canvas
-    assert canvas is not None
-    assert abs(canvas.pixels.max() - RISE * 150.0 * (CLICK + 8 * 0.05)) < 1e-3
+    layer = painting.layer
+    assert layer is not None
+    assert abs(layer.pixels.max() - RISE * 150.0 * (CLICK + 8 * 0.05)) < 1e-3
     painting.undo()
     stroke(painting, PLACE, seconds=60.0)  # a frame that took a minute
-    assert abs(canvas.pixels.max() - RISE * 150.0 * (CLICK + MAX_DAB_SECONDS)) < 1e-3
+    assert abs(layer.pixels.max() - RISE * 150.0 * (CLICK + MAX_DAB_SECONDS)) < 1e-3
 
 
 def test_the_file_has_the_window_s_bits_and_draws_its_picture(
@@ -118,14 +119,14 @@ def test_the_file_has_the_window_s_bits_and_draws_its_picture(
 ) -> None:
     empty = read_texture(session.frame(PICTURE))  # type: ignore[arg-type]
     stroke(painting, PLACE, (0.6, 0.55))
-    canvas = painting.canvas
-    assert canvas is not None and canvas.saved
+    layer = painting.layer
+    assert layer is not None and layer.saved
     picture = read_texture(session.frame(PICTURE))  # type: ignore[arg-type]
-    np.testing.assert_array_equal(read_numbers(canvas.path, (97, 65)), canvas.pixels)
+    np.testing.assert_array_equal(read_numbers(layer.path, (97, 65)), layer.pixels)
     assert (picture != empty).any()
     text = SKETCH.replace(
         'use = "generation/sculpted"\n',
-        f'use = "generation/sculpted"\nset = {{ image = "{canvas.path.name}" }}\n',
+        f'use = "generation/sculpted"\nset = {{ image = "{layer.path.name}" }}\n',
     )
     (tmp_path / "saved.toml").write_text(text)
     with Engine(session.engine.ctx, driver=session.engine.driver) as another:
@@ -142,34 +143,34 @@ def test_what_ends_a_stroke_with_the_button_down_leaves_nothing_that_cannot_be_u
     painting: Painting, act: str
 ) -> None:
     stroke(painting, PLACE)
-    canvas = painting.canvas
-    assert canvas is not None
-    first = canvas.pixels.copy()
+    layer = painting.layer
+    assert layer is not None
+    first = layer.pixels.copy()
     painting.press(PLACE)
     getattr(painting, act)()
-    ended = canvas.pixels.copy()
+    ended = layer.pixels.copy()
     for position in (PLACE, (0.6, 0.55)):  # the button is still down
         painting._now.now += 0.05  # type: ignore[attr-defined]
         painting.move(position)
     painting.release()
     painting.settle()
-    np.testing.assert_array_equal(canvas.pixels, ended)
-    np.testing.assert_array_equal(read_numbers(canvas.path, (97, 65)), ended)
+    np.testing.assert_array_equal(layer.pixels, ended)
+    np.testing.assert_array_equal(read_numbers(layer.path, (97, 65)), ended)
     stroke(painting, PLACE)
     painting.undo()
-    np.testing.assert_array_equal(canvas.pixels, ended)
-    while canvas.can_undo:
+    np.testing.assert_array_equal(layer.pixels, ended)
+    while layer.can_undo:
         painting.undo()
-    assert not canvas.pixels.any() and first.any()
+    assert not layer.pixels.any() and first.any()
 
 
 def test_a_stroke_that_begins_in_the_sky_paints_nothing(session: Session, painting: Painting) -> None:
     stroke(painting, PLACE)
-    canvas = painting.canvas
-    assert canvas is not None and painting.ground((0.5, 0.99)) is None
-    before = canvas.pixels.copy()
+    layer = painting.layer
+    assert layer is not None and painting.ground((0.5, 0.99)) is None
+    before = layer.pixels.copy()
     stroke(painting, (0.5, 0.99), PLACE)
-    np.testing.assert_array_equal(canvas.pixels, before)
+    np.testing.assert_array_equal(layer.pixels, before)
 
 
 def test_each_stroke_is_undone_and_redone_to_the_same_bytes(session: Session, painting: Painting) -> None:
@@ -177,22 +178,22 @@ def test_each_stroke_is_undone_and_redone_to_the_same_bytes(session: Session, pa
     for tool in ("raise", "smooth", "flatten", "sharpen", "lower", "erase"):
         painting.brush = Brush(tool=tool, radius=300.0, strength=0.7)  # type: ignore[arg-type]
         stroke(painting, (0.4, 0.45), (0.6, 0.55))
-        canvas = painting.canvas
-        assert canvas is not None
-        states.append(canvas.pixels.copy())
-        files.append(canvas.path.read_bytes())
+        layer = painting.layer
+        assert layer is not None
+        states.append(layer.pixels.copy())
+        files.append(layer.path.read_bytes())
         assert len(states) == 1 or (states[-1] != states[-2]).any()
     for act, order in ((painting.undo, range(4, -1, -1)), (painting.redo, range(1, 6))):
         for n in order:
             act()
             painting.settle()
-            np.testing.assert_array_equal(canvas.pixels, states[n])
-            assert canvas.path.read_bytes() == files[n]
+            np.testing.assert_array_equal(layer.pixels, states[n])
+            assert layer.path.read_bytes() == files[n]
             np.testing.assert_array_equal(read(session, "height.strokes"), states[n])
     painting.clear()
-    assert not canvas.pixels.any()
+    assert not layer.pixels.any()
     painting.undo()
-    np.testing.assert_array_equal(canvas.pixels, states[-1])
+    np.testing.assert_array_equal(layer.pixels, states[-1])
 
 
 def test_only_the_rectangle_goes_to_the_graphics_card(session: Session, painting: Painting) -> None:
@@ -202,9 +203,9 @@ def test_only_the_rectangle_goes_to_the_graphics_card(session: Session, painting
     paint = session.engine.runner.paint
     before = paint.uploaded
     painting.move((0.47, 0.5))
-    canvas = painting.canvas
-    assert canvas is not None
-    np.testing.assert_array_equal(read(session, "height.strokes"), canvas.pixels)
+    layer = painting.layer
+    assert layer is not None
+    np.testing.assert_array_equal(read(session, "height.strokes"), layer.pixels)
     assert 0 < paint.uploaded - before <= (120 / (2000 / 96) + 8) * (120 / (1100 / 64) + 4)
     painting.release()
 
@@ -230,36 +231,36 @@ def test_a_factor_is_painted_as_what_is_added_to_1(session: Session, painting: P
     stroke(painting, *[PLACE] * 12)
     painting.brush = Brush(tool="raise", radius=150.0, strength=1.0, softness=0.5)
     stroke(painting, *[(0.6, 0.5)] * 100)
-    canvas = painting.canvas
-    assert isinstance(canvas, Sculpture) and canvas.ground is None
+    layer = painting.layer
+    assert layer is not None and layer.kind is NUMBERS and layer.ground is None
     result = read(session, "rain")
-    np.testing.assert_array_equal(result, np.clip(1 + canvas.pixels, 0, 4).astype(np.float32))
+    np.testing.assert_array_equal(result, np.clip(1 + layer.pixels, 0, 4).astype(np.float32))
     assert abs(result.min() - 0.35) < 1e-5 and result.max() == 4
-    assert (read(session, "height") == read(session, "hills")).all(), "the other canvas is another"
+    assert (read(session, "height") == read(session, "hills")).all(), "the other layer is another"
 
 
 def test_a_file_of_another_size_is_taken_over_and_one_with_gaps_is_refused(tmp_path: Path) -> None:
     write_numbers(tmp_path / "coarse.tif", np.array([[0, 8], [-4, 4]], np.float32))
-    canvas = Sculpture.create(tmp_path, "fine", tmp_path / "coarse.tif", (9, 5))
-    assert canvas.path.name == "fine.tif" and canvas.size == (9, 5)
-    np.testing.assert_allclose(canvas.pixels[[0, 0, -1, -1], [0, -1, 0, -1]], [0, 8, -4, 4])
+    layer = Layer.create(tmp_path, "fine", NUMBERS, (9, 5), of=tmp_path / "coarse.tif")
+    assert layer.path.name == "fine.tif" and layer.size == (9, 5)
+    np.testing.assert_allclose(layer.pixels[[0, 0, -1, -1], [0, -1, 0, -1]], [0, 8, -4, 4])
     write_numbers(tmp_path / "gaps.tif", np.array([[0, np.nan], [1, 2]], np.float32))
     with pytest.raises(DataError, match="1 texels have no data; expected a number in each"):
-        Sculpture.create(tmp_path, "fine", tmp_path / "gaps.tif", (9, 5))
+        Layer.create(tmp_path, "fine", NUMBERS, (9, 5), of=tmp_path / "gaps.tif")
 
 
 def test_strokes_over_many_tiles_are_undone_one_by_one(tmp_path: Path) -> None:
-    canvas = Sculpture.create(tmp_path, "large", None, (203, 150))
+    layer = Layer.create(tmp_path, "large", NUMBERS, (203, 150))
     rng = np.random.default_rng(5)
-    states = [canvas.pixels.copy()]
+    states = [layer.pixels.copy()]
     for _ in range(8):
-        canvas.begin()
+        layer.begin()
         for _ in range(4):
             start, end = (tuple(map(float, rng.uniform(-0.1, 1.1, 2))) for _ in range(2))
-            canvas.paint(start, end, (2000.0, 1500.0), Brush(tool="raise", radius=90.0), 0.1)
-        canvas.save()
-        states.append(canvas.pixels.copy())
+            layer.paint(Dab(start, end, (2000.0, 1500.0), Brush(tool="raise", radius=90.0), 0.1))
+        layer.save()
+        states.append(layer.pixels.copy())
     for expected in states[-2::-1]:
-        canvas.undo()
-        np.testing.assert_array_equal(canvas.pixels, expected)
-    assert not canvas.can_undo
+        layer.undo()
+        np.testing.assert_array_equal(layer.pixels, expected)
+    assert not layer.can_undo

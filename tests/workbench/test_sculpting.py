@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from playground.workbench.brush import TOOLS, Brush
+from playground.workbench.brush import TOOLS, Brush, Dab
 from playground.workbench.sculpting import APPROACH, SHARPEN, sculpt
 
 SHAPING = tuple(tool for tool in TOOLS if tool != "erode")  # which runs a technique
@@ -27,7 +27,7 @@ def worked(tool: str, seconds: float, *, ground=None, start=None, at=(MIDDLE, MI
     value = Brush(**{"radius": 120.0, "strength": 0.8, "softness": 0.6, "tool": tool} | brush)
     for n in range(steps):
         a, b = (tuple(np.array(at[0]) + (np.array(at[1]) - at[0]) * (n + k) / steps) for k in (0, 1))
-        sculpt(change, ground, (a, b), EXTENT, value, seconds=seconds / steps, rate=40.0, level=310.0)
+        sculpt(change, ground, Dab(a, b, EXTENT, value, seconds / steps), rate=40.0, level=310.0)
     return change.astype(np.float64)
 
 

@@ -204,11 +204,11 @@ def test_a_brush_that_is_pressed_waits_for_no_source(any_engine, gate, closed, t
     painting.press((0.5, 0.5))
     painting.move((0.5, 0.52))
     painting.release()
-    assert not closed.waited and painting.canvas is None, "nothing is painted on ground that is not there"
+    assert not closed.waited and painting.layer is None, "nothing is painted on ground that is not there"
     assert made.notes and all("low is being made" in note for note in made.notes)
     gate.set()
     drawn(made)
     painting.press((0.5, 0.5))
     painting.release()
-    assert painting.canvas is not None
+    assert painting.layer is not None
     made.release()
