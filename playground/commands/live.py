@@ -152,7 +152,7 @@ def _clipboard() -> str:
 
 def read_remotes(remote: str = "", token: str = "", osc: str = "", osc_to: str = "") -> dict[str, Any]:
     """Return the fields of ``RemoteOptions``; raise ``ParameterError``."""
-    from playground.remote.access import check_token
+    from playground.local_server import check_token
 
     expected = "a port from 1 to 65535, or 0 for a free one"
     port = read_option("--remote", remote, within(0, 65535), expected)

@@ -1,7 +1,6 @@
 """Remotes of a window: HTTP and WebSocket, OSC, MIDI. What they may do is ``playground.workbench.control``.
 
     calls.py     requests of other threads, done by the thread that draws
-    access.py    who may ask: the token, the Host, the Origin
     server.py    HTTP and WebSocket, in a thread of its own
     page/        the page of sliders that it serves
     osc.py       OSC by UDP

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from playground.errors import ContextError, PlaygroundError
 from playground.extras import needs
-from playground.remote.access import check_token, new_token
+from playground.local_server import check_token, new_token
 from playground.remote.calls import Calls
 from playground.workbench.bench import Workbench
 from playground.workbench.control.addresses import Addresses

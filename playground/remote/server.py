@@ -34,8 +34,7 @@ from playground.data.image_files import encode_png
 from playground.engine.frame import Frame
 from playground.errors import DataError, ParameterError, PlaygroundError
 from playground.json_text import read_json
-from playground.local_server import BACKLOG, MAX_SILENCE, Unauthenticated
-from playground.remote.access import refusal
+from playground.local_server import BACKLOG, HEADERS, MAX_SILENCE, Guard, Unauthenticated
 from playground.remote.calls import Busy, Calls
 from playground.web.bundle import read_bundle
 from playground.workbench.control.controls import MAX_REMOTE_SIDE, Behind, Controls
@@ -66,9 +65,8 @@ class Server:
 
     def __init__(self, port: int, token: str) -> None:
         """Listen on 127.0.0.1, on a free port where it is 0; raise ``DataError`` for one that is taken."""
-        self.token = token
         self._socket = _listening(port)
-        self.port: int = self._socket.getsockname()[1]
+        self.guard = Guard(self._socket.getsockname()[1], token)
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._run, name="the remote's server", daemon=True)
         self._clients: set[_Client] = set()
@@ -82,7 +80,7 @@ class Server:
     @property
     def url(self) -> str:
         """The address of the page, with the token."""
-        return f"http://127.0.0.1:{self.port}/{self.token}/"
+        return self.guard.url
 
     def start(self, calls: Calls, controls: Controls) -> None:
         """Answer from now on."""
@@ -150,9 +148,8 @@ class Server:
     @web.middleware
     async def _guard(self, request: web.Request, handler: _Handler) -> web.StreamResponse:
         """Refuse who may not ask, bound how many do, and turn every mistake into a message."""
-        token = request.path.split("/", 2)[1]
         host, origin = request.headers.get("Host"), request.headers.get("Origin")
-        if why := refusal(host, origin, token, token_expected=self.token, port=self.port):
+        if why := self.guard.refusal(host, origin, request.path):
             return _error(403, why)
         self._unauthenticated.discard(request.protocol)
         connections = self._runner.server.connections if self._runner and self._runner.server else []
@@ -164,9 +161,8 @@ class Server:
         try:
             answer = await handler(request)
         except web.HTTPException as error:
-            answer = _error(
-                error.status, f"{error.reason}: {request.method} {request.path[len(token) + 1 :]}"
-            )
+            path = request.path.removeprefix(f"/{self.guard.token}")
+            answer = _error(error.status, f"{error.reason}: {request.method} {path}")
         except (Busy, Behind) as error:
             answer = _error(503, str(error))
         except PlaygroundError as error:
@@ -180,8 +176,8 @@ class Server:
         finally:
             self._busy -= counts
         if not isinstance(answer, web.WebSocketResponse):
-            answer.headers.update(_HEADERS)
-            answer.headers["Content-Security-Policy"] = _policy(self.port)
+            answer.headers.update(HEADERS)
+            answer.headers["Content-Security-Policy"] = _policy(self.guard.port)
         return answer
 
     async def _ask(self, function: Callable[[], Any]) -> Any:
@@ -311,14 +307,6 @@ class _Client:
                     self.room.release()
             except ConnectionError:
                 return
-
-
-_HEADERS = {
-    "Cache-Control": "no-store",
-    "Cross-Origin-Resource-Policy": "same-origin",
-    "Referrer-Policy": "no-referrer",
-    "X-Content-Type-Options": "nosniff",
-}
 
 
 def _policy(port: int) -> str:

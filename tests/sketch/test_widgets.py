@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from playground.capture.sweep import parts_of, sweep_text
 from playground.commands.entries import Choice
 from playground.errors import ParameterError, ShaderError
 from playground.reduce.inline import inline_sketch
 from playground.shader.parameter import coerce, expected, write
 from playground.sketch.load import load
 from playground.sketch.save import saved_text
-from playground.workbench.captures import parts_of, sweep_text
 from playground.workbench.randomise import at_random, mutated
 
 KERNEL = """#pragma kernel(output = "colour:rgba32f", repeat = "1 + (mode == 40)")

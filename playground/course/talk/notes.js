@@ -45,8 +45,8 @@ async function follow() {
   for (;;) {
     try {
       const answer = await fetch(`state?since=${known}`);
+      if (!answer.ok) throw new Error(await answer.text());
       const found = await answer.json();
-      if (!answer.ok) throw new Error(found.error);
       if (found.number !== known && "labels" in found.state) {
         known = found.number;
         state = found.state;
@@ -63,7 +63,7 @@ async function follow() {
 async function ask(wishes) {
   try {
     const answer = await fetch("do", { method: "POST", body: JSON.stringify(wishes) });
-    if (!answer.ok) at("complaint").textContent = (await answer.json()).error;
+    if (!answer.ok) at("complaint").textContent = (await answer.text()).trim();
   } catch {
     if (state) at("complaint").textContent = state.labels.lost;
   }

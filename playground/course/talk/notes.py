@@ -14,42 +14,30 @@ from __future__ import annotations
 import json
 import threading
 from collections.abc import Callable, Mapping
-from http.server import BaseHTTPRequestHandler
+from functools import partial
 from importlib.resources import files
 from typing import Any
-from urllib.parse import parse_qs, urlsplit
 
 from playground.course.talk.beat import Beat
 from playground.course.talk.presenter import Presenter
-from playground.errors import DataError, ParameterError, PlaygroundError
+from playground.errors import DataError, ParameterError
 from playground.json_text import read_json
-from playground.local_server import LocalServer
-from playground.remote.access import new_token, refusal
+from playground.local_server import CSS, HTML, JSON, SCRIPT, Answer, LocalServer, Request, as_json, refused
 from playground.remote.calls import Busy, Calls
 
 MAX_REQUEST_BYTES = 2**12
 """[bytes] of what a page may send."""
 WAITS = 10.0
 """[s] that a request for news waits."""
-_MAX_WAITING = 16  # requests at a time
 _PATIENCE = 5.0  # [s] for the window to do what is asked
-
-_FILES = {
-    "": ("notes.html", "text/html"),
-    "notes.css": ("notes.css", "text/css"),
-    "notes.js": ("notes.js", "text/javascript"),
-}
-_HEADERS = {
-    "Cache-Control": "no-store",
-    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
-    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
-    "Cross-Origin-Resource-Policy": "same-origin",
-    "Referrer-Policy": "no-referrer",
-    "X-Content-Type-Options": "nosniff",
-}
+_FILES = {"": ("notes.html", HTML), "notes.css": ("notes.css", CSS), "notes.js": ("notes.js", SCRIPT)}
+_POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; base-uri 'none'; "
+    "form-action 'none'"
+)
 
 Act = Callable[[Mapping[str, Any]], None]
-"""Does what a page asks for; raises ``PlaygroundError`` in a sentence."""
+"""Does what a page asks for; raises ``ParameterError`` in a sentence."""
 
 
 class Notes:
@@ -57,23 +45,24 @@ class Notes:
 
     def __init__(self, act: Act, wake: Callable[[], None] = lambda: None, port: int = 0) -> None:
         """Listen on 127.0.0.1, on a free port where it is 0; raise ``DataError`` where that fails."""
-        self.token = new_token()
         self.calls = Calls(wake)
         self.act = act
         self._news = threading.Condition()
         self._text, self._count, self._closed = b"{}", 0, False
+        routes = {f"GET {name}": partial(_file, *file) for name, file in _FILES.items()}
         try:
-            self._server = _Server(("127.0.0.1", port), self)
+            self.server = LocalServer(
+                {**routes, "GET state": self._state, "POST do": self._do}, port, max_bytes=MAX_REQUEST_BYTES
+            )
         except OSError as error:
             raise DataError(f"notes cannot be served: {error.strerror or error}") from None
-        self.port: int = self._server.server_address[1]
-        self._thread = threading.Thread(target=self._server.serve_forever, args=(0.1,), daemon=True)
+        self._thread = threading.Thread(target=self.server.serve, daemon=True)
         self._thread.start()
 
     @property
     def url(self) -> str:
         """The address of the page, with the token."""
-        return f"http://127.0.0.1:{self.port}/{self.token}/"
+        return self.server.guard.url
 
     @property
     def waits(self) -> bool:
@@ -92,106 +81,39 @@ class Notes:
                 self._text, self._count = text, self._count + 1
                 self._news.notify_all()
 
-    def state(self, since: int) -> bytes:
-        """Return what is on as JSON, with its number; wait a while for one after ``since``."""
-        with self._news:
-            self._news.wait_for(lambda: self._count != since or self._closed, WAITS)
-            return b'{"number": %d, "state": %s}' % (self._count, self._text)
-
     def close(self) -> None:
         """Close the port, and refuse what waits."""
         self.calls.close()
         with self._news:
             self._closed = True
             self._news.notify_all()
-        self._server.shutdown()
-        self._server.server_close()
+        self.server.shutdown()
+        self.server.server_close()
         self._thread.join(5)
 
+    def _state(self, request: Request) -> Answer:
+        """Answer with what is on and its number; wait a while for one after ``since``."""
+        text = request.query.get("since", "")
+        since = int(text) if text.isdecimal() else -1
+        with self._news:
+            self._news.wait_for(lambda: self._count != since or self._closed, WAITS)
+            return Answer(200, JSON, b'{"number": %d, "state": %s}' % (self._count, self._text))
 
-class _Server(LocalServer):
-    def __init__(self, address: tuple[str, int], notes: Notes) -> None:
-        self.notes = notes
-        self.room = threading.Semaphore(_MAX_WAITING)
-        super().__init__(address, _Handler)
-
-    def handle_error(self, request: Any, client_address: Any) -> None:
-        """Say nothing: who asked is gone."""
-
-
-class _Handler(BaseHTTPRequestHandler):
-    server: _Server
-    timeout = 30
-    protocol_version = "HTTP/1.1"
-
-    def do_GET(self) -> None:
-        self._answer(self._get)
-
-    def do_POST(self) -> None:
-        self._answer(self._post)
-
-    def log_message(self, format: str, *args: Any) -> None:
-        """Write nothing to the terminal."""
-
-    def version_string(self) -> str:
-        return "playground"
-
-    def _answer(self, make: Callable[[str], tuple[int, str, bytes]]) -> None:
-        """Refuse who may not ask; else answer with what ``make`` returns: status, type and text."""
-        notes = self.server.notes
-        _, token, *rest = (*urlsplit(self.path).path.split("/", 2), "")
-        host, origin = self.headers.get("Host"), self.headers.get("Origin")
-        why = refusal(host, origin, token, token_expected=notes.token, port=notes.port)
-        if why:
-            self._send(403, "application/json", _error(why))
-            return
-        self.server.authenticate(self.connection)
-        if not self.server.room.acquire(blocking=False):
-            self._send(503, "application/json", _error("too many requests at a time"))
-        else:
-            try:
-                response = make(rest[0])
-            except (PlaygroundError, ValueError) as error:
-                response = (503 if isinstance(error, Busy) else 400), "application/json", _error(str(error))
-            except TimeoutError:
-                response = 504, "application/json", _error(f"the window has not answered for {_PATIENCE:g} s")
-            finally:
-                self.server.room.release()
-            self._send(*response)
-
-    def _get(self, name: str) -> tuple[int, str, bytes]:
-        if name == "state":
-            since = parse_qs(urlsplit(self.path).query).get("since", ["-1"])[0]
-            return 200, "application/json", self.server.notes.state(int(since) if since.isdecimal() else -1)
-        if name not in _FILES:
-            return 404, "application/json", _error("there is no such page")
-        file, kind = _FILES[name]
-        return 200, kind, files("playground.course.talk").joinpath(file).read_bytes()
-
-    def _post(self, name: str) -> tuple[int, str, bytes]:
-        length = self.headers.get("Content-Length", "")
-        if name != "do" or not length.isdecimal() or int(length) > MAX_REQUEST_BYTES:
-            self.close_connection = True  # what it sends is not read
-            return 400, "application/json", _error(f"expected at most {MAX_REQUEST_BYTES} bytes for do")
-        wishes = read_json(self.rfile.read(int(length)))
+    def _do(self, request: Request) -> Answer:
+        wishes = read_json(request.body)
         if not isinstance(wishes, dict):
             raise ValueError('expected a JSON object, as {"go": "next"}')
-        notes = self.server.notes
-        notes.calls.ask(lambda: notes.act(wishes)).result(_PATIENCE)
-        return 200, "application/json", b"{}"
-
-    def _send(self, status: int, kind: str, text: bytes) -> None:
-        self.send_response(status)
-        self.send_header("Content-Type", f"{kind}; charset=utf-8")
-        self.send_header("Content-Length", str(len(text)))
-        for name, value in _HEADERS.items():
-            self.send_header(name, value)
-        self.end_headers()
-        self.wfile.write(text)
+        try:
+            self.calls.ask(lambda: self.act(wishes)).result(_PATIENCE)
+        except Busy as error:
+            return refused(503, str(error))
+        except TimeoutError:
+            raise TimeoutError(f"the window has not answered for {_PATIENCE:g} s") from None
+        return as_json({})
 
 
-def _error(sentence: str) -> bytes:
-    return json.dumps({"error": sentence}).encode()
+def _file(name: str, kind: str, request: Request) -> Answer:
+    return Answer(200, kind, files("playground.course.talk").joinpath(name).read_bytes(), _POLICY)
 
 
 EXPECTED = 'expected {"go": "next"}, {"cover": "black"} or {"clock": "pause"}'
