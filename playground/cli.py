@@ -42,7 +42,7 @@ from playground.commands import (
     shots,
     variants,
 )
-from playground.commands.arguments import Renderer, help_text, moment_of, read_device
+from playground.commands.arguments import Renderer, help_text, moment_of
 from playground.commands.common_options import prepared, with_root
 from playground.commands.import_name import check_package
 from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarning, nearest
@@ -155,9 +155,9 @@ def _global(
         ),
     ] = False,
     software: options.Software = False,
-    device: options.Device = "",
+    device: options.Device = None,
 ) -> None:
-    ctx.obj = Renderer(software, read_device(device))
+    ctx.obj = Renderer(software, device)
     if ctx.invoked_subcommand is None:
         _open_default(ctx.obj)
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import typer
 
@@ -32,9 +32,9 @@ class Renderer:
     software: bool = False
     device: int | None = None
 
-    def or_else(self, software: bool, device: str = "") -> Renderer:
+    def or_else(self, software: bool, device: int | None = None) -> Renderer:
         """Return what was chosen before or after the command's name."""
-        return Renderer(self.software or software, read_device(device) if device else self.device)
+        return Renderer(self.software or software, self.device if device is None else device)
 
     def open_engine(self, **options: Any) -> Engine:
         """Open a headless engine on it; the options are those of ``playground.api.headless``."""
@@ -83,6 +83,13 @@ def read_option(name: str, text: str, read: Callable[[str], T | None], expected:
     return value
 
 
+def refuse(conflicts: Mapping[str, object]) -> None:
+    """Raise ``ParameterError`` with the first message of a table whose condition is true."""
+    for message, is_wrong in conflicts.items():
+        if is_wrong:
+            raise ParameterError(message)
+
+
 def within(low: Number, high: Number) -> Callable[[str], Number | None]:
     """Return a reader of numbers between two bounds, both included: of digits only, where they are whole."""
 
@@ -107,15 +114,20 @@ def read_steps(texts: Sequence[str] | None) -> dict[str, int]:
     return numbers
 
 
-def read_pixels(text: str | None, most: int = MAX_SIDE) -> tuple[int, int] | None:
+class Pixels(NamedTuple):
+    """A size in pixels."""
+
+    width: int
+    height: int
+
+
+def read_pixels(text: str, most: int = MAX_SIDE) -> Pixels:
     """Return the width and height of ``--size``, at most so many pixels; raise ``ParameterError``."""
-    if text is None:
-        return None
     width, _, height = text.lower().replace("×", "x").partition("x")
     sides = [read_whole(side) or 0 for side in (width, height)]
     if not all(1 <= side <= most for side in sides):
         raise ParameterError(f"--size {text}: expected width and height, 1 to {most} pixels, as 1280x720")
-    return sides[0], sides[1]
+    return Pixels(*sides)
 
 
 def read_seconds(text: str) -> float | None:

@@ -66,7 +66,7 @@ def bench(
     listed: Annotated[bool, flag("--list", "List the rows, and run none.")] = False,
     as_json: options.Json = False,
     software: options.Software = False,
-    device: options.Device = "",
+    device: options.Device = None,
 ) -> None:
     """Time techniques, frames, starts and saves next to what else does the same."""
     from playground.bench.against import changes

@@ -45,7 +45,7 @@ def check(
     plain: options.Plain = False,
     dialect: options.Dialect = "",
     software: options.Software = False,
-    device: options.Device = "",
+    device: options.Device = None,
 ) -> None:
     """Check shaders and sketches."""
     from playground.engine.sandbox import LIMIT_SECONDS, Sandbox

@@ -33,7 +33,7 @@ def doctor(
     ctx: typer.Context,
     as_json: options.Json = False,
     software: options.Software = False,
-    device: options.Device = "",
+    device: options.Device = None,
 ) -> None:
     """Report what this machine offers."""
     from playground.doctor import examine

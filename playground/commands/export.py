@@ -18,9 +18,7 @@ from playground.commands.arguments import (
     either,
     help_text,
     moment_of,
-    read_driver,
     read_option,
-    read_seconds,
     read_steps,
     read_values,
     within,
@@ -153,11 +151,11 @@ def export(
     shot: Annotated[str, value("--shot NAME", "Export the terrain of a shot of the sketch.")] = "",
     preset: options.Preset = "",
     steps: options.Steps = None,
-    time: options.Time = "",
+    time: options.Time = None,
     driver: options.Driver = "auto",
     plain: options.Plain = False,
     software: options.Software = False,
-    device: options.Device = "",
+    device: options.Device = None,
 ) -> None:
     """Write the terrain or a texture to files, and print the files' paths."""
     from playground.capture.export_options import Form
@@ -173,23 +171,22 @@ def export(
         techniques=_read_techniques(technique or []),
         language=lang,
     )
-    values, stops, seconds = read_values(settings), read_steps(steps), read_seconds(time)
-    runs_by = read_driver(driver)
+    values, stops = read_values(settings), read_steps(steps)
     moment = moment_of(
         load(kept(sketch, "export")).plainly(plain),
         shot=shot,
         preset=preset,
         values=values,
         steps=stops,
-        time=seconds,
+        time=time,
     )
     names, renderer = to or [], ctx.obj.or_else(software, device)
     if NAME in names:
-        _write_piped(moment, names, _read_format(form_named), form, runs_by, renderer)
+        _write_piped(moment, names, _read_format(form_named), form, driver, renderer)
     elif form_named:
         raise ParameterError("--format is for --to -; the name of a file says what it holds")
     else:
-        _write(moment, names, form, runs_by, renderer)
+        _write(moment, names, form, driver, renderer)
 
 
 def _write_piped(

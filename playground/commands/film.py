@@ -10,7 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from playground.commands.arguments import Moment, Renderer, output_file, read_option
+from playground.commands.arguments import Moment, Renderer, output_file, read_option, refuse
 from playground.errors import ParameterError, counted
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.terminal import note, progress
@@ -43,7 +43,7 @@ class SeriesOptions:
         """Raise ``ParameterError`` for options that do not go together."""
         video, framed, swept = bool(self.video), self.frames is not None, bool(self.sweeps)
         timed = self.seconds is not None
-        wrong = {
+        conflicts = {
             "--seconds needs --video FILE": timed and not video,
             "--quality needs --video FILE": self.quality and not video,
             "--fps needs --video or --frames": self.fps is not None and not video and not framed,
@@ -57,9 +57,7 @@ class SeriesOptions:
             "--profile is for one picture": self.many and profile,
             "-o - is for one picture": self.many and output == "-",
         }
-        for sentence, is_wrong in wrong.items():
-            if is_wrong:
-                raise ParameterError(sentence)
+        refuse(conflicts)
 
 
 @dataclass(frozen=True, slots=True)

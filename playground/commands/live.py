@@ -18,9 +18,7 @@ from playground.commands import options
 from playground.commands.arguments import (
     Renderer,
     help_text,
-    read_driver,
     read_option,
-    read_pixels,
     read_values,
     with_whole_paths,
     within,
@@ -104,14 +102,14 @@ def live(
     from playground.shader.dialects import check_name
 
     renderer: Renderer = ctx.obj.or_else(software)
-    pixels, values = read_pixels(size), read_values(settings)
+    values = read_values(settings)
     remotes = read_remotes(remote, token, osc, osc_to)
     check_display(renderer)
     open_window(
         kept(sketch, "live", _clipboard),
-        pixels,
+        size,
         renderer,
-        driver=read_driver(driver),
+        driver=driver,
         values=values,
         plain=plain,
         dialect=check_name(dialect),

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from playground.commands import options
-from playground.commands.arguments import FAILED, Renderer, help_text, read_option, read_pixels, within
+from playground.commands.arguments import FAILED, Renderer, help_text, read_option, within
 from playground.commands.options import positional, value
 from playground.errors import counted
 from playground.paths import PLAIN_SKETCH, shown
@@ -62,7 +62,7 @@ def mutants(
     ] = None,
     as_json: options.Json = False,
     software: options.Software = False,
-    device: options.Device = "",
+    device: options.Device = None,
 ) -> None:
     """Break a sketch in every known way, and see whether the comparison of its pictures tells."""
     from playground.shots.mutants.repeatability import redraw
@@ -72,9 +72,8 @@ def mutants(
     count = read_option("--again", again, within(0, 10**6), "a whole number, as 20") or 0
     chosen = named(only or ())
     renderer: Renderer = ctx.obj.or_else(software, device)
-    pixels = read_pixels(size)
     loaded = load(sketch)
-    first = shot_of(loaded, shot, pixels)
+    first = shot_of(loaded, shot, size)
     if pictures is not None:
         from playground.files import make_folder
 
@@ -82,7 +81,7 @@ def mutants(
     results: list[MutantResult] = []
     redrawn: list[Redrawn] = []
     with renderer.open_engine() as engine:
-        bench = MutantRunner(engine, loaded, shot, pixels)
+        bench = MutantRunner(engine, loaded, shot, size)
         expected = bench.unbroken(first)
         with progress("mutants", len(chosen)) as advance:
             for result in bench.run(chosen):

@@ -7,15 +7,33 @@ from typing import Annotated, Any
 
 import typer
 
-from playground.commands.arguments import either
+from playground.commands.arguments import (
+    Pixels,
+    either,
+    read_device,
+    read_driver,
+    read_pixels,
+    read_seconds,
+)
 from playground.errors import PlaygroundError
 from playground.shader.kernel import DRIVERS
 
 
-def value(usage: str, text: str, complete: Callable[..., list[str]] | None = None) -> Any:
-    """Declare an option with a value by its usage, as ``-o --output FILE``; its default is not shown."""
+def value(
+    usage: str,
+    text: str,
+    complete: Callable[..., list[str]] | None = None,
+    *,
+    read: Callable[[str], Any] | None = None,
+) -> Any:
+    """Declare an option with a value by its usage, as ``-o --output FILE``; its default is not shown.
+
+    ``read`` returns the value that its text says, or raises ``ParameterError``.
+    """
     *names, metavar = usage.split()
-    return typer.Option(*names, help=text, metavar=metavar, show_default=False, autocompletion=complete)
+    return typer.Option(
+        *names, help=text, metavar=metavar, show_default=False, autocompletion=complete, parser=read
+    )
 
 
 def flag(name: str, text: str) -> Any:
@@ -77,7 +95,7 @@ Sketch = Annotated[
         complete_sketch,
     ),
 ]
-Size = Annotated[str | None, value("--size WxH", "Size in pixels, as 1280x720.")]
+Size = Annotated[Pixels | None, value("--size WxH", "Size in pixels, as 1280x720.", read=read_pixels)]
 Set = Annotated[
     list[str] | None,
     value(
@@ -87,12 +105,15 @@ Set = Annotated[
     ),
 ]
 Preset = Annotated[str, value("--preset NAME", "Begin with a preset.")]
-Time = Annotated[str, value("--time T", "Time in seconds.")]
+Time = Annotated[float | None, value("--time T", "Time in seconds.", read=read_seconds)]
 Steps = Annotated[
     list[str] | None,
     value("--steps PASS=COUNT", "Stop a repeated pass after COUNT iterations. May be repeated."),
 ]
-Driver = Annotated[str, value("--driver NAME", f"What runs the kernels: {either(DRIVERS)}.", complete_driver)]
+Driver = Annotated[
+    str,
+    value("--driver NAME", f"What runs the kernels: {either(DRIVERS)}.", complete_driver, read=read_driver),
+]
 Plain = Annotated[bool, flag("--plain", "Run every technique in its plain form, no fast variant.")]
 Dialect = Annotated[
     str,
@@ -103,5 +124,5 @@ Dialect = Annotated[
     ),
 ]
 Software = Annotated[bool, flag("--software", "Render in software, on the CPU (Mesa llvmpipe).")]
-Device = Annotated[str, value("--device N", "Render on this EGL device, from 0.")]
+Device = Annotated[int | None, value("--device N", "Render on this EGL device, from 0.", read=read_device)]
 Json = Annotated[bool, flag("--json", "Print JSON, for programs.")]

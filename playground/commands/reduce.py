@@ -23,10 +23,10 @@ from playground.commands.arguments import (
     read_device,
     read_driver,
     read_option,
-    read_pixels,
     read_seconds,
     read_steps,
     read_values,
+    refuse,
     within,
 )
 from playground.commands.options import complete_driver, flag, value
@@ -73,7 +73,9 @@ def reduce(
         list[str] | None,
         value("--against ENV=VALUE", "It differs where this is set in the environment. May be repeated."),
     ] = None,
-    against_device: Annotated[str, value("--against-device N", "It differs on this EGL device.")] = "",
+    against_device: Annotated[
+        int | None, value("--against-device N", "It differs on this EGL device.", read=read_device)
+    ] = None,
     nan: Annotated[bool, flag("--nan", "A value is NaN or infinite.")] = False,
     anywhere: Annotated[
         bool,
@@ -112,10 +114,10 @@ def reduce(
     ] = False,
     settings: options.Set = None,
     size: options.Size = None,
-    time: options.Time = "",
+    time: options.Time = None,
     steps: options.Steps = None,
     software: options.Software = False,
-    device: options.Device = "",
+    device: options.Device = None,
 ) -> None:
     """Shrink a sketch that fails to the smallest that still fails."""
     from playground.reduce.initial_case import Criterion, Question
@@ -125,7 +127,7 @@ def reduce(
     seconds = read_option("--timeout", timeout, within(0.1, 1e6), "seconds, 0.1 or more, as 10")
     kinds = {
         "drivers": drivers,
-        "against": bool(against or against_device),
+        "against": bool(against) or against_device is not None,
         "nan": nan,
         "error": bool(error),
         "crash": crash,
@@ -134,7 +136,9 @@ def reduce(
     }
     kind = _kind([name for name, is_set in kinds.items() if is_set], shot)
     moment = _moment(sketch, kind, shot, settings, steps, time)
-    _check_options(kind, anywhere=anywhere, plain=plain, moved=bool(settings or size or time or steps))
+    _check_options(
+        kind, anywhere=anywhere, plain=plain, moved=bool(settings or size or steps) or time is not None
+    )
     renderer: Renderer = ctx.obj.or_else(software, device)
     question = Question(
         sketch=moment.sketch,
@@ -146,13 +150,13 @@ def reduce(
             anywhere=anywhere,
         ),
         shot=shot if kind == "shot" else "",
-        frame=read_pixels(size) or moment.size or _FRAME,
+        frame=size or moment.size or _FRAME,
         time=moment.time,
         steps=moment.steps,
         path=path,
         driver=read_driver(driver) if driver else "",
         environment=_environment(against),
-        other_device=read_device(against_device),
+        other_device=against_device,
         software=renderer.software,
         device=renderer.device,
         limit=seconds or 10.0,
@@ -171,23 +175,26 @@ def _kind(chosen: Sequence[str], shot: str) -> str:
 
 def _check_options(kind: str, *, anywhere: bool, plain: bool, moved: bool) -> None:
     """Raise ``ParameterError`` for options that do not go together."""
-    if kind == "shot" and moved:
-        raise ParameterError("--shot is compared as it is; leave out --set, --size, --time and --steps")
-    if anywhere and kind != "nan":
-        raise ParameterError("--anywhere is for --nan")
-    if plain and kind not in ("", "error", "crash", "hang"):
-        raise ParameterError("--plain is for what the compiler refuses or dies of: --error, --crash, --hang")
+    as_it_is = "--shot is compared as it is; leave out --set, --size, --time and --steps"
+    of_compiler = "--plain is for what the compiler refuses or dies of: --error, --crash, --hang"
+    refuse(
+        {
+            as_it_is: kind == "shot" and moved,
+            "--anywhere is for --nan": anywhere and kind != "nan",
+            of_compiler: plain and kind not in ("", "error", "crash", "hang"),
+        }
+    )
 
 
 def _moment(
-    sketch: str, kind: str, shot: str, settings: list[str] | None, steps: list[str] | None, time: str
+    sketch: str, kind: str, shot: str, settings: list[str] | None, steps: list[str] | None, time: float | None
 ) -> Moment:
     """Return the moment to look at; a shot off its reference is set by the comparison itself."""
     from playground.sketch.load import load
 
     loaded = load(sketch)
     values, stops = read_values(settings), read_steps(steps)
-    moment = moment_of(loaded, shot=shot, values=values, steps=stops, time=read_seconds(time))
+    moment = moment_of(loaded, shot=shot, values=values, steps=stops, time=time)
     return replace(moment, sketch=loaded) if kind == "shot" else moment
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,17 +14,17 @@ import typer
 from playground.commands import options
 from playground.commands.arguments import (
     Moment,
+    Pixels,
     Renderer,
     either,
     help_text,
     moment_of,
     output_file,
-    read_driver,
     read_option,
     read_pixels,
-    read_seconds,
     read_steps,
     read_values,
+    refuse,
     within,
 )
 from playground.commands.film import SeriesJob, SeriesOptions, read_fps, read_frames
@@ -84,6 +85,9 @@ class Output:
     driver: str = "auto"
 
 
+_read_large = partial(read_pixels, most=MAX_PICTURE_SIDE)
+
+
 def render(
     ctx: typer.Context,
     sketch: options.Sketch = "",
@@ -94,8 +98,10 @@ def render(
             "The file to write, or - for standard output. Without it, a new name in this folder.",
         ),
     ] = "",
-    size: options.Size = None,
-    time: options.Time = "",
+    size: Annotated[
+        Pixels | None, value("--size WxH", "Size in pixels, as 1280x720.", read=_read_large)
+    ] = None,
+    time: options.Time = None,
     settings: options.Set = None,
     driver: options.Driver = "auto",
     plain: options.Plain = False,
@@ -144,7 +150,7 @@ def render(
     ] = None,
     count: Annotated[str, value("-n N", "With --sweep: values of a range; 9 by default.")] = "",
     software: options.Software = False,
-    device: options.Device = "",
+    device: options.Device = None,
 ) -> None:
     """Render a sketch to a file and print its path."""
     from playground.sketch.load import load
@@ -160,36 +166,29 @@ def render(
         steps=read_option("-n", count, within(2, 99_999), "a whole number from 2, as 12"),
     )
     series.check(output, texture, profile)
-    pixels, seconds_in, values = (
-        read_pixels(size, MAX_PICTURE_SIDE),
-        read_seconds(time),
-        read_values(settings),
-    )
-    runs_by, stops = read_driver(driver), read_steps(steps)
+    values, stops = read_values(settings), read_steps(steps)
     times = read_option(
         "--supersample", supersample, within(1, MAX_SUPERSAMPLE), f"a whole number, 1 to {MAX_SUPERSAMPLE}"
     )
-    if times is not None and texture:
-        raise ParameterError(
-            "--supersample is for pictures; --texture writes the values of one pass as they are"
-        )
+    supersampled = "--supersample is for pictures; --texture writes the values of one pass as they are"
+    refuse({supersampled: times is not None and texture})
     moment = moment_of(
         load(kept(sketch, "render"), dialect=dialect).plainly(plain),
         shot=shot,
         preset=preset,
         values=values,
         steps=stops,
-        time=seconds_in,
+        time=time,
     )
     renderer: Renderer = ctx.obj.or_else(software, device)
     if times is not None:
         moment = replace(moment, sketch=moment.sketch.with_picture(supersample=times))
     if series.many:
         _note_hidden_defaults(moment.sketch)
-        SeriesJob(series, moment, output, pixels, renderer, runs_by).make()
+        SeriesJob(series, moment, output, size, renderer, driver).make()
     else:
-        chosen = pixels or moment.size or DEFAULT_PICTURE
-        write_output(moment, Output(output, chosen, texture, profile, runs_by), renderer)
+        chosen = size or moment.size or DEFAULT_PICTURE
+        write_output(moment, Output(output, chosen, texture, profile, driver), renderer)
 
 
 def write_output(moment: Moment, output: Output, renderer: Renderer) -> None:

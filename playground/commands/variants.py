@@ -69,7 +69,7 @@ def verify_(
     ctx: typer.Context,
     what: WhatArgument = "",
     software: options.Software = False,
-    device: options.Device = "",
+    device: options.Device = None,
 ) -> None:
     """Draw fast variants and the canonical form, and compare."""
     _refuse(_verdicts(what, ctx.obj.or_else(software, device)))
@@ -80,7 +80,7 @@ def renew(
     ctx: typer.Context,
     what: WhatArgument = "",
     software: options.Software = False,
-    device: options.Device = "",
+    device: options.Device = None,
 ) -> None:
     """Verify fast variants, and record those that agree."""
     from playground.verify.variants import recorded

@@ -18,7 +18,6 @@ from playground.commands.arguments import (
     command_group,
     either,
     help_text,
-    read_pixels,
 )
 from playground.commands.live import check_display, open_window
 from playground.commands.options import flag, positional, value
@@ -234,16 +233,16 @@ def present(
     count = len(beats_of(lesson))
     if not 1 <= beat <= count:
         raise ParameterError(f"--from {beat}: lesson {name} has beats 1 to {count}")
-    renderer, pixels = ctx.obj.or_else(software), read_pixels(size)
+    renderer = ctx.obj.or_else(software)
     if video:
-        _film(lesson, beat, video, pixels, renderer, subtitles=not no_notes)
+        _film(lesson, beat, video, size, renderer, subtitles=not no_notes)
         return
     check_display(renderer)
     from playground.course.talk.stage import Presenting
 
     presenting = Presenting(beat, notes=not no_notes, say=note)
     request = {"lesson": name, "language": lesson.language, "present": presenting}
-    open_window(lesson.sketch, pixels, renderer, request=request)
+    open_window(lesson.sketch, size, renderer, request=request)
 
 
 def _film(

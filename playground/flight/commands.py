@@ -13,16 +13,14 @@ from playground.commands.arguments import (
     Renderer,
     check_parent,
     help_text,
-    read_driver,
     read_option,
-    read_pixels,
     read_values,
+    refuse,
     with_whole_paths,
     within,
 )
 from playground.commands.live import check_display
 from playground.commands.options import complete_sketch, positional, value
-from playground.errors import ParameterError
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.terminal import busy, progress
 
@@ -62,15 +60,17 @@ class Request:
 
     def check(self) -> None:
         """Raise ``ParameterError`` for options that do not go together."""
-        if self.record and self.replay:
-            raise ParameterError("--record and --replay: one flight is either flown or flown again")
-        if (self.frames or self.every) and not self.replay:
-            needs = "--frames" if self.frames else "--every"
-            raise ParameterError(f"{needs} needs --replay FILE, a flight recorded before")
-        if self.every and not self.frames:
-            raise ParameterError("--every needs --frames FOLDER, to write pictures into")
-        if self.replay and self.radius:
-            raise ParameterError("--radius cannot change a recorded flight, which has its own")
+        record, replay, frames, every = self.record, self.replay, self.frames, self.every
+        needs = "needs --replay FILE, a flight recorded before"
+        refuse(
+            {
+                "--record and --replay: one flight is either flown or flown again": record and replay,
+                f"--frames {needs}": frames and not replay,
+                f"--every {needs}": every and not replay,
+                "--every needs --frames FOLDER, to write pictures into": every and not frames,
+                "--radius cannot change a recorded flight, which has its own": replay and self.radius,
+            }
+        )
 
     def load(self, record: Record | None) -> tuple[Sketch, dict[str, object]]:
         """Load the sketch with the values of the record and its own; return it and its own values."""
@@ -110,12 +110,12 @@ def fly(
     driver: options.Driver = "auto",
     plain: options.Plain = False,
     software: options.Software = False,
-    device: options.Device = "",
+    device: options.Device = None,
 ) -> None:
     """Fly in a window, or write the pictures of a recorded flight and print their paths."""
     request = Request(
         sketch=sketch,
-        size=read_pixels(size),
+        size=size,
         values=read_values(settings),
         record=record,
         replay=replay,
@@ -123,7 +123,7 @@ def fly(
         every=read_option("--every", every, within(1, 10**8 - 1), "a whole number of steps from 1, as 30")
         or 0,
         radius=read_radius(radius),
-        driver=read_driver(driver),
+        driver=driver,
         plain=plain,
         renderer=ctx.obj.or_else(software, device),
     )

@@ -26,7 +26,7 @@ def lsp(
     ctx: typer.Context,
     tcp: Annotated[str, value("--tcp PORT", "Listen on this port of this computer.")] = "",
     software: options.Software = False,
-    device: options.Device = "",
+    device: options.Device = None,
 ) -> None:
     """Serve an editor by the Language Server Protocol."""
     port = read_option("--tcp", tcp, within(1, 65535), "a port, 1 to 65535")
