@@ -35,7 +35,7 @@ class Site:
 
     def __init__(self) -> None:
         self.asked: list[bytes] = []
-        self.goes_on = threading.Event()
+        self.begun, self.goes_on = threading.Semaphore(0), threading.Event()
         routes = {
             "GET ": lambda _: Answer(200, TEXT, b"page", "default-src 'self'"),
             "GET state": lambda request: as_json(dict(request.query)),
@@ -47,6 +47,7 @@ class Site:
         self.server = LocalServer(routes, max_bytes=MAX_BYTES, proof="X-Proof")
 
     def wait(self, request: Request) -> Answer:
+        self.begun.release()
         assert self.goes_on.wait(GENEROUS)
         return as_json({})
 
@@ -151,16 +152,16 @@ def test_a_silent_crowd_is_bounded_and_closed(site: Site, monkeypatch: pytest.Mo
 def test_more_requests_at_a_time_than_may_be_are_refused(site: Site):
     answers: list[int] = []
     waiting = [
-        threading.Thread(target=lambda: answers.append(ask(site.server, "GET", "slow")[0])) for _ in range(17)
+        threading.Thread(target=lambda: answers.append(ask(site.server, "GET", "slow")[0])) for _ in range(16)
     ]
     for each in waiting:
         each.start()
-    while not answers:
-        pass
+        assert site.begun.acquire(timeout=GENEROUS)
+    assert ask(site.server, "GET", "slow")[0] == 503
     site.goes_on.set()
     for each in waiting:
         each.join(GENEROUS)
-    assert sorted(answers) == [200] * 16 + [503]
+    assert answers == [200] * 16
     assert ask(site.server, "GET", "slow")[0] == 200
 
 

@@ -79,6 +79,12 @@ def count_tiles(size: tuple[int, int], tile: tuple[int, int] = TILE) -> int:
     return sum(len(row) for row in tiles_of(size, tile))
 
 
+def count_parts(sketch: Sketch, size: tuple[int, int]) -> int:
+    """Return how many tiles ``strips`` draws of a picture, its supersampling counted."""
+    whole = drawn_size(sketch, size, MAX_PICTURE_SIDE)
+    return count_tiles(whole, uncut(TILE, sketch.picture.supersample))
+
+
 def strips(
     engine: Engine,
     sketch: Sketch | str | Path,
@@ -174,7 +180,7 @@ def save_picture(
     ``begin`` is called with the number of parts, ``done`` after each; the rest as for ``write_large``.
     """
     if is_large(engine, sketch, size):
-        begin(count_tiles(size))
+        begin(count_parts(sketch, size))
         write_large(engine, sketch, path, size, time=time, steps=steps, text=text, done=done)
         return
     begin(1)

@@ -272,12 +272,10 @@ def _note_not_finite(engine: Engine) -> None:
 
 
 def _draw_large(engine: Engine, moment: Moment, size: tuple[int, int], target: Path) -> None:
-    from playground.capture.large import TILE, count_tiles, encode_strips, strips, uncut, write_large
-    from playground.engine.plan import drawn_size
+    from playground.capture.large import count_parts, encode_strips, strips, write_large
 
-    whole = drawn_size(moment.sketch, size, MAX_PICTURE_SIDE)
-    tiles = count_tiles(whole, uncut(TILE, moment.sketch.picture.supersample))
-    with progress(f"rendering {moment.sketch.name} in parts", tiles) as done:
+    parts = count_parts(moment.sketch, size)
+    with progress(f"rendering {moment.sketch.name} in parts", parts) as done:
         at: dict[str, Any] = {"time": moment.time, "steps": moment.steps, "done": done}
         if target.name == "-":
             encode_strips(sys.stdout.buffer, size, strips(engine, moment.sketch, size, **at))

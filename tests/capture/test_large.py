@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from playground.capture.large import TILE, count_tiles, is_large, strips, tiles_of, write_large
+from playground.capture.large import TILE, count_parts, count_tiles, is_large, strips, tiles_of, write_large
 from playground.data.image_files import read_png
 from playground.engine.engine import Engine
 from playground.engine.plan import Window
@@ -163,6 +164,13 @@ def test_tiles_cover_a_picture_once():
     assert count_tiles((643, 361), TILES) == 7 * 6
     with pytest.raises(ParameterError, match="even"):
         tiles_of(SIZE, (99, 70))
+
+
+def test_the_parts_of_a_supersampled_picture_are_counted(any_engine: Engine):
+    sketch = replace(load("white_noise_image"), supersample=3)
+    done = Counter()
+    list(strips(any_engine, sketch, (3000, 400), done=lambda: done.update(["tile"])))
+    assert done["tile"] == count_parts(sketch, (3000, 400)) > count_tiles((3000, 400))
 
 
 def test_what_is_large(any_engine: Engine, tmp_path: Path):
