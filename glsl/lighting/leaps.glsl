@@ -59,9 +59,12 @@ int next_high_block(sampler2D block_maxima, March march, int from, int count,
 
 // The same height as terrain_at, in half the fetches where every step is on a line of texels.
 float terrain_on_line(sampler2D field, March march, int i, int sampling, bool on_lines) {
-    if (sampling == CUT_DOWN || !on_lines) return terrain_at(field, march, i, sampling);
+    vec2 place = march.start + float(i) * march.ahead;
     ivec2 across = abs(march.ahead.x) >= abs(march.ahead.y) ? ivec2(0, 1) : ivec2(1, 0);
-    return height_on_line(field, march.start + float(i) * march.ahead, across) * march.relief;
+    float height = sampling == CUT_DOWN || !on_lines
+        ? sampled_height(field, place, sampling)
+        : height_on_line(field, place, across);
+    return height * march.relief;
 }
 
 float marched_on(bool on_lines, int count, March march, sampler2D field, sampler2D block_maxima,

@@ -1,6 +1,6 @@
 // lighting/march.glsl -- a ray march over the terrain towards a light.
 //
-//   gives    March, march_from, terrain_at, INTERPOLATED, CUT_DOWN, SWEEP
+//   gives    March, march_from, terrain_at, sampled_height, INTERPOLATED, CUT_DOWN, SWEEP
 //   needs    terrain/heightfield.glsl; heights come as an argument
 //   units    places in texels; heights and lengths in metres
 //   source   Belaiche 2010, section 3.5.4
@@ -63,14 +63,18 @@ March march_from(sampler2D field, vec2 place, vec3 light, vec2 extent_in_metres,
     return march;
 }
 
-// The terrain's height at a step [m].
+// The height at a place, without unit, by a sampling.
+float sampled_height(sampler2D field, vec2 place, int sampling) {
+    if (sampling != CUT_DOWN) return height_at(field, place);
+    ivec2 last = textureSize(field, 0) - 1;
+    return texelFetch(field, clamp(ivec2(place), ivec2(0), last), 0).r;
+}
+
+// The terrain's height at a step [m]. One multiplication for both samplings: a compiler rounds the
+// same whether it knows the sampling or not.
 float terrain_at(sampler2D field, March march, int i, int sampling) {
     vec2 place = march.start + float(i) * march.ahead;
-    if (sampling == CUT_DOWN) {
-        ivec2 last = textureSize(field, 0) - 1;
-        return texelFetch(field, clamp(ivec2(place), ivec2(0), last), 0).r * march.relief;
-    }
-    return height_at(field, place) * march.relief;
+    return sampled_height(field, place, sampling) * march.relief;
 }
 
 // Steps until a place leaves 0..last along one axis.

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import binary_dilation, map_coordinates, maximum_filter
 
+from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
 from playground.shader.parameter import MAX_SIDE
 
@@ -119,6 +120,30 @@ def part_of_disc(line):
     x, y = np.meshgrid(axis, axis)
     heights = np.sort(y[x * x + y * y <= 1])
     return 1 - np.searchsorted(heights, line) / heights.size
+
+
+@pytest.mark.parametrize("sampling", ["interpolated", "cut down"])
+@pytest.mark.parametrize("method", ["ray_cast", *SOFT])
+def test_a_march_rounds_alike_by_uniforms_and_by_constants(ctx, make_sketch, monkeypatch, method, sampling):
+    """A software renderer compiles menus in as constants; a GPU, and a page, have them as uniforms."""
+    passes = (
+        '[[pass]]\nname = "height"\nuse = "generation/gradient_noise"\n'
+        f'[[pass]]\nname = "light"\nuse = "lighting/{method}"\n'
+        f'set = {{ sun = [110.0, 15.0], sampling = "{sampling}" }}\n'
+    )
+    sketches = [
+        make_sketch(passes, size=list(size), extent=640.0, relief=130.0).with_values({"height.seed": seed})
+        for seed, size in [(3, (65, 33)), (9978, (50, 77))]
+    ]
+    sketches += [sketch.plainly() for sketch in sketches]
+    drawn = []
+    for software in (True, False):
+        monkeypatch.setattr(ContextInfo, "software", software)
+        with Engine(ctx) as engine:
+            drawn.append([visible(engine, sketch) for sketch in sketches])
+    for constants, uniforms in zip(*drawn, strict=True):
+        assert len(np.unique(constants)) > 1, "or it shows nothing"
+        np.testing.assert_array_equal(constants, uniforms)
 
 
 # What a march leaps over

@@ -15,7 +15,7 @@ from playground.engine.planner import make_plan
 from playground.engine.sources import source_kind
 from playground.errors import PlaygroundError
 from playground.sketch.find import shipped_sketches
-from playground.sketch.model import Graph, Sketch, Technique
+from playground.sketch.model import Sketch
 from playground.web.page_data import page_data
 from playground.web.plan import KINDS
 
@@ -75,15 +75,6 @@ def every(begun: Callable[..., Pages]) -> Pages:
     return begun()
 
 
-def approximates(technique: Technique) -> bool:
-    """Return whether a variant of passes may be 1e-5 from its canonical form: a level may round apart."""
-    fast = [variant.technique for variant in technique.variants if isinstance(variant.technique, Graph)]
-    inner = [spec.technique for spec in technique.passes] if isinstance(technique, Graph) else []
-    return any(bound.most >= 1e-5 for graph in fast for bound in graph.agrees) or any(
-        map(approximates, inner)
-    )
-
-
 @pytest.mark.parametrize("name", shipped_sketches())
 def test_a_page_draws_a_sketch_as_the_engine_does(
     name: str, every: Pages, drawn: Engine, written: dict[str, Any]
@@ -98,7 +89,7 @@ def test_a_page_draws_a_sketch_as_the_engine_does(
         except PlaygroundError:
             continue  # a setting that the sketch refuses: test_plan sees to that
         picture = every.picture(name, **settings.state(data))
-        assert picture.levels_off(frame.array) <= approximates(sketch.graph), settings
+        assert picture.levels_off(frame.array) == 0, settings
     every.run("figures[arguments[0]].close()", name)
 
 
