@@ -1,8 +1,8 @@
 // trees/stand.glsl -- what a stand of trees hides, and the light on what one sees of it.
 //
-//   gives    Stand, stand_of, thinned, share_above, rise_of, depth_towards, reaches,
-//            depth_of_sky, facing_sun, facing_sky, leaf_phase, crown_light, share_in, normal_in,
-//            WOOD_PLACES, WoodPlace, wood_place, wood_sums
+//   gives    Stand, stand_of, drawn_of_stand, thinned, share_above, rise_of, depth_towards,
+//            reaches, depth_of_sky, facing_sun, facing_sky, leaf_phase, crown_light, share_in,
+//            normal_in, WOOD_PLACES, WoodPlace, wood_place, wood_sums
 //   needs    trees/crown.glsl, trees/level.glsl
 //   units    metres; trees a square metre; shares 0..1; light as a share of that on a surface
 //            that faces the sun, and of that of the whole sky on open level ground
@@ -51,11 +51,17 @@ Stand stand_of(float density, float cell, float tallest, float shortest, vec4 ot
     return Stand(density / (cell * cell), body.x, body.y, body.z, shortest, cell);
 }
 
-// Those of the stand that are drawn as single trees so far away; `limit`: of trees/list.
-Stand thinned(Stand s, float eye_distance, float whole, float reach, float limit) {
-    float dense = s.dense * covering_share(kept_share(eye_distance, whole, reach), limit);
-    float growth = growth_of_kept(eye_distance, whole, reach) * pow(limit, GROWTH);
-    return Stand(dense, s.across * growth, s.up * growth, s.middle * growth, s.least, s.cell);
+// What of a stand is drawn as single trees so far away: the share, and how much these are larger;
+// `limit`: of trees/list.
+vec2 drawn_of_stand(float eye_distance, float whole, float reach, float limit) {
+    return vec2(covering_share(kept_share(eye_distance, whole, reach), limit),
+                growth_of_kept(eye_distance, whole, reach) * pow(limit, GROWTH));
+}
+
+// The stand of those trees; `drawn`: of drawn_of_stand.
+Stand thinned(Stand s, vec2 drawn) {
+    return Stand(s.dense * drawn.x, s.across * drawn.y, s.up * drawn.y, s.middle * drawn.y,
+                 s.least, s.cell);
 }
 
 // One of three sizes of crowns as a factor of the mean one, and its weight, by area.
