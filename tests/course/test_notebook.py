@@ -70,7 +70,13 @@ def test_a_figure_s_sliders_act_on_its_picture(opened, lesson, engine):
     np.testing.assert_array_equal(pixels(widget.picture), expected.array)
 
 
-def test_a_picture_is_drawn_whichever_thread_asks(lesson):
+@pytest.fixture
+def shared_engine():
+    yield
+    release_engine()
+
+
+def test_a_picture_is_drawn_whichever_thread_asks(lesson, shared_engine):
     """Jupyter answers what is dragged in a thread of its own, while a cell runs in another."""
     opened = NotebookLesson(lesson)
     widget = opened.show("land")

@@ -8,7 +8,7 @@
 //            unit; points and triangles by their numbers, the corners first
 //   source   Belaiche 2010, section 1.3.8, its slip 5 fixed; Bowyer 1981 and Watson 1981
 //            (The Computer Journal 24); Lawson 1977 (Software for C1 Surface Interpolation)
-//   tested   tests/glsl/test_delaunay.py and tests/engine/test_delaunay.py, against SciPy
+//   tested   tests/glsl/test_delaunay.py and tests/data/test_delaunay.py, against SciPy
 //
 // Four corners make two triangles; each further point goes to the barycentre of the triangle
 // of greatest area. Entry 0 of `last` is (newest point or -1, entries that follow, edges

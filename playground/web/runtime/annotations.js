@@ -117,7 +117,9 @@ function parameterOf(name, type, initial, note, line) {
   if (words.length > 1) throw errorAt(line, `'${name}' has two widgets: ${words.join(" and ")}`);
   const widget = words[0] ?? (type === "bool" ? "checkbox" : "number");
   const kind = WIDGETS[widget] ?? SAMPLER;
-  if (!kind.types.split(" ").includes(type)) throw errorAt(line, `${widget} does not suit '${name}', a ${type}`);
+  if (!kind.types.split(" ").includes(type)) {
+    throw errorAt(line, `${widget} does not suit '${name}', a ${type}`);
+  }
   const given = calls.get(widget) ?? [], count = lengthOf(type);
   const text = (/** @type {string} */ word) => calls.get(word)?.[0] ?? "";
   const step = calls.has("step") ? numbersOf(name, "step", calls.get("step") ?? [], 1, line)[0] : null;
