@@ -272,7 +272,7 @@ class PassSizes:
     def _read_first(self, fed: Fed) -> Source | None:
         """Return what the first iteration reads where what a loop feeds back comes in."""
         if self._first is None:
-            self._first = dict(_first_sources(self.flat.nodes))
+            self._first = dict(first_sources(self.flat.nodes))
         return self._first[fed]
 
     def _check_sides(self, spec: PassSpec, size: Size) -> None:
@@ -357,8 +357,9 @@ def counted(text: str, name: str, owner: PassSpec | Kernel, names: Names) -> int
     return count
 
 
-def _first_sources(nodes: tuple[Node, ...]) -> Iterator[tuple[Fed, Source | None]]:
+def first_sources(nodes: tuple[Node, ...]) -> Iterator[tuple[Fed, Source | None]]:
+    """Yield what each loop feeds back, with what its first iteration reads in its place."""
     for node in nodes:
         if isinstance(node, Loop):
             yield from ((Fed(node.path, name), first) for name, first, _ in node.feedback)
-            yield from _first_sources(node.body)
+            yield from first_sources(node.body)

@@ -24,7 +24,7 @@ from playground.sketch.model import (
 )
 from playground.sketch.wiring import initial_names
 from playground.web.es_lacks import lacking
-from playground.web.expression_trees import accepted, tree
+from playground.web.formulas import accepted_runs, formula
 from playground.web.stages import stage_data
 from playground.web.texts import Texts
 
@@ -68,7 +68,7 @@ class Kernels:
                 for declared in kernel.inputs
             ],
             "parameters": [_uniform(parameter) for parameter in kernel.parameters],
-            "repeat": tree(kernel.repeat),
+            "repeat": formula(kernel.repeat),
             "countsFrames": counts_frames(kernel.repeat),
             "followsTime": follows_time(kernel.repeat),
             "initial": initial_names(kernel),
@@ -77,9 +77,9 @@ class Kernels:
             "fragment": {},
         }
         rows = [(row, row.of(kernel)) for row in options_of(type(kernel)).values() if row.page]
-        data |= {row.page: tree(value) if row.expressions else value for row, value in rows if value != ""}
+        data |= {row.page: formula(value) if row.expressions else value for row, value in rows if value != ""}
         if kernel.accepts:
-            data["accepted"] = accepted(kernel.accepts)
+            data["accepted"] = accepted_runs(kernel.accepts)
         if isinstance(kernel, PlainShader):
             data["usual"] = [list(pair) for pair in kernel.usual]
             data["dialect"] = kernel.dialect if isinstance(kernel, ForeignShader) else ""

@@ -34,19 +34,14 @@ class Locks:
         self.plan = plan
         self.flat = plan.flat
         self.sources = {leaf.path: leaf for leaf in self.flat.leaves if isinstance(leaf.kernel, CpuSource)}
-        self._own = {path: self._has_own_size(leaf) for path, leaf in self.sources.items()}
         self._needed_by: dict[str, str] = {}  # path of a value, or a base → the source whose size it sets
         self._read_by = self._readers()  # path of a leaf → the source that was made of it
         for path in self._read_by:
             self._note(path, self._read_by[path], set())
         for path in self.sources:
-            if not self._own[path]:
+            if path not in plan.basis.own:
                 self._note(path, path, set())
         self._replaced = {canonical_path(path) for path in self.flat.specs if f".{INSIDE}." in f"{path}."}
-
-    def own_size(self, path: str) -> bool:
-        """Return whether a leaf has a size of its own, as a film has."""
-        return self._own.get(path, False)
 
     def of_parameter(self, path: str, targets: tuple[str, ...]) -> str:
         """Return why a parameter cannot be changed, a message; "": it can."""
@@ -159,12 +154,6 @@ class Locks:
             if rest != path and isinstance(technique, Graph) and not is_exported(technique, rest):
                 return f"A faster form of {around} runs in this page, which does not have it."
         return ""
-
-    def _has_own_size(self, leaf: Leaf) -> bool:
-        if leaf.spec.size is not None or leaf.path == "view":
-            return False
-        step = self.plan.step(leaf.path)
-        return step is not None and source_kind(leaf.kernel.registry).size(step.values) is not None
 
     def _note(self, path: str, source: str, seen: set[str]) -> None:
         """Note the values and bases that the size of a pass depends on, for a source."""

@@ -1,8 +1,8 @@
 """Write down a sketch so that a browser can plan and run it: see ``Sketch`` in schema.js.
 
-The flat sketch is written with its sizes and repeats as expressions, not as the numbers of one plan,
-so that a page makes plans of its own. Fast variants that need no compute shaders run, as they do
-in an engine of the fragment driver.
+The plan of the engine is written, its steps with their sizes and counts: numbers, and formulas where a page
+has a control that changes them. Fast variants that need no compute shaders run, as they do in an engine of
+the fragment driver.
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ from playground.engine.engine import Engine
 from playground.engine.files import find_file
 from playground.engine.plan import Plan, PlanRequest, Step, view_height
 from playground.engine.planner import extent_follows_size, make_plan
-from playground.engine.sizes import base_of, counting
 from playground.engine.sources import source_kind
 from playground.paths import GLSL, shown
 from playground.shader.expressions import counts_frames, follows_time
@@ -31,9 +30,9 @@ from playground.sketch.load import elevation_text
 from playground.sketch.map_sketch import map_kernel, refs_of
 from playground.sketch.model import DEFAULT_PICTURE, CpuSource, PlainShader, Sketch, Value
 from playground.sketch.traits import is_animated
+from playground.web.formulas import PassFormulas
 from playground.web.kernels import Kernels
 from playground.web.locks import Locks, made_by
-from playground.web.pass_trees import pass_tree
 from playground.web.shared import SharedData
 from playground.web.shown import presets_data, row, rules_data, shown_data, tracks_data
 from playground.web.sources import source_data
@@ -78,6 +77,7 @@ class _Writing:
         self.leaves = {leaf.path: leaf for leaf in self.flat.leaves}
         self.steps = {step.path: step for step in plan.walk()}
         self.values = {path: step.values for path, step in self.steps.items()}
+        self.formulas = PassFormulas(plan)
         self.locks = Locks(plan)
         self.notes: list[str] = []
 
@@ -115,6 +115,8 @@ class _Writing:
             "kernels": self.kernels.data,
             "nodes": nodes,
             "passes": self._passes(),
+            "named": sorted(self.formulas.named),
+            "namesTime": self.formulas.names_time,
             "values": values,
             "shown": rows,
             "presets": presets,
@@ -163,6 +165,7 @@ class _Writing:
                 "loop": True,
                 "countsFrames": counts_frames(node.repeat),
                 "followsTime": follows_time(node.repeat),
+                "counting": node.path in self.formulas.counting,
                 "body": [self._node(inside) for inside in node.body],
                 "feedback": [[name, _source(first), _ref(ref)] for name, first, ref in node.feedback],
             }
@@ -171,12 +174,13 @@ class _Writing:
     def _leaf(self, leaf: Leaf) -> dict[str, Any]:
         copied = self.flat.shape.copied
         paths = {name: copied.get(path, path) for name, path in self.flat.shape.paths[leaf.path]}
+        self.formulas.note_counts(leaf.kernel, paths)
         data: dict[str, Any] = {
             "path": leaf.path,
             "kernel": self.kernels.add(leaf.kernel),
             "inputs": [[name, _source(source)] for name, source in leaf.inputs],
             "values": paths,
-            "base": leaf.path,
+            "size": self.formulas.size_of(leaf.path),
         }
         if isinstance(leaf.kernel, CpuSource):
             step = self.steps[leaf.path]
@@ -199,18 +203,14 @@ class _Writing:
         return {name: self.engine.read(self.sketch, f"{step.path}:{name}", **at) for name in outputs}
 
     def _passes(self) -> dict[str, dict[str, Any]]:
-        """Return the size of every pass at every level, and of a loop its repeat."""
+        """Return what a plan works out of every pass at every level: its size, and of a loop its repeat."""
         passes = {}
         for path, spec in self.flat.specs.items():
-            base = base_of(path)
-            data: dict[str, Any] = {"base": base, "where": self._place(spec.file, spec.line)}
-            if path in self.leaves and self.locks.own_size(path):
-                data["own"] = list(self.steps[path].size)
-            elif spec.size is not None:
-                data["size"] = [pass_tree(text, self.flat, path) for text in spec.size]
+            data: dict[str, Any] = {"where": self._place(spec.file, spec.line)}
+            if self.formulas.size_of(path) == path:
+                data["size"] = self.formulas.sides(path)
             if spec.repeat:
-                data["repeat"] = pass_tree(spec.repeat, self.flat, path, repeat=True)
-                data["counting"] = path in counting(self.flat)
+                data["repeat"] = self.formulas.repeat(path)
             if locked := self.locks.of_steps(path):
                 data["locked"] = locked
             passes[path] = data
@@ -242,6 +242,7 @@ class _Writing:
             "input": kernel.inputs[0].name,
             "values": values,
             "shown": rows,
+            "size": self.formulas.size_of("view"),
         }
 
 

@@ -11,7 +11,7 @@ import pytest
 from playground.shader import expressions
 from playground.sketch.follows import Rule, follow
 from playground.sketch.keyframes import EASES, Track
-from playground.web.expression_trees import accepted
+from playground.web.formulas import accepted_runs
 
 from .node import Node
 
@@ -103,18 +103,12 @@ def test_what_follows_a_direction_does_so_until_it_is_set(node: Node):
     ],
 )
 def test_the_sizes_that_a_kernel_takes_are_the_same(node: Node, accepts: str):
-    script = """async (accepted, sizes, load) => {
-        const { acceptedSizes, isAccepted, nearestAccepted } = await load("accepts.js");
-        return [acceptedSizes(accepted), sizes.map((size) =>
-            [isAccepted(accepted, size), nearestAccepted(accepted, size)])];
-    }"""
     chance = random.Random(accepts)
     sides = [1, 2, 3, 16_384, *(2**k + d for k in range(1, 14) for d in (-1, 0, 1))]
     sizes = [(chance.choice(sides), chance.choice(sides)) for _ in range(150)]
     sizes += [(side, side) for side in sides]
-    axes, result = node.run(script, accepted(accepts), sizes)
-    xs, ys = expressions.accepted_sizes(accepts)
-    assert axes[0] == list(xs) and axes[-1] == list(ys)
-    for size, (fits, near) in zip(sizes, result, strict=True):
-        assert fits == expressions.is_accepted(accepts, size)
+    accepted = accepted_runs(accepts)
+    result = node.each("accepts.js", "nearestAccepted", [(accepted, size) for size in sizes])
+    for size, near in zip(sizes, result, strict=True):
+        assert (near == [list(size)]) == expressions.is_accepted(accepts, size)
         assert near == [list(item) for item in expressions.nearest_accepted(accepts, size)]

@@ -122,41 +122,36 @@ def leaves(nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 class Numbers:
-    """What names of trees stand for in a plan, and trees evaluated, slowly."""
+    """What names of formulas stand for in a plan, and formulas evaluated, slowly."""
 
     def __init__(self, plan: Any, sketch: dict[str, Any]) -> None:
         self.plan, self.sketch = plan, sketch
 
-    def size(self, path: str) -> tuple[int, int]:
+    def size(self, size: str | list[int]) -> tuple[int, int]:
         """Return a size from nothing but the data."""
-        if path[0] == "#":
-            size = self.plan.terrain.size if path == "#terrain" else self.plan.frame_size
-            assert size
-            return size
-        sketch = self.sketch["passes"][path]
-        if "own" in sketch:
-            return tuple(sketch["own"])
-        if "size" not in sketch:
-            return self.size(sketch["base"])
-        x, y = (self.whole(tree) for tree in sketch["size"])
+        if not isinstance(size, str):
+            return size[0], size[1]
+        if size[0] == "#":
+            base = self.plan.terrain.size if size == "#terrain" else self.plan.frame_size
+            assert base
+            return base
+        x, y = (self.whole(formula) for formula in self.sketch["passes"][size]["size"])
         return x, y
 
-    def whole(self, tree: Any) -> int:
-        """Return what a tree gives: put into names, and the rest is Python's evaluation of its text."""
+    def whole(self, formula: Any) -> int:
+        """Return what a formula gives: put into names, and the rest is Python's evaluation of its text."""
         names: dict[str, Any] = {}
-        text = self.text(tree, names)
+        text = self.text(formula, names)
         return expressions.evaluate(text, names)
 
-    def text(self, tree: Any, names: dict[str, Any]) -> str:
-        """Return a tree as an expression again, its absolute names as names of ``names``."""
-        if not isinstance(tree, list):
-            return str(tree) if not isinstance(tree, str) else self.clock(tree, names)
-        kind, *of = tree
-        if kind == "text":
-            return self.text(of[1], names)
-        if kind == "float":
-            return f"{of[0]:.1f}"
-        if kind in ("size", "value", "picture"):
+    def text(self, formula: Any, names: dict[str, Any]) -> str:
+        """Return a formula as an expression again, its absolute names as names of ``names``."""
+        if not isinstance(formula, list):
+            return str(formula) if not isinstance(formula, str) else self.clock(formula, names)
+        kind, *of = formula
+        if kind in ("text", "last", "before"):  # of what a loop feeds back, the iteration before
+            return self.text(of[-1], names)
+        if kind in ("size", "value"):
             name = f"n{len(names)}"
             names[name] = self.size(of[0])[of[1]] if kind == "size" else self.sketch["values"][of[0]]
             return name
@@ -188,8 +183,9 @@ def test_sizes_and_counts_that_the_data_give_are_the_plans(name: str, written: W
                 look(node["body"])
 
     look(sketch["nodes"])
+    sizes = {leaf["path"]: leaf["size"] for leaf in leaves(sketch["nodes"])}
     for step in plan.walk():
-        assert numbers.size(step.path) == step.size
+        assert numbers.size(sizes[step.path]) == step.size
     for node in plan.nodes:
         if isinstance(node, LoopStep):
             assert numbers.whole(loops[node.path]) == node.whole

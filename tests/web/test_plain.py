@@ -22,7 +22,7 @@ from ..loading import load
 from ..main_dialect_texts import MAIN_TEXTS
 from ..sketch_texts import map_of_height
 from ..toy_texts import EXPORTS, FOLDERS, VSCODE
-from .pages import Pages
+from .pages import PageError, Pages
 
 SIZE = (96, 54)
 TIME = 0.4
@@ -130,6 +130,37 @@ def test_the_pointer_and_the_date_are_what_the_page_says(pages: Pages, drawn: En
     assert moved.levels_off(expected) == 0
     assert moved.levels_off(still.pixels) > 50
     assert moved.ran and pages.picture(sketch.name, live=live).ran == []
+
+
+SIDES = """#pragma kernel(output = "sides:rgba8")
+vec4 kernel(ivec2 texel) { return vec4(vec2(texel) / vec2(size), 0.5, 1.0); }
+"""
+CUBE = """uniform samplerCube sides;
+void main() { gl_FragColor = texture(sides, vec3(gl_FragCoord.xy / 40.0 - 1.0, 1.0)); }
+"""
+INTO_CUBE = """format = 1
+size = [8, 48]
+[[pass]]
+name = "sides"
+use = "./sides"
+[view]
+use = "./cube"
+"""
+
+
+def test_a_terrain_that_cannot_be_a_cube_is_one_sentence(pages: Pages, drawn: Engine, tmp_path: Path):
+    (tmp_path / "sides.glsl").write_text(SIDES, "utf-8")
+    (tmp_path / "cube.frag").write_text(CUBE, "utf-8")
+    (tmp_path / "sketch.toml").write_text(INTO_CUBE, "utf-8")
+    sketch = load(tmp_path / "sketch.toml")
+    pages.begin(data := page_data([sketch], frame=SIZE))
+    pages.open(data["sketches"][0])
+    terrain = data["sketches"][0]["terrain"]
+    larger = drawn.render(sketch.with_values({"size": "16x96"}), size=SIZE).array
+    assert pages.picture(sketch.name, terrain={**terrain, "size": [16, 96]}).levels_off(larger) == 0
+    why = "sides reads 8 x 32 texels; a cube map is six faces above each other, 1 : 6, as 8 x 48"
+    with pytest.raises(PageError, match=why):
+        pages.picture(sketch.name, terrain={**terrain, "size": [8, 32]})
 
 
 LOOSE = """#pragma kernel(output = "height:r32f")

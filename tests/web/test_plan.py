@@ -31,15 +31,15 @@ from .node import Node
 from .random_settings import Settings, random_settings
 
 SETTINGS = 3
-ASK = """async (sketch, shared, states, load) => {
-    const { makePlan } = await load("planner.js");
+ASK = """async (sketch, states, load) => {
+    const { makePlan } = await load("plan.js");
     const flat = (node) => node.loop
         ? [["loop", node.path, node.repeat, node.whole, node.countsFrames], ...node.body.flatMap(flat)]
         : [[node.kernel.name, node.path, node.repeat, node.whole, node.size,
             node.between && Object.values(node.between), node.values]];
     return states.map((state) => {
         try {
-            const plan = makePlan(sketch, shared, state), { eye, target, distance } = plan.eye;
+            const plan = makePlan(sketch, state), { eye, target, distance } = plan.eye;
             return { nodes: plan.nodes.flatMap(flat), eye: [...eye, ...target, distance],
                      terrain: Object.values(plan.terrain).flat() };
         } catch (error) {
@@ -49,8 +49,8 @@ ASK = """async (sketch, shared, states, load) => {
 }"""
 
 
-STALE = """async (sketch, shared, states, known, load) => {
-    const [{ makePlan }, { keysOf }] = [await load("planner.js"), await load("staleness.js")];
+STALE = """async (sketch, states, known, load) => {
+    const [{ makePlan }, { keysOf }] = [await load("plan.js"), await load("staleness.js")];
     const { usedBy } = await load("staleness.js"), { stepsOf } = await load("plan_nodes.js");
     const every = (nodes) => nodes.flatMap((node) => (node.loop ? [node, ...every(node.body)] : [node]));
     const used = Object.fromEntries(Object.entries(known).map(([path, { code, names }]) => {
@@ -59,7 +59,7 @@ STALE = """async (sketch, shared, states, known, load) => {
     }));
     const pathOf = new Map(stepsOf(sketch.nodes).map((leaf) => [sketch.kernels[leaf.kernel], leaf.path]));
     const keys = states.map((state) => {
-        const plan = makePlan(sketch, shared, state), { eye, target, distance } = plan.eye;
+        const plan = makePlan(sketch, state), { eye, target, distance } = plan.eye;
         const camera = [eye, target, distance, plan.frame];
         const all = { ...plan.terrain, time: plan.time, eye };
         all.clip_from_world = all.world_from_clip = camera;
@@ -81,7 +81,7 @@ STALE = """async (sketch, shared, states, known, load) => {
 
 @pytest.fixture(scope="module")
 def shared() -> Iterator[SharedData]:
-    """Give what all sketches share, without texels: a plan needs the sizes of images only."""
+    """Give what all sketches share, without texels: a plan needs none."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(texts, "_is_as_written", lambda *_: True)
         patch.setattr(Blobs, "add", lambda *_: "texels")
@@ -93,11 +93,10 @@ def shared() -> Iterator[SharedData]:
 _WRITTEN: dict[str, dict[str, Any]] = {}
 
 
-def exported(sketch: Sketch, shared: SharedData) -> tuple[dict[str, Any], dict[str, Any]]:
+def exported(sketch: Sketch, shared: SharedData) -> dict[str, Any]:
     if sketch.name not in _WRITTEN:
         _WRITTEN[sketch.name] = sketch_data(sketch, shared)
-    data = _WRITTEN[sketch.name]
-    return data, {"images": {key: {"size": data["size"]} for key, data in shared.images.data.items()}}
+    return _WRITTEN[sketch.name]
 
 
 def python(sketch: Sketch, settings: Settings) -> Plan | str:
@@ -133,12 +132,12 @@ def _as_json(value: Any) -> Any:
 @pytest.mark.parametrize("name", SHIPPED)
 def test_every_shipped_sketch_is_planned_as_the_engine_plans_it(node: Node, shared: SharedData, name: str):
     sketch = load(name)
-    data, images = exported(sketch, shared)
+    data = exported(sketch, shared)
     chance = random.Random(name)
     first = python(sketch, Settings())
     assert isinstance(first, Plan)
     several = [Settings(), *(random_settings(chance, data, first) for _ in range(SETTINGS))]
-    answers = node.run(ASK, data, images, [settings.state(data) for settings in several])
+    answers = node.run(ASK, data, [settings.state(data) for settings in several])
     for settings, answer in zip(several, answers, strict=True):
         expected = python(sketch, settings)
         if isinstance(expected, str):
@@ -216,7 +215,7 @@ def neighbours(
 
 def stale_as_in_the_engine(node: Node, shared: SharedData, sketch: Sketch, target: list[Settings]) -> Keys:
     """Compare what changes between plans for some settings; return the engine's keys of the first."""
-    data, images = exported(sketch, shared)
+    data = exported(sketch, shared)
     first = python(sketch, Settings())
     assert isinstance(first, Plan)
     several, plans = [], []
@@ -235,7 +234,7 @@ def stale_as_in_the_engine(node: Node, shared: SharedData, sketch: Sketch, targe
         }
         for step in first.walk()
     }
-    result = node.run(STALE, data, images, [each.state(data) for each in several], existing)
+    result = node.run(STALE, data, [each.state(data) for each in several], existing)
     assert classes(result["keys"]) == classes([hashes_of(keys) for keys in expected])
     for keys, plan, answer in zip(expected, plans, result["keys"], strict=True):
         changes = [[node.path, sorted(keys.changes[id(node)])] for node in every_node(plan.nodes)]
@@ -250,7 +249,7 @@ def stale_as_in_the_engine(node: Node, shared: SharedData, sketch: Sketch, targe
 @pytest.mark.parametrize("name", SHIPPED)
 def test_what_is_stale_in_a_page_is_what_is_stale_in_the_engine(node: Node, shared: SharedData, name: str):
     sketch = load(name)
-    data, _ = exported(sketch, shared)
+    data = exported(sketch, shared)
     chance = random.Random(f"{name} stale")
     first = python(sketch, Settings())
     assert isinstance(first, Plan)
@@ -321,49 +320,49 @@ def test_loops_change_with_what_theirs_are(node: Node, shared: SharedData, tmp_p
     assert any(keys.changes.values()), "something changes with the loop"
 
 
-INCREMENTAL = """async (sketch, shared, first, second, load) => {
-    const { makePlan } = await load("planner.js");
-    const before = makePlan(sketch, shared, first), after = makePlan(sketch, shared, second);
+INCREMENTAL = """async (sketch, first, second, load) => {
+    const { makePlan } = await load("plan.js");
+    const before = makePlan(sketch, first), after = makePlan(sketch, second);
     const other = [...after.steps].filter(([path, step]) => before.steps.get(path) !== step);
     return { other: other.map(([path]) => path), nodes: before.nodes === after.nodes };
 }"""
 
 
 def test_a_moved_camera_leaves_every_step_as_it_is(node: Node, shared: SharedData):
-    data, images = exported(load("jacksboro"), shared)
+    data = exported(load("jacksboro"), shared)
     moved = Settings(camera=Camera(10.0, 20.0)).state(data)
-    result = node.run(INCREMENTAL, data, images, Settings().state(data), moved)
+    result = node.run(INCREMENTAL, data, Settings().state(data), moved)
     assert result == {"other": [], "nodes": True}
 
 
 def test_a_moved_slider_makes_only_the_steps_anew_that_have_its_value(node: Node, shared: SharedData):
-    data, images = exported(load("jacksboro"), shared)
+    data = exported(load("jacksboro"), shared)
     row = next(row for row in data["shown"] if row["path"] == "colour.grass_below")
     moved = Settings(values={row["path"]: row["value"] + 1.0}).state(data)
-    result = node.run(INCREMENTAL, data, images, Settings().state(data), moved)
+    result = node.run(INCREMENTAL, data, Settings().state(data), moved)
     assert result["other"] == list(dict.fromkeys(path.rpartition(".")[0] for path in row["targets"]))
 
 
 def test_another_size_makes_the_plan_anew(node: Node, shared: SharedData):
-    data, images = exported(load("diamond_square"), shared)
+    data = exported(load("diamond_square"), shared)
     larger = Settings(terrain={"size": (257, 257)}).state(data)
-    assert not node.run(INCREMENTAL, data, images, Settings().state(data), larger)["nodes"]
+    assert not node.run(INCREMENTAL, data, Settings().state(data), larger)["nodes"]
 
 
 @pytest.mark.parametrize(("name", "ref"), [("l_dot_n", "height"), ("splat", "weights")])
 def test_a_map_takes_the_place_of_the_view(node: Node, shared: SharedData, name: str, ref: str):
     sketch = load(name)
-    data, images = exported(sketch, shared)
+    data = exported(sketch, shared)
     texture = next(
         item for item in data["textures"] if item["ref"].partition(":")[0].partition(".")[0] == ref
     )
     state = Settings().state(data) | {"map": {**texture, "values": {"gain": 2.0}}}
-    script = """async (sketch, shared, state, load) => {
-        const { makePlan } = await load("planner.js"), { needed } = await load("plan_nodes.js");
-        const plan = makePlan(sketch, shared, state);
+    script = """async (sketch, state, load) => {
+        const { makePlan } = await load("plan.js"), { needed } = await load("plan_nodes.js");
+        const plan = makePlan(sketch, state);
         return [plan.picture, needed(plan.nodes, plan.picture).map((node) => [node.path, node.size])];
     }"""
-    picture, nodes = node.run(script, data, images, state)
+    picture, nodes = node.run(script, data, state)
     of = Map(texture["ref"]).of(sketch)
     plan = make_plan(of, PlanRequest(frame_size=(64, 36), variants=KINDS, ref=texture["ref"]))
     expected = [node.path for node in needed(plan.nodes, plan.picture)]
@@ -435,7 +434,7 @@ def test_levels_are_planned_and_stale_as_in_the_engine(
     (tmp_path / "level.toml").write_text(LEVEL.replace('inputs = { ground_before = "each" }\n', ""))
     (tmp_path / "levels.toml").write_text(LEVELS.replace("REPEAT", repeat) + map_of("after"))
     sketch = replace(load(tmp_path / "levels.toml"), name=f"levels {repeat}")
-    data, images = exported(sketch, shared)
+    data = exported(sketch, shared)
     several = [
         Settings(),
         Settings(time=0.05),
@@ -448,7 +447,7 @@ def test_levels_are_planned_and_stale_as_in_the_engine(
         Settings(terrain={"size": (17, 17)}),
         Settings(terrain={"size": (4, 4)}),
     ]
-    answers = node.run(ASK, data, images, [settings.state(data) for settings in several])
+    answers = node.run(ASK, data, [settings.state(data) for settings in several])
     for settings, answer in zip(several, answers, strict=True):
         expected = python(sketch, settings)
         if isinstance(expected, str):

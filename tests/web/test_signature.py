@@ -12,7 +12,7 @@ from playground.shader.header import parse_kernel
 from playground.shader.source import read_source
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.model import Kernel
-from playground.web.expression_trees import tree
+from playground.web.formulas import formula
 
 from .node import Node, NodeError
 from .texts import kernels
@@ -54,7 +54,7 @@ SCRIPT = """async (kernel, text, load) => {
 
 def given(kernel: Kernel) -> dict[str, Any]:
     outputs = [{"name": output.name, "format": output.format} for output in kernel.outputs]
-    return {"kind": kernel.kind, "outputs": outputs, "repeat": tree(kernel.repeat)}
+    return {"kind": kernel.kind, "outputs": outputs, "repeat": formula(kernel.repeat)}
 
 
 def refusal(kernel: Kernel) -> tuple[str, int] | None:

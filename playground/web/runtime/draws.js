@@ -5,7 +5,7 @@
 // the earlier draw is drawn again where only the later one is stale (see execution.js).
 
 import { failure } from "./context.js";
-import { whole } from "./expressions.js";
+import { headerNames, whole } from "./formulas.js";
 import { isSize } from "./binder.js";
 import { buildMesh, meshKey } from "./meshes.js";
 import { choose, CHOSEN_BY } from "./detail.js";
@@ -49,14 +49,14 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
    *  @param {Job} job @param {string} name */
   const sizeOf = ({ inputs }, name) => {
     const [declared, , axis] = name.split("."), wired = inputs.get(declared);
-    return BigInt(wired ? wired.texture.size["xy".indexOf(axis)] : 1);
+    return wired ? wired.texture.size["xy".indexOf(axis)] : 1;
   };
 
   /** @param {Job} job @returns {Mesh} */
   const meshOf = (job) => {
     const { kernel } = job.step, name = /** @type {string} */ (kernel.mesh), values = { ...job.step.values };
     if (kernel.count !== undefined) {
-      const names = kernels.namesOf(job);
+      const names = headerNames(job.step, job.time);
       values.count = whole(kernel.count, { name: (each) => names.name(each) ?? sizeOf(job, each) });
     }
     const key = meshKey(name, values), known = meshes.get(key);
@@ -182,7 +182,7 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
       const why = `mesh '${mesh}' is drawn once for each of its tiles; it takes no instances`;
       throw failure("sketch", `pass '${step.path}': ${why}`);
     }
-    const names = kernels.namesOf(job), found = whole(instances, {
+    const names = headerNames(step, job.time), found = whole(instances, {
       name: (name) => names.name(name) ?? componentOf(job, name),
     });
     if (found >= 0 && found <= MAX_INSTANCES) return found;
@@ -198,7 +198,7 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
     const { read } = wired.result, key = `${wired.output} first`;
     if (!read.has(key)) read.set(key, readTexture(context, textures, wired.texture, [1, 1]));
     const number = /** @type {Float32Array} */ (read.get(key))["xyzw".indexOf(component)];
-    if (Number.isFinite(number)) return Number.isInteger(number) ? BigInt(number) : number;
+    if (Number.isFinite(number)) return number;
     const message = `'${declared}' holds ${number} as its ${component}; a number was expected`;
     throw failure("sketch", `pass '${step.path}': instances: ${message}`);
   };

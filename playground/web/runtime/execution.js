@@ -10,7 +10,7 @@ import { texelsOf } from "./formats.js";
 import { bodyOf, isLoop, readWithLevels, stepsOf } from "./plan_nodes.js";
 import { continuedOf } from "./staleness.js";
 
-/** @typedef {import("./planner.js").Plan} Plan */
+/** @typedef {import("./plan.js").Plan} Plan */
 /** @typedef {import("./plan_nodes.js").Step} Step */
 /** @typedef {import("./plan_nodes.js").LoopStep} LoopStep */
 /** @typedef {Step | LoopStep} PlanNode */

@@ -6,7 +6,7 @@
 
 import { stepsOf } from "./plan_nodes.js";
 
-/** @typedef {import("./planner.js").Plan} Plan */
+/** @typedef {import("./plan.js").Plan} Plan */
 /** @typedef {import("./schema.js").Camera} Camera */
 /** @typedef {{path: string, output: string}} Ref */
 

@@ -1,7 +1,7 @@
 // figure_map.js -- a figure while it shows a texture from above: what is drawn, moved and read.
 
 import {
-  WHOLE, fitted, followsFrame, linesAt, movedView, paintMap, sheetOf, texelAt, zoomedView,
+  WHOLE, fitted, isOfView, linesAt, movedView, paintMap, sheetOf, texelAt, zoomedView,
 } from "./map_view.js";
 import { NOTCH } from "./camera_moves.js";
 import { pixelsOf } from "./quality.js";
@@ -85,7 +85,7 @@ export function createFigureMap({ session, words, canvas, context, readout, box,
       const place = /** @type {[number, number]} */ (pointer.map((at) => at * density()));
       const at = texelAt(place, room(), view, sheetSize(), found.size), isHeight = Boolean(texture()?.height);
       const { terrain } = player()?.plan ?? session.state();
-      if (at) lines = linesAt(found, at, isHeight, terrain, !followsFrame(session.sketch, map.path), words);
+      if (at) lines = linesAt(found, at, isHeight, terrain, !isOfView(map.path), words);
     }
     readout.textContent = lines.join("\n");
   }
@@ -104,7 +104,7 @@ export function createFigureMap({ session, words, canvas, context, readout, box,
      *  @returns {[number, number] | null} */
     size() {
       const { map } = session, step = map && player()?.plan?.steps?.get(map.path);
-      return map && step && !followsFrame(session.sketch, map.path) ? sheetOf(step.size) : null;
+      return map && step && !isOfView(map.path) ? sheetOf(step.size) : null;
     },
     /** What was rendered is taken over; before that the map is fitted to its values.
      *  @param {Player} from @param {[number, number]} size */

@@ -5,7 +5,7 @@
 // closely fills as small a part of its textures as that takes.
 
 import { failure } from "./context.js";
-import { whole } from "./expressions.js";
+import { headerNames, whole } from "./formulas.js";
 import { roundedOutputs } from "./formats.js";
 import { needed } from "./addons.js";
 import { createChosen } from "./chosen.js";
@@ -14,8 +14,7 @@ import { isSize, PLAIN } from "./binder.js";
 import { setUniform } from "./programs.js";
 import { createSettling } from "./settling.js";
 import { toES } from "./es.js";
-import { ownNames } from "./counts.js";
-import { fillsLattice, shiftAfter } from "./lattice.js";
+import { shiftAfter } from "./lattice.js";
 
 /** @typedef {import("./textures.js").Result} Result */
 /** @typedef {import("./textures.js").Texture} Texture */
@@ -200,14 +199,9 @@ export const createKernels = (context, textures, programs, binder, shared, often
     if (step.kernel.countsFrames) setUniform(gl, program, "time", now / 60);
   };
 
-  /** Return what the expressions of a step's header mean. @param {Job} job
-   *  @param {Object<string, bigint>} [more] */
-  const namesOf = ({ step, time }, more = {}) =>
-    ({ name: ownNames(step.kernel, step.size, step.values, time, more) });
-
   /** Run a kernel; the result is the caller's. @param {Job} job @returns {Work} */
   const run = function* (job) {
-    const { step, start } = job, { kernel, size } = step;
+    const { step, start, time } = job, { kernel, size } = step;
     if (start && start.settled) {
       start.iterations = step.repeat;
       job.start = null;
@@ -217,8 +211,8 @@ export const createKernels = (context, textures, programs, binder, shared, often
     if (!step.repeat) return untouched(job, state);
     const program = programOf(job), reads = readsOf(job);
     let unit = binder.bind(program, job, reads);
-    const atOnce = kernel.atOnce === undefined ? 1 : Math.max(whole(kernel.atOnce, namesOf(job)), 1);
-    const lattice = fillsLattice(kernel) && !state.size;
+    const atOnce = Math.max(whole(kernel.atOnce ?? 1, headerNames(step, time)), 1);
+    const lattice = kernel.stride !== undefined && !state.size;
     let before = start, iteration = start ? start.iterations : 0, shift = 0;
     const watch = kernel.until ? settling.watch(iteration) : null;
     /** @type {Result | null} */
@@ -226,7 +220,7 @@ export const createKernels = (context, textures, programs, binder, shared, often
     try {
       while (iteration < step.repeat) {
         const turns = Math.min(atOnce, step.repeat - iteration), was = shift;
-        if (lattice) shift = shiftAfter(step, iteration, (counts) => namesOf(job, counts));
+        if (lattice) shift = shiftAfter(step, iteration, time);
         const target = result = textures.take(size, kernel.outputs, job.tall), from = before;
         const [width, height] = size.map((side) => ((side - 1) >> shift) + 1), now = iteration;
         const begin = () => {
@@ -329,5 +323,5 @@ export const createKernels = (context, textures, programs, binder, shared, often
     drawOwn("show", source.size, source, { k_channels: textures.formats(source.format).channels });
   };
 
-  return { run, show, refused, ask, programOf, readsOf, copy, drawnOwn, empty, count, namesOf, askOwn };
+  return { run, show, refused, ask, programOf, readsOf, copy, drawnOwn, empty, count, askOwn };
 };

@@ -3,7 +3,6 @@
 import { clamp, general } from "./numbers.js";
 import { fill, measured } from "./words.js";
 
-/** @typedef {import("./schema.js").Sketch} Sketch */
 /** @typedef {import("./schema.js").Value} Value */
 /** @typedef {{size: [number, number], channels: number, data: ArrayLike<number>}} Texels */
 /** @typedef {{path: string, output: string, label: string, height: boolean}} Texture */
@@ -17,13 +16,9 @@ const CLOSEST = 64; // pixels of the screen a texel may have
 /** @type {View} */
 export const WHOLE = { x: 0.5, y: 0.5, zoom: 1 };
 
-/** Whether a texture's size follows the picture's, and not the terrain's.
- *  @param {Sketch} sketch @param {string} path */
-export function followsFrame(sketch, path) {
-  let base = path;
-  for (let depth = 0; depth < 32 && sketch.passes[base]; depth++) base = sketch.passes[base].base;
-  return base === "#frame";
-}
+/** Whether a texture is the view's, and so lies over the picture, not over the terrain.
+ *  @param {string} path */
+export const isOfView = (path) => path === "view" || path.startsWith("view.");
 
 /** The size at which a map of a texture is drawn: a pixel a texel, where that is not too many.
  *  @param {[number, number]} texels @returns {[number, number]} */

@@ -3,9 +3,8 @@
 // What their uniforms get is theirs by name (usual.js); a sampler that nothing feeds reads black.
 
 import { PLAIN } from "./binder.js";
-import { shapedSize } from "./input_shapes.js";
 import { setUniform } from "./programs.js";
-import { createShapes } from "./shapes.js";
+import { createShapes, shapedSize } from "./shapes.js";
 
 /** @typedef {import("./textures.js").Texture} Texture */
 /** @typedef {import("./kernels.js").Job} Job */
@@ -42,7 +41,7 @@ export const createPlain = (context, textures, images, binder, kernels) => {
     const size = /** @type {[number, number]} */ ([1, shape === "cube" ? 6 : 1]);
     const source = textures.texture(size, "rgba8");
     kernels.copy(textures.targetOf(source), size, flat);
-    const made = shapes.copied(shape, source, false);
+    const made = shapes.copied(shape, source, false, name);
     textures.release(source);
     constants.set(key, made);
     return made;
@@ -51,14 +50,17 @@ export const createPlain = (context, textures, images, binder, kernels) => {
   /** What an input reads in its own shape, and the size of that; the copy belongs to what it is of.
    *  @param {import("./schema.js").Input} input @param {Job} job @param {Map<string, Texture>} reads
    *  @returns {{texture: Texture, size: [number, number, number]}} */
-  const shaped = ({ name, shape, fallback, sampling }, { inputs }, reads) => {
+  const shaped = ({ name, shape, fallback, sampling }, { inputs, step }, reads) => {
     const wired = inputs.get(name);
     if (!wired) return { texture: constant(fallback || "black", shape), size: [1, 1, 1] };
     const size = shapedSize(shape, wired.texture.size);
     if (!shape) return { texture: reads.get(name) ?? wired.texture, size };
     const { copies } = wired.result, key = `${wired.output} ${shape} ${sampling.mipmap}`;
     let texture = copies.get(key);
-    if (!texture) copies.set(key, (texture = shapes.copied(shape, wired.texture, sampling.mipmap)));
+    if (!texture) {
+      const called = `pass '${step.path}': ${name}`;
+      copies.set(key, (texture = shapes.copied(shape, wired.texture, sampling.mipmap, called)));
+    }
     return { texture, size };
   };
 

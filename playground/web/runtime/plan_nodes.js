@@ -14,7 +14,7 @@
  *  @property {[number, number]} size                    texels
  *  @property {number} repeat                            iterations to run
  *  @property {number} whole                             iterations in all
- *  @property {ReturnType<typeof import("./lattice.js").betweenOf>} between */
+ *  @property {{k_stride: number, k_form: number} | null} between   see betweenOf of lattice.js */
 
 /** A loop made concrete. bodies: of each iteration, one where all are the same; body: of the last.
  *  @typedef {{path: string, loop: true, repeat: number, whole: number, countsFrames: boolean,

@@ -6,13 +6,13 @@ import { readTexture } from "./draws.js";
 import { createExecution } from "./execution.js";
 import { createEyeHeight } from "./eye_height.js";
 import { readKernel } from "./kernel_texts.js";
-import { makePlan } from "./planner.js";
+import { makePlan } from "./plan.js";
 import { isLoop, needed, stepsOf } from "./plan_nodes.js";
 import { blobAt, playingOf } from "./recordings.js";
 import { keysOf } from "./staleness.js";
 import { PLAIN } from "./binder.js";
 
-/** @typedef {import("./planner.js").Plan} Plan */
+/** @typedef {import("./plan.js").Plan} Plan */
 /** @typedef {import("./plan_nodes.js").Step} Step */
 /** @typedef {import("./schema.js").Kernel} Kernel */
 /** @typedef {import("./kernel_texts.js").KernelText} KernelText */
@@ -22,7 +22,7 @@ import { PLAIN } from "./binder.js";
 /** @typedef {object} Player
  *  @property {import("./schema.js").Sketch} sketch
  *  @property {import("./schema.js").Shared} shared
- *  @property {import("./planner.js").State} state   may be changed at any time
+ *  @property {import("./requests.js").State} state   may be changed at any time
  *  @property {Plan | null} plan                     of the last picture
  *  @property {boolean} looks                        whether that picture depends on the camera
  *  @property {number} raisedBy                      [m] by which its eye was raised out of the terrain
@@ -128,7 +128,7 @@ export const createPlayer = (engine, sketch, onClose) => {
   const pictured = function* (budget, stop) {
     const { context, textures } = engine.parts, { gl } = context;
     if (gl.isContextLost()) throw failure("context-lost", "The graphics context was lost.");
-    const objects = context.objects, plan = makePlan(sketch, shared, player.state);
+    const objects = context.objects, plan = makePlan(sketch, player.state);
     const leaves = player.state.map || sketch.aboveGround === false;
     let camera = leaves ? null : eyeHeight.raisedAsBefore(plan, keysFor(plan));
     /** @type {string[]} */
@@ -139,7 +139,7 @@ export const createPlayer = (engine, sketch, onClose) => {
       if (!leaves) camera = eyeHeight.raised(plan, found.keys, found.execution.known, texelsOf);
     }
     if (camera) {
-      const raised = makePlan(sketch, shared, { ...player.state, camera });
+      const raised = makePlan(sketch, { ...player.state, camera });
       found = yield* executed(raised, raised.picture, budget, stop);
       ran = [...ran, ...found.execution.ran];
     }
@@ -198,7 +198,7 @@ export const createPlayer = (engine, sketch, onClose) => {
     },
 
     load: async (onProgress = () => {}) => {
-      const { parts } = engine, plan = makePlan(sketch, shared, player.state);
+      const { parts } = engine, plan = makePlan(sketch, player.state);
       await loadData(plan);
       const programs = [];
       for (const step of stepsOf(plan.nodes)) {
@@ -233,7 +233,7 @@ export const createPlayer = (engine, sketch, onClose) => {
     },
 
     estimate: () => {
-      const plan = makePlan(sketch, shared, player.state), keys = keysFor(plan), { cache } = engine.parts;
+      const plan = makePlan(sketch, player.state), keys = keysFor(plan), { cache } = engine.parts;
       let milliseconds = 0, isKnown = true;
       /** @param {import("./plan_nodes.js").PlanNode} node @param {number} times */
       const add = (node, times) => {
@@ -280,7 +280,7 @@ export const createPlayer = (engine, sketch, onClose) => {
 
     read: (ref) => {
       stop();
-      const plan = makePlan(sketch, shared, { ...player.state, interpolated: false });
+      const plan = makePlan(sketch, { ...player.state, interpolated: false });
       const { execution } = drained(executed(plan, ref, 0, () => {})), { context, textures } = engine.parts;
       const { texture } = execution.texture(ref);
       return {

@@ -1,7 +1,6 @@
 // requests.js -- what a plan is made for besides its sketch, and checks of it: engine/plan.py.
 
-import { planError } from "./expressions.js";
-import { MAX_SIDE } from "./sizes.js";
+import { planError } from "./formulas.js";
 import { isSame, leavesOf } from "./values.js";
 
 /** @typedef {import("./schema.js").Sketch} Sketch */
@@ -24,6 +23,8 @@ import { isSame, leavesOf } from "./values.js";
  *  @property {boolean} [interpolated]          what a stopped repeat has not computed is filled in
  *  @property {{path: string, output: string, values: Object<string, Value>} | null} [map]
  *  @property {import("./usual.js").Live} [live]  what the pointer and the clock of the page say */
+
+export const MAX_SIDE = 16384;
 
 /** @param {number} time */
 export function checkedTime(time) {

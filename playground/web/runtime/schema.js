@@ -3,22 +3,21 @@
 // Written by playground/web/*.py. Paths are those of the flat sketch ("height.sum"); texels have row 0
 // south; angles are degrees, lengths metres, times seconds.
 
-/** A number, a name, or an operation on others: see expressions.js. A number without a fraction is whole.
- *  Names: "size.x", "iteration", a parameter's own name (in a kernel's header), "time", "frames".
+/** A number, a name, or an operation on others: see formulas.js.
+ *  Names: "time", "frames"; in a kernel's header "size.x", "iteration", a parameter's own name.
  *  Operations: ["+" | "-" | "*" | "/" | "//" | "%" | "**" | "<" | "<=" | ">" | ">=" | "==" | "!=", a, b],
  *  ["log2" | "bits" | "min" | "max" | "abs" | "floor" | "ceil", ...], ["if", test, then, otherwise],
- *  ["size", base, axis]      texels of a pass, by its path; of base "#terrain" or "#frame" those
- *  ["value", path]           what a uniform gets, by the path of the leaf's parameter
- *  ["picture", path, axis]   texels of the image file that a parameter names
+ *  ["size", path, axis]      texels of a pass that says its size; of base "#terrain" or "#frame" those
+ *  ["value", path, menu]     what a uniform gets, by the path of the leaf's parameter; menu: by the choice
  *  ["iteration", loop]       the step of the loop at a path, from 0; ["iterations", loop]: its steps in all
- *  ["fed", loop, name, axis] texels of what a loop feeds back under a name
- *  ["float", 2]              a number that is a float although it has no fraction: 1 / 2.0 is not exact
+ *  ["last", loop, a]         a, in the last iteration of a loop that runs
+ *  ["before", loop, a, b]    in a loop's first iteration a, else b in the iteration before
  *  ["text", words, a]        a, with the words that messages call it by: as its author wrote it
- *  @typedef {number | string | Array<any>} Expression */
+ *  @typedef {number | string | Array<any>} Formula */
 
-/** The sizes that a kernel takes, along x and then, where it has others there, y: expressions of the name
- *  "n" ("m" along y) that grow with it from 0 up, each with the largest value that it may give.
- *  @typedef {[Expression, number][][]} Accepted */
+/** The sizes that a kernel takes, along x and then, where it has others there, y, smallest first: runs of
+ *  numbers as the first, the last, and how far one is from the next.
+ *  @typedef {[number, number, number][][]} Accepted */
 
 /** A texture: an output of a leaf, or what a loop feeds back under a name.
  *  @typedef {{path: string, output: string} | {loop: string, name: string}} Source */
@@ -53,19 +52,19 @@
  *  @property {{name: string, format: string}[]} outputs
  *  @property {Input[]} inputs
  *  @property {Uniform[]} parameters
- *  @property {Expression} repeat                   1: it does not repeat
+ *  @property {Formula} repeat                   1: it does not repeat
  *  @property {boolean} countsFrames                its iteration n is at n / 60 seconds
  *  @property {boolean} followsTime                 its repeat names a clock
  *  @property {Object<string, string>} initial      input → output that begins with it
- *  @property {Expression} [stride]
- *  @property {Expression} [atOnce]
+ *  @property {Formula} [stride]
+ *  @property {Formula} [atOnce]
  *  @property {"unchanged"} [until]                 no more steps are run once one has changed no texel
  *  @property {"" | "squares" | "triangles"} [between]
  *  @property {string} [accepts]                    as the header has it
- *  @property {Accepted} [accepted]                 the same, to be evaluated
+ *  @property {Accepted} [accepted]                 the same as numbers
  *  @property {string} [mesh]                       of a draw
- *  @property {Expression} [count]                  of a draw: it may name an input's size, as list.size.x
- *  @property {Expression} [instances]              of a draw: it may name an input's first texel, as list.x
+ *  @property {Formula} [count]                  of a draw: it may name an input's size, as list.size.x
+ *  @property {Formula} [instances]              of a draw: it may name an input's first texel, as list.x
  *  @property {"none" | "add" | "alpha"} [blend]
  *  @property {"none" | "less" | "equal"} [depth]
  *  @property {number} [samples]                    of a draw; 0: the sketch's
@@ -82,7 +81,8 @@
  *  @property {number} kernel                       index in `Sketch.kernels`
  *  @property {[string, Source | null][]} inputs
  *  @property {Object<string, string>} values       parameter of the kernel → path in `Sketch.values`
- *  @property {string} base                         whose size it has: a path in `Sketch.passes`
+ *  @property {string | [number, number]} size      texels; where something in a page changes them the path
+ *                                                  in `Sketch.passes` that says them, "#terrain" or "#frame"
  *  @property {DataTexture[]} [data]                of a source: its texels
  *  @property {Clock} [clock]                       of a source that plays a file: which second of it shows */
 
@@ -98,17 +98,16 @@
  *  paths in `Sketch.values`; without `speed` it is 1.
  *  @typedef {{start: string, speed?: string, loop: string}} Clock */
 
-/** @typedef {{path: string, loop: true, countsFrames: boolean, followsTime: boolean,
- *             body: Node[], feedback: [string, Source | null, {path: string, output: string}][]}} Loop */
+/** @typedef {{path: string, loop: true, countsFrames: boolean, followsTime: boolean, counting: boolean,
+ *             body: Node[], feedback: [string, Source | null, {path: string, output: string}][]}} Loop
+ *  counting: a size or a count inside names its iteration, so that each has sizes and counts of its own */
 
 /** @typedef {Leaf | Loop} Node */
 
-/** Every pass at every level, by path: its size, and what it has unless it says one; its repeat.
- *  @typedef {{base: string, size?: [Expression, Expression], own?: [number, number], where: string,
- *             repeat?: Expression, counting?: boolean, locked?: string}} Pass
- *  base: "#terrain", "#frame" or the path of the technique around it; own: of data; where: for errors;
- *  counting: a size or a count inside names its iteration, so that each has sizes and counts of its own;
- *  locked: why a repeat cannot be stopped early, where it cannot. */
+/** Every pass at every level, by path: its size, where it says one that something in a page changes; of a
+ *  loop its repeat.
+ *  @typedef {{size?: [Formula, Formula], repeat?: Formula, where: string, locked?: string}} Pass
+ *  where: for errors; locked: why a repeat cannot be stopped early, where it cannot. */
 
 /** One row of the panel.
  *  @typedef {object} Shown
@@ -165,6 +164,8 @@
  *  @property {Kernel[]} kernels
  *  @property {Node[]} nodes                        in an order that wiring allows
  *  @property {Object<string, Pass>} passes
+ *  @property {string[]} named                      paths of the values that a size or a count names
+ *  @property {boolean} namesTime                   one of them names the time
  *  @property {Object<string, Value>} values        of each leaf parameter, by path; of a file its key in
  *                                                  `Shared.images`
  *  @property {Shown[]} shown
@@ -182,7 +183,9 @@
  *  @property {string[]} notes                      what a page does otherwise, or cannot, a sentence each */
 
 /** How any texture is shown from above: the kernel view/map, whose input `shown` is wired when asked for.
- *  @typedef {{kernel: number, input: string, values: Object<string, Value>, shown: Shown[]}} MapView */
+ *  @typedef {{kernel: number, input: string, values: Object<string, Value>, shown: Shown[],
+ *             size: string | [number, number]}} MapView
+ *  size: of a map of one of the view's own textures, as of a leaf */
 
 /** A technique menu: another sketch for each technique, with the same paths where they have the same names.
  *  @typedef {{pass: string, label: string, now: string,

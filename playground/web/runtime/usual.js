@@ -3,7 +3,7 @@
 import { unitVector } from "./directions.js";
 import { stepsOf } from "./plan_nodes.js";
 
-/** @typedef {import("./planner.js").Plan} Plan */
+/** @typedef {import("./plan.js").Plan} Plan */
 /** @typedef {import("./plan_nodes.js").Step} Step */
 
 /** What only somebody at the page has; without them all is at rest. Pixels from the lower left.

@@ -47,11 +47,3 @@ export function cameraAt(sketch, given, time) {
  *  @param {Uniform} uniform @param {Value} value @returns {Value} */
 export const givenTo = (uniform, value) =>
   uniform.values?.length && typeof value === "number" ? uniform.values[value] : value;
-
-/** A scalar as expressions have it: whole numbers as bigints; undefined for what is no number.
- *  @param {string} type GLSL @param {Value} value @returns {number | bigint | undefined} */
-export function numberOf(type, value) {
-  if (typeof value === "boolean") return value ? 1n : 0n;
-  if (typeof value !== "number") return undefined;
-  return type === "float" ? value : BigInt(value);
-}

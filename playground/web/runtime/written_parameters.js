@@ -2,7 +2,6 @@
 // is typed has a row, and one that is taken out has none.
 
 import { writtenParameters } from "./annotations.js";
-import { forgetPlan } from "./planner.js";
 import { flatten } from "./source.js";
 import { declaredUniforms } from "./uniforms.js";
 import { leavesOf } from "./values.js";
@@ -103,7 +102,6 @@ export function followParameters(sketch, shared, file, first) {
       sketch.nodes = nodes.map((node) => nodeWith(node, read));
       sketch.values = now;
       sketch.shown = rows;
-      forgetPlan(sketch);
       return true;
     },
     /** The rows that the first text has none of, by path. */
