@@ -117,6 +117,7 @@ class _Writing:
             "passes": self._passes(),
             "named": sorted(self.formulas.named),
             "namesTime": self.formulas.names_time,
+            "continued": sorted(plan.continued),
             "values": values,
             "shown": rows,
             "presets": presets,

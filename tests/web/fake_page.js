@@ -17,13 +17,13 @@ function open(sketch) {
   const value = (path) => state.values[path] ?? sketch.values[path];
   const player = {
     state,
-    repeats: new Map([["height", REPEATS], ["picture", 1]]),
+    repeats: new Map([["height", REPEATS], ["view", 1]]),
     get plan() {
       const camera = state.camera ?? sketch.camera;
       return {
         eye: { distance: camera.distance || 4000, target: camera.target ?? [2048, 2048, 400] },
         terrain: state.terrain, time: state.time, frame: state.frame,
-        steps: new Map([["height", { size: state.terrain.size }], ["picture", { size: state.frame }]]),
+        steps: new Map([["height", { size: state.terrain.size }], ["view", { size: state.frame }]]),
       };
     },
     async load(progress) {
@@ -43,11 +43,11 @@ function open(sketch) {
       [sheet.width, sheet.height] = state.frame;
       const context = sheet.getContext("2d");
       state.map ? drawMap(context, width, height) : drawHills(context, width, height);
-      return { ran: ["picture"], milliseconds: 1 };
+      return { ran: ["view"], milliseconds: 1 };
     },
     drawTo(context) { context.drawImage(sheet, 0, 0); },
     read({ path }) {
-      const [wide, high] = path === "picture" ? state.frame : state.terrain.size;
+      const [wide, high] = path === "view" ? state.frame : state.terrain.size;
       const data = new Float32Array(wide * high);
       data.forEach((_, at) => { data[at] = height((at % wide) / wide, Math.floor(at / wide) / high); });
       return { size: [wide, high], channels: 1, data };

@@ -84,13 +84,10 @@ def page(**more: Any) -> dict[str, Any]:
             "target": None,
             "field_of_view": 40,
         },
-        "picture": {"path": "picture", "output": "frame"},
+        "picture": {"path": "view", "output": "frame"},
         "kernels": [{"repeat": 24}],
         "nodes": [],
-        "passes": {
-            "height": {"base": "#terrain", "where": ""},
-            "picture": {"base": "#frame", "where": ""},
-        },
+        "passes": {"height": {"where": ""}, "view": {"where": ""}},
         "values": {leaf: item["value"] for item in shown for leaf in item["targets"]},
         "shown": shown,
         "presets": [{"name": "high", "values": {"height.level": 0.75, "relief": 1200}}],
@@ -100,7 +97,7 @@ def page(**more: Any) -> dict[str, Any]:
         "rules": [],
         "textures": [
             {"ref": "height:height", "path": "height", "output": "height", "label": "Height", "height": True},
-            {"ref": "picture:f", "path": "picture", "output": "f", "label": "Picture", "height": False},
+            {"ref": "view:f", "path": "view", "output": "f", "label": "Picture", "height": False},
         ],
         "map": {"kernel": 0, "input": "shown", "shown": map_shown} | {"values": {"map.channel": 1}},
         "choices": [

@@ -8,7 +8,6 @@ import { isSize } from "./binder.js";
 import { started } from "./draws.js";
 import { texelsOf } from "./formats.js";
 import { bodyOf, isLoop, readWithLevels, stepsOf } from "./plan_nodes.js";
-import { continuedOf } from "./staleness.js";
 
 /** @typedef {import("./plan.js").Plan} Plan */
 /** @typedef {import("./plan_nodes.js").Step} Step */
@@ -58,7 +57,7 @@ export const createExecution = (plan, nodes, around) => {
   const zeros = new Map();
   const steps = new Map(stepsOf(plan.nodes).map((step) => [step.path, step]));
   const tall = readWithLevels(plan.nodes);
-  const continued = continuedOf(plan.nodes);
+  const { continued } = plan;
   /** The loops whose iterations change a node. @param {PlanNode} node */
   const changesOf = (node) => keys.changes.get(node) || new Set();
 

@@ -35,7 +35,8 @@ import { cameraAt, givenTo, isSame, leavesOf, valuesAt } from "./values.js";
  *  @property {Size} frame
  *  @property {Ref} picture
  *  @property {Map<string, Step>} steps  by path
- *  @property {Object<string, number>} stopped  repeats that are stopped early, by path */
+ *  @property {Object<string, number>} stopped  repeats that are stopped early, by path
+ *  @property {Set<string>} continued  the draws that a later draw goes on from, by path */
 
 /** What the nodes of a plan are made for.
  *  @typedef {{values: Object<string, Value>, terrain: Size, frame: Size, time: number,
@@ -63,7 +64,8 @@ export function makePlan(sketch, state = {}) {
     : new Map(stepsOf(nodes).map((step) => [step.path, step]));
   const shown = map ? { path: MAP, output: kernels[sketch.map.kernel].outputs[0].name } : null;
   const eye = look(camera, terrain.extent, terrain.relief, frame);
-  const plan = { nodes, terrain, camera, eye, time, frame, picture: shown ?? sketch.picture, steps, stopped };
+  const picture = shown ?? sketch.picture, continued = new Set(sketch.continued);
+  const plan = { nodes, terrain, camera, eye, time, frame, picture, steps, stopped, continued };
   lastPlans.set(sketch, { plan, values, basis, kernels });
   return plan;
 }

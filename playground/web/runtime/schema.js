@@ -166,6 +166,8 @@
  *  @property {Object<string, Pass>} passes
  *  @property {string[]} named                      paths of the values that a size or a count names
  *  @property {boolean} namesTime                   one of them names the time
+ *  @property {string[]} continued                  draws that a later draw goes on from, with their samples
+ *                                                  and depth, by path
  *  @property {Object<string, Value>} values        of each leaf parameter, by path; of a file its key in
  *                                                  `Shared.images`
  *  @property {Shown[]} shown

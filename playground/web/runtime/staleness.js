@@ -60,13 +60,13 @@ export function usedBy(kernel, code, given) {
 const lastKeys = new WeakMap();
 
 /** Work out the keys of a plan.
- *  @param {{nodes: PlanNode[]}} plan @param {Known} known @returns {Keys} */
+ *  @param {{nodes: PlanNode[], continued: Set<string>}} plan @param {Known} known @returns {Keys} */
 export function keysOf(plan, known) {
   /** @type {Keys} */
   const keys = {
     steps: new Map(), raw: new Map(), unfinished: new Map(), loops: new Map(), changes: new Map(),
   };
-  const continued = continuedOf(plan.nodes);
+  const { continued } = plan;
   /** Loops that a step changes with, for its next reader.
    *  @type {Map<string, Set<string>>} */
   const varies = new Map();
@@ -196,14 +196,6 @@ export function keysOf(plan, known) {
 
   for (const node of plan.nodes) add(node, { innermost: "", frames: "" }, new Map(), new Map());
   return keys;
-}
-
-/** The paths of the draws that a later draw goes on from, with their samples and depth.
- *  @param {PlanNode[]} nodes @returns {Set<string>} */
-export function continuedOf(nodes) {
-  const draws = stepsOf(nodes).filter((step) => step.kernel.kind === "draw");
-  const first = draws.flatMap((step) => step.inputs.filter(([name]) => name in step.kernel.initial));
-  return new Set(first.flatMap(([, source]) => (isRef(source) ? [source.path] : [])));
 }
 
 /** What a step reads that belongs to one frame: given names, and buttons among its parameters.
