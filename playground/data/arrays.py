@@ -22,7 +22,9 @@ from playground.files import open_regular
 
 
 @dataclass(frozen=True)
-class _Header:
+class ArrayHeader:
+    """What an array in a file is."""
+
     shape: tuple[int, ...]
     by_columns: bool  # Fortran order
     dtype: np.dtype[Any]
@@ -31,31 +33,31 @@ class _Header:
 def read_npy(path: Path) -> RasterFile:
     """Read the one array of an `.npy`; it says nothing of units."""
     with open_regular(path) as handle:
-        header = _array_header(handle, path)
+        header = array_header(handle, path)
         check_grid(header.shape, header.dtype, path, in_turn=not header.by_columns)
         length = path.stat().st_size
         if header.by_columns:
-            return in_memory(_array_body(handle, header, length, path)).in_unit(Crs())
+            return in_memory(array_body(handle, header, length, path)).in_unit(Crs())
         _refuse_cut(handle, header, length, path)
         rows = FileRows(path, (header.shape[0], header.shape[1]), header.dtype, handle.tell())
         return RasterFile(rows).in_unit(Crs())
 
 
-def _array_header(handle: IO[bytes], path: Path) -> _Header:
-    # Read before any memory is taken; objects are refused here, so nothing is ever unpickled.
+def array_header(handle: IO[bytes], path: Path) -> ArrayHeader:
+    """Read an array's header, before any memory is taken; raise ``DataError`` for objects and records."""
     version = np.lib.format.read_magic(handle)
     if version == (1, 0):
-        header = _Header(*np.lib.format.read_array_header_1_0(handle))
+        header = ArrayHeader(*np.lib.format.read_array_header_1_0(handle))
     elif version == (2, 0):
-        header = _Header(*np.lib.format.read_array_header_2_0(handle))
+        header = ArrayHeader(*np.lib.format.read_array_header_2_0(handle))
     else:
-        raise DataError("holds records, not heights; expected integers or real numbers", file=path)
+        raise DataError("holds records; expected integers or real numbers", file=path)
     if header.dtype.hasobject:
         raise DataError("holds Python objects, which are never loaded; expected numbers", file=path)
     return header
 
 
-def _refuse_cut(handle: IO[bytes], header: _Header, length: int, path: Path) -> int:
+def _refuse_cut(handle: IO[bytes], header: ArrayHeader, length: int, path: Path) -> int:
     """Return how many bytes an array takes; raise ``DataError`` where they are not there."""
     need, have = math.prod(header.shape) * header.dtype.itemsize, length - handle.tell()
     if need > have:
@@ -63,7 +65,8 @@ def _refuse_cut(handle: IO[bytes], header: _Header, length: int, path: Path) -> 
     return need
 
 
-def _array_body(handle: IO[bytes], header: _Header, length: int, path: Path) -> NDArray[Any]:
+def array_body(handle: IO[bytes], header: ArrayHeader, length: int, path: Path) -> NDArray[Any]:
+    """Read the array after its header; ``length`` is that of the file [bytes]."""
     need = _refuse_cut(handle, header, length, path)
     flat = np.frombuffer(handle.read(need), dtype=header.dtype)
     return flat.reshape(header.shape[::-1]).T if header.by_columns else flat.reshape(header.shape)
@@ -76,16 +79,16 @@ class _Archive:
         self.archive, self.path = archive, path
         self.members = {m.filename.removesuffix(".npy"): m for m in archive.infolist() if not m.is_dir()}
 
-    def header(self, name: str) -> _Header:
+    def header(self, name: str) -> ArrayHeader:
         with self.archive.open(self.members[name]) as handle:
-            return _array_header(handle, self.path)
+            return array_header(handle, self.path)
 
     def load(self, name: str) -> NDArray[Any]:
         member = self.members[name]
         with self.archive.open(member) as handle:
-            header = _array_header(handle, self.path)
+            header = array_header(handle, self.path)
             refuse_bomb(self.path, math.prod(header.shape) * header.dtype.itemsize, member.compress_size)
-            return _array_body(handle, header, member.file_size, self.path)
+            return array_body(handle, header, member.file_size, self.path)
 
     def grid(self) -> NDArray[Any]:
         name = "elevation"

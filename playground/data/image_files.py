@@ -33,6 +33,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.data.arrays import ArrayHeader, array_body, array_header
 from playground.data.bounds import refuse_bomb, refuse_too_many, webp_size
 from playground.data.content_hash import content_key
 from playground.data.place import gdal
@@ -59,27 +60,23 @@ def is_array(handle: BinaryIO) -> bool:
     return start == _START
 
 
-def array_shape(handle: BinaryIO, path: Path) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
-    """Return the shape, order and dtype of a picture in an `.npy`, judged before any memory is taken."""
-    version = np.lib.format.read_magic(handle)
-    read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-    shape, by_columns, dtype = read(handle)
+def _picture_header(handle: BinaryIO, path: Path) -> ArrayHeader:
+    """Return the header of a picture in an `.npy`, judged before any memory is taken."""
+    header = array_header(handle, path)
+    shape, dtype = header.shape, header.dtype
     if len(shape) != 3 or shape[2] not in (1, 3, 4) or 0 in shape or dtype not in _PICTURED:
         raise DataError(
             f"holds {dtype} {shape}; a picture is uint8, uint16 or float32, (rows, cols, 1, 3 or 4)",
             file=path,
         )
     refuse_too_many(path, shape[1], shape[0])
-    return shape, by_columns, dtype
+    return header
 
 
-def array_samples(handle: BinaryIO, path: Path) -> NDArray[Any]:
+def _array_samples(handle: BinaryIO, path: Path) -> NDArray[Any]:
     """Return the numbers of a picture in an `.npy`, (rows, cols, 1, 3 or 4), top row first."""
-    shape, by_columns, dtype = array_shape(handle, path)
-    count = shape[0] * shape[1] * shape[2]
-    flat = np.frombuffer(handle.read(count * dtype.itemsize), dtype)
-    samples = flat.reshape(shape[::-1]).T if by_columns else flat.reshape(shape)
-    if dtype.kind == "f" and not (samples.min() >= 0.0 and samples.max() <= 1.0):
+    samples = array_body(handle, _picture_header(handle, path), path.stat().st_size, path)
+    if samples.dtype.kind == "f" and not (samples.min() >= 0.0 and samples.max() <= 1.0):
         raise DataError(
             f"has numbers from {samples.min():g} to {samples.max():g}; expected 0 to 1", file=path
         )
@@ -244,7 +241,7 @@ def read_image(path: str | Path) -> Image:
             deep = tiff_samples(handle, path)
             pixels, has_alpha = _four_channels(deep), deep.shape[-1] in (2, 4)
         elif depth == 16 or is_array(handle):
-            samples = array_samples(handle, path) if is_array(handle) else _png_samples(handle, path)
+            samples = _array_samples(handle, path) if is_array(handle) else _png_samples(handle, path)
             most = np.float32(65535.0 if samples.dtype == np.uint16 else 1.0)
             pixels = _four_channels(samples)
             pixels = pixels.astype(np.float32) / most if samples.dtype != np.uint8 else pixels
@@ -550,7 +547,7 @@ def picture_size(path: str | Path) -> tuple[int, int]:
 def _size(path: Path, _: str) -> tuple[int, int]:
     with reading(path) as handle:
         if is_array(handle):
-            rows, columns = array_shape(handle, path)[0][:2]
+            rows, columns = _picture_header(handle, path).shape[:2]
             return columns, rows
         if is_tiff(handle):
             return tiff_size(handle)

@@ -459,10 +459,11 @@ def test_samples_are_stored_as_they_are_with_texts(dtype, shape, tmp_path):
 
 
 def test_saves_in_one_tick_of_the_clock_have_different_hashes(tmp_path, monkeypatch):
-    """Each keeps inode, size and time of change, as ``cp -p`` does; the clock of the file system stands."""
-    path, hashes = tmp_path / "a.png", set()
-    tick = SimpleNamespace(st_ino=1, st_size=1, st_mtime_ns=10**18, st_ctime_ns=time.time_ns())
+    """Each keeps inode, size and time of change, as ``cp -p`` does; the clocks stand."""
+    path, hashes, now = tmp_path / "a.png", set(), time.time_ns()
+    tick = SimpleNamespace(st_ino=1, st_size=1, st_mtime_ns=10**18, st_ctime_ns=now)
     monkeypatch.setattr("playground.data.content_hash.require_regular", lambda _: tick)
+    monkeypatch.setattr("playground.data.content_hash.time", SimpleNamespace(time_ns=lambda: now))
     for value in range(5):
         path.write_bytes(bytes([value]))
         hashes.add(content_hash(path))
