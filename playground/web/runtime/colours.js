@@ -1,4 +1,4 @@
-// colours.js -- colours between linear light and what is shown, as shader/parameter.py has them.
+// colours.js -- colours between linear light and what is shown, as shader/colours.py has them.
 
 import { clamp, roundEven } from "./numbers.js";
 
