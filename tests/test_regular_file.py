@@ -18,11 +18,11 @@ from playground.data.image_files import picture_size, read_image, read_png
 from playground.data.media import film_of, open_media
 from playground.data.models import read_model
 from playground.data.vectors import read_vectors
-from playground.engine.files import find_file
 from playground.errors import PlaygroundError
 from playground.flight.record import read_record
 from playground.shader.source import read_source, read_text
 from playground.shots.results import digests_of, read_result
+from playground.sketch.files import find_file
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.workbench.text_file import OpenText

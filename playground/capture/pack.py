@@ -17,11 +17,11 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from playground._version import __version__
-from playground.engine.files import contents, folder_of
 from playground.errors import DataError
 from playground.files import read_regular, reason, replacing
 from playground.paths import shown
 from playground.shader.libraries import libraries_of
+from playground.sketch.files import contents, folder_of
 from playground.sketch.find import FORMAT, MANIFEST, MAX_BYTES, MAX_FILES
 from playground.sketch.model import Sketch
 

@@ -16,7 +16,6 @@ from typing import Any
 
 from playground.data.image_files import picture_size
 from playground.engine.camera import Eye, look
-from playground.engine.files import find_file
 from playground.engine.lattice import between_of
 from playground.engine.plan import (
     LoopStep,
@@ -40,6 +39,7 @@ from playground.memo import PLANS
 from playground.paths import shown
 from playground.shader import expressions
 from playground.shader.expressions import Number
+from playground.sketch.files import find_file
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Source, repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
 from playground.sketch.model import ComputeVariant, Graph, Sketch, Technique, Value

@@ -19,12 +19,12 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from playground.engine.files import find_file
 from playground.engine.process.child import Outcome
 from playground.engine.process.pool import OPEN, Limits, Pool, PoolOwner, Task
 from playground.engine.process.worker import summary_of
 from playground.errors import DataError, PlaygroundError, SandboxCrash, SandboxTimeout
 from playground.sketch.assign import values_of
+from playground.sketch.files import find_file
 from playground.sketch.model import Sketch
 from playground.sketch.traits import traits_of
 

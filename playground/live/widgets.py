@@ -14,7 +14,6 @@ from pathlib import Path
 from imgui_bundle import ImVec2, imgui
 
 from playground.allowed_files import ELEVATIONS
-from playground.engine.files import find_file
 from playground.errors import DataError
 from playground.live import dome, theme
 from playground.live.draw import choose
@@ -23,6 +22,7 @@ from playground.live.sliders import draw_numbers
 from playground.paths import shown
 from playground.shader.colours import linear_to_srgb, srgb_to_linear
 from playground.shader.parameter import expected, is_whole, length_of, part_names, tidied, write
+from playground.sketch.files import find_file
 from playground.sketch.model import Parameter, Value
 from playground.workbench.number_format import unit_of
 

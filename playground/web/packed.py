@@ -15,12 +15,12 @@ from typing import Any
 
 from playground._version import __version__
 from playground.allowed_files import TEXTS
-from playground.engine.files import contents, folder_of
 from playground.errors import PlaygroundError
 from playground.files import read_regular
 from playground.paths import GLSL, SKETCHES
 from playground.shader.libraries import libraries_of
 from playground.shader.source import normalised, read_text
+from playground.sketch.files import contents, folder_of
 from playground.sketch.find import FORMAT, MANIFEST
 from playground.sketch.load import is_technique, load
 from playground.sketch.model import Graph, Sketch, Technique

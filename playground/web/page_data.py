@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from playground.engine.engine import Engine
-from playground.engine.files import has_arrays
+from playground.sketch.files import has_arrays
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
 from playground.web.packed import pack_data
 from playground.web.plan import FORMAT, sketch_data

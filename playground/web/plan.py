@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from playground.allowed_files import is_elevation
 from playground.engine.engine import Engine
-from playground.engine.files import find_file
 from playground.engine.plan import Plan, PlanRequest, Step, view_height
 from playground.engine.planner import extent_follows_size, make_plan
 from playground.engine.sources import source_kind
@@ -25,6 +24,7 @@ from playground.paths import GLSL, shown
 from playground.shader.expressions import counts_frames, follows_time
 from playground.shader.source import read_text
 from playground.sketch.assign import Shown, values_of
+from playground.sketch.files import find_file
 from playground.sketch.flat import Fed, Leaf, Loop, Node, Source
 from playground.sketch.load import elevation_text
 from playground.sketch.map_sketch import map_kernel, refs_of

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from playground.allowed_files import Signature, sidecar_places
-from playground.engine.files import find_file
 from playground.errors import DataError, PlaygroundError
 from playground.memo import INTERFACE
 from playground.paths import GLSL, current_folder, without_part
 from playground.sketch.assign import values_of
+from playground.sketch.files import find_file
 from playground.sketch.model import Sketch
 from playground.sketch.traits import traits_of
 

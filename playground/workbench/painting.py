@@ -18,12 +18,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.camera import Eye, ground_under, seen_from
-from playground.engine.files import find_file
 from playground.engine.plan import Plan, Step, view_height
 from playground.engine.sources import source_kind
 from playground.engine.textures import split_format
 from playground.errors import DataError, PlaygroundError
 from playground.sketch.assign import resolve, shown_parameters, value_of, values_of
+from playground.sketch.files import find_file
 from playground.sketch.flat import Ref
 from playground.sketch.model import CpuSource, Parameter, Sketch
 from playground.workbench.brush import TOOLS, Brush, Dab, Tool

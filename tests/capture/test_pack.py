@@ -14,11 +14,11 @@ from playground import cli
 from playground.capture.pack import pack
 from playground.data.values import write_values
 from playground.engine.engine import Engine
-from playground.engine.files import contents
 from playground.errors import DataError
 from playground.live.drops import Drops, opened_from
 from playground.paths import GLSL
 from playground.sketch import find as unpack
+from playground.sketch.files import contents
 from playground.sketch.find import unpacked, unpacked_beside
 from playground.sketch.model import VARIANTS
 from playground.sketch.variants import NAME, active_variant, unverified

@@ -21,9 +21,9 @@ from playground.data.grid import ArrayRows
 from playground.data.place import Crs, CrsFacts
 from playground.data.resample import decimate
 from playground.engine import file_sources
-from playground.engine.files import find_file
 from playground.engine.sources import source_kind
 from playground.errors import DataError
+from playground.sketch.files import find_file
 
 RNG = np.random.default_rng(8)
 HEIGHTS = RNG.normal(900.0, 300.0, (77, 131)).astype(np.float32)  # north row first

@@ -9,8 +9,8 @@ import pytest
 
 from playground.allowed_files import leads_outside, sidecar_places, sidecars
 from playground.data.content_hash import content_hash, content_key
-from playground.engine.files import contents, find_file
 from playground.errors import DataError, PlaygroundError
+from playground.sketch.files import contents, find_file
 from playground.sketch.load import load
 from playground.sketch.save import save, save_copy
 from playground.workbench.dependencies import data_files

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine import files
-from playground.engine.files import find_file
 from playground.errors import DataError
+from playground.sketch import files
+from playground.sketch.files import find_file
 
 
 @pytest.fixture
