@@ -61,6 +61,7 @@ class Runner:
         self.ctx = ctx
         self.info = info
         self.driver = driver  # see ``Engine``
+        self.computes = info.compute  # whether there are compute shaders
         self.pool = pool
         self.tuning = tuning
         # Uniforms of plain shaders; what has a window and a clock sets them before each frame.
@@ -160,13 +161,13 @@ class Runner:
 
     def driver_for(self, step: Step) -> str:
         """Return by which driver the kernel of a step runs."""
-        kernel, computes = step.kernel, self.info.compute
+        kernel = step.kernel
         if isinstance(kernel, ComputeVariant | PlainCompute):
-            if not computes:
+            if not self.computes:
                 message = f"'{kernel.name}' is a compute shader; this context is {self.info.opengl}"
                 raise ContextError(f"{message}, and compute needs 4.3")
             return COMPUTE
-        if not isinstance(kernel, TexelKernel) or not computes or self.driver == FRAGMENT:
+        if not isinstance(kernel, TexelKernel) or not self.computes or self.driver == FRAGMENT:
             return FRAGMENT
         return COMPUTE if self.driver == COMPUTE or kernel.visits else FRAGMENT
 
