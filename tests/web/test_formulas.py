@@ -113,6 +113,24 @@ def test_what_was_divided_and_multiplied_again_is_whole(node: Node):
     assert node.run(ASK, [formula(text) for text in texts], NAMES) == [513, 513, 19, 1]
 
 
+def test_fractions_are_rounded_before_they_are_cut_off(node: Node):
+    """As Python's, which are exact: 49 of a forty-ninth are 1, and not a little less."""
+    texts = [
+        f"{outer}({sum_})"
+        for divisor in (3, 7, 25, 49, 93, 1000)
+        for sum_ in (
+            f"size.x / {divisor} * {divisor}",
+            f"-size.y / {divisor} * {divisor}",
+            f"(1 / {divisor}) * {divisor} * size.x",
+            f"size.x - size.x / {divisor} * {divisor}",
+        )
+        for outer in ("floor", "ceil", "2 * ", "3 // 2 + ")
+    ]
+    texts += [f"(size.x / {n} * {n}) // 27 + (size.x / {n} * {n}) % 27" for n in (7, 25, 49)]
+    results = node.run(ASK, [formula(text) for text in texts], NAMES)
+    assert results == [python(text) for text in texts]
+
+
 def test_an_unknown_name_is_told(node: Node):
     [result] = node.run(ASK, [formula("2 * sides")], NAMES)
     assert result == "PlanError: '2 * sides' names 'sides', which is not known here"

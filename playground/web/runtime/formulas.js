@@ -13,7 +13,7 @@ import { general } from "./numbers.js";
  *  @typedef {Error & {where: string | undefined}} PlanError */
 
 const FRAME_RATE = 60;
-const ROUNDED = 1e-9; // what a third, three times, may be off from a whole number, of that number
+const ROUNDED = 1e-12; // what a third, three times, may be off from a whole number, of that number
 
 /** @param {string} message @param {string} [where] @returns {PlanError} */
 export const planError = (message, where) =>
@@ -29,17 +29,21 @@ const divisor = (number) => {
   return number;
 };
 
+/** The whole number that exact fractions would give, where rounding is all that parts a number from it.
+ *  @param {number} number */
+const exact = (number) => {
+  const rounded = Math.round(number);
+  return Math.abs(number - rounded) <= ROUNDED * Math.max(Math.abs(number), 1) ? rounded : number;
+};
+
 /** @type {Object<string, (...numbers: number[]) => number>} */
 const OPERATIONS = {
-  "+": (a, b) => a + b,
-  "-": (a, b) => a - b,
-  "*": (a, b) => a * b,
-  "/": (a, b) => a / divisor(b),
-  "//": (a, b) => Math.floor(a / divisor(b)),
-  "%": (a, b) => {
-    const rest = a % divisor(b);
-    return rest * b < 0 ? rest + b : rest;
-  },
+  "+": (a, b) => exact(a + b),
+  "-": (a, b) => exact(a - b),
+  "*": (a, b) => exact(a * b),
+  "/": (a, b) => exact(a / divisor(b)),
+  "//": (a, b) => Math.floor(exact(a / divisor(b))),
+  "%": (a, b) => exact(a - b * Math.floor(exact(a / divisor(b)))),
   "**": (a, b) => a ** b,
   "<": (a, b) => Number(a < b),
   "<=": (a, b) => Number(a <= b),
@@ -85,8 +89,8 @@ export function evaluated(formula, names, text = "") {
 /** Work out a formula that gives a whole number. Throws a `PlanError` in a sentence.
  *  @param {Formula} formula @param {Names} names */
 export function whole(formula, names) {
-  const found = evaluated(formula, names), rounded = Math.round(found);
-  if (Math.abs(found - rounded) <= ROUNDED * Math.max(Math.abs(found), 1)) return rounded;
+  const found = exact(evaluated(formula, names));
+  if (Number.isInteger(found)) return found;
   throw planError(`'${textOf(formula)}' gives ${general(found, 6)}; a whole number was expected`);
 }
 
