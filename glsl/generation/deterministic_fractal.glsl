@@ -1,6 +1,6 @@
 // generation/deterministic_fractal.glsl -- sets made of n copies of themselves at the scale r.
 //
-//   gives    colour: a drawing of the set; away: how far it is, 0 on it
+//   gives    colour: a drawing of the set; set_distance: how far it is, 0 on it
 //   needs    generation/deterministic_fractal/{folds,label}.glsl, maths/whole.glsl
 //   units    colours linear; distances in widths of the set
 //   source   Belaiche 2010, section 1.2.1 and figure 1.1
@@ -12,7 +12,7 @@
 #include "generation/deterministic_fractal/folds.glsl"
 #include "generation/deterministic_fractal/label.glsl"
 #include "maths/whole.glsl"
-#pragma kernel(output = "colour:rgba16f, away:r32f")
+#pragma kernel(output = "colour:rgba16f, set_distance:r32f")
 
 uniform int fractal = 0;   //!
                            //! menu("all", "Cantor set", "Koch curve", "Cantor dust",
@@ -27,7 +27,7 @@ uniform bool label = true;    //! Write the copies n, their scale r and the dime
 uniform vec3 ink = vec3(0.012, 0.03, 0.07);      //! colour Colour of the set
 uniform vec3 paper = vec3(0.86, 0.84, 0.78);     //! colour Colour of the ground
 
-void kernel(ivec2 texel, out vec4 colour, out float away) {
+void kernel(ivec2 texel, out vec4 colour, out float set_distance) {
     ivec2 panels = fractal == 0 ? ivec2(3, 2) : ivec2(1);
     ivec2 along = texel * panels;
     ivec2 panel = ivec2(quotient(along.x, size.x), quotient(along.y, size.y));
@@ -40,8 +40,9 @@ void kernel(ivec2 texel, out vec4 colour, out float away) {
     float strip = label ? 3.0 * letter * float(LABEL.y) : 0.0;
     float side = max(min(room.x, room.y - strip) * (1.0 - 2.0 * margin), 1.0);
     vec2 place = (inside - 0.5 * vec2(room.x, room.y + strip)) / side;
-    away = set == CANTOR_SET ? cantor_bars(place, depth) : distance_to_set(set, place, depth);
-    float shown = clamp(pen + 0.5 - away * side, 0.0, 1.0);
+    set_distance = set == CANTOR_SET ? cantor_bars(place, depth)
+                                     : distance_to_set(set, place, depth);
+    float shown = clamp(pen + 0.5 - set_distance * side, 0.0, 1.0);
     if (label) {
         vec2 letters = inside - 0.5 * vec2(room.x, strip) + 0.5 * letter * vec2(LABEL);
         ivec2 copies = copies_of(set);

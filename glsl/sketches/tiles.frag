@@ -18,8 +18,8 @@ vec3 heard(sampler2D channel, vec2 at) {
 
 vec3 seen(vec2 at) {
     float azimuth = 6.2831853 * at.x, elevation = 3.1415927 * (at.y - 0.5);
-    vec3 way = vec3(cos(azimuth) * cos(elevation), sin(elevation), sin(azimuth) * cos(elevation));
-    return textureCube(around, way).rgb;
+    vec3 direction = vec3(cos(azimuth) * cos(elevation), sin(elevation), sin(azimuth) * cos(elevation));
+    return textureCube(around, direction).rgb;
 }
 
 vec3 keys(vec2 at) {

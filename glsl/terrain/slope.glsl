@@ -12,7 +12,7 @@
 #pragma kernel(output = "slope:rg32f")
 
 uniform sampler2D height;  //! input
-uniform int way = 0;       //! menu("both sides", "one side") From the texel before to the texel
+uniform int sides = 0;     //! menu("both sides", "one side") From the texel before to the texel
                            //! after; or from this one to the texel after
 uniform int apart = 1;     //! slider(1, 32) unit("texels") From this texel to those that are read
 
@@ -21,7 +21,7 @@ vec2 kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
     ivec2 here = ivec2(place_on(grid, texel, size) + 0.5);
     ivec2 high = min(here + apart, grid - 1);   // no further than the border
-    ivec2 low = max((way == 0 ? here : high) - apart, ivec2(0));
+    ivec2 low = max((sides == 0 ? here : high) - apart, ivec2(0));
     float west = texelFetch(height, ivec2(low.x, here.y), 0).r;
     float east = texelFetch(height, ivec2(high.x, here.y), 0).r;
     float south = texelFetch(height, ivec2(here.x, low.y), 0).r;

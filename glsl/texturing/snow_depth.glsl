@@ -23,7 +23,7 @@ uniform float season = 900.0; //! slider(0, 4000) unit("m")
                               //! How much lower it is in February, and higher in August
 uniform float more = 0.002;   //! log_slider(0.0001, 0.1) unit("m")
                               //! Snow per metre above the line
-uniform float most = 2.0;     //! log_slider(0.01, 20) unit("m") Depth on level ground at most
+uniform float maximum = 2.0;  //! log_slider(0.01, 20) unit("m") Depth on level ground at most
 uniform vec2 holds = vec2(32.0, 52.0);  //! slider(0, 90) step(0.5) unit("degrees")
                               //! parts("from", "none") Slopes between which it slides off
 uniform float wind = 270.0;   //! angle(0, 360) Where the wind comes from
@@ -40,7 +40,7 @@ float kernel(ivec2 texel) {
     float today = day_of_year(wired_daylight, daylight, day);
     // The snow is lowest in the middle of February, six weeks after the shortest day.
     float lowered = season * cos(6.2831853 * (today - 46.0) / 365.25);
-    float fallen = clamp(more * (level - line + lowered), 0.0, most);
+    float fallen = clamp(more * (level - line + lowered), 0.0, maximum);
     vec2 slope = relief * slope_at(height, place, metres, CENTRAL_DIFFERENCES);
     float incline = degrees(atan(length(slope)));
     float holding = 1.0 - smoothstep(holds.x, max(holds.y, holds.x + 0.1), incline);

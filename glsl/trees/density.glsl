@@ -16,7 +16,7 @@ uniform sampler2D wetness;  //! input("black")
 uniform sampler2D weights;  //! input("white")
 uniform sampler2D painted;  //! input("white")
 uniform sampler2D paths;    //! input("black")
-uniform float most = 1.0;          //! slider(0, 1) step(0.01) Density of the densest stand
+uniform float maximum = 1.0;       //! slider(0, 1) step(0.01) Density of the densest stand
 uniform vec2 steep = vec2(0.75, 1.0);  //! slider(0, 5) parts("from", "none")
                                        //! Slopes between which trees grow fewer
 uniform float lowest = -500.0;     //! slider(-500, 9000) unit("m")
@@ -45,7 +45,7 @@ float kernel(ivec2 texel) {
     vec2 rise = slope_at(height, at, spacing_of(grid, extent), CENTRAL_DIFFERENCES);
     float slope = relief * length(rise);
     // anchor: reasons
-    float density = most * (1.0 - smoothstep(steep.x, max(steep.y, steep.x + 1e-4), slope));
+    float density = maximum * (1.0 - smoothstep(steep.x, max(steep.y, steep.x + 1e-4), slope));
     density *= smoothstep(lowest, lowest + band, metres);
     density *= 1.0 - smoothstep(highest - band, highest, metres);
     // end: reasons

@@ -17,7 +17,7 @@ uniform sampler2D daylight;  //! input("black")
 
 vec4 kernel(ivec2 texel) {
     float today = day_of_year(wired_daylight, daylight, day);
-    float late = MOST_LATE * (2.0 * float(texel.x) / float(max(size.x - 1, 1)) - 1.0);
+    float late = MAX_LATE * (2.0 * float(texel.x) / float(max(size.x - 1, 1)) - 1.0);
     if (texel.y < FIRST_ROCK) {
         int species = species_of(texel.y);
         return vec4(tree_colour(species, tint_of(texel.y), late, today), 1.0);

@@ -1,6 +1,6 @@
 // trees/leaves_reading.glsl -- the colour of a tree today, and the mean colour of a wood.
 //
-//   gives    MOST_LATE, late_at, colour_of_tree, colour_of_wood
+//   gives    MAX_LATE, late_at, colour_of_tree, colour_of_wood
 //   needs    noise/gradient.glsl, trees/crown.glsl, trees/kinds.glsl; the table of trees/leaves as
 //            an argument
 //   units    metres; days; colours linear
@@ -12,17 +12,17 @@
 #include "trees/crown.glsl"
 #include "trees/kinds.glsl"
 
-const float MOST_LATE = 12.0;
+const float MAX_LATE = 12.0;
 const uint LATE_SALT = 0x121d5919u;  // CRC-32 of "trees/leaves_reading"
 
 // By how many days leaves at a place are behind those of others.
 float late_at(vec2 place) {
-    return clamp(18.0 * perlin(place / 310.0, LATE_SALT).x, -MOST_LATE, MOST_LATE);
+    return clamp(18.0 * perlin(place / 310.0, LATE_SALT).x, -MAX_LATE, MAX_LATE);
 }
 
 vec3 leaves_in_row(sampler2D leaves, int row, float late) {
     int last = textureSize(leaves, 0).x - 1;
-    float at = (0.5 + 0.5 * clamp(late / MOST_LATE, -1.0, 1.0)) * float(last);
+    float at = (0.5 + 0.5 * clamp(late / MAX_LATE, -1.0, 1.0)) * float(last);
     int low = int(at);
     return mix(texelFetch(leaves, ivec2(low, row), 0).rgb,
                texelFetch(leaves, ivec2(min(low + 1, last), row), 0).rgb, at - float(low));

@@ -77,9 +77,9 @@ vec2 slope_at(vec2 place, float pixel) {
 vec3 light_below(vec2 place, vec3 ahead, vec3 normal, float depth) {
     // anchor: below
     vec3 bent = refract(ahead, normal, 1.0 / WATER_INDEX);
-    float way = depth / max(-bent.z, 0.2);
-    vec3 left = exp(-attenuation_of(clarity) * (way + depth));
-    return bed_at(place + bent.xy * way) * left + DEEP * (1.0 - left);
+    float path = depth / max(-bent.z, 0.2);
+    vec3 left = exp(-attenuation_of(clarity) * (path + depth));
+    return bed_at(place + bent.xy * path) * left + DEEP * (1.0 - left);
     // end: below
 }
 

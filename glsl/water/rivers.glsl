@@ -32,7 +32,7 @@ float width_of(float drained, vec2 metres) {
     return min(wide * power(max(1e-6 * drained, 1e-9), growth), 2.0 * min(metres.x, metres.y));
 }
 
-ivec2 way_from(ivec2 node) {
+ivec2 direction_from(ivec2 node) {
     return clamp(texel_of(texelFetch(receiver, node, 0).r, grid()) - node, ivec2(-1), ivec2(1));
 }
 
@@ -59,13 +59,13 @@ vec2 river_of(ivec2 node, vec2 place, vec2 metres, float texel_metres) {
     float drained = area_at(node);
     if (!(drained >= 1e6 * source)) return vec2(0.0);
     vec2 through = vec2(node) * metres;
-    vec2 to = through + 0.5 * vec2(way_from(node)) * metres;
+    vec2 to = through + 0.5 * vec2(direction_from(node)) * metres;
     float width = width_of(drained, metres);
     vec2 best = vec2(0.0);
     bool spring = true;
     for (int k = 0; k < NEIGHBOURS; k++) {
         ivec2 donor = node + neighbour_of(k);
-        if (!inside(donor, grid()) || donor + way_from(donor) != node) continue;
+        if (!inside(donor, grid()) || donor + direction_from(donor) != node) continue;
         float brings = area_at(donor);
         if (!(brings >= 1e6 * source)) continue;
         spring = false;

@@ -26,7 +26,7 @@ WOODS = """
 [[pass]]
 name = "density"
 use = "trees/density"
-set = {{ most = {most}, steep = [4.0, 5.0] }}
+set = {{ maximum = {most}, steep = [4.0, 5.0] }}
 [view]"""
 CELL = 9.0
 JITTER = 0.8  # of a cell, where its tree may stand

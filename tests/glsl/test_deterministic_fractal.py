@@ -152,7 +152,7 @@ def test_the_dimension_by_counting_boxes(any_engine, sketch_of, name):
         (8, np.geomspace(8, 256, 40)) if name == "Sierpinski triangle" else (6, np.geomspace(6, 162, 40))
     )
     sketch = sketch_of((1024, 1024), fractal=name, depth=depth, margin=0.0, label=False)
-    member = any_engine.read(sketch, "fractal:away") < 0.5 / 1024
+    member = any_engine.read(sketch, "fractal:set_distance") < 0.5 / 1024
     if name == "Cantor set":
         member = member[int(0.5 * 1024 / (depth + 1))][None]
     sides = np.unique(np.round(sides).astype(int))
@@ -167,7 +167,7 @@ def test_boxes_that_fit_the_copies_count_them_exactly(engine, sketch_of, name):
     copies, part = COPIES[name]
     side, depth = (729, 5) if part == 3 else (512, 7)
     sketch = sketch_of((side, side), fractal=name, depth=depth, margin=0.0, label=False)
-    member = engine.read(sketch, "fractal:away") == 0
+    member = engine.read(sketch, "fractal:set_distance") == 0
     if name == "Sierpinski triangle":
         # Its boxes are squares, in which its rows of triangles do not stand upright: they are sheared first.
         y, x = np.nonzero(member)
@@ -213,7 +213,7 @@ def test_the_label_says_copies_scale_and_dimension(engine, sketch_of, name):
 
 
 def test_side_by_side_they_are_the_same_in_the_order_of_their_dimension(engine, sketch_of):
-    all_of_them = engine.read(sketch_of((630, 360), depth=3), "fractal:away").copy()
+    all_of_them = engine.read(sketch_of((630, 360), depth=3), "fractal:set_distance").copy()
     colours = engine.read(sketch_of((630, 360), depth=3), "fractal:colour").copy()
     dimensions = [math.log(n) / math.log(m) for n, m in COPIES.values()]
     assert dimensions == sorted(dimensions)
@@ -221,14 +221,14 @@ def test_side_by_side_they_are_the_same_in_the_order_of_their_dimension(engine, 
         row, column = 180 * (1 - index // 3), 210 * (index % 3)
         alone = sketch_of((210, 180), depth=3, fractal=name)
         panel = np.s_[row : row + 180, column : column + 210]
-        np.testing.assert_allclose(all_of_them[panel], engine.read(alone, "fractal:away"), atol=1e-6)
+        np.testing.assert_allclose(all_of_them[panel], engine.read(alone, "fractal:set_distance"), atol=1e-6)
         np.testing.assert_allclose(colours[panel], engine.read(alone, "fractal:colour"), atol=2e-3)
 
 
 def test_ink_lies_on_the_set_and_fades_within_a_pixel(engine, sketch_of):
     values = {"fractal": "Sierpinski carpet", "depth": 2, "label": False, "margin": 0.1}
     sketch = sketch_of((200, 200), ink="#000000", paper="#ffffff", **values)
-    away = engine.read(sketch, "fractal:away") * 160  # pixels
+    away = engine.read(sketch, "fractal:set_distance") * 160  # pixels
     shade = engine.read(sketch, "fractal:colour")[..., 0]
     np.testing.assert_allclose(shade, np.clip(away, 0, 1), atol=2e-3)
     assert (shade == 0).mean() == pytest.approx(0.8**2 * (8 / 9) ** 2, abs=0.01)
@@ -239,7 +239,7 @@ def test_ink_lies_on_the_set_and_fades_within_a_pixel(engine, sketch_of):
 @pytest.mark.parametrize("size", [(1, 1), (2, 2), (1, 50), (50, 3)], ids=str)
 def test_tiny_pictures_are_numbers(engine, sketch_of, size):
     for fractal in ("all", *NAMES):
-        for output in ("colour", "away"):
+        for output in ("colour", "set_distance"):
             assert np.isfinite(
                 engine.read(sketch_of(size, fractal=fractal, depth=8), f"fractal:{output}")
             ).all()

@@ -198,7 +198,7 @@ def glyphs(on_gpu, codes, around=0):
     places = np.stack([x.ravel() - 0.5, y.ravel() - 0.5], axis=1)
     away = on_gpu(
         LETTERS,
-        "letter_away(code, place)",
+        "letter_distance(code, place)",
         code=np.repeat(codes, x.size),
         place=np.tile(places, (len(codes), 1)),
     )

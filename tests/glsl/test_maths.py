@@ -126,7 +126,7 @@ def test_a_way_through_a_rectangle_is_where_its_places_are_inside(on_gpu):
     sides = np.array([5.0, 3.0])
     result = on_gpu(
         "maths/square.glsl",
-        "way_through(place, ahead, vec2(5.0, 3.0))",
+        "span_through(place, ahead, vec2(5.0, 3.0))",
         place=position.astype(np.float32),
         ahead=ahead.astype(np.float32),
     )

@@ -103,14 +103,14 @@ def test_the_level_is_that_of_the_longer_side_of_what_a_pixel_sees(engine, plain
 def test_the_ways_to_filter_come_nearer_and_nearer_to_the_truth(engine, plain):
     errors = []
     for way in ("one sample", "trilinear", "anisotropic"):
-        sketch = plain(filtered=f'"{way}"', most=16.0)
+        sketch = plain(filtered=f'"{way}"', maximum=16.0)
         errors.append(float(engine.read(sketch, "plain:wrong").mean()))
     assert errors[0] > 2 * errors[1] > 0 and errors[1] > 1.3 * errors[2] > 0
 
 
 def test_far_away_there_is_only_the_mean(engine, plain):
     for way in ("mip level", "trilinear", "anisotropic"):
-        result = engine.read(plain(filtered=f'"{way}"', most=4.0), "plain:picture")[-1, :, 0]
+        result = engine.read(plain(filtered=f'"{way}"', maximum=4.0), "plain:picture")[-1, :, 0]
         np.testing.assert_allclose(result, 0.5, atol=1e-5)
 
 

@@ -324,7 +324,7 @@ def of_land(any_engine, make_sketch):
 
 def test_snow_lies_high_on_gentle_slopes_in_winter_and_in_the_lee(of_land):
     depth = lambda height, **v: of_land("texturing/snow_depth", height, **{"line": 200.0} | v)  # noqa: E731
-    calm = {"season": 0.0, "drift": 0.0, "most": 20.0}
+    calm = {"season": 0.0, "drift": 0.0, "maximum": 20.0}
     ramp = depth(f"0.6 * {EAST}", **calm)
     expected = np.maximum(0.002 * (np.linspace(0, 600, 57) - 200), 0)
     np.testing.assert_allclose(ramp, np.broadcast_to(expected, ramp.shape), atol=2e-3)

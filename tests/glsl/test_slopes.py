@@ -38,7 +38,7 @@ def by_differences(read, height, more="", **sketch):
 def test_a_plane_has_its_slope_everywhere_whatever_the_spacing(read, way, apart):
     """Texels are 30 m apart to the east and 25 m to the north; borders included."""
     result = by_differences(
-        read, f"2.0 * {EAST} - 0.5 * {NORTH}", f'set = {{ way = "{way}", apart = {apart} }}'
+        read, f"2.0 * {EAST} - 0.5 * {NORTH}", f'set = {{ sides = "{way}", apart = {apart} }}'
     )
     np.testing.assert_allclose(result[..., 0], 2.0 / 900, rtol=2e-5)
     np.testing.assert_allclose(result[..., 1], -0.5 / 300, rtol=2e-5)
@@ -49,7 +49,7 @@ def test_of_a_parabola_both_sides_are_exact_inside_and_one_side_is_half_a_step_l
     x, inside = np.arange(31) * 30.0, np.s_[:, apart:-apart]
     slope = 2 * x / 900**2
     for way, late in (("both sides", 0.0), ("one side", apart * 30.0 / 2)):
-        text = f'set = {{ way = "{way}", apart = {apart} }}'
+        text = f'set = {{ sides = "{way}", apart = {apart} }}'
         result = by_differences(read, f"{EAST} * {EAST}", text)[..., 0]
         expected = np.broadcast_to(slope + 2 * late / 900**2, result.shape)
         np.testing.assert_allclose(result[inside], expected[inside], atol=2e-8)
@@ -72,7 +72,7 @@ def test_errors_fall_with_the_square_of_the_spacing_on_both_sides_and_with_it_on
             angle = read(
                 f'name = "height"\nuse = "generation/gradient_noise/sum"\n{octaves}',
                 f'name = "exact"\nuse = "generation/gradient_noise/derivatives"\n{octaves}',
-                f'name = "slope"\nuse = "terrain/slope"\nset = {{ way = "{way}" }}',
+                f'name = "slope"\nuse = "terrain/slope"\nset = {{ sides = "{way}" }}',
                 'name = "out"\nuse = "terrain/normal_angle"\ninputs = { other = "exact" }',
                 size=side,
                 extent=5000.0,

@@ -212,7 +212,7 @@ set = {{ {values} }}
 @pytest.mark.parametrize(
     "slope, wired, values, target",
     [
-        (0.5, "", "most = 0.5", lambda x, y: 0.5 + 0 * x),
+        (0.5, "", "maximum = 0.5", lambda x, y: 0.5 + 0 * x),
         (0.875, "", "", lambda x, y: 0.5 + 0 * x),  # halfway through the steep ones
         (2.0, "", "", lambda x, y: 0 * x),
         (

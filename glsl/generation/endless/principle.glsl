@@ -104,7 +104,7 @@ vec4 kernel(ivec2 texel) {
         if (cell.x >= 0.0) {
             int place_in_text = int(cell.x);
             uvec4 text = TEXTS[2 * k + (place_in_text >> 4)];
-            float gap = letter_away(character_of(text, place_in_text & 15), cell.yz);
+            float gap = letter_distance(character_of(text, place_in_text & 15), cell.yz);
             seen = mix(seen, ink, covered((0.75 - gap) * 1.15 * unit));
         }
     }

@@ -158,6 +158,6 @@ vec4 kernel(ivec2 texel) {
         }
     }
     colour = mix(colour, SKY, 0.92 * behind);
-    float pen = covered((0.75 - letter_away(character, found.yz)) * u) * (1.0 - over);
+    float pen = covered((0.75 - letter_distance(character, found.yz)) * u) * (1.0 - over);
     return vec4(mix(colour, INK, pen), 1.0);
 }

@@ -1,6 +1,6 @@
 // lighting/diagram/ink.glsl -- how much of a pixel lines, dots, arcs and arrows cover.
 //
-//   gives    covered, dot_cover, line_away, line_cover, dash_cover, half_plane, turned_from,
+//   gives    covered, dot_cover, line_distance, line_cover, dash_cover, half_plane, turned_from,
 //            arc_cover, sector_cover, arrow_cover
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    pixels; angles in radians, anticlockwise from the right
@@ -18,14 +18,14 @@ float dot_cover(vec2 place, vec2 middle, float radius) {
     return covered(radius - length(place - middle));
 }
 
-float line_away(vec2 place, vec2 from, vec2 to) {
+float line_distance(vec2 place, vec2 from, vec2 to) {
     vec2 along = to - from;
     float share = clamp(dot(place - from, along) / max(dot(along, along), 1e-12), 0.0, 1.0);
     return length(place - from - share * along);
 }
 
 float line_cover(vec2 place, vec2 from, vec2 to, float width) {
-    return covered(0.5 * width - line_away(place, from, to));
+    return covered(0.5 * width - line_distance(place, from, to));
 }
 
 // A line whose dashes are `dash` long and as far apart.
@@ -53,16 +53,16 @@ float turned_from(vec2 direction, vec2 zero) {
 // The part of a circle from one angle to a greater one.
 float arc_cover(vec2 place, vec2 middle, float radius, float from, float to, float width) {
     vec2 offset = place - middle;
-    float half_way = 0.5 * (from + to);
-    float off = abs(turned_from(offset, vec2(cos(half_way), sin(half_way)))) - 0.5 * (to - from);
+    float bisector = 0.5 * (from + to);
+    float off = abs(turned_from(offset, vec2(cos(bisector), sin(bisector)))) - 0.5 * (to - from);
     return covered(0.5 * width - abs(length(offset) - radius)) * covered(-off * radius);
 }
 
 // The disc's part between these angles.
 float sector_cover(vec2 place, vec2 middle, float radius, float from, float to) {
     vec2 offset = place - middle;
-    float half_way = 0.5 * (from + to);
-    float off = abs(turned_from(offset, vec2(cos(half_way), sin(half_way)))) - 0.5 * (to - from);
+    float bisector = 0.5 * (from + to);
+    float off = abs(turned_from(offset, vec2(cos(bisector), sin(bisector)))) - 0.5 * (to - from);
     return covered(radius - length(offset)) * covered(-off * length(offset));
 }
 

@@ -1,6 +1,6 @@
 // lighting/diagram/letters.glsl -- letters and numbers drawn with a round pen, smooth at any size.
 //
-//   gives    LETTER, letter_away, character_of, number_character
+//   gives    LETTER, letter_distance, character_of, number_character
 //   needs    maths/whole.glsl
 //   units    units of the letters: a capital is 9 high, one letter is LETTER.x after another
 //   source   strokes drawn here
@@ -108,7 +108,7 @@ const uvec4 STROKES[86] = uvec4[86](
 );
 
 // How far a place is from a character's strokes; far where it has none.
-float letter_away(int character, vec2 place) {
+float letter_distance(int character, vec2 place) {
     int index = character - FIRST_CHARACTER;
     uvec4 strokes = index < 0 || index >= STROKES.length() ? uvec4(0u)
             : STROKES[clamp(index, 0, STROKES.length() - 1)];

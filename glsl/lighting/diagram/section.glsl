@@ -72,7 +72,7 @@ vec2 surface_cover(sampler2D height, Section section, vec2 place, float width, f
     vec2 from = node_on_paper(height, section, column - reach);
     for (int k = 1 - reach; k <= 1 + reach; k++) {
         vec2 to = node_on_paper(height, section, column + k);
-        line = min(line, line_away(place, from, to));
+        line = min(line, line_distance(place, from, to));
         node = min(node, length(place - to));
         from = to;
     }

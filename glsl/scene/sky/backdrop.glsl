@@ -20,8 +20,8 @@ uniform sampler2D dome;      //! input
 vec4 kernel(ivec2 texel) {
     // The first and the last lie on the picture's edges.
     vec2 share = vec2(texel) / vec2(max(size - 1, 1));
-    vec4 away = world_from_clip * vec4(share * 2.0 - 1.0, 1.0, 1.0);
-    vec3 towards = normalize(away.xyz / away.w - eye);
+    vec4 far = world_from_clip * vec4(share * 2.0 - 1.0, 1.0, 1.0);
+    vec3 towards = normalize(far.xyz / far.w - eye);
     float height = 0.001 * max(base_elevation + eye.z, 0.0);
     if (clouds == 0) return vec4(sky_towards(daylight, towards, height), 1.0);
     vec3 sun = texelFetch(daylight, ivec2(0), 0).rgb;

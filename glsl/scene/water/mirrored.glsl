@@ -18,15 +18,15 @@ float wood_height(vec2 share);
 
 const float MISSES = -1.0;
 
-float woods_at_most;  // [m] by so much the march runs lower, so that no block with woods is passed
+float tallest_woods;  // [m] by so much the march runs lower, so that no block with woods is passed
 vec2 last_texel;
 
 float top_of_woods(vec2 place) {
-    return woods_at_most > 0.0 ? wood_height(place / last_texel) : 0.0;
+    return tallest_woods > 0.0 ? wood_height(place / last_texel) : 0.0;
 }
 
 float after_step(float found, March march, float t, float terrain) {
-    float top = terrain + top_of_woods(march.start + t * march.ahead) - woods_at_most;
+    float top = terrain + top_of_woods(march.start + t * march.ahead) - tallest_woods;
     return top > march.foot + t * march.climb ? t : 0.0;
 }
 
@@ -37,10 +37,10 @@ bool is_decided(float found) { return found > 0.0; }
 float meets_terrain(sampler2D field, sampler2D block_maxima, vec3 from, vec3 to, vec2 metres,
                     float metres_of_relief, float tallest) {
     last_texel = vec2(textureSize(field, 0) - 1);
-    woods_at_most = tallest;
+    tallest_woods = tallest;
     vec2 place = from.xy / metres * last_texel;
     vec2 along = to.xy / metres * last_texel;
-    vec2 span = way_through(place, along, last_texel);
+    vec2 span = span_through(place, along, last_texel);
     float entry = max(span.x, 0.0);
     if (entry >= span.y) return MISSES;
     place = clamp(place + entry * along, vec2(0.0), last_texel);

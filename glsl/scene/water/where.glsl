@@ -37,7 +37,7 @@ bool on_terrain(vec2 place) {
 
 // How far a ray goes until it leaves the square of the terrain, or 0 where it never is in it.
 float leaves_at(vec3 ahead) {
-    vec2 span = way_through(eye.xy, ahead.xy, extent);
+    vec2 span = span_through(eye.xy, ahead.xy, extent);
     return span.x < span.y ? max(span.y, 0.0) : 0.0;
 }
 

@@ -18,7 +18,7 @@ uniform int filtered = 0;    //! menu("one sample", "mip level", "trilinear", "a
                              //! "many samples")
                              //! How a pixel finds its colour
 uniform int samples = 16;    //! slider(1, 32) The many samples of a pixel, each way
-uniform float most = 8.0;    //! slider(1, 32) step(1)
+uniform float maximum = 8.0;  //! slider(1, 32) step(1)
                              //! How many samples "anisotropic" takes at most
 uniform float eye_height = 2.0;  //! slider(0.5, 20) step(0.1) unit("m") The eye over the plain
 uniform float shift = 0.0;   //! slider(0, 10) step(0.01) unit("m") How far the eye has gone north
@@ -61,7 +61,7 @@ void kernel(ivec2 texel, out vec4 picture, out float level) {
     } else if (filtered == 3) {
         // anchor: anisotropic
         vec2 along = (length(below) > length(right) ? below : right) / texels;
-        float count = clamp(ceil(longer / shorter), 1.0, most);
+        float count = clamp(ceil(longer / shorter), 1.0, maximum);
         vec4 sum = vec4(0.0);
         for (float i = 0.5; i < count; i++) {
             sum += mip_blend(chain, log2(longer / count), here + along * (i / count - 0.5));

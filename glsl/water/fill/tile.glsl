@@ -69,8 +69,9 @@ Line[TILE] turned(Line rows[TILE]) {
 
 // A sweep up the lines and one down; `sides` are the texels before and after each line, `corners`
 // those of the rim as its fields are named.
-Line[TILE] swept_both_ways(Line lines[TILE], Line ground[TILE], Line first, Line last, Line before,
-                           Line after, vec4 corners, float straight, float diagonal) {
+Line[TILE] swept_up_and_down(Line lines[TILE], Line ground[TILE], Line first, Line last,
+                             Line before, Line after, vec4 corners, float straight,
+                             float diagonal) {
     Line neighbour = first;
     vec2 ends = corners.xy;
     EIGHT(FALL)
@@ -83,9 +84,9 @@ Line[TILE] swept_both_ways(Line lines[TILE], Line ground[TILE], Line first, Line
 // A tile's rows after a sweep each to the north, south, east and west. `falls` are those to a
 // neighbour along x, along y and diagonally.
 Line[TILE] swept(Line rows[TILE], Line ground[TILE], Rim rim, vec3 falls) {
-    rows = swept_both_ways(rows, ground, rim.south, rim.north, rim.west, rim.east, rim.corners,
-                           falls.y, falls.z);
-    return turned(swept_both_ways(turned(rows), turned(ground), rim.west, rim.east, rim.south,
-                                  rim.north, rim.corners.xzyw, falls.x, falls.z));
+    rows = swept_up_and_down(rows, ground, rim.south, rim.north, rim.west, rim.east,
+                             rim.corners, falls.y, falls.z);
+    return turned(swept_up_and_down(turned(rows), turned(ground), rim.west, rim.east, rim.south,
+                                    rim.north, rim.corners.xzyw, falls.x, falls.z));
 }
 #endif

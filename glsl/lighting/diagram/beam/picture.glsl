@@ -233,7 +233,7 @@ vec4 kernel(ivec2 texel) {
             character = number_character(values[number], DECIMALS[number], character & 15,
                                          WIDE[number]);
         }
-        colour = mix(colour, INK, covered((0.75 - letter_away(character, cell.yz)) * u));
+        colour = mix(colour, INK, covered((0.75 - letter_distance(character, cell.yz)) * u));
     }
     return vec4(colour, 1.0);
 }

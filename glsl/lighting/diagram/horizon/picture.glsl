@@ -230,7 +230,7 @@ vec4 kernel(ivec2 texel) {
             character = number_character(values[number], share ? wide - 2 : 1, character & 15,
                                          wide);
         }
-        float pen = covered((0.75 - letter_away(character, cell.yz)) * u);
+        float pen = covered((0.75 - letter_distance(character, cell.yz)) * u);
         colour = mix(colour, INK, pen);
     }
     return vec4(colour, 1.0);
