@@ -28,7 +28,12 @@ GIVEN: dict[str, tuple[str, str]] = {
 """Name → (GLSL type, meaning) of what every kernel and draw is given; declared where its text names it."""
 
 SKIPS = "skips_rest"
-"""A function that is true in what a software renderer draws first of a kernel: see ``engine.tuning``."""
+"""A function that is true in what a software renderer draws first of a kernel: see ``engine.tuning``.
+
+It stays in canonical texts: the engine cannot tell which lines are costly, and a variant of each of these
+kernels would be its whole text again with one line more.
+"""
+
 RESERVED: frozenset[str] = frozenset({"previous", "kernel", "visit", "vertex", "fragment", SKIPS})
 """Functions that the engine gives or calls; ``previous_`` begins more of them."""
 
