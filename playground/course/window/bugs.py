@@ -128,7 +128,7 @@ class Bugs:
     notices: Notices
     copies: Copies
     figure: FigureView
-    label: Callable[[str], str]  # of the interface, by key
+    label: Callable[..., str]  # of the interface, by key, with values in its places
     state: dict[str, str] = field(default_factory=dict)  # of each bug, by block
     typed: dict[str, str] = field(default_factory=dict)  # what was typed in a copy, by block
 
@@ -232,7 +232,7 @@ class Bugs:
             return
         sketch = self.session.sketch
         if sketch is not None and not _uses(sketch.graph, path):
-            self.notices.say(self.label("not_in_view").format(shown(path)))
+            self.notices.say(self.label("not_in_view", shown(path)))
 
     def is_edited(self, block: Code) -> bool:
         """Return whether a copy with another text replaces the code's file."""

@@ -196,7 +196,7 @@ class Tasks:
     copies: Copies
     figure: FigureView
     progress: Progress
-    label: Callable[[str], str]  # of the interface, by key
+    label: Callable[..., str]  # of the interface, by key, with values in its places
     remember: Callable[[], None]  # stores the progress
     clear: Callable[[], None]  # called before a task's picture is shown
     lesson: Callable[[], str]  # the name of the lesson that is open
