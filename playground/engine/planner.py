@@ -41,9 +41,8 @@ from playground.shader import expressions
 from playground.shader.expressions import Number
 from playground.sketch.files import find_file
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Source, repeated_path, repeated_paths
-from playground.sketch.flatten import flatten
+from playground.sketch.flatten import flatten, substitute_variants
 from playground.sketch.model import ComputeVariant, Graph, Sketch, Technique, Value
-from playground.sketch.substitution import substitute_variants
 from playground.sketch.variants import INSIDE
 from playground.sketch.wiring import inner, output_names, target_of
 

@@ -40,7 +40,7 @@ def opened_from(sketch: Path) -> tuple[Path, str]:
 def _is_sketch(path: Path) -> bool:
     """Return whether a file or a folder opens as a sketch."""
     if path.is_dir():
-        from playground.shader.dialects.shadertoy_files import image_of
+        from playground.shader.dialects.shadertoy import image_of
 
         return (path / "sketch.toml").is_file() or image_of(path) is not None
     with suppress(PlaygroundError):

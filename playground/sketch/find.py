@@ -312,7 +312,7 @@ def find(name: str | Path) -> Path:
     if is_folder and is_file(path / "sketch.toml"):
         return path / "sketch.toml"
     if is_folder:
-        from playground.shader.dialects.shadertoy_files import image_of
+        from playground.shader.dialects.shadertoy import image_of
 
         if (image := image_of(path)) is not None:
             return image

@@ -36,11 +36,12 @@ from playground.errors import (
 from playground.files import irregularity
 from playground.paths import GLSL, SKETCHES, shown
 from playground.shader.dialects import EXPORT, is_export
-from playground.shader.dialects.shadertoy_files import is_image, is_of_folder
+from playground.shader.dialects.shadertoy import is_image, is_of_folder
 from playground.shader.source import read_text
 from playground.shader.wrap import COMPUTE, FRAGMENT
 from playground.sketch.assign import values_of
 from playground.sketch.find import ENDING, is_pack, unpacked
+from playground.sketch.flatten import omitted
 from playground.sketch.load import is_technique, load, plain_sketch
 from playground.sketch.model import (
     VARIANTS,
@@ -52,7 +53,6 @@ from playground.sketch.model import (
     Technique,
     kernels_of,
 )
-from playground.sketch.substitution import omitted
 from playground.sketch.techniques import (
     Techniques,
     lonely_variant,

@@ -27,10 +27,10 @@ from playground.paths import shown as shown_path
 from playground.shader.parameter import shortest
 from playground.sketch.assign import TERRAIN_KEYS
 from playground.sketch.find import find
+from playground.sketch.flatten import omitted
 from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.replace_technique import with_texts
-from playground.sketch.substitution import omitted
 from playground.verify.warnings import newly_shadowed
 from playground.workbench.checks import Checks, DrawnState
 from playground.workbench.dependencies import watched

@@ -10,8 +10,8 @@ import pytest
 from playground.api import headless
 from playground.engine.engine import Engine
 from playground.errors import PlainFormWarning, PlaygroundError, SketchError
+from playground.sketch.flatten import omitted
 from playground.sketch.model import VARIANTS, Sketch
-from playground.sketch.substitution import omitted
 from playground.sketch.variants import NAME, unverified
 from playground.verify.variants import recorded, subjects, verify
 

@@ -9,10 +9,9 @@ from playground.allowed_files import is_variant
 from playground.engine.engine import Engine
 from playground.paths import GLSL
 from playground.sketch.find import shipped_sketches
-from playground.sketch.flatten import flatten
+from playground.sketch.flatten import flatten, substitute_variants
 from playground.sketch.model import VARIANTS, Graph, PassSpec, Sketch, kernels_of
 from playground.sketch.replace_technique import with_texts
-from playground.sketch.substitution import substitute_variants
 from playground.sketch.variants import NAME, content_of, is_verified, read, why_not, written
 from playground.verify.variants import compared, places_in, subjects, verify
 

@@ -10,13 +10,11 @@ import pytest
 from playground.errors import PlaygroundError
 from playground.memo import GRAPHS
 from playground.sketch import flatten as module
-from playground.sketch import substitution
 from playground.sketch.assign import values_of
 from playground.sketch.find import shipped_sketches
 from playground.sketch.flat import Fed, Leaf, Loop, Ref, leaves_of
-from playground.sketch.flatten import flatten
+from playground.sketch.flatten import flatten, substitute_variants
 from playground.sketch.model import VARIANTS
-from playground.sketch.substitution import substitute_variants
 from playground.sketch.wiring import (
     initial_names,
     input_names,
@@ -458,7 +456,7 @@ def test_a_nested_sketch_is_flattened_in_passing():
     # The live window does this for each frame.
     sketch = load()
     substitute_variants(flatten(sketch), VARIANTS)
-    made = module._shape, substitution._substituted
+    made = module._shape, module._substituted
     counts = [GRAPHS.count_of(function) for function in made]
     for i in range(20):
         substitute_variants(flatten(sketch.with_values({"relief": i})), VARIANTS)

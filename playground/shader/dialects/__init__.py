@@ -58,10 +58,10 @@ class Dialect:
     def shaders(self, files: Files) -> Sequence[Shader | Made]:
         """Return the passes of a file, or of the folder that it is one of several in."""
         if self.in_folders:
-            from playground.shader.dialects import shadertoy_files
+            from playground.shader.dialects import shadertoy
 
-            if shadertoy_files.has_more(files):
-                return shadertoy_files.folder_passes(files)
+            if shadertoy.has_more(files):
+                return shadertoy.folder_passes(files)
         module, _, function = self.reader.partition(".")
         passes: Sequence[Shader | Made] = getattr(import_module(f"{__name__}.{module}"), function)(files)
         return passes
@@ -74,9 +74,11 @@ def _is_isf(text: str, code: str) -> bool:
 
 DIALECTS = (
     Dialect("isf", _is_isf, "isf.shaders"),
-    Dialect("export", lambda text, code: _EXPORT.match(text), "shadertoy_files.shaders"),
+    Dialect("export", lambda text, code: _EXPORT.match(text), "shadertoy.export_shaders"),
     Dialect(OWN, lambda text, code: _OWN_PRAGMA.search(code)),
-    Dialect("vscode", lambda text, code: _DIRECTIVE.search(code), "vscode.shaders", in_folders=True),
+    Dialect(
+        "vscode", lambda text, code: _DIRECTIVE.search(code), "shadertoy.vscode_shaders", in_folders=True
+    ),
     Dialect(
         "shadertoy",
         lambda text, code: _MAIN_IMAGE.search(code) and not _MAIN.search(code),
