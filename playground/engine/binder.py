@@ -100,7 +100,7 @@ class Binder:
                 self.use(unit, self.wired(declared, inputs), sampler)
             return bound.unit
         program.bound = None
-        kernel, uniforms, unit = step.kernel, {**values, "size": step.whole_size}, 0
+        kernel, uniforms, unit = step.kernel, {**values, "size": step.full_size}, 0
         if step.window is not None:
             uniforms[WINDOW] = step.window.origin
         for parameter in kernel.parameters:

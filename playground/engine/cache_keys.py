@@ -277,7 +277,7 @@ def _readers(nodes: Sequence[PlanNode]) -> list[frozenset[int]]:
 
 
 class _KeyComputation:
-    """Computes keys of nodes of one plan, into ``whole``."""
+    """Computes keys of nodes of one plan, into ``keys``."""
 
     def __init__(
         self,
@@ -285,11 +285,11 @@ class _KeyComputation:
         content: Callable[[Path], str],
         driver: Callable[[Step], str],
         uniforms_of: Callable[[Step], Mapping[str, Any]],
-        whole: _PlanKeys,
+        keys: _PlanKeys,
     ) -> None:
-        self.keys = whole.keys
-        self.varies = whole.varies
-        self.continued = whole.continued
+        self.keys = keys.keys
+        self.varies = keys.varies
+        self.continued = keys.continued
         self.before: Mapping[int, _Known] = {}
         self.step_keys: dict[int, _Known] = {}
         self.sized: dict[tuple[str, bool], frozenset[str]] = {}  # see ``_note_sized``
@@ -366,7 +366,7 @@ class _KeyComputation:
                 own.append((f"value {name}", (name, value)))
         more: list[tuple[str, Any]] = [(f"given {pair[0]}", pair) for pair in reads.uniforms.items()]
         if "iterations" in text.used:
-            more.append(("iterations", step.whole))
+            more.append(("iterations", step.total))
         if reads.is_continued:
             more.append(("continued", "continued"))
         parts, rest = [part for _, part in own], [part for _, part in more]
@@ -414,7 +414,7 @@ class _KeyComputation:
             parts = [loop.path, *(inner_keys[id(body)] for body in loop.bodies)]
         parts += [(name, self._source(first, fed), str(ref)) for name, first, ref in loop.feedback]
         if any("iterations" in self.text_of(step.kernel).used for step in walk(loop.body)):
-            parts.append(loop.whole)
+            parts.append(loop.total)
         key = self.keys.loops[loop.path] = _digest(parts)
         self.keys.changes[id(loop)] = outer
         for path in inside:

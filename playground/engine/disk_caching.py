@@ -281,7 +281,7 @@ def _reads_one(step: Step, files: Collection[Path]) -> bool:
 
 
 def _stops(loop: LoopStep) -> bool:
-    return follows_time(loop.spec.repeat) or loop.repeat != loop.whole
+    return follows_time(loop.spec.repeat) or loop.repeat != loop.total
 
 
 def _passes(step: Step, frame_size: tuple[int, int], continued: Collection[str]) -> bool:
@@ -293,7 +293,7 @@ def _passes(step: Step, frame_size: tuple[int, int], continued: Collection[str])
         or step.window is not None
     ):
         return True
-    if step.size == frame_size or step.repeat != step.whole:
+    if step.size == frame_size or step.repeat != step.total:
         return True
     if follows_time(kernel.repeat):
         return True

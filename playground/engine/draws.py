@@ -93,7 +93,7 @@ class Draws:
             self.kernels.binder.bind(program, step, uniforms, inputs, stage)
             _enable(ctx, "over" if kernel.over else kernel.depth, kernel.blend)
             for iteration in range(step.repeat):
-                program.count(kernel.repeat, iteration, step.whole, around)
+                program.count(kernel.repeat, iteration, step.total, around)
                 if chosen is None:
                     if instances:
                         array.render(ctx.TRIANGLES, instances=instances)
@@ -126,7 +126,7 @@ class Draws:
         The whole's viewport leaves clip space as it is; where the driver has none so large, clip
         space is scaled instead, which rounds otherwise.
         """
-        (x, y), (width, height), (wide, tall) = window.origin, window.size, window.whole
+        (x, y), (width, height), (wide, tall) = window.origin, window.size, window.full_size
         if wide <= self.widest[0] and tall <= self.widest[1]:
             self.ctx.viewport = (-x, -y, wide, tall)
             program.set(ZOOM, (1.0, 1.0, 0.0, 0.0))
@@ -245,7 +245,7 @@ class Draws:
         if missing:
             raise kernel.error(f"mesh '{kernel.mesh}' needs a draw that reads {', '.join(missing)}")
         matrix = np.array(uniforms["clip_from_world"], np.float64).reshape(4, 4).T
-        view = View(matrix, uniforms["eye"], uniforms["extent"], uniforms["relief"], step.whole_size)
+        view = View(matrix, uniforms["eye"], uniforms["extent"], uniforms["relief"], step.full_size)
 
         def tables() -> dict[str, NDArray[np.float32]]:
             return {name: self._table(step, name, inputs) for name in chooser.inputs}

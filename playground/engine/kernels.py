@@ -103,7 +103,7 @@ _SHAPES = {0x8B5D: "line", 0x8B5F: "volume", 0x8B60: "cube", 0x8DC1: "layers"}
 
 def numbers_of(step: Step, **more: Number) -> dict[str, Number]:
     """Return what the expressions of a step's header may name."""
-    width, height = step.whole_size
+    width, height = step.full_size
     numbers: dict[str, Number] = {"size.x": width, "size.y": height, **more}
     return numbers | {k: v for k, v in step.values.items() if isinstance(v, int | float)}
 
@@ -158,7 +158,7 @@ class Kernels:
                 for part in (first, program):
                     unit = self.binder.bind(part, step, uniforms, inputs, stage)
                     self.binder.previous(self.binder.previous_units(part, kernel, unit), state)
-                    part.count(kernel.repeat, 0, step.whole, around)
+                    part.count(kernel.repeat, 0, step.total, around)
                     with self.tuning.filling:
                         part.fill()
             result.iterations = step.repeat
@@ -263,7 +263,7 @@ class Kernels:
                 unit = self.binder.texture(program, declared.name, unit, readable, declared.sampling)
         origin = step.window.origin if step.window is not None else (0, 0)
         program.set(WINDOW, origin)
-        program.set(PART, _shares(step.whole_size, origin, step.size))
+        program.set(PART, _shares(step.full_size, origin, step.size))
         for name, meaning in kernel.usual:
             kind = getattr(program.uniforms.get(name), "gl_type", 0)  # of another type it is the text's own
             if kind in _NUMBERS or (kind in _MATRICES and meaning.startswith("identity")):
@@ -318,10 +318,10 @@ class Kernels:
                 count = min(at_once, step.repeat - iteration)
                 result, before = swap.target(), swap.before
                 self.binder.previous(previous, state)
-                program.count(kernel.repeat, iteration, step.whole, around, count)
+                program.count(kernel.repeat, iteration, step.total, around, count)
                 if driver == FRAGMENT:
                     program.set("k_previous_shift", shift)
-                    names = numbers_of(step, iterations=step.whole) if lattice else {}
+                    names = numbers_of(step, iterations=step.total) if lattice else {}
                     shift = shift_after(kernel, step.path, iteration, names) if lattice else 0
                     program.set("k_shift", shift)
                 self.write(program, driver, result, shift)
@@ -387,8 +387,8 @@ class Kernels:
         result.rewrite(self.ctx)
         self.images(result, read=True)
         for iteration in range(result.iterations, step.repeat):
-            program.count(kernel.repeat, iteration, step.whole, around)
-            names = numbers_of(step, iteration=iteration, iterations=step.whole)
+            program.count(kernel.repeat, iteration, step.total, around)
+            names = numbers_of(step, iteration=iteration, iterations=step.total)
             try:
                 cells = expressions.evaluate_pair(kernel.visits, names)
             except ExpressionError as error:
@@ -461,9 +461,9 @@ def _numbers(
         return (float(meaning.removeprefix(VALUE)),)
     if meaning.startswith(DEPTH):
         halved = int(meaning.removeprefix(DEPTH))
-        return (float(min(max(min(step.whole_size).bit_length() + halved - 2, 0), _MAX_LEVELS)),)
+        return (float(min(max(min(step.full_size).bit_length() + halved - 2, 0), _MAX_LEVELS)),)
     if meaning in ("iteration", "iterations"):
-        number, whole = (around.number, around.whole) if around is not None else (0, 1)
+        number, whole = (around.number, around.total) if around is not None else (0, 1)
         return (float(number if meaning == "iteration" else whole),)
     return _size(meaning, sizes)
 

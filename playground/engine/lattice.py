@@ -32,18 +32,18 @@ class Between(NamedTuple):
         return {"k_stride": self.stride, "k_form": self.form}
 
 
-def between_of(leaf: Leaf, repeat: int, whole: int, names: Mapping[str, Number]) -> Between | None:
-    """Return how the texels known after ``repeat`` iterations of ``whole`` are joined; None where nothing is.
+def between_of(leaf: Leaf, repeat: int, total: int, names: Mapping[str, Number]) -> Between | None:
+    """Return how the texels known after ``repeat`` iterations of ``total`` are joined; None where nothing is.
 
     A stride that stays for two iterations is that of a lattice of which the first iteration sets the
     squares' centres and the second the rest. Raises ``ShaderError`` at a stride that is none.
     """
     kernel = leaf.kernel
-    if not isinstance(kernel, TexelKernel) or not kernel.between or not 0 < repeat < whole:
+    if not isinstance(kernel, TexelKernel) or not kernel.between or not 0 < repeat < total:
         return None
     if _begins_with_something(leaf):
         return None
-    now, coming = (_stride(kernel, {**names, "iterations": whole}, done) for done in (repeat - 1, repeat))
+    now, coming = (_stride(kernel, {**names, "iterations": total}, done) for done in (repeat - 1, repeat))
     if now < 1:
         where = f"pass '{leaf.path}': stride '{kernel.stride}'"
         raise kernel.error(f"{where} gives {now} for iteration {repeat - 1}")

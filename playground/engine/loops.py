@@ -183,7 +183,7 @@ def iteration_of(loop: LoopStep, number: int, frame: int | None) -> LoopIteratio
 
     ``frame`` is that of the loop around it that counts frames.
     """
-    return LoopIteration(number, loop.whole, number if loop.counts_frames else frame)
+    return LoopIteration(number, loop.total, number if loop.counts_frames else frame)
 
 
 def _give(pool: Pool, results: Mapping[str, Result]) -> None:
@@ -387,7 +387,7 @@ def replay_of(
             if isinstance(ref, Ref) and ref.path in places:
                 made[name] = ref is not source, places[ref.path], ref.output
         inputs = {name: wired(source) for name, source in step.inputs}
-        bound_pass = _pass_of(step, loop.whole, inputs, made, kernels, driver_for(step))
+        bound_pass = _pass_of(step, loop.total, inputs, made, kernels, driver_for(step))
         if bound_pass is None:
             return None
         passes.append(bound_pass)

@@ -47,16 +47,16 @@ class PlanRequest:
         """Whether what a stopped pass has not computed is interpolated."""
         return not self.ref if self.interpolated is None else self.interpolated
 
-    def steps_of(self, path: str, whole: int) -> int:
+    def steps_of(self, path: str, total: int) -> int:
         """Return how many of a repeat's iterations run."""
-        return min(self.steps.get(path, whole), whole)
+        return min(self.steps.get(path, total), total)
 
 
 class LoopIteration(NamedTuple):
     """Where a step is in the loops around it."""
 
     number: int = 0  # of the innermost loop's iteration, from 0
-    whole: int = 0  # its iterations in all; 0: the step does not change with it
+    total: int = 0  # its iterations in all; 0: the step does not change with it
     frame: int | None = None  # of the innermost loop that counts frames
 
 
@@ -66,7 +66,7 @@ class Window:
 
     origin: tuple[int, int]
     size: tuple[int, int]
-    whole: tuple[int, int]
+    full_size: tuple[int, int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,15 +79,15 @@ class Step:
     inputs: tuple[tuple[str, Source | None], ...]
     size: tuple[int, int]
     repeat: int  # iterations to run
-    whole: int  # iterations in all; more than ``repeat`` where it is stopped early
+    total: int  # iterations in all; more than ``repeat`` where it is stopped early
     spec: PassSpec
     window: Window | None = None  # of the picture, that its textures hold; None: they hold all
     between: Between | None = None  # how the texels that it knows are joined; None: it shows what it has
 
     @property
-    def whole_size(self) -> tuple[int, int]:
+    def full_size(self) -> tuple[int, int]:
         """Texels of what its textures are a window of; their own size where they are none."""
-        return self.window.whole if self.window else self.size
+        return self.window.full_size if self.window else self.size
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +96,7 @@ class LoopStep:
 
     path: str
     repeat: int  # iterations to run
-    whole: int  # iterations in all
+    total: int  # iterations in all
     bodies: tuple[tuple[Step | LoopStep, ...], ...]  # of each iteration; one where all are the same
     feedback: tuple[tuple[str, Source | None, Ref], ...]
     spec: PassSpec
@@ -239,7 +239,7 @@ def most_iterations(nodes: tuple[PlanNode, ...]) -> dict[str, int]:
             # Of a loop of one kernel, the loop is what counts, not the kernel in it.
             if not isinstance(node.kernel, TexelKernel) or node.kernel.repeat == "1" or node.path in loops:
                 continue
-        counts[node.path] = max(node.whole, counts.get(node.path, 0))
+        counts[node.path] = max(node.total, counts.get(node.path, 0))
     return counts
 
 

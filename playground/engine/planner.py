@@ -297,12 +297,12 @@ class _Planning:
 
     def _node(self, node: Node) -> PlanNode:
         if isinstance(node, Loop):
-            whole = self.sizes.count_of(node.path)
-            run = self._stopped(node.path, whole, node.repeat)
+            total = self.sizes.count_of(node.path)
+            run = self._stopped(node.path, total, node.repeat)
             made = [self._body(node.body) for _ in self.sizes.iterations(node.path)]
             bodies = tuple(made if any(body is not made[0] for body in made) else made[:1])
-            loop = LoopStep(node.path, run, whole, bodies, node.feedback, node.spec)
-            return self._made.setdefault((node.path, run, whole, *map(id, bodies)), loop)
+            loop = LoopStep(node.path, run, total, bodies, node.feedback, node.spec)
+            return self._made.setdefault((node.path, run, total, *map(id, bodies)), loop)
         kernel = node.kernel
         size = self._size_of_leaf(node)
         values = self.values[node.path]
@@ -312,10 +312,10 @@ class _Planning:
         numbers |= {k: v for k, v in values.items() if isinstance(v, int | float)}
         if kernel.counts != ("1",):
             self._note_names(node)
-        whole = 1 if kernel.repeat == "1" else counted(kernel.repeat, node.path, kernel, numbers)
+        total = 1 if kernel.repeat == "1" else counted(kernel.repeat, node.path, kernel, numbers)
         # Of a kernel that repeats in a loop of the same path, the loop is what stops.
-        repeat = whole if node.spec.repeat else self._stopped(node.path, whole, kernel.repeat)
-        between = between_of(node, repeat, whole, numbers) if self.request.fills else None
+        repeat = total if node.spec.repeat else self._stopped(node.path, total, kernel.repeat)
+        between = between_of(node, repeat, total, numbers) if self.request.fills else None
         step = Step(
             path=node.path,
             kernel=kernel,
@@ -323,11 +323,11 @@ class _Planning:
             inputs=node.inputs,
             size=size,
             repeat=repeat,
-            whole=whole,
+            total=total,
             spec=node.spec,
             between=between,
         )
-        return self._made.setdefault((node.path, size, repeat, whole, between), step)
+        return self._made.setdefault((node.path, size, repeat, total, between), step)
 
     def _body(self, nodes: tuple[Node, ...]) -> tuple[PlanNode, ...]:
         """Return what an iteration of a loop runs: the very same where another runs the same."""
@@ -340,18 +340,18 @@ class _Planning:
         self.sizes.by_time |= not names.isdisjoint(expressions.CLOCKS)
         self.sizes.named |= {path for name, path in self.flat.shape.paths[leaf.path] if name in names}
 
-    def _stopped(self, path: str, whole: int, repeat: str) -> int:
+    def _stopped(self, path: str, total: int, repeat: str) -> int:
         """Return how many of a repeat's iterations run."""
         varies = self.varies or expressions.follows_time(repeat)
-        self._most[path] = MAX_REPEAT if varies else max(whole, self._most.get(path, 0))
-        return self.request.steps_of(path, whole)
+        self._most[path] = MAX_REPEAT if varies else max(total, self._most.get(path, 0))
+        return self.request.steps_of(path, total)
 
     def _check_stops(self) -> None:
         """Raise ``ParameterError`` for a repeat that stops after more iterations than it has."""
         for path, steps in self.request.steps.items():
-            whole = self._most.get(path, steps)
-            if steps > whole:
-                raise ParameterError(f"steps: '{path}' stops after {steps} steps, but it has {whole} in all")
+            total = self._most.get(path, steps)
+            if steps > total:
+                raise ParameterError(f"steps: '{path}' stops after {steps} steps, but it has {total} in all")
 
     def _refuse(self, leaf: Leaf, size: tuple[int, int]) -> None:
         """Raise ``SketchError`` for a size that a kernel does not take, with the nearest that it takes."""

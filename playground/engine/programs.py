@@ -111,8 +111,8 @@ class Program:
     ) -> None:
         """Set a kernel's iteration: its own where it repeats, else that of the loop around it."""
         number, total = iteration, whole
-        if repeat == "1" and around is not None and around.whole:
-            number, total = around.number, around.whole
+        if repeat == "1" and around is not None and around.total:
+            number, total = around.number, around.total
         self.set("iteration", number)
         self.set("iterations", total)
         self.set("until", number + at_once)

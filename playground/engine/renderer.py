@@ -211,8 +211,10 @@ class Renderer:
         steps: Mapping[str, int] | None = None,
     ) -> Plan:
         """Make a sketch concrete for a window of a picture; raise as ``draw_window`` does."""
-        opened_sketch, (width, height) = opened(sketch), window.whole
-        plan = self.plan(opened_sketch, window.whole, time, steps, largest=MAX_PICTURE_SIDE, in_parts=True)
+        opened_sketch, (width, height) = opened(sketch), window.full_size
+        plan = self.plan(
+            opened_sketch, window.full_size, time, steps, largest=MAX_PICTURE_SIDE, in_parts=True
+        )
         larger = width + 1, height + 1
         other = self.plan(opened_sketch, larger, time, steps, largest=MAX_PICTURE_SIDE + 1, in_parts=True)
         return windowed(plan, other, window)

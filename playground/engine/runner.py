@@ -138,7 +138,7 @@ class Runner:
         return uniforms
 
     def _spacing(self, step: Step) -> tuple[float, float]:
-        (width, height), (wide, tall) = self._given["extent"], step.whole_size
+        (width, height), (wide, tall) = self._given["extent"], step.full_size
         return width / max(wide - 1, 1), height / max(tall - 1, 1)
 
     def _of_the_terrain(self, step: Step) -> dict[str, Any]:
@@ -306,7 +306,7 @@ class Runner:
         return painted if split_format(outputs[0].format)[0] == channels_of(painted) else None
 
     def _usual(self, step: Step, frame: int | None) -> dict[str, tuple[float, ...]]:
-        width, height = step.whole_size
+        width, height = step.full_size
         time = self._time_at(frame)
         return {
             "time": (time,),

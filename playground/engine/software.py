@@ -272,7 +272,7 @@ def quicker_choices(kernel: Kernel) -> frozenset[str]:
 def _quicker(step: Step, inputs: Mapping[str, Wired], driver: str) -> list[str]:
     """Return which of ``QUICKER`` are made for a step."""
     quicker = quicker_choices(step.kernel)
-    if quicker and (step.window is not None or step.size != step.whole_size):
+    if quicker and (step.window is not None or step.size != step.full_size):
         quicker -= {OWN_SIZE, PLACE}
     if PLACE in quicker and driver != FRAGMENT:
         quicker -= {PLACE}

@@ -592,7 +592,7 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
     lines = [line for line in outermost if line.pragma]
     versions = [line for line in outermost if _VERSION.match(line.code)]
     if versions and not lines:
-        return _plain(name, source, versions[0])
+        return _plain_shader(name, source, versions[0])
     _refuse_misspelt(outermost)
     if not lines:
         return None
@@ -668,7 +668,7 @@ def _titled(text: str) -> str:
     return text[:1].upper() + text[1:] if text.partition(" ")[0].islower() else text
 
 
-def _plain(name: str, source: SourceText, version: Line) -> Kernel:
+def _plain_shader(name: str, source: SourceText, version: Line) -> Kernel:
     is_compute = source.path.endswith(".comp") or "local_size_x" in source.names
     if not _MAIN.search(source.code):
         raise version.error("a shader with its own #version needs its own main()")

@@ -871,19 +871,19 @@ class Graph:
     variants: tuple[Variant, ...] = ()  # its fast variants, the fastest first
     line: int = 0  # of its outputs
     warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)  # of its file
-    whole: Graph | None = field(default=None, compare=False)  # of one form of it: all of it; see wiring.py
+    complete: Graph | None = field(default=None, compare=False)  # of one form of it: all of it; see wiring.py
     absent: tuple[tuple[str, str], ...] = field(default=(), compare=False)  # pass → the input that it lacks
 
     @property
     def written(self) -> Graph:
         """All of it as its file has it, where this is one form of it: with its absent passes."""
-        return self.whole or self
+        return self.complete or self
 
     @property
     def files(self) -> tuple[str, ...]:
         """Absolute paths of every file the technique is made of, those of absent passes too."""
-        if self.whole is not None:
-            return self.whole.files
+        if self.complete is not None:
+            return self.complete.files
         parts = (*(spec.technique for spec in self.passes), *self.variants)
         return tuple(dict.fromkeys([self.path, *(file for part in parts for file in part.files)]))
 

@@ -101,7 +101,7 @@ def _statements(text: str) -> Iterator[Declared]:
                     # What follows a struct's bracket is a variable or the semicolon alone.
                 start = at + 1
         elif mark == ";" and depth == 0:
-            block = _plain(text, code[start:at], start, at + 1)
+            block = _statement(text, code[start:at], start, at + 1)
             if block is not None:
                 yield block
             start = at + 1
@@ -123,7 +123,7 @@ def _block(text: str, head: str, start: int, body: int, end: int) -> Declared | 
     return None
 
 
-def _plain(text: str, code: str, start: int, end: int) -> Declared | None:
+def _statement(text: str, code: str, start: int, end: int) -> Declared | None:
     lead = len(code) - len(code.lstrip())
     start += lead
     code = code[lead:].rstrip()

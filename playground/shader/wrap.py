@@ -103,9 +103,9 @@ def recipes_of(kernel: Kernel, driver: str, version_code: int = 330) -> tuple[st
         case PlainFragment():
             version = version_line(kernel.source)
             assert version is not None  # or it would be no plain shader
-            return FRAGMENT, {"vertex": _quad(kernel, version.code.strip()), "fragment": _whole(kernel)}
+            return FRAGMENT, {"vertex": _quad(kernel, version.code.strip()), "fragment": _unwrapped(kernel)}
         case PlainCompute():
-            return COMPUTE, {"compute": _whole(kernel)}
+            return COMPUTE, {"compute": _unwrapped(kernel)}
     assert isinstance(kernel, TexelKernel)  # a source has no text to run
     _check_signature(kernel)
     if driver == COMPUTE:
@@ -165,7 +165,7 @@ def _quad(kernel: Kernel, version: str = "#version 330") -> Recipe:
     return Recipe(kernel.source, text=text.replace("#version 330", version))
 
 
-def _whole(kernel: Kernel) -> Recipe:
+def _unwrapped(kernel: Kernel) -> Recipe:
     """Return a plain shader as it is."""
     return Recipe(kernel.source, keeps_version=True, expected="void main()")
 

@@ -101,8 +101,8 @@ def why_absent(technique: Technique, path: str) -> str:
     head, _, rest = path.partition(".")
     if (spec := technique.find(head)) is not None:
         return why_absent(spec.technique, rest)
-    whole = technique.written.find(head)
-    if whole is not None and (not rest or find_targets(whole.technique, rest)):
+    written = technique.written.find(head)
+    if written is not None and (not rest or find_targets(written.technique, rest)):
         lacking = dict(technique.absent).get(head)
         only = f"has an effect only where '{lacking}' is wired"
         return only if lacking else "has no effect: another source takes the place of its pass"

@@ -82,7 +82,7 @@ def unpacked(path: Path, cache: Path | None = None) -> Path:
     pack = read_pack(path)
     home = (cache or cache_folder()) / "packs"
     target = home / pack.digest
-    if not _is_whole(pack, target):
+    if not _is_complete(pack, target):
         shutil.rmtree(target, ignore_errors=True)
         _unpack(pack, target)
         _drop_oldest(home, target)
@@ -158,7 +158,7 @@ def _check(entries: list[zipfile.ZipInfo], size: int) -> None:
         names.add(folded)
     for name in names:
         if any(folder.as_posix() in names for folder in PurePosixPath(name).parents):
-            raise DataError(f"'{_plain(name)}' lies inside a file")
+            raise DataError(f"'{_printable(name)}' lies inside a file")
 
 
 def _check_entry(entry: zipfile.ZipInfo) -> None:
@@ -176,7 +176,7 @@ def _check_entry(entry: zipfile.ZipInfo) -> None:
     ):
         wrong = "is no name that a file of a sketch may have; nothing was unpacked"
     if wrong:
-        raise DataError(f"'{_plain(name)}' {wrong}")
+        raise DataError(f"'{_printable(name)}' {wrong}")
 
 
 def _is_bad_part(part: str) -> bool:
@@ -188,7 +188,7 @@ def _is_left_out(name: str) -> bool:
     return any(name.startswith(s) if s.endswith("/") else f"/{name}".endswith(s) for s in _LEFT_OUT)
 
 
-def _plain(name: str) -> str:
+def _printable(name: str) -> str:
     return "".join(c if c.isprintable() else "?" for c in name)[:80]
 
 
@@ -213,7 +213,7 @@ def _manifest(archive: zipfile.ZipFile, files: dict[str, zipfile.ZipInfo]) -> Ma
     except (ValueError, KeyError, TypeError) as error:
         raise DataError(f"its {MANIFEST} cannot be read: {_reason(error)}") from None
     if manifest.sketch not in files or manifest.sketch == MANIFEST:
-        raise DataError(f"says that it opens '{_plain(manifest.sketch)}', and does not hold it")
+        raise DataError(f"says that it opens '{_printable(manifest.sketch)}', and does not hold it")
     return manifest
 
 
@@ -232,7 +232,7 @@ def _unpack(pack: Pack, target: Path, *, strip: bool = False) -> None:
         scratch.replace(target)
     except (OSError, zipfile.BadZipFile, zlib.error, EOFError) as error:
         shutil.rmtree(scratch, ignore_errors=True)
-        if _is_whole(pack, target):
+        if _is_complete(pack, target):
             return  # another process was faster
         raise DataError(f"cannot be unpacked into {target}: {_reason(error)}", file=pack.path) from None
     except BaseException:
@@ -240,7 +240,7 @@ def _unpack(pack: Pack, target: Path, *, strip: bool = False) -> None:
         raise
 
 
-def _is_whole(pack: Pack, target: Path) -> bool:
+def _is_complete(pack: Pack, target: Path) -> bool:
     """Return whether a folder holds every file of a pack, unchanged."""
     if _stamp_of(target) != pack.digest:
         return False

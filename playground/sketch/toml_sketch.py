@@ -513,7 +513,7 @@ SKETCH_KEYS = frozenset(toml_table.SKETCH.keys() - toml_table.TECHNIQUE.keys())
 _PAIRS = {"size": "a whole number of texels, or [x, y]", "extent": "metres, or [east, north]"}
 DEFAULT_VIEW = "view/terrain"
 """What gives the frame where [view] does not say."""
-_PLAIN_VIEW = "view/map"  # of a sketch without [view]: its last pass from above
+_MAP_VIEW = "view/map"  # of a sketch without [view]: its last pass from above
 
 
 def read_sketch(file: TomlFile, read: Read) -> Sketch:
@@ -573,9 +573,9 @@ def _view(
 ) -> tuple[PassSpec, Camera, PictureSettings]:
     table = file.take(file.table, "view", dict, None)
     if table is None:
-        technique = read(_PLAIN_VIEW, GLSL, GLSL)
+        technique = read(_MAP_VIEW, GLSL, GLSL)
         inputs = (("shown", passes[-1].name),)
-        spec = PassSpec("view", _PLAIN_VIEW, technique, inputs, file=shown(file.path))
+        spec = PassSpec("view", _MAP_VIEW, technique, inputs, file=shown(file.path))
         return spec, Camera(), PictureSettings()
     file.only(table, toml_table.VIEW, "view")
     spec = read_pass(file, {"use": DEFAULT_VIEW, **table}, ("view",), "view", read)

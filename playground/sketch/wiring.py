@@ -212,23 +212,23 @@ def as_wired(sketch: Graph) -> Graph:
 
 def form_of(technique: Graph, wired: Iterable[str]) -> Graph:
     """Return a technique as it is where some of its inputs, or paths inside, are wired."""
-    whole = technique.written
-    return _form(whole, frozenset(wired)) if is_conditional(whole) else whole
+    complete = technique.written
+    return _form(complete, frozenset(wired)) if is_conditional(complete) else complete
 
 
 @GRAPHS.cached(identities=1)
-def _form(whole: Graph, wired: frozenset[str]) -> Graph:
-    passes, absent = _present(whole, wired)
-    form = replace(whole, passes=tuple(passes), whole=whole, absent=tuple(absent.items()))
+def _form(complete: Graph, wired: frozenset[str]) -> Graph:
+    passes, absent = _present(complete, wired)
+    form = replace(complete, passes=tuple(passes), complete=complete, absent=tuple(absent.items()))
     form = replace(
         form,
-        inputs=tuple(_narrowed(e, [t for t in e.targets if takes_input(form, t)]) for e in whole.inputs),
+        inputs=tuple(_narrowed(e, [t for t in e.targets if takes_input(form, t)]) for e in complete.inputs),
         parameters=tuple(
             _narrowed(export, targets)
-            for export in whole.parameters
+            for export in complete.parameters
             if (targets := [target for target in export.targets if find_targets(form, target)])
         ),
-        variants=() if absent else whole.variants,
+        variants=() if absent else complete.variants,
     )
     if absent and not missing_input(form):
         check_graph(form)
@@ -257,7 +257,7 @@ def _head(source: str) -> str:
 def is_conditional(technique: Technique) -> bool:
     """Return whether any pass inside may be absent."""
     return isinstance(technique, Graph) and (
-        technique.whole is not None
+        technique.complete is not None
         or bool(_named_inputs(technique))
         or any(spec.choices or is_conditional(spec.technique) for spec in technique.passes)
     )

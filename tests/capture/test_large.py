@@ -158,7 +158,7 @@ def test_tiles_cover_a_picture_once():
     for row in tiles_of((643, 361), TILES):
         for tile in row:
             (x, y), (width, height) = tile.origin, tile.size
-            assert tile.whole == (643, 361) and x % 2 == y % 2 == 0
+            assert tile.full_size == (643, 361) and x % 2 == y % 2 == 0
             seen[y : y + height, x : x + width] += 1
     assert (seen == 1).all()
     assert count_tiles((643, 361), TILES) == 7 * 6

@@ -101,7 +101,7 @@ def test_the_uniform_gets_the_value_and_a_repeat_names_it(any_engine, sketch):
     for choice, (value, repeat) in {"hard": (9, 1), "soft": (-3, 1), "none": (40, 2)}.items():
         made = sketch(f'set = {{ mode = "{choice}", place = [-1, 4] }}')
         np.testing.assert_array_equal(any_engine.read(made, "a")[0, 0], [value, -1, 4, 0])
-        assert any_engine.plan(made, (4, 4)).walk()[0].whole == repeat
+        assert any_engine.plan(made, (4, 4)).walk()[0].total == repeat
 
 
 def test_a_pressed_button_is_true_and_stale_afterwards(any_engine, sketch):

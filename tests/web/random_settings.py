@@ -76,7 +76,7 @@ def random_settings(chance: random.Random, data: dict[str, Any], plan: Plan) -> 
             chance.uniform(-360, 720), chance.uniform(-89, 89), chance.choice([0.0, 5000.0])
         )
     repeats = {
-        node.path: node.whole
+        node.path: node.total
         for node in every_node(plan.nodes)
         if isinstance(node, LoopStep) or node.kernel.repeat != "1"
     }

@@ -156,7 +156,7 @@ class Numbers:
             names[name] = self.size(of[0])[of[1]] if kind == "size" else self.sketch["values"][of[0]]
             return name
         if kind in ("iteration", "iterations"):  # of what a plan gives, the last
-            return str(max(self.plan.node(of[0]).whole, 1) - (kind == "iteration"))
+            return str(max(self.plan.node(of[0]).total, 1) - (kind == "iteration"))
         parts = [f"({self.text(part, names)})" for part in of]
         if kind == "if":
             return f"{parts[1]} if {parts[0]} else {parts[2]}"
@@ -188,7 +188,7 @@ def test_sizes_and_counts_that_the_data_give_are_the_plans(name: str, written: W
         assert numbers.size(sizes[step.path]) == step.size
     for node in plan.nodes:
         if isinstance(node, LoopStep):
-            assert numbers.whole(loops[node.path]) == node.whole
+            assert numbers.whole(loops[node.path]) == node.total
     assert sketch["picture"] == {"path": plan.picture.path, "output": plan.picture.output}
 
 

@@ -118,11 +118,11 @@ def python(sketch: Sketch, settings: Settings) -> Plan | str:
 def flat(node: PlanNode) -> list[list[Any]]:
     if isinstance(node, LoopStep):
         inside = [item for each in node.body for item in flat(each)]
-        return [["loop", node.path, node.repeat, node.whole, node.counts_frames], *inside]
+        return [["loop", node.path, node.repeat, node.total, node.counts_frames], *inside]
     between = list(node.between) if node.between else None
     files = {p.name for p in node.kernel.parameters if p.widget.kind == "file"}
     values = {name: _as_json(value) for name, value in node.values.items() if name not in files}
-    return [[node.kernel.name, node.path, node.repeat, node.whole, list(node.size), between, values]]
+    return [[node.kernel.name, node.path, node.repeat, node.total, list(node.size), between, values]]
 
 
 def _as_json(value: Any) -> Any:

@@ -265,7 +265,7 @@ class _Passes:
                         inputs,
                         tuple((o, before[o.name]) for o in read),
                         iteration,
-                        step.whole,
+                        step.total,
                         until,
                         self.shows if is_picture else "",
                         by_frames and kernel.repeat == "1",

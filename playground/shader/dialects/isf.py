@@ -367,15 +367,15 @@ def _long(declared: _Declared, inputs: Inputs) -> None:
     numbers = [number_of(element) for element in values] or [float(n) for n in range(len(labels))]
     if None in numbers:
         raise declared.line.error(f"input '{declared.name}': expected whole numbers as its VALUES")
-    whole = [_whole(n) for n in numbers if n is not None]
+    whole = [_clamped(n) for n in numbers if n is not None]
     if not whole:
         low, high = declared.number("MIN"), declared.number("MAX")
         widget = Widget()
         if low is not None and high is not None:
-            least, most = _ordered(_whole(low), _whole(high))
+            least, most = _ordered(_clamped(low), _clamped(high))
             widget = Widget("slider", least, most)
             default = min(max(least if default is None else default, least), most)
-        inputs.parameters.append(declared.parameter("int", _whole(default or 0.0), widget))
+        inputs.parameters.append(declared.parameter("int", _clamped(default or 0.0), widget))
         return
     names: list[str] = []
     for at, number in enumerate(whole):
@@ -424,7 +424,7 @@ def _add_cube(name: str, inputs: Inputs, unfed: str) -> None:
 def _sound(content: int) -> Callable[[_Declared, Inputs], None]:
     def read(declared: _Declared, inputs: Inputs) -> None:
         most = declared.number("MAX")
-        bins = _BINS if most is None else min(max(_whole(most), 1), 4096)
+        bins = _BINS if most is None else min(max(_clamped(most), 1), 4096)
         inputs.channels[declared.name] = ShaderChannel(
             use="foreign/spectrum",
             values=(("content", content),),
@@ -513,7 +513,7 @@ def _ordered(low: float, high: float) -> tuple[float, float]:
     return (least, most) if most > least else (least, least + 1.0)
 
 
-def _whole(number: float) -> int:
+def _clamped(number: float) -> int:
     return min(max(math.floor(number), -(2**31)), 2**31 - 1)
 
 

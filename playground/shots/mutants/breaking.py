@@ -90,7 +90,7 @@ def _rewired(technique: Technique, path: str, source: str, whole: str) -> Any:
     else:
         changed = replace(spec, inputs=tuple((dict(spec.inputs) | {rest: source}).items()))
     passes = tuple(changed if p is spec else p for p in technique.passes)
-    return replace(technique, passes=passes, whole=None)
+    return replace(technique, passes=passes, complete=None)
 
 
 def _reads_time(graph: Graph) -> bool:
@@ -135,7 +135,7 @@ def _with_more_steps(technique: Technique, more: int) -> Technique:
         )
         for spec in technique.passes
     )
-    return technique if passes == technique.passes else replace(technique, passes=passes, whole=None)
+    return technique if passes == technique.passes else replace(technique, passes=passes, complete=None)
 
 
 def _changed(sketch: Sketch, path: str, factor: float = 1.0, more: object = 0.0) -> Sketch:
