@@ -307,7 +307,7 @@ class Sketch:
         return replace(self, camera=camera, keyframes=keyframes)
 
     def with_picture(self, **changes: Any) -> Sketch:
-        """Return the sketch with other fields of its ``PictureSettings``.
+        """Return the sketch with ``changes`` in its ``PictureSettings``.
 
         For example:
 
