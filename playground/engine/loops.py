@@ -330,7 +330,7 @@ class _Pass:
 
     program: Program
     is_clocked: bool  # the time is that of the frame that the loop is at
-    whole: int  # iterations of the loop
+    total: int  # iterations of the loop
     fixed: tuple[tuple[int, moderngl.Texture, moderngl.Sampler], ...]  # on units, the same in each iteration
     made: tuple[_Made, ...]
     driver: str
@@ -355,7 +355,7 @@ class Replay:
                 use(unit, (before if is_before else now)[index].textures[output], sampler)
             program = bound_pass.program
             program.set("iteration", number)
-            program.set("iterations", bound_pass.whole)
+            program.set("iterations", bound_pass.total)
             program.set("until", number + 1)
             if bound_pass.is_clocked and at.frame is not None:
                 program.set("time", at.frame / FRAME_RATE)
@@ -396,7 +396,7 @@ def replay_of(
 
 def _pass_of(
     step: Step,
-    whole: int,
+    total: int,
     inputs: Mapping[str, Wired],
     made: Mapping[str, tuple[bool, int, str]],
     kernels: Kernels,
@@ -419,4 +419,4 @@ def _pass_of(
             return None
         else:
             changing.append(_Made(unit, sampler, *made[declared.name]))
-    return _Pass(program, "time" in kernel.engine_uniforms, whole, tuple(fixed), tuple(changing), driver)
+    return _Pass(program, "time" in kernel.engine_uniforms, total, tuple(fixed), tuple(changing), driver)

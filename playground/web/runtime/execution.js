@@ -295,7 +295,7 @@ export const createExecution = (plan, nodes, around) => {
       bodyOf(loop, iteration).filter((node) => changesOf(node).has(loop.path));
     for (const node of bodyOf(loop, 0)) {
       if (changesOf(node).has(loop.path)) continue;
-      yield* runInside(node, outer, { number: 0, whole: 0, frame }, owned);
+      yield* runInside(node, outer, { number: 0, total: 0, frame }, owned);
     }
     if (!loop.repeat && !state.results.size) state.results = initial(loop, changingOf(0), fed);
     state.results.forEach((result, path) => results.set(path, result));
@@ -303,7 +303,7 @@ export const createExecution = (plan, nodes, around) => {
       if (iteration) {
         for (const [name, , ref] of loop.feedback) fed.set(`${loop.path} ${name}`, wiredTo(ref, fed));
       }
-      const at = { number: iteration, whole: loop.whole, frame: loop.countsFrames ? iteration : frame };
+      const at = { number: iteration, total: loop.total, frame: loop.countsFrames ? iteration : frame };
       /** @type {Map<string, Result>} */
       let made = new Map();
       try {

@@ -33,7 +33,7 @@ import { shiftAfter } from "./lattice.js";
  *  @property {import("./kernel_texts.js").KernelText} text
  *  @property {Object<string, any>} given
  *  @property {Map<string, Wired | null>} inputs
- *  @property {{number: number, whole: number, frame: number | null} | null} around   where its loops are
+ *  @property {{number: number, total: number, frame: number | null} | null} around   where its loops are
  *  @property {Result | null} start            the same step after fewer iterations; null once used up
  *  @property {number} samples                 of a draw
  *  @property {boolean} keepsSurface           a later draw goes on from it
@@ -191,10 +191,10 @@ export const createKernels = (context, textures, programs, binder, shared, often
   /** Set a kernel's iteration: its own where it repeats, else that of the loop around it.
    *  @param {Program} program @param {Job} job @param {number} iteration @param {number} [atOnce] */
   const count = (program, { step, around }, iteration, atOnce = 1) => {
-    const outer = step.kernel.repeat === 1 && around && around.whole ? around : null;
+    const outer = step.kernel.repeat === 1 && around && around.total ? around : null;
     const now = outer ? outer.number : iteration;
     setUniform(gl, program, "iteration", now);
-    setUniform(gl, program, "iterations", outer ? outer.whole : step.whole);
+    setUniform(gl, program, "iterations", outer ? outer.total : step.total);
     setUniform(gl, program, "until", now + atOnce);
     if (step.kernel.countsFrames) setUniform(gl, program, "time", now / 60);
   };

@@ -8,7 +8,7 @@ import { headerNames, planError, textOf, whole } from "./formulas.js";
 /** The texels from one node of the lattice that an iteration fills to the next.
  *  @param {Omit<Step, "between">} step @param {number} iteration @param {number} time [s] */
 const strideAt = (step, iteration, time) =>
-  whole(step.kernel.stride ?? 1, headerNames(step, time, { iteration, iterations: step.whole }));
+  whole(step.kernel.stride ?? 1, headerNames(step, time, { iteration, iterations: step.total }));
 
 /** How the texels that a stopped step knows are joined, as uniforms of fill_between.frag; null where nothing
  *  is. k_form 0: squares, 1: triangles, 2: squares of which only corners and centres are known: a stride that
@@ -17,7 +17,7 @@ const strideAt = (step, iteration, time) =>
 export function betweenOf(step, time) {
   const { kernel, path, repeat, inputs } = step;
   const begins = inputs.some(([name, source]) => source && name in kernel.initial);
-  if (!kernel.between || !(repeat > 0 && repeat < step.whole) || begins) return null;
+  if (!kernel.between || !(repeat > 0 && repeat < step.total) || begins) return null;
   const stride = strideAt(step, repeat - 1, time);
   if (stride < 1) {
     const message = `stride '${textOf(kernel.stride ?? 1)}' gives ${stride} for iteration ${repeat - 1}`;

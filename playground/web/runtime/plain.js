@@ -82,7 +82,7 @@ export const createPlain = (context, textures, images, binder, kernels) => {
       return [Math.min(Math.max(digits + halved - 2, 0), MAX_LEVELS)];
     }
     if (meaning === "iteration") return [around ? around.number : 0];
-    if (meaning === "iterations") return [around ? around.whole : 1];
+    if (meaning === "iterations") return [around ? around.total : 1];
     const named = meaning.replace(SIZES, "").split(" ").filter(Boolean);
     return named.flatMap((name) => sizes.get(name) ?? [0, 0, 0]);
   };

@@ -86,7 +86,7 @@ export function repeatsOf(plan) {
     // Of a loop of one kernel, the loop is what counts, not the kernel in it.
     const own = !isLoop(node) && node.kernel.kind === "kernel" && node.kernel.repeat !== 1;
     if (isLoop(node) || (own && !loops.has(node.path))) {
-      found.set(node.path, Math.max(node.whole, found.get(node.path) ?? 0));
+      found.set(node.path, Math.max(node.total, found.get(node.path) ?? 0));
     }
   }
   return found;
@@ -305,7 +305,7 @@ function planned(sketch, now) {
     };
     const bodies = counting
       ? Array.from({ length: Math.max(all, 1) }, (_, number) => sizes.within(path, number, body)) : [body()];
-    const loop = { path, loop: /** @type {true} */ (true), repeat, whole: all, countsFrames, followsTime };
+    const loop = { path, loop: /** @type {true} */ (true), repeat, total: all, countsFrames, followsTime };
     const key = `loop ${path} ${repeat} ${all} ${numbersOf(bodies)}`;
     return shared(key, withBodies({ ...loop, feedback }, bodies));
   }
@@ -319,7 +319,7 @@ function planned(sketch, now) {
       kernel.repeat, path, kernel.file, headerNames(own, time), kernel.until ? MAX_BOUND : MAX_REPEAT);
     // Of a kernel that repeats in a loop of the same path, the loop is what stops.
     const repeat = path === around ? all : stoppedAt(path, all, kernel.followsTime);
-    const step = { ...own, repeat, whole: all }, between = now.fills ? betweenOf(step, time) : null;
+    const step = { ...own, repeat, total: all }, between = now.fills ? betweenOf(step, time) : null;
     const { k_stride, k_form } = between ?? { k_stride: 0, k_form: 0 };
     return shared(`${path} ${size} ${repeat} ${all} ${k_stride} ${k_form}`, { ...step, between });
   }
@@ -347,5 +347,5 @@ function mapStep(sketch, map, size) {
   const inputs = kernel.inputs.map(({ name }) => {
     return [name, name === sketch.map.input ? { path: map.path, output: map.output } : null];
   });
-  return { path: MAP, kernel, leaf: null, values, inputs, size, repeat: 1, whole: 1, between: null };
+  return { path: MAP, kernel, leaf: null, values, inputs, size, repeat: 1, total: 1, between: null };
 }

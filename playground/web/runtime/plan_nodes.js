@@ -13,11 +13,11 @@
  *  @property {[string, Source | null][]} inputs
  *  @property {[number, number]} size                    texels
  *  @property {number} repeat                            iterations to run
- *  @property {number} whole                             iterations in all
+ *  @property {number} total                             iterations in all
  *  @property {{k_stride: number, k_form: number} | null} between   see betweenOf of lattice.js */
 
 /** A loop made concrete. bodies: of each iteration, one where all are the same; body: of the last.
- *  @typedef {{path: string, loop: true, repeat: number, whole: number, countsFrames: boolean,
+ *  @typedef {{path: string, loop: true, repeat: number, total: number, countsFrames: boolean,
  *             followsTime: boolean, bodies: PlanNode[][], body: PlanNode[],
  *             feedback: [string, Source | null, Ref][]}} LoopStep */
 

@@ -109,7 +109,7 @@ export function keysOf(plan, known) {
       });
       /** @type {any[]} */
       const parts = [reads, step.size, values.map((one) => [one.name, step.values[one.name]])];
-      if (used.has("iterations")) parts.push(step.whole);
+      if (used.has("iterations")) parts.push(step.total);
       const raw = hash(JSON.stringify([step.repeat, parts]));
       const { between } = step;
       const shown = between ? hash(JSON.stringify([raw, between])) : raw;
@@ -153,7 +153,7 @@ export function keysOf(plan, known) {
     /** @type {any[]} */
     const parts = [path, loop.bodies.map((body) => found.get(body))];
     parts.push(loop.feedback.map(([name, first, ref]) => [name, keyOf(first, fed), ref.path, ref.output]));
-    if (steps.some((step) => known.used(step.kernel).has("iterations"))) parts.push(loop.whole);
+    if (steps.some((step) => known.used(step.kernel).has("iterations"))) parts.push(loop.total);
     const key = hash(JSON.stringify(parts));
     keys.loops.set(path, key);
     keys.changes.set(loop, outer);
