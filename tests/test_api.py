@@ -45,7 +45,7 @@ def test_textures_come_as_documented(sketch: playground.Sketch):
         np.testing.assert_allclose(corners, [0.1, 0.2, 0.3, 0.4], rtol=1e-6)
 
 
-def test_parameters_are_listed_and_set_without_changing_the_sketch(sketch: playground.Sketch):
+def test_parameters_are_listed_and_set_without_mutating_sketch(sketch: playground.Sketch):
     parameters = playground.parameters(sketch)
     parameter, value = parameters["height.smoothing"]
     assert (parameter.type, value) == ("float", pytest.approx(0.2))
@@ -144,7 +144,7 @@ def test_a_released_engine_says_so(sketch):
 # ── step by step ─────────────────────────────────────────────────────────────
 
 
-def test_a_technique_in_which_one_pass_repeats_is_run_by_its_own_name(engine, sketch):
+def test_single_repeated_pass_is_addressed_by_technique_name(engine, sketch):
     small = sketch.with_values({"size": 5})
     by_name = list(engine.steps(small, "height"))
     by_path = list(engine.steps(small, "height.raw"))
@@ -155,7 +155,7 @@ def test_a_technique_in_which_one_pass_repeats_is_run_by_its_own_name(engine, sk
     np.testing.assert_array_equal(stopped, by_path[2][1])
 
 
-def test_a_pass_that_does_not_repeat_is_refused_with_those_that_do(engine, sketch):
+def test_non_repeating_pass_is_refused_listing_repeated_ones(engine, sketch):
     for path in ("height.normalised", "view", "nothing"):
         with pytest.raises(playground.SketchError, match=rf"no repeated pass '{path}' .*height\.raw"):
             list(engine.steps(sketch, path))

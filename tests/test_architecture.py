@@ -251,7 +251,7 @@ OF_LESSONS = [
     [(RARE, [*OF_MISTAKES, "importlib.metadata", "email"]), (WINDOW, [*OF_MISTAKES, *OF_LESSONS])],
     ids=["sketch", "window"],
 )
-def test_it_opens_without_what_only_mistakes_lessons_and_other_tools_shaders_need(opened, rare):
+def test_start_imports_no_module_of_errors_lessons_or_dialects(opened, rare):
     """They take a fifth of the time that the imports of a first picture take, and a third of a window's."""
     done = subprocess.run(
         [sys.executable, "-c", f"{opened}rare = {rare}{PRINTED}"],
@@ -263,7 +263,7 @@ def test_it_opens_without_what_only_mistakes_lessons_and_other_tools_shaders_nee
     assert done.stdout.strip() == ""
 
 
-def test_every_public_name_comes_from_the_module_that_the_list_gives():
+def test_every_public_name_comes_from_its_listed_module():
     """The table that is run, the imports that type checkers read, and what is there, are the same."""
     import playground
 
@@ -437,6 +437,16 @@ def test_nothing_is_evaluated():
             ):
                 wrong.append(f"{path.relative_to(ROOT)}:{node.lineno}")
     assert not wrong, f"eval or exec in {', '.join(wrong)}"
+
+
+def test_a_test_has_a_name_of_at_most_60_letters():
+    wrong = [
+        f"{path.relative_to(ROOT)}: {node.name}"
+        for path in filter(Path.is_file, (ROOT / "tests").rglob("test_*.py"))
+        for node in ast.walk(tree_of(path))
+        if isinstance(node, ast.FunctionDef) and node.name.startswith("test_") and len(node.name) > 60
+    ]
+    assert not wrong, "\n".join(wrong)
 
 
 def test_the_checks_above_can_fail():

@@ -142,7 +142,7 @@ def test_every_help_has_examples_and_fits_eighty_columns(
     assert re.search(rf"Examples: *\n\s+playground{f' {command}' if command else ''}\b", out)
 
 
-def test_every_example_in_a_help_is_a_command_with_options_that_exist(capsys: pytest.CaptureFixture[str]):
+def test_every_help_example_uses_existing_command_and_options(capsys: pytest.CaptureFixture[str]):
     helps = {}
     for command in COMMANDS:
         cli.main([*command.split(), "--help"])
@@ -317,7 +317,7 @@ def test_a_pipe_gets_no_colour_and_one_line_a_row(capsys: pytest.CaptureFixture[
 
 
 @pytest.mark.slow  # ./play does so every day, in tests/docs/test_commands.py
-def test_no_arguments_and_no_display_renders_the_default_sketch_under_a_free_name(run: Run, tmp_path: Path):
+def test_bare_headless_command_renders_default_to_free_name(run: Run, tmp_path: Path):
     taken = tmp_path / f"{DEFAULT_SKETCH}.png"
     taken.write_text("mine")
     done = well(run())
@@ -327,7 +327,7 @@ def test_no_arguments_and_no_display_renders_the_default_sketch_under_a_free_nam
     assert read_png(tmp_path / f"{DEFAULT_SKETCH}-2.png")[0].shape == (720, 1280, 4)
 
 
-def test_render_prints_the_path_alone_and_never_overwrites_unasked(run: Run, slope: Path, tmp_path: Path):
+def test_render_prints_path_alone_and_never_overwrites_unasked(run: Run, slope: Path, tmp_path: Path):
     names = [well(run("render", "slope", "--size", "48x32")).stdout for _ in range(2)]
     assert names == ["slope.png\n", "slope-2.png\n"]
     done = well(run("render", "slope", "--size", "20x10", "-o", "slope.png"))
@@ -613,7 +613,7 @@ def test_doctor_prints_the_context_as_text_and_as_json(run: Run):
 
 
 @pytest.mark.slow
-def test_doctor_without_a_context_says_what_to_do_and_leaves_with_1(run: Run):
+def test_doctor_without_context_advises_and_exits_1(run: Run):
     done = run("doctor", "--json", "--device", "99")
     assert done.returncode == 1
     health = json.loads(done.stdout)
@@ -645,7 +645,7 @@ def test_where_a_window_would_open(system: str, environ: dict[str, str], shown: 
 
 
 @pytest.mark.slow
-def test_a_new_sketch_passes_its_check_renders_and_is_never_overwritten(run: Run, tmp_path: Path):
+def test_new_sketch_passes_check_renders_and_is_not_overwritten(run: Run, tmp_path: Path):
     done = well(run("new", "my-land"))
     made = [tmp_path / line for line in done.stdout.split()]
     assert [p.name for p in made] == ["my_land.glsl", "sketch.toml"]

@@ -51,7 +51,7 @@ def drawn(capsys: pytest.CaptureFixture[str], *more: str) -> tuple[np.ndarray, l
     return read_png(Path("terrain.png"))[0], capsys.readouterr().err.splitlines()
 
 
-def test_an_edit_changes_the_picture_and_one_line_says_what_does_not_run(folder, capsys):
+def test_edited_kernel_shows_and_reports_left_out_variant(folder, capsys):
     before, notes = drawn(capsys)
     assert notes == []
     (folder / "terrain.glsl").write_text(KERNEL.replace("rise *", "0.2 * rise *"))
@@ -81,7 +81,7 @@ def test_check_says_it_and_tries_it_all_the_same(folder, capsys):
     assert "note" not in capsys.readouterr().out
 
 
-def test_renew_records_what_agrees_in_its_folder_and_refuses_the_rest(folder, capsys):
+def test_renew_records_agreeing_variants_and_refuses_rest(folder, capsys):
     (folder / NAME).unlink()
     assert main(["variants", "list", "terrain"]) == 0
     assert "never verified" in capsys.readouterr().out
@@ -136,7 +136,7 @@ def test_every_shipped_sketch_runs_its_fast_variants():
 
 
 @pytest.mark.slow
-def test_a_technique_that_has_a_folder_of_its_own_is_meant_by_its_name(capsys):
+def test_technique_with_own_folder_is_selected_by_its_name(capsys):
     assert main(["variants", "list", "generation/diamond_square"]) == 0
     assert "generation/diamond_square.comp" in capsys.readouterr().out
     assert main(["variants", "list", "glsl/generation/fourier"]) == 0

@@ -26,7 +26,7 @@ def test_without_it_all_run():
     assert left(GLSL + OTHER) == (GLSL + OTHER, [])
 
 
-def test_each_function_below_the_folder_runs_once_and_all_others_as_ever():
+def test_functions_below_folder_run_once_and_others_fully():
     assert left(GLSL + OTHER, "tests/glsl") == ([GLSL[0], GLSL[2], *OTHER], [GLSL[1]])
     assert left(GLSL + OTHER, "tests/glsl", "tests/data") == (
         [GLSL[0], GLSL[2], *OTHER[:2]],

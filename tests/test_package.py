@@ -69,7 +69,7 @@ def test_the_wheel_carries_every_file_of_the_library(wheel: Path):
     "check",
     [("twine", "check", "--strict"), ("check_wheel_contents", "--config", str(ROOT / "pyproject.toml"))],
 )
-def test_what_is_published_passes_the_checks_of_those_who_publish(wheel: Path, check: tuple[str, ...]):
+def test_wheel_and_sdist_pass_publication_checks(wheel: Path, check: tuple[str, ...]):
     files = [wheel, next(wheel.parent.glob("*.tar.gz"))] if check[0] == "twine" else [wheel]
     assert max(file.stat().st_size for file in files) < MAX_BYTES
     done = subprocess.run(

@@ -58,7 +58,7 @@ with partial_file(Path(sys.argv[1])) as partial:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="an open file cannot be removed there")
-def test_what_another_process_writes_is_left_alone_until_it_is_dead(tmp_path: Path):
+def test_partial_file_of_other_process_is_kept_until_it_dies(tmp_path: Path):
     command = [sys.executable, "-c", WRITES, str(tmp_path / "picture.png")]
     environ = os.environ | {"PYTHONPATH": str(ROOT)}
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environ) as writer:

@@ -89,7 +89,7 @@ def test_its_example_runs(name, tmp_path, monkeypatch, ctx, warm):
 
 
 @pytest.mark.parametrize("name", PUBLIC)
-def test_it_is_typed_and_says_what_its_arguments_are_and_what_goes_wrong(name):
+def test_public_name_is_typed_and_documents_arguments_and_errors(name):
     thing = PUBLIC[name]
     documentation = inspect.getdoc(thing) or ""
     if isinstance(thing, type):
@@ -199,7 +199,7 @@ def test_a_call_from_another_thread_is_refused_in_a_sentence(any_engine):
 
 
 @pytest.mark.slow
-def test_one_engine_draws_many_sketches_and_each_thread_has_its_own(any_engine):
+def test_one_engine_draws_many_sketches_and_is_per_thread(any_engine):
     square = playground.load("diamond_square")
     names = (9, 17, 33)
     sketches = {side: square.with_values({"size": side}) for side in names}

@@ -33,7 +33,7 @@ def test_a_machine_half_as_fast_slows_peers_too():
     assert words(figure(once, four), figure(once, twice)) == [("faster", "peer")]
 
 
-def test_samples_that_overlap_are_no_change_and_neither_is_less_than_a_tenth():
+def test_overlapping_or_within_ten_percent_samples_are_no_change():
     assert words(figure([5.0, 12.0, 20.0]), figure([6.0, 10.0, 18.0])) == [("alike", "")]
     assert words(figure([10.50, 10.51, 10.52]), figure([10.0, 10.01, 10.02])) == [("alike", "")]
 

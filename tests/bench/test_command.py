@@ -85,7 +85,7 @@ def test_bad_arguments_are_a_sentence_before_anything_runs(capsys, arguments, wo
     assert status == 2 and out == "" and words in err
 
 
-def test_a_page_without_matplotlib_is_refused_before_anything_runs(capsys, monkeypatch):
+def test_page_without_matplotlib_is_refused_before_any_run(capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     status, _, err = ran(capsys, "bench", "white_noise", "--page", "page.html")

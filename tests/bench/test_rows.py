@@ -19,7 +19,7 @@ from playground.errors import ParameterError
 ROWS = {row.name: row for row in chosen(())}
 
 
-def test_names_are_of_one_row_each_and_suites_are_those_of_the_files():
+def test_row_names_are_unique_and_suites_match_files():
     assert len(ROWS) == sum(len(rows) for rows in suites().values())
     assert set(suites()) == {"engine", "frames", "generation", "lighting", "terrain"}
 
@@ -71,7 +71,7 @@ def test_its_sketch_has_the_texture_and_what_changes(name):
 
 
 @pytest.mark.parametrize(("name", "read"), [("unchanged", 1), ("unchanged_chain", 7)])
-def test_the_picture_of_unchanged_passes_reads_one_or_their_chain(name, read):
+def test_unchanged_picture_reads_one_pass_or_whole_chain(name, read):
     with Room(Options()) as room:
         engine, sketch = room.engine(), unchanging(ROWS[name], room, 7)
         engine.draw(sketch, size=(16, 9))
@@ -81,7 +81,7 @@ def test_the_picture_of_unchanged_passes_reads_one_or_their_chain(name, read):
         assert engine.record.ran and not any(path.startswith("p") for path in engine.record.ran)
 
 
-def test_a_measured_row_has_every_form_and_what_is_missing_is_told(monkeypatch):
+def test_measured_row_has_every_form_and_reports_missing_peer(monkeypatch):
     names: list[str] = []
     monkeypatch.setitem(__import__("sys").modules, "opensimplex", None)  # an import of it fails
     rows = chosen(["layered_noise_sum", "white_noise"])

@@ -41,7 +41,7 @@ def test_medians_and_quartiles_are_numpys(count):
     assert samples.median("processor") == pytest.approx(2 * np.median(values))
 
 
-def test_growth_is_the_cost_of_a_texel_at_the_largest_size_over_that_at_the_smallest():
+def test_growth_is_texel_cost_ratio_of_largest_to_smallest_size():
     def figure(size: int, milliseconds: float) -> Figure:
         return Figure("s", "row", "what", size, "ms", Goal(), {"auto": Samples([milliseconds])})
 

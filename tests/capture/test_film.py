@@ -217,7 +217,7 @@ def test_an_interrupted_video_is_a_shorter_one(any_engine: Engine, keyed, tmp_pa
     assert not list(tmp_path.glob(".*"))
 
 
-def test_a_picture_that_is_in_but_was_not_counted_when_it_was_interrupted_is_counted(tmp_path: Path):
+def test_interrupted_video_counts_frame_already_encoded(tmp_path: Path):
     with pytest.raises(Stopped) as caught, Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 5) as video:
         for picture in ramps(3, (64, 36)):
             video.add(picture)

@@ -56,9 +56,7 @@ def of_terrain(folder, engine, file, ending=".tif", values=None, **options):
         ("EPSG:4269", DEGREES),
     ],
 )
-def test_at_the_size_of_the_file_every_number_of_its_place_is_the_same(
-    tmp_path, any_engine, crs, transform, point
-):
+def test_export_at_native_size_preserves_georeference(tmp_path, any_engine, crs, transform, point):
     path = dem(tmp_path / "dem.tif", crs, transform, point)
     made = of_terrain(tmp_path, any_engine, path)
     assert "in its place" in made.summary and not made.warnings
@@ -71,7 +69,7 @@ def test_at_the_size_of_the_file_every_number_of_its_place_is_the_same(
         np.testing.assert_allclose(after.read(1), before.read(1), rtol=0, atol=4e-4)
 
 
-def test_a_file_from_the_south_is_exported_from_the_north_in_the_same_place(tmp_path, any_engine):
+def test_south_up_file_exports_north_up_with_same_bounds(tmp_path, any_engine):
     path = dem(tmp_path / "dem.tif", "EPSG:32633", SOUTH_UP)
     with rasterio.open(path) as before, rasterio.open(of_terrain(tmp_path, any_engine, path).path) as after:
         assert (after.bounds.left, after.bounds.right) == (before.bounds.left, before.bounds.right)
@@ -177,7 +175,7 @@ def test_a_raw_file_s_json_says_where_it_lies(tmp_path, any_engine):
     assert (east - west, north - south) == pytest.approx((30 / 1200, 18 / 900), rel=1e-12)
 
 
-def test_a_line_laid_on_terrain_is_exported_where_gdal_finds_its_degrees(tmp_path, any_engine):
+def test_exported_line_matches_its_geographic_coordinates(tmp_path, any_engine):
     """From a file of elevations and one of lines to a GeoTIFF: opened, drawn, written, opened again."""
     from rasterio.warp import transform
 
@@ -253,7 +251,7 @@ use = "view/terrain"
 
 
 @pytest.mark.slow
-def test_real_terrain_that_is_worn_and_coloured_by_its_water_comes_back_in_its_place(tmp_path, any_engine):
+def test_eroded_textured_dem_exports_at_its_original_location(tmp_path, any_engine):
     """A file is opened, eroded, textured by its streams, exported, and opened again by GDAL."""
     from playground.paths import SKETCHES
     from playground.sketch.load import load

@@ -105,7 +105,7 @@ def test_what_is_in_it_and_nothing_else(folder: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_command_takes_references_and_gives_the_same_bytes_again(
+def test_pack_includes_references_and_is_byte_reproducible(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for name in ("a.zip", "b.zip"):
@@ -295,7 +295,7 @@ def test_files_from_outside_are_refused_in_a_sentence(folder: Path, tmp_path: Pa
     assert not (tmp_path / "lesson.zip").exists()
 
 
-def test_the_cache_keeps_the_latest_and_check_finds_a_pack_s_files(
+def test_pack_cache_keeps_latest_and_check_finds_packed_files(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(unpack, "_MAX_PACKS", 2)

@@ -87,7 +87,7 @@ def test_a_film_rendered_twice_has_the_same_bytes(ctx, sketch, tmp_path: Path):
     assert len(written) == 1
 
 
-def test_a_sequence_runs_each_frame_once_and_goes_on_where_it_stopped(any_engine: Engine, sketch, tmp_path):
+def test_sequence_runs_each_frame_once_and_resumes(any_engine: Engine, sketch, tmp_path):
     film, pattern = Series.at_times(sketch, seconds=1, fps=30, size=SIZE), tmp_path / "frames" / "%03d.png"
     write_series(any_engine, film, NumberedFiles(pattern))
     assert any_engine.runs["trail"] == 59
@@ -111,7 +111,7 @@ def test_shots_in_the_order_of_their_times_go_on(any_engine: Engine, sketch):
     assert any_engine.runs["trail"] < 121 + 31 + 121
 
 
-def test_a_sheet_of_what_the_state_does_not_depend_on_runs_it_once(any_engine: Engine, sketch):
+def test_sheet_runs_state_once_if_swept_value_does_not_affect_it(any_engine: Engine, sketch):
     sheet = Series.of_values(sketch, ["gain.gain=0.5,1,2"], size=SIZE, time=1.0)
     assert len(pictures(any_engine, sheet)) == 3
     assert any_engine.runs["trail"] == 61

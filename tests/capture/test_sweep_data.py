@@ -99,7 +99,7 @@ def test_a_mistake_of_the_sketch_crosses_from_the_process(sketch):
         ({"relief": np.arange(1, 300.0), "height.seed": range(1, 300)}, "GiB; 4 are the most"),
     ],
 )
-def test_what_cannot_be_swept_is_refused_before_anything_is_drawn(sketch, values, sentence, monkeypatch):
+def test_unsweepable_values_are_refused_before_drawing(sketch, values, sentence, monkeypatch):
     monkeypatch.setattr(sweep_data, "_drawn", lambda *_: pytest.fail("it began"))
     with pytest.raises(playground.ParameterError, match=sentence):
         sweep(sketch, values)

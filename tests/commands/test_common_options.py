@@ -49,7 +49,7 @@ def test_every_help_has_these_options_and_names_no_type(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("order", [["-v", "render"], ["render", "-v"], ["render", "--verbose"]])
-def test_verbose_tells_files_driver_compiling_and_caches_with_their_times(
+def test_verbose_logs_files_driver_compiles_and_caches_with_time(
     order: list[str], kernel: Path, capsys: pytest.CaptureFixture[str]
 ):
     assert cli.main([*order, str(kernel), "--size", "32x18", "-o", "a.png"]) == 0

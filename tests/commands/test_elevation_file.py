@@ -70,7 +70,7 @@ MEMORY = (
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="the memory of a process is asked for as on Unix")
-def test_ten_thousand_texels_a_side_open_in_less_than_two_gibibytes(tmp_path):
+def test_dem_of_10000_squared_opens_in_under_two_gibibytes(tmp_path):
     """400 MB of holes, after a hill."""
     with (tmp_path / "dem.npy").open("wb") as file:
         head = {"descr": "<f4", "fortran_order": False, "shape": (10_000, 10_000)}

@@ -68,9 +68,7 @@ def printed(capsys: pytest.CaptureFixture[str]) -> tuple[str, str]:
     return out, error
 
 
-def test_paths_go_to_standard_output_and_what_they_hold_to_standard_error(
-    folder: Path, capfd: pytest.CaptureFixture[str]
-):
+def test_export_prints_paths_to_stdout_and_details_to_stderr(folder: Path, capfd: pytest.CaptureFixture[str]):
     status = cli.main(["export", "rise", "--to", "a.r16", "--to", "a.glb"])
     out, error = capfd.readouterr()
     assert status == 0, error
@@ -244,9 +242,7 @@ def test_one_file_by_two_names_is_one(folder: Path, capsys: pytest.CaptureFixtur
 
 
 @pytest.mark.parametrize("form", ["npy", ".TIF", "glb", ""])
-def test_standard_output_gets_the_bytes_of_the_file_and_nothing_else(
-    form: str, capfdbinary: pytest.CaptureFixture[bytes]
-):
+def test_export_to_stdout_writes_exactly_the_file_bytes(form: str, capfdbinary: pytest.CaptureFixture[bytes]):
     chosen = ["--format", form] if form else []
     ending = form.lower().removeprefix(".") or "glb"
     assert cli.main(["export", "rise", "--to", f"rise.{ending}"]) == 0

@@ -100,7 +100,7 @@ def test_a_page_has_its_language(folder: Path):
 
 
 @pytest.mark.slow
-def test_a_shot_with_its_values_time_and_size_and_the_poster_of_it(folder: Path):
+def test_page_of_shot_has_its_values_time_size_and_poster(folder: Path):
     assert cli.main(["export", "rise", "--shot", "quarter", "--to", "a.html"]) == 0
     [sketch] = page_in(folder / "a.html")["sketches"]
     assert (sketch["frame"], sketch["time"]) == ([200, 100], 1.5)
@@ -186,7 +186,7 @@ def test_two_menus_have_a_sketch_for_each_pair(folder: Path):
         (["rise", "--to", "nowhere/a.html"], "there is no folder 'nowhere' to write into"),
     ],
 )
-def test_what_is_wrong_is_said_in_a_sentence_and_nothing_is_written(
+def test_page_export_error_is_one_message_and_writes_nothing(
     folder: Path, capfd: pytest.CaptureFixture[str], arguments: list[str], sentence: str
 ):
     assert cli.main(["export", *arguments]) == 2

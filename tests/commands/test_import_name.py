@@ -71,7 +71,7 @@ def test_a_package_that_has_overwritten_this_one_is_named(site: Path):
 
 
 @pytest.mark.slow
-def test_a_package_that_was_uninstalled_and_took_the_shared_file_with_it(site: Path):
+def test_uninstall_removing_shared_file_is_reported_with_fix(site: Path):
     (site / "playground" / "__init__.py").unlink()
     done = run(site)
     assert done.returncode == 2 and done.stderr.count("\n") == 1

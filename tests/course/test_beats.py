@@ -202,7 +202,7 @@ def test_words_are_counted_as_they_are_read() -> None:
     assert words("— … |---|") == 0
 
 
-def test_what_is_shown_ends_with_a_sentence_and_is_no_longer_than_it_may_be() -> None:
+def test_beat_text_ends_at_sentence_within_word_limit() -> None:
     text = "One two three. Four five six. Seven eight."
     assert shown_of(text, 6) == "One two three. Four five six."
     assert shown_of(text, 2) == "One two three.", "one sentence at least"

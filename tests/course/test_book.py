@@ -90,7 +90,7 @@ def test_its_files(book):
     ]
 
 
-def test_nothing_on_a_page_comes_from_a_network_and_every_link_leads_somewhere(book):
+def test_book_pages_need_no_network_and_links_resolve(book):
     result = pages(book)
     ids = {page.path: set(page.ids) for page in result}
     outside = []
@@ -186,9 +186,7 @@ def test_its_pictures_are_the_engine_s(book, lesson, engine):
         assert np.abs(stored - drawn).mean() < (0.01 if is_diagram(drawn) else 4.0), picture.name
 
 
-def test_every_stored_picture_counts_and_one_that_cannot_be_stored_is_reported(
-    tmp_path, lesson, engine, monkeypatch
-):
+def test_every_stored_picture_counts_and_failure_is_reported(tmp_path, lesson, engine, monkeypatch):
     """Pictures are stored aside, while the next are drawn."""
     made = prepare(tmp_path / "book", {"en": [lesson]}, gallery=False)
     steps: list[int] = []
@@ -210,7 +208,7 @@ def test_a_picture_shown_twice_is_stored_once(book, lesson):
     assert "small-fault" in names and "small-second" not in names
 
 
-def test_answers_are_folded_away_and_all_is_there_without_a_script(book):
+def test_answers_are_folded_and_readable_without_script(book):
     page = Page(book / "en/small.html")
     text = (book / "en/small.html").read_text(encoding="utf-8")
     assert (
@@ -239,9 +237,7 @@ def test_answers_are_at_the_end_or_nowhere(answers, tmp_path, lesson, engine):
     assert first.count("<summary>") and "Hint" in first
 
 
-def test_a_figure_with_sliders_that_no_page_can_run_says_where_they_are(
-    tmp_path, lesson, french, engine, monkeypatch
-):
+def test_figure_unsupported_in_page_tells_where_sliders_are(tmp_path, lesson, french, engine, monkeypatch):
     monkeypatch.setattr(build, "live_book", lambda *_: LiveBook({"small": frozenset()}, {}))
     book = tmp_path / "book"
     write_book(prepare(book, {"en": [lesson], "fr": [french]}, gallery=False), engine)
@@ -313,7 +309,7 @@ def test_formulas_become_mathml():
     assert 'display="block"' in formula("x", alone=True)
 
 
-def test_lines_of_code_wrap_under_their_indent_and_are_copied_as_they_are():
+def test_code_lines_wrap_under_indent_and_copy_verbatim():
     source = "float f() {\n    // all\n\n        return 1.0;  /* a\n  b */\n}"
     for words in (f"```glsl\n{source}\n```\n", f"```\n{source}\n```\n"):
         html = prose(words, str)
@@ -334,7 +330,7 @@ def test_a_picture_that_is_as_good_as_black_is_known(tmp_path):
         assert pictures.is_blank(tmp_path / f"{name}.webp") is blank, name
 
 
-def test_a_series_opens_on_the_first_picture_that_shows_something(lesson, french):
+def test_series_opens_on_first_non_blank_picture(lesson, french):
     def opens(blank):
         setting = LessonContext(
             lesson, labels("book", "en"), {}, lambda p: p.name, lambda link: {}, (), blank

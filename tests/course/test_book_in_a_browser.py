@@ -78,7 +78,7 @@ def test_a_button_at_the_end_of_a_series_keeps_the_keys(page):
     assert page.run("return document.activeElement.getAttribute('aria-disabled')") == "true"
 
 
-def test_a_comparison_is_swiped_by_mouse_and_keys_and_shown_side_by_side(page):
+def test_comparison_slides_by_mouse_and_keys_and_side_by_side(page):
     page.run("document.querySelector('#two').scrollIntoView({block: 'center', behavior: 'instant'})")
     assert page.run(f"return {AT}") == "50"
     width = page.run("return document.querySelector('#two .variants').getBoundingClientRect().width")
@@ -94,7 +94,7 @@ def test_a_comparison_is_swiped_by_mouse_and_keys_and_shown_side_by_side(page):
     assert left["right"] <= right["left"] and left["top"] == right["top"]
 
 
-def test_on_paper_everything_lies_open_and_answers_are_at_the_end(page):
+def test_print_opens_all_details_with_answers_at_end(page):
     page.run("dispatchEvent(new Event('beforeprint'))")
     page.emulate("setEmulatedMedia", media="print")
     assert count(page, "details:not([open])") == 0
@@ -160,7 +160,7 @@ def test_code_is_copied_as_it_is_written_however_it_wraps(page):
 SEARCHED = "[...document.querySelectorAll('#found a')].map((each) => each.getAttribute('href'))"
 
 
-def test_the_search_finds_words_without_their_accents_by_keys_alone(page, book):
+def test_search_ignores_accents_and_works_by_keyboard(page, book):
     page.open((book / "fr/small.html").as_uri())
     page.run("document.body.focus()")
     page.press("/")
@@ -225,7 +225,7 @@ AXE = Path(build.__file__).resolve().parents[2] / "web/node_modules/axe-core/axe
 
 
 @pytest.mark.skipif(not AXE.is_file(), reason="npm ci in playground/web installs axe-core")
-def test_no_page_has_a_serious_fault_for_those_who_read_otherwise(page, book):
+def test_book_pages_have_no_serious_accessibility_fault(page, book):
     """Of axe-core's rules, in the light and in the dark; the search is open on one."""
     result = []
     for name in ("index.html", "en/index.html", "en/small.html", "fr/small.html", "en/glossary.html"):

@@ -129,7 +129,7 @@ def test_languages_are_promised_as_they_are(capsys):
     assert "that of the system" not in said["translated"]
 
 
-def test_open_without_a_name_takes_the_lesson_read_last_or_the_first(texts, tmp_path, monkeypatch):
+def test_open_without_name_takes_last_read_or_first_lesson(texts, tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     monkeypatch.setattr("sys.platform", "linux")
     opened = []

@@ -56,7 +56,7 @@ def test_a_mistake_in_it_is_a_sentence_with_a_line(course, before, after, words)
     assert words.replace("'", "") in str(caught.value).replace("'", "").replace('"', "")
 
 
-def test_the_time_of_a_lesson_is_that_of_its_words_and_of_its_blocks(write_lesson):
+def test_lesson_time_adds_words_and_blocks(write_lesson):
     """Counted by hand: two figures' worth of pictures, two series, a code, a question, a bug."""
     before = times_of(read_document(write_lesson()))
     seconds = 15 + 30 + 30 + 15 + 30 + 120 + 30  # figure, step, slider, compare, code, break, question

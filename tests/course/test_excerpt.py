@@ -21,7 +21,7 @@ float d;
 """
 
 
-def test_an_anchor_marks_its_lines_without_indentation_and_without_marks():
+def test_anchor_excerpt_is_dedented_without_markers():
     excerpts = anchors("x.glsl", TEXT)
     assert excerpts["outer"].text == "float b = 1.0;\n\n    float c = 2.0;"
     assert excerpts["outer"].line == 3

@@ -103,7 +103,7 @@ def test_an_exported_notebook_is_live_and_asks_for_nothing(run, shown, engine):
     assert [line for line in browser.log() if "favicon" not in line] == []
 
 
-def test_the_html_of_any_exporter_is_live_where_no_state_of_widgets_was_saved(run, shown, engine):
+def test_any_exporter_html_is_live_without_saved_widget_state(run, shown, engine):
     """As JupyterLab saves notebooks: a figure has the values of its cell."""
     scene = read_lesson("diamond_square").named["land"].scene
     nb = copy.deepcopy(run)
@@ -116,7 +116,7 @@ def test_the_html_of_any_exporter_is_live_where_no_state_of_widgets_was_saved(ru
     assert all("cdnjs.cloudflare.com" in url for url in asked_for(browser))  # nbconvert's own
 
 
-def test_without_webgl_an_exported_figure_is_its_picture_and_says_why(run, shown):
+def test_exported_figure_without_webgl_shows_picture_and_reason(run, shown):
     html, _ = TerrainHTMLExporter().from_notebook_node(run)
     browser = shown(html, ("--disable-gpu", "--disable-3d-apis"))
     text = browser.wait("document.querySelector('#f0 .mistake')?.textContent")

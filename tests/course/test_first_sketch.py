@@ -12,9 +12,7 @@ from playground.sketch.load import load
 from playground.sketch.templates import make_sketch
 
 
-def test_an_empty_sketch_is_the_one_of_the_first_lesson_with_the_kernel_that_it_begins_with(
-    engine: Engine, tmp_path: Path
-) -> None:
+def test_empty_template_matches_first_lesson_and_start_kernel(engine: Engine, tmp_path: Path) -> None:
     made = make_sketch(tmp_path / "first", empty=True)
     assert sorted(path.name for path in made.iterdir()) == ["height.glsl", "sketch.toml"]
     assert (made / "height.glsl").read_bytes() == (EXERCISES / "first_height/empty.glsl").read_bytes()

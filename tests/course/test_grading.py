@@ -114,7 +114,7 @@ def test_a_zip_in_a_zip_is_named(tmp_path):
     assert read(path).problem == "week3.zip is a zip in a zip, which is not looked into; hand in its folder"
 
 
-def test_of_several_files_the_outermost_counts_and_the_others_are_mentioned(tmp_path):
+def test_outermost_of_several_files_is_graded_and_others_noted(tmp_path):
     students.write(tmp_path, "Ana", {FILE: TEXT, f"old/{FILE}": TEXT})
     assert read(tmp_path / "Ana").note == ""
     students.write(tmp_path, "Ana", {f"old/{FILE}": "// earlier"})
@@ -161,7 +161,7 @@ def test_a_zip_that_lies_about_a_size_is_not_believed(tmp_path):
     assert read(path).problem
 
 
-def test_a_list_that_only_zip64_tells_of_is_refused_before_it_is_read(tmp_path):
+def test_oversized_zip64_directory_is_refused_before_reading(tmp_path):
     path = tmp_path / "Ana.zip"
     with zipfile.ZipFile(path, "w") as archive:
         for number in range(40):
@@ -315,7 +315,7 @@ def graded(name, points=1.5):
     return Graded(name, {"x-y": mark})
 
 
-def test_no_name_becomes_a_formula_and_each_comes_back_from_the_table():
+def test_no_name_becomes_csv_formula_and_all_names_round_trip():
     data = table_bytes([graded(name) for name in NAMES], ["x-y"], "en")
     assert data.startswith(b"\xef\xbb\xbf")
     rows = list(csv.reader(io.StringIO(data.decode("utf-8-sig"), newline="")))
@@ -352,7 +352,7 @@ def test_a_driver_s_quotes_end_where_they_end():
     assert "1:2: <code>hieght</code> undeclared; <code>hieght</code> is not declared" in text
 
 
-def test_what_grading_says_of_a_file_is_french_in_a_french_report(tmp_path):
+def test_grading_problems_are_french_in_french_report(tmp_path):
     students.write(tmp_path, "Ana", {FILE: b"\xff\x00"})
     problem = read(tmp_path / "Ana").problem
     assert problem == f"{FILE} is not UTF-8 text; save the file as UTF-8" == in_language(problem, "en")
@@ -363,7 +363,7 @@ def test_what_grading_says_of_a_file_is_french_in_a_french_report(tmp_path):
     assert short.startswith("Cem.zip n’est pas un zip lisible"), "a sentence in a sentence"
 
 
-def test_every_sentence_of_grading_has_its_french_with_the_same_places():
+def test_every_grading_message_has_french_with_same_placeholders():
     names = patterns("fr")
     used = set()
     for path in (HERE / "grading").glob("*.py"), (HERE / "tasks").glob("*.py"):
@@ -376,7 +376,7 @@ def test_every_sentence_of_grading_has_its_french_with_the_same_places():
         assert re.findall(r"{.*?}", english) == re.findall(r"{.*?}", french), english
 
 
-def test_what_a_teacher_corrected_is_kept_when_the_report_is_written_again(tmp_path):
+def test_corrected_grades_are_kept_when_report_is_rewritten(tmp_path):
     def write(points):
         return write_report(tmp_path, [graded_as("Ana", points)], {"x-y": "y"}, "en", "llvmpipe")[1]
 

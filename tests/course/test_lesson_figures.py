@@ -59,7 +59,7 @@ def scenes_of(lesson) -> list[Scene]:
     return scenes
 
 
-def test_what_is_set_for_a_picture_makes_the_very_sketch_of_the_lesson(tmp_path, monkeypatch):
+def test_scene_edits_reproduce_exact_lesson_sketch(tmp_path, monkeypatch):
     shelved(monkeypatch, tmp_path)
     scenes = scenes_of(read_lesson("halving"))
     assert len(scenes) == 13
@@ -72,7 +72,7 @@ def test_what_is_set_for_a_picture_makes_the_very_sketch_of_the_lesson(tmp_path,
         assert made.with_values({}) == scene.sketch.with_values({}), scene
 
 
-def test_a_lesson_s_picture_keeps_its_sides_and_the_reader_s_own_those_of_any_picture(harness):
+def test_lesson_picture_keeps_its_frame_and_own_sketch_default(harness):
     harness.open(show=False)
     session = harness.bench.session
     scene = read_lesson("halving").named["rubble"].scene
@@ -97,7 +97,7 @@ def test_every_picture_in_the_view_is_that_of_the_lesson(harness):
             np.testing.assert_array_equal(as_seen(harness), of_lesson(harness, each.scene), err_msg=each.name)
 
 
-def test_the_first_picture_waits_for_a_click_and_next_brings_the_one_after(harness):
+def test_first_picture_waits_for_click_and_next_page_shows_own(harness):
     own = harness.session.path
     harness.open(show=False)
     assert harness.session.path == own and harness.reader.figure.before_lesson is None
@@ -107,7 +107,7 @@ def test_the_first_picture_waits_for_a_click_and_next_brings_the_one_after(harne
     assert harness.session.view.steps == {"height.raw": 0, "phase": 0}
 
 
-def test_a_page_without_a_picture_shows_the_last_one_before_it_where_nothing_is_shown_yet(harness):
+def test_page_without_picture_shows_previous_if_stage_is_empty(harness):
     harness.open(3)
     assert harness.reader.figure.key == ("seeds", 1) and value(harness, "height.seed") == 2
     harness.reader.show(block(harness, "rubble"))
@@ -136,7 +136,7 @@ def test_what_was_open_comes_back_with_its_values_and_its_undo(harness):
     assert not harness.session.shown.edits.values
 
 
-def test_a_turned_page_does_not_take_a_sketch_that_has_been_changed_but_show_does(harness):
+def test_page_turn_keeps_edited_sketch_and_show_replaces_it(harness):
     own = harness.session.path
     harness.session.drafts.set("height.seed", 5)
     harness.run_frames(2)
@@ -150,7 +150,7 @@ def test_a_turned_page_does_not_take_a_sketch_that_has_been_changed_but_show_doe
     assert harness.session.path != own
 
 
-def test_what_a_reader_sets_in_a_picture_comes_back_by_undo_after_another_one(harness):
+def test_reader_edit_in_figure_is_restored_by_later_undo(harness):
     harness.open()
     harness.session.drafts.set("height.seed", 77)
     harness.run_frames(60)
@@ -187,7 +187,7 @@ def test_what_is_compared_with_comes_back_with_what_was_open(harness):
     assert dict(compare.remembered().edits.values) == {"height.seed": 5}
 
 
-def test_what_was_set_in_a_sketch_with_a_mistake_comes_back_once_it_is_fixed(harness):
+def test_edits_of_broken_sketch_return_once_it_is_fixed(harness):
     own = harness.session.path
     own.write_text(OWN.replace("white_noise", "white_noyse"), encoding="utf-8")
     harness.session.open(own, start=StoredEdits(Edits((("height.seed", 5),))))
@@ -205,7 +205,7 @@ def test_what_was_set_in_a_sketch_with_a_mistake_comes_back_once_it_is_fixed(har
     assert harness.session.error is None and value(harness, "height.seed") == 5
 
 
-def test_what_the_files_came_to_say_during_a_lesson_goes_before_what_was_set_by_hand(harness):
+def test_file_change_during_lesson_overrides_manual_edit(harness):
     own = harness.session.path
     own.write_text(OWN.replace("[view]", "set = { seed = 2 }\n[view]"), encoding="utf-8")
     harness.session.drafts.reload()
@@ -221,7 +221,7 @@ def test_what_the_files_came_to_say_during_a_lesson_goes_before_what_was_set_by_
     assert harness.session.path == own and "height.seed" not in dict(harness.session.shown.edits.values)
 
 
-def test_going_back_to_a_sketch_that_is_gone_says_so_and_can_be_requested_again(harness):
+def test_return_to_missing_sketch_is_reported_and_retryable(harness):
     own = harness.session.path
     harness.open(show=False)
     harness.reader.show(block(harness, "rubble"))
@@ -237,7 +237,7 @@ def test_going_back_to_a_sketch_that_is_gone_says_so_and_can_be_requested_again(
     assert harness.session.path == own and harness.reader.figure.before_lesson is None
 
 
-def test_a_copy_that_is_opened_leaves_the_readers_sketch_the_readers(harness):
+def test_opened_copy_keeps_reader_sketch_and_its_autosave(harness):
     own = harness.session.path
     harness.open(3, show=False)
     harness.reader.bugs.edit(block(harness, "mean"))
@@ -268,7 +268,7 @@ def test_nothing_of_a_lesson_is_remembered_of_its_sketches(harness, tmp_path):
     ] == [("own", 5)]
 
 
-def test_playing_on_opens_the_sketch_as_the_readers_own_with_what_was_set_there(harness):
+def test_play_on_opens_figure_as_own_sketch_with_its_edits(harness):
     harness.session.open(find("white_noise"))
     harness.run_frames(2)
     harness.session.drafts.set("height.seed", 41)
@@ -285,7 +285,7 @@ def test_playing_on_opens_the_sketch_as_the_readers_own_with_what_was_set_there(
     assert harness.reader.figure.before_lesson is None and harness.bench.interface.panel_shown
 
 
-def test_a_dropped_sketch_leaves_the_figure_also_where_that_is_of_the_same_file(harness):
+def test_dropped_sketch_leaves_figure_even_of_same_file(harness):
     harness.bench.commands.opens = harness.autosave.open
     harness.bench.commands.open(find("white_noise"))
     harness.run_frames(2)
@@ -397,7 +397,7 @@ def test_a_bug_is_drawn_and_fixed_and_the_file_stays_as_it_is(harness):
     assert FILE.read_bytes() == before
 
 
-def test_a_bug_that_does_not_compile_says_so_and_leaves_the_stage_with_its_page(harness):
+def test_uncompilable_bug_is_reported_and_leaves_with_its_page(harness):
     harness.open(3)
     bug = block(harness, "quarter")
     harness.reader.bugs.break_it(bug)
@@ -437,7 +437,7 @@ def test_code_is_shown_as_the_copy_has_it_until_it_is_put_back(harness):
     assert FILE.read_text(encoding="utf-8") == before
 
 
-def test_a_mistake_in_a_copy_is_edited_in_the_copy_also_where_its_window_was_closed(harness):
+def test_error_in_copy_opens_copy_even_if_its_editor_was_closed(harness):
     harness.open(3)
     bug = block(harness, "quarter")
     harness.bench.files.open(FILE, here=True)  # the reader has the file itself open
@@ -489,7 +489,7 @@ def test_what_was_typed_in_a_copy_and_not_saved_is_there_again(harness):
     assert "// other" not in text_window(harness).get_text(), "so does putting the file back"
 
 
-def test_numbers_are_computed_while_nothing_moves_and_the_picture_stays(harness):
+def test_numbers_are_computed_at_idle_and_picture_stays(harness):
     harness.open(1)
     harness.run_frames(3)
     seen, runs = as_seen(harness), dict(harness.session.engine.runs)
@@ -506,7 +506,7 @@ def test_numbers_are_computed_while_nothing_moves_and_the_picture_stays(harness)
     np.testing.assert_array_equal(as_seen(harness), seen)
 
 
-def test_opening_a_sketch_meanwhile_takes_the_stage_from_the_lesson(harness):
+def test_opening_sketch_takes_stage_from_lesson(harness):
     harness.open()
     assert harness.reader.figure.before_lesson is not None
     harness.bench.commands.open(find("diamond_square_steps"))

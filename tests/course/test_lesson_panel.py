@@ -15,7 +15,7 @@ from playground.sketch.find import find
 from .lesson_desk import FILE, value
 
 
-def test_a_key_brings_the_lessons_where_they_were_left_and_takes_them_away(harness, tmp_path):
+def test_lesson_key_restores_last_page_and_toggles_panel(harness, tmp_path):
     harness.key(imgui.Key.f2)
     assert harness.reader.lesson is not None and not harness.bench.interface.panel_shown
     harness.key(imgui.Key.page_down)
@@ -64,7 +64,7 @@ def test_a_slider_over_iterations_stops_the_kernels(harness):
     assert harness.session.view.steps == {"height.raw": 2, "phase": 2}
 
 
-def test_an_answer_waits_for_a_choice_and_a_solution_for_its_button(harness):
+def test_answer_waits_for_choice_and_solution_for_its_button(harness):
     harness.open(4)
     assert "Show the answer" in harness.places and "Hide it##answer" not in harness.places
     choices = [key for key in harness.places if key == "##choice"]
@@ -202,7 +202,7 @@ def test_lessons_are_read_only_when_they_are_opened(harness, monkeypatch):
     assert [summary.title for summary in harness.reader.summaries] == ["Halving", "After it"]
 
 
-def test_the_command_without_arguments_shows_lessons_in_its_window(monkeypatch):
+def test_bare_command_opens_window_with_lessons(monkeypatch):
     values: list[dict[str, object]] = []
     monkeypatch.setattr("playground.doctor.where_to_show", lambda *_: ":0")
     monkeypatch.setattr(cli.live, "open_window", lambda *_, **rest: values.append(rest))
@@ -211,7 +211,7 @@ def test_the_command_without_arguments_shows_lessons_in_its_window(monkeypatch):
 
 
 @pytest.mark.parametrize("shown", [True, False])
-def test_lessons_next_to_a_sketch_open_where_they_were_left_unless_they_were_closed(harness, shown):
+def test_lessons_beside_sketch_resume_unless_closed(harness, shown):
     harness.reader.progress.lesson, harness.reader.progress.shown = "after", shown
     assert harness.lessons is not None
     harness.lessons.begin({"welcome": True})

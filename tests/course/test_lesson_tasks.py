@@ -206,7 +206,7 @@ def test_values_are_exchanged_as_they_are_in_the_picture(harness, tasks):
     assert tasks.attempt(rough).before == ("", {"height.smoothing": 0.2})
 
 
-def test_what_is_typed_and_never_saved_is_there_at_the_next_start(harness, tasks):
+def test_unsaved_typing_survives_restart(harness, tasks):
     tasks.start(block(harness, "power"))
     harness.run_frames(4)
     (editing,) = harness.bench.files.editing
@@ -307,7 +307,7 @@ def test_the_window_says_that_attempts_could_not_be_read(harness):
     assert any("what was remembered of lessons cannot be read; it is kept in" in text for text in said)
 
 
-def test_progress_of_before_is_read_and_what_is_done_is_written_whole(tmp_path):
+def test_old_progress_is_read_and_new_attempts_round_trip(tmp_path):
     path = tmp_path / "lessons.json"
     old = Progress("halving", sections={"halving": 2})
     assert write_progress(old, path) == ""

@@ -224,7 +224,7 @@ def test_a_damaged_attempt_takes_no_other_with_it(tmp_path):
         assert open_progress(file) == (replace(progress, attempts={"fourier/two": whole}), "")
 
 
-def test_a_file_that_cannot_be_read_is_kept_and_no_earlier_one_is_overwritten(tmp_path):
+def test_unreadable_progress_is_kept_without_overwriting_backups(tmp_path):
     file = tmp_path / "lessons.json"
     kept = []
     for text in ("{ my first kernels", '{"format": 9}', "my attempts" + " " * 2**24):

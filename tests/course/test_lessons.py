@@ -35,7 +35,7 @@ def test_they_are_numbered_in_the_order_of_the_course():
     assert [lesson.title for lesson in read_lessons("fr")] == [summary.title for summary in summaries("fr")]
 
 
-def test_french_has_one_space_before_a_sign_and_a_thin_one_in_numbers():
+def test_french_has_no_break_space_before_signs_thin_in_numbers():
     """No line begins with a sign: before ; : ! ? and » stands U+00A0, and « has it after itself."""
     lessons = list((TEXTS / "fr").glob("*.md"))
     assert len(lessons) == len(NAMES)

@@ -252,7 +252,7 @@ def test_nothing_says_where_it_was_made(book):
     assert not [file for file in json.loads(shared)["files"] if file.endswith(".toml")]
 
 
-def test_bytes_that_are_few_are_in_the_lesson_and_others_in_a_script_of_their_own(delaunay):
+def test_small_blobs_are_inline_and_large_ones_separate_scripts(delaunay):
     own = [name for name in delaunay.files if re.fullmatch(r"data/[0-9a-f]{16}\.js", name)]
     assert all(len(delaunay.files[name]) > MAX_INLINE_LETTERS for name in own) and len(own) < 10
     blobs = held_in(delaunay.files["data/delaunay.js"])["blobs"]

@@ -153,7 +153,7 @@ class Recorder(SimpleHTTPRequestHandler):
         pass
 
 
-def test_nothing_runs_until_it_is_asked_for_and_then_nothing_but_the_book(book, tmp_path):
+def test_book_runs_nothing_until_asked_and_loads_its_own_files(book, tmp_path):
     """From a server that notes every request: a disk keeps no list."""
     Recorder.asked.clear()
     server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Recorder, directory=str(book)))
@@ -271,7 +271,7 @@ def test_a_broken_shader_is_repaired(page, lesson, engine):
     np.testing.assert_allclose(shown.astype(int), drawn(engine, block.scene, shown), atol=2)
 
 
-def test_an_exercise_says_when_the_picture_is_that_of_the_solution(page, lesson, engine):
+def test_exercise_reports_when_picture_matches_solution(page, lesson, engine):
     start(page, "second")
     shown = picture(page, "second")
     plain = drawn(engine, lesson.named["smooth"].scenes[1], shown)  # 0.5 is the sketch's own
@@ -295,7 +295,7 @@ def results(page, name):
     return page.run(f"return [...{text}].map((each) => [each.className, each.textContent])")
 
 
-def test_an_exercise_of_values_is_checked_at_values_that_are_not_shown(page):
+def test_value_exercise_is_checked_at_hidden_values(page):
     start(page, "first")
     page.click("#first .check")
     (seen, said), (hidden, other) = results(page, "first")
@@ -495,7 +495,7 @@ def test_a_lost_context_is_told_and_its_pictures_come_back(page, lesson, engine)
     page.log()  # Chromium notes a context that is lost
 
 
-def test_lines_that_lose_the_context_are_taken_back_and_those_that_hang_are_not_drawn_again(page, lesson):
+def test_line_losing_context_is_reverted_and_hanging_not_redrawn(page, lesson):
     page.run(CONTEXT)
     start(page, "fault")
     page.wait("document.querySelector('#fault .editor-status').textContent === ''")

@@ -150,7 +150,7 @@ def test_a_figure_in_another_widget_keeps_its_state(opened):
 
 
 @pytest.mark.slow
-def test_a_page_has_formulas_without_a_script_and_asks_for_nothing(opened, caplog):
+def test_page_has_script_free_formulas_and_no_requests(opened, caplog):
     nb = notebook_of([opened.show("land")])
     text = "So $\\sigma^2$ and\n\n$$h = \\sqrt{x}$$\n\nand $\\unheard{x}$."
     nb.cells.insert(0, nbformat.v4.new_markdown_cell(text))

@@ -5,7 +5,7 @@ import numpy as np
 from playground.course.measures import Grid, peaks_on_lattice
 
 
-def test_a_peak_counts_where_its_row_and_its_column_are_on_the_lattice():
+def test_peak_counts_if_row_and_column_are_on_lattice():
     values = np.zeros((17, 17))
     for row, column in ((4, 8), (6, 2), (9, 4), (4, 11), (13, 13)):
         values[row, column] = 1.0

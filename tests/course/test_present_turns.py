@@ -10,7 +10,7 @@ from playground.course.window.figure_view import FigureView
 AREA = 0.0, 0.0, 320.0, 180.0
 
 
-def test_a_beat_s_sketch_is_loaded_after_its_words_and_beats_that_are_skipped_load_none(
+def test_beat_loads_sketch_after_text_and_skipped_beats_none(
     harness, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stage = Stage(harness.bench, harness.reader, lambda: None)

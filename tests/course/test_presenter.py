@@ -58,7 +58,7 @@ def test_a_blank_screen_comes_back_before_the_next_beat(talk: Talk) -> None:
 
 
 @pytest.mark.parametrize("colour", ["black", "white"])
-def test_escape_takes_away_what_is_in_the_way_one_by_one_and_then_leaves(talk: Talk, colour: str) -> None:
+def test_escape_dismisses_overlays_one_by_one_then_leaves(talk: Talk, colour: str) -> None:
     talk.helps = True
     talk.type("4")
     talk.cover(colour)

@@ -188,7 +188,7 @@ def results(engine, block, text):
     return verdict, sentences(verdict, "en")
 
 
-def test_a_kernel_that_knows_only_what_is_shown_fails_at_hidden_values(task, engine):
+def test_kernel_fitted_to_shown_values_fails_hidden_values(task, engine):
     shown_only = RAW.replace(FORMULA, "number * (seed == 7821u ? share : 1.0) * smoothing")
     verdict, said = results(engine, task(KERNEL).block, shown_only)
     assert [result.passed for result in verdict.results] == [True, False, True]
@@ -202,7 +202,7 @@ def test_what_a_hidden_check_shows_is_no_picture(task, engine):
     assert [result.check.hidden for result in verdict.visible] == [False, False]
 
 
-def test_a_text_with_an_error_is_a_verdict_with_the_compilers_words(task, engine):
+def test_text_with_error_gets_verdict_with_compiler_message(task, engine):
     verdict, said = results(engine, task(KERNEL).block, RAW.replace(FORMULA, "number * shair"))
     assert verdict.points == 0.0 and not verdict.results
     line = next(n for n, text in enumerate(RAW.split("\n"), 1) if FORMULA in text)
@@ -280,7 +280,7 @@ def test_a_texture_of_another_size_differs():
     ("expected", "mine", "greys"),
     [(0.5, 0.25, (128, 64)), (0.0, 1.0, (0, 255)), (300.0, 150.0, (255, 128)), (-1.0, 0.0, (0, 128))],
 )
-def test_a_texture_that_is_the_same_everywhere_is_shown_as_its_value(expected, mine, greys):
+def test_constant_texture_is_shown_as_its_value(expected, mine, greys):
     first, other = (Wanted(texture=np.full((5, 5), value, np.float32)) for value in (expected, mine))
     result = compare(Check(0.1, of="height"), other, first)
     assert (np.unique(result.expected).tolist(), np.unique(result.mine).tolist()) == ([greys[0]], [greys[1]])
@@ -340,7 +340,7 @@ def test_where_a_picture_differs(rows, columns, position):
     assert up.region == position
 
 
-def test_a_score_is_linear_between_the_beginning_and_the_picture_asked_for():
+def test_score_is_linear_from_start_to_target_picture():
     target, begin = np.full((9, 16, 3), 200, np.uint8), np.full((9, 16, 3), 100, np.uint8)
     for level, expected in ((200, 100.0), (100, 0.0), (150, 50.0), (175, 75.0), (20, 0.0), (250, 50.0)):
         assert score(target, begin, np.full_like(target, level)) == pytest.approx(expected)

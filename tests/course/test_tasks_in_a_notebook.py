@@ -32,7 +32,7 @@ def opened(task, engine, process, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_verdict_has_points_marks_and_pictures_of_what_is_shown_only(opened):
+def test_verdict_shows_points_marks_and_no_hidden_pictures(opened):
     lesson = opened(KERNEL)
     checked = lesson.check("third", RAW.replace(FORMULA, "number * smoothing"))
     assert str(checked).split("\n")[0] == "0 of 3 points"

@@ -125,7 +125,7 @@ def test_what_a_translation_may_not(pair, before, after, words):
     assert caught.value.diagnostics[0].line
 
 
-def test_marking_one_with_other_blocks_is_refused_and_nothing_written(pair):
+def test_marking_translation_with_other_blocks_is_refused(pair):
     english, french = pair
     text = french.read_text(encoding="utf-8").replace("Une image d’abord.\n", "Une image.\n\nD’abord.\n")
     french.write_text(text, encoding="utf-8")
@@ -188,7 +188,7 @@ def test_one_that_says_something_else_is_not_marked(pair, before, after, words):
     assert french.read_text(encoding="utf-8") == text
 
 
-def test_one_with_fewer_blocks_than_it_was_marked_with_is_not_current(pair):
+def test_translation_with_fewer_blocks_than_marked_is_outdated(pair):
     english, french = pair
     text = french.read_text(encoding="utf-8").replace("Une image d’abord.\n", "")
     french.write_text(text, encoding="utf-8")

@@ -44,9 +44,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.slow
-def test_a_lesson_next_to_a_sketch_takes_the_view_when_its_page_is_turned(
-    screen: Screen, folder: Path
-) -> None:
+def test_lesson_beside_sketch_takes_view_on_page_turn(screen: Screen, folder: Path) -> None:
     progress = folder / "state" / "terrain-shader-playground" / "lessons.json"
     window = opened(screen, folder)
     try:
@@ -65,9 +63,7 @@ def test_a_lesson_next_to_a_sketch_takes_the_view_when_its_page_is_turned(
 
 
 @pytest.mark.slow
-def test_lessons_that_were_closed_stay_closed_and_leave_no_trace_in_sketches(
-    screen: Screen, folder: Path
-) -> None:
+def test_closed_lessons_stay_closed_and_leave_sketches_untouched(screen: Screen, folder: Path) -> None:
     progress = folder / "state" / "terrain-shader-playground" / "lessons.json"
     progress.parent.mkdir(parents=True)
     write_progress(Progress("halving", shown=False, sections={"halving": 1}), progress)

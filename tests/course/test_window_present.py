@@ -29,7 +29,7 @@ SCREEN = 960, 540  # [pixels]
 
 
 @pytest.mark.slow
-def test_a_clicker_and_the_notes_drive_a_presentation_that_escape_leaves(
+def test_clicker_and_notes_drive_presentation_until_escape(
     screen: Screen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("LC_ALL", "C")

@@ -91,7 +91,7 @@ def test_every_circle_is_empty(rules, by_flips):
 
 
 @pytest.mark.slow
-def test_the_circles_of_many_triangles_are_empty_of_their_neighbours():
+def test_circumcircles_contain_no_vertex_of_adjacent_triangles():
     """Where no neighbour's corner lies in a circle, no point at all does (Delaunay's lemma)."""
     made = triangulate(Rules(points=1500, random_weights=True))
     for triangle, neighbours in zip(made.triangles.tolist(), made.neighbours.tolist(), strict=True):
@@ -200,7 +200,7 @@ def test_random_weights_differ():
 
 
 @pytest.mark.parametrize("by_flips", [False, True])
-def test_what_was_destroyed_are_the_triangles_whose_circles_held_the_point(by_flips):
+def test_destroyed_triangles_have_new_point_in_circumcircle(by_flips):
     rules = Rules(random_weights=True, by_flips=by_flips)
     most = 0
     for points in range(1, 40):

@@ -158,7 +158,7 @@ def test_a_damaged_tag_is_one_sentence_and_no_log(tmp_path, capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_the_first_of_several_pictures_is_read_and_that_is_reported(tmp_path):
+def test_first_of_several_tiff_images_is_read_and_reported(tmp_path):
     with tifffile.TiffWriter(tmp_path / "a.tif") as tif:
         tif.write(HEIGHTMAP)
         tif.write(2 * HEIGHTMAP)

@@ -54,7 +54,7 @@ def test_a_grid_of_text_however_its_lines_part_it(tmp_path, per_line):
     assert elevation.place.crs.facts.epsg == 32633
 
 
-def test_the_corner_or_the_middle_of_the_cell_and_cells_that_are_not_square(tmp_path):
+def test_cell_registration_and_non_square_cells_set_bounds(tmp_path):
     header = "xllcenter 1000\nyllcenter 2000\ndx 10\ndy 20"
     elevation = read_elevation(asc(tmp_path / "a.asc", header=header))
     assert elevation.spacing == (10.0, 20.0) and elevation.place.bounds == (1000.0, 2000.0, 1040.0, 2120.0)
@@ -69,7 +69,7 @@ def test_cells_in_degrees_and_in_feet(tmp_path):
     assert elevation.spacing == pytest.approx((25 * 1200 / 3937,) * 2, rel=1e-9)
 
 
-def test_without_a_prj_the_cells_are_not_believed_and_that_is_said(tmp_path):
+def test_grid_without_prj_has_no_spacing_and_reports_it(tmp_path):
     elevation = read_elevation(asc(tmp_path / "a.asc", prj=""))
     assert elevation.spacing is None and elevation.in_metres
     assert "there is no a.prj next to it" in elevation.notes[0]

@@ -169,7 +169,7 @@ def test_a_large_file_is_read_at_the_size_of_the_terrain(tmp_path, values, monke
     assert KIND.notes(asked) == ()
 
 
-def test_a_large_file_without_a_size_is_read_at_the_usual_one_and_that_is_said(tmp_path, values):
+def test_large_raster_without_size_reads_at_default_and_reports(tmp_path, values):
     path = raster(tmp_path / "a.tif", smooth())
     assert KIND.describe(values(path)).size == (61, 44)
     assert KIND.notes(values(path)) == (

@@ -98,7 +98,7 @@ HOLED = [
 ]
 
 
-def test_a_polygon_without_its_hole_covers_as_much_of_each_texel_as_it_does():
+def test_polygon_with_hole_has_correct_texel_coverage():
     polygon = shape("polygon", *HOLED)
     made = draw([polygon], Grid((41, 29), (10.0, 10.0)), 1.0, filled=True)
     truth = in_texels(inside(fine_places((41, 29)), polygon.lines))
@@ -109,7 +109,7 @@ def test_a_polygon_without_its_hole_covers_as_much_of_each_texel_as_it_does():
     assert made[8, 20] == 1.0 and made[12, 8] == 1.0
 
 
-def test_polygons_that_overlap_are_both_there_and_outlined_are_lines():
+def test_overlapping_polygons_merge_and_outlines_are_lines():
     a = shape("polygon", [(2.5, 2.5), (12.5, 2.5), (12.5, 12.5), (2.5, 12.5), (2.5, 2.5)])
     b = shape("polygon", [(8.5, 8.5), (18.5, 8.5), (18.5, 18.5), (8.5, 18.5)])
     grid = Grid((21, 21), (1.0, 1.0))
@@ -119,7 +119,7 @@ def test_polygons_that_overlap_are_both_there_and_outlined_are_lines():
     assert outlined[7, 7] == 0.0 and outlined.sum() == pytest.approx(40.0, rel=0.05)
 
 
-def test_what_goes_far_beyond_the_terrain_is_drawn_where_it_is_on_it():
+def test_shapes_far_beyond_bounds_are_clipped_to_terrain():
     around = shape("polygon", [(-1e7, -1e7), (1e7, -1e7), (1e7, 1e7), (-1e7, 1e7)])
     across = shape("line", [(-1e9, 10.0), (1e9, 10.0)])
     grid = Grid((31, 21), (5.0, 5.0))
@@ -288,7 +288,7 @@ _VRT = (
     ],
     ids=["inside", "before", "long", "second", "deep", "marked", "network", "entity", "schema"],
 )
-def test_a_list_of_other_sources_does_not_pass_for_a_file_of_shapes(tmp_path, ending, text):
+def test_list_of_other_sources_is_refused_as_vector_file(tmp_path, ending, text):
     pytest.importorskip("pyogrio")  # of the extra gis
     private = geojson(tmp_path / "private.geojson", geometry("Point", [1, 2]))
     path = tmp_path / f"a{ending}"
@@ -363,7 +363,7 @@ def test_the_kernel_declares_what_the_source_reads():
 
 
 @pytest.mark.parametrize("size", [(61, 41), (121, 81), (200, 33)])
-def test_a_place_in_degrees_is_at_its_place_on_terrain_in_degrees(tmp_path, values, size):
+def test_geographic_point_lands_at_its_texel_on_geographic_dem(tmp_path, values, size):
     dem = terrain(tmp_path / "a.tif", 4269, 10.0, 47.0, (0.001, 0.002), model=2)
     path = geojson(tmp_path / "a.json", geometry("Point", [10.0423, 46.9577]))
     made = KIND.make(values(path, dem, width=900.0), size)["mask"]

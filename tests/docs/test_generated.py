@@ -38,7 +38,7 @@ def test_every_command_and_each_of_its_options_is_there():
 
 
 @pytest.mark.slow
-def test_every_technique_has_a_page_with_its_parameters_and_what_it_says_of_itself():
+def test_every_technique_page_lists_parameters_and_description():
     named = {entry.name for entries in techniques.entries().values() for entry in entries}
     assert named == {entry.name for entry in listed()} and len(named) > 60
     index = techniques.index()
@@ -102,7 +102,7 @@ def test_the_site_is_not_built_without_its_pictures(monkeypatch, module, name, v
         hooks.on_config(MkDocsConfig())
 
 
-def test_every_public_name_is_in_the_reference_and_says_what_it_is():
+def test_every_public_name_is_in_reference_with_docstring():
     text = python.page()
     for name in playground.__all__:
         assert re.search(rf"\bplayground\.{name}\b", text), name

@@ -163,7 +163,7 @@ SOUTH_FIRST = NORTH_FIRST | {"y": NORTH_FIRST["y"][::-1]}
         Labelled(HEIGHTS, places={k: np.array(v) / 1000 for k, v in SOUTH_FIRST.items()}, units="km"),
     ],
 )
-def test_coordinates_say_where_rows_go_and_how_far_apart_they_are(any_engine, sketch, labelled):
+def test_array_coordinates_set_row_order_and_spacing(any_engine, sketch, labelled):
     metres = any_engine.metres(given(sketch, labelled), "height")
     np.testing.assert_allclose(metres, HEIGHTS, atol=1e-5)
     terrain = any_engine.record.plan.terrain
@@ -225,7 +225,7 @@ def test_what_is_no_grid_is_refused_in_a_sentence(sketch, array, sentence):
         given(sketch, array)
 
 
-def test_a_copy_of_the_sketch_takes_its_array_along_and_a_pack_says_why_not(any_engine, sketch, tmp_path):
+def test_sketch_copy_saves_its_array_and_pack_is_refused(any_engine, sketch, tmp_path):
     changed = given(sketch, HEIGHTS)
     copied = playground.load(save_copy(sketch, changed, tmp_path))
     np.testing.assert_allclose(any_engine.read(copied, "height"), SHARES, atol=1e-6)
@@ -339,7 +339,7 @@ def test_an_array_of_another_size_keeps_its_own(any_engine, adding):
     assert any_engine.record.plan.step("b_first_array").size == (9, 7)
 
 
-def test_an_input_that_is_not_there_and_what_is_no_texture_are_refused(adding, tmp_path):
+def test_unknown_input_and_invalid_array_are_refused(adding, tmp_path):
     for path, array, sentence in (
         ("b.frist", HEIGHTS, r"no input 'b\.frist'; did you mean 'b\.first'"),
         ("c.first", HEIGHTS, r"no input 'c\.first'"),

@@ -46,7 +46,7 @@ def test_small_results_are_bounded_in_number_too(ctx, monkeypatch):
 
 
 @pytest.mark.slow
-def test_of_a_pass_that_changes_with_every_picture_few_versions_stay_and_textures_are_used_again(ctx):
+def test_changing_pass_keeps_few_versions_and_reuses_textures(ctx):
     sketch = load("diamond_square").with_values({"size": 17, "view.grid": 17})
     with Engine(ctx) as engine:
         made = []
@@ -110,7 +110,7 @@ def test_large_textures_of_the_last_frame_are_used_again(ctx, passes, made):
 
 
 @pytest.mark.slow
-def test_a_texture_that_is_used_again_shows_nothing_of_its_old_mipmaps(ctx):
+def test_reused_texture_has_no_stale_mipmaps(ctx):
     sketch = load("jacksboro").with_values({"size": 65, "view.grid": 33})
     suns = [sketch.with_values({"light.sun": (20.0 * number, 15.0)}) for number in range(cache.VERSIONS + 4)]
     with Engine(ctx) as engine, Engine(ctx) as fresh:

@@ -96,7 +96,7 @@ def test_a_part_of_a_sketch_is_checked_and_opened_by_one_rule(folder, sandbox):
     load(part)
 
 
-def test_a_shader_with_nothing_to_run_is_reported_alike_by_check_and_by_opening_it(folder, sandbox):
+def test_shader_without_kernel_gets_same_error_in_check_and_load(folder, sandbox):
     bare = folder.write("bare.frag", "float x;\n")
     said = wrong(bare, sandbox).message
     assert said == "nothing to run: no main, mainImage or #pragma kernel"
@@ -110,7 +110,7 @@ ALL = HOLE + "float kernel(ivec2 texel) { return sqrt(root); }\n"
 SOME = HOLE + "float kernel(ivec2 texel) { return texel.x == 1 ? sqrt(root) : 0.5; }\n"
 
 
-def test_a_technique_of_nothing_but_nan_fails_and_one_hole_may_be_the_stand_ins_own(folder, sandbox):
+def test_all_nan_output_fails_check_and_single_hole_passes(folder, sandbox):
     result = wrong(folder.write("all.glsl", ALL), sandbox)
     assert "output 'height': none of its 1089 texels is finite; the first is NaN" in result.message
     assert (Path(result.file).name, result.line) == ("all.glsl", 2)
@@ -158,7 +158,7 @@ LIBRARY = "float height_at(ivec2 texel);\nvoid count_step(inout int steps);\n"
 READS = "float twice(ivec2 texel) { int n = 0; count_step(n); return 2.0 * height_at(texel); }\n"
 
 
-def test_a_library_file_may_declare_what_the_file_that_includes_it_defines(folder, sandbox):
+def test_library_file_may_declare_functions_its_includer_defines(folder, sandbox):
     assert check_file(folder.write("march.glsl", LIBRARY + READS), sandbox).ok
     result = wrong(folder.write("slip.glsl", LIBRARY + READS.replace("height_at(", "hight_at(")), sandbox)
     assert (Path(result.file).name, result.line) == ("slip.glsl", 3), result

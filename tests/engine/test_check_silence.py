@@ -45,7 +45,7 @@ float kernel(ivec2 texel) {
 """
 
 
-def test_an_error_below_a_macro_call_that_spans_lines_is_reported_at_its_line(folder, any_engine):
+def test_error_after_multiline_macro_call_has_its_own_line(folder, any_engine):
     sketch = folder.one(KERNEL + CALLS)
     with pytest.raises(ShaderError) as caught:
         any_engine.read(sketch, "a")
@@ -54,7 +54,7 @@ def test_an_error_below_a_macro_call_that_spans_lines_is_reported_at_its_line(fo
     assert (any_engine.read(good, "a") == 6.0).all()
 
 
-def test_one_inside_such_a_call_is_reported_where_the_call_begins(folder, any_engine):
+def test_error_inside_multiline_macro_call_has_its_first_line(folder, any_engine):
     sketch = folder.one(KERNEL + CALLS.replace("3.0)", "wrong)").replace("sum + wrong", "sum"))
     with pytest.raises(ShaderError) as caught:
         any_engine.read(sketch, "a")
@@ -82,7 +82,7 @@ def test_a_line_directive_moves_no_error_and_is_a_warning(folder, sandbox, any_e
 # Places that a message lacks
 
 
-def test_a_function_that_calls_itself_is_reported_where_it_is_defined(folder, any_engine):
+def test_recursion_is_reported_at_function_definition(folder, any_engine):
     text = (
         "int f(ivec2 n) { return n.x; }\n"
         "int f(int n);\nint g(int n) { return f(n - 1); }\n"
@@ -95,7 +95,7 @@ def test_a_function_that_calls_itself_is_reported_where_it_is_defined(folder, an
     assert all("recursion" in d.message for d in caught.value.diagnostics), caught.value
 
 
-def test_includes_in_a_circle_and_texts_that_are_not_utf_8_have_their_line(folder, sandbox):
+def test_include_cycle_and_invalid_utf8_are_reported_at_line(folder, sandbox):
     folder.write("round.glsl", '\n#include "a.glsl"\n')
     report = checked(folder.write("a.glsl", f'{KERNEL}#include "round.glsl"\n'), sandbox)
     assert placed(report.errors[0]) == ("round.glsl", 2) and "include cycle" in report.errors[0].message
@@ -136,7 +136,7 @@ def test_code_in_a_source_s_file_is_refused_at_its_line(folder, sandbox, code):
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes in this system's folders")
-def test_pipes_and_sockets_are_refused_in_a_sentence_and_never_waited_for(folder, sandbox, tmp_path_factory):
+def test_fifos_and_sockets_are_refused_without_blocking(folder, sandbox, tmp_path_factory):
     folder.write("good.glsl", f"{KERNEL}float kernel(ivec2 texel) {{ return 1.0; }}\n")
     os.mkfifo(folder.path / "pipe.glsl")
     os.mkfifo(folder.path / "pipe.toml")
@@ -196,7 +196,7 @@ def test_one_that_is_meant_as_a_parameter_is_one(folder, sandbox, declared):
 REPEATS = f'{KERNEL[:-2]}, repeat = "5")\nfloat kernel(ivec2 texel) {{ return previous(texel) + 1.0; }}\n'
 
 
-def test_steps_beyond_the_repeat_are_refused_and_of_a_shot_at_its_line(folder, sandbox, any_engine):
+def test_steps_beyond_repeat_are_refused_and_shot_at_its_line(folder, sandbox, any_engine):
     shot = '[[shot]]\nname = "end"\nsteps = {{ a = {} }}\n'
     sketch = folder.one(REPEATS, more=shot.format(5))
     assert checked(folder.path / "sketch.toml", sandbox).ok

@@ -207,7 +207,7 @@ float kernel(ivec2 texel) { return 1.0 + 0.0 * again; }
 """
 
 
-def test_a_spare_buffer_begins_as_zeros_again_unless_it_is_overwritten(any_engine, folder):
+def test_spare_buffer_is_cleared_unless_overwritten(any_engine, folder):
     """The buffer of the run before is used again, so a variant that adds to it shows what it began with."""
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
@@ -240,7 +240,7 @@ def test_a_spare_buffer_serves_what_needs_a_little_less(any_engine, folder):
     assert result[0] == result[1] == [19 * 19 * 4] and result[2] == [19 * 19 * 4, 12 * 12 * 4]
 
 
-def test_of_spare_buffers_over_the_bound_the_largest_stays_while_it_is_used(any_engine, folder, monkeypatch):
+def test_largest_spare_buffer_over_budget_stays_while_in_use(any_engine, folder, monkeypatch):
     """A frame's smaller passes do not have it made again each time; once none asks for it, it goes."""
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
@@ -576,7 +576,7 @@ def test_a_buffer_of_other_numbers_is_no_output(folder):
         folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n')
 
 
-def test_one_that_replaces_a_technique_takes_the_sizes_that_the_technique_takes(any_engine, folder):
+def test_technique_variant_accepts_sizes_of_its_technique(any_engine, folder):
     folder.write("values.glsl", VALUES)
     folder.write("doubled.glsl", DOUBLED)
     folder.write("add.glsl", ADD.replace('"sum:r32f"', '"sum:r32f", accepts = "2**n"'))

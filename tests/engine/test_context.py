@@ -118,7 +118,7 @@ def test_compute_that_is_not_there_is_a_sentence(sketch):
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="EGL is Linux's")
-def test_libraries_are_loaded_by_their_names_without_a_process_of_ldconfig(monkeypatch):
+def test_gl_libraries_load_by_name_without_ldconfig(monkeypatch):
     """Three of them took as long as the context itself."""
     if not all(map(module._loads, ("libEGL.so.1", "libGL.so.1"))):
         pytest.skip("the libraries of this system have other names")
@@ -201,7 +201,7 @@ def test_a_renderer_s_folder_is_the_same_for_every_build(renderer, slug, softwar
 
 
 @pytest.mark.parametrize(("count", "message"), [(2, "there are 2, from 0"), (1, "the only one is 0")])
-def test_a_device_that_is_not_there_is_reported_by_its_number_and_theirs(monkeypatch, count, message):
+def test_missing_egl_device_reports_its_index_and_available_ones(monkeypatch, count, message):
     def refuse(**_: object) -> None:
         raise ValueError(f"requested device index 99, but found {count} devices")
 
@@ -212,7 +212,7 @@ def test_a_device_that_is_not_there_is_reported_by_its_number_and_theirs(monkeyp
     assert str(caught.value) == f"--device 99: there is no such EGL device; {message}"
 
 
-def test_advice_for_software_does_not_speak_of_what_we_set_ourselves():
+def test_software_advice_omits_variables_set_by_playground():
     code = """
 import moderngl
 def fail(*arguments, **options): raise Exception("found 0 devices")

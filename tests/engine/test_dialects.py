@@ -43,7 +43,7 @@ def colours(picture):
 
 
 @pytest.mark.parametrize("name", TEXTS)
-def test_each_is_drawn_and_at_a_time_it_is_always_the_same_picture(any_engine, ctx, folder, name):
+def test_dialect_shader_is_deterministic_at_fixed_time(any_engine, ctx, folder, name):
     path = folder.write(f"{name}.frag", TEXTS[name])
     first = drawn(any_engine, path, 1.0)
     assert colours(first) > 1
@@ -148,7 +148,7 @@ def test_coordinates_of_a_vertex_shader_run_over_the_picture(any_engine, folder)
     np.testing.assert_allclose(picture[:, 0, 1], [191, 64], atol=1)  # north on top
 
 
-def test_its_own_uniforms_are_parameters_but_for_those_no_panel_can_show(any_engine, folder):
+def test_custom_uniforms_are_parameters_if_panel_supports_them(any_engine, folder):
     text = (
         "uniform float level; uniform float other;\nuniform float twice = 2.0 * 0.5;\n"
         "#ifdef NEVER\nuniform vec2 both;\n#else\nuniform float both;\n#endif\nuniform float own = 0.25;\n"
@@ -161,7 +161,7 @@ def test_its_own_uniforms_are_parameters_but_for_those_no_panel_can_show(any_eng
     np.testing.assert_allclose(drawn(any_engine, path, **{"view.own": 1.0})[0, 0], [0, 255, 255, 255], atol=1)
 
 
-def test_uniforms_of_one_statement_and_of_several_lines_are_parameters(folder):
+def test_multi_declarator_and_multiline_uniforms_are_parameters(folder):
     text = (
         "uniform float u_time; uniform float a = 0.5, b; uniform vec2 many[2], c = vec2(1.0, 2.0);\n"
         "uniform vec3\n    tint;  //! colour What it is multiplied by\n"

@@ -60,7 +60,7 @@ def test_a_draw_fills_all_of_its_outputs(any_engine, pairs, samples, start):
 
 
 @pytest.mark.parametrize("samples", [1, 4])
-def test_a_draw_goes_on_from_all_outputs_and_the_depth_of_another(any_engine, pairs, samples):
+def test_draw_continues_from_all_outputs_and_depth_of_another(any_engine, pairs, samples):
     sketch = pairs(
         ("one", "", {"right": 0.0, "depth": 0.0}, "back"),
         ("two", "", {"depth": 0.5, "mark": 2.0}, "one"),
@@ -194,7 +194,7 @@ def test_a_count_that_is_wrong_has_a_sentence(any_engine, dots, count, value, me
     assert caught.value.diagnostics[0].file
 
 
-def test_instances_of_a_mesh_that_chooses_its_own_have_a_sentence(any_engine, folder):
+def test_instance_count_on_tiled_mesh_is_refused(any_engine, folder):
     text = DOTS.replace("sheet", "land").replace("{count}", "3").replace("  //! input", "  //! input(white)")
     text = f"{text}uniform int detail = 0;\nuniform int grid = 9;\n"
     with pytest.raises(PlaygroundError, match="mesh 'land' is drawn once for each of its tiles; it takes no"):

@@ -165,7 +165,7 @@ def test_samples_are_resolved_to_their_mean(any_engine, plates):
     assert np.all(any_engine.read(sketch.with_picture(samples=1), "one")[:, 8, 0] % 1 == 0)
 
 
-def test_a_draw_on_top_does_not_depend_on_what_was_drawn_before_it(ctx, plates):
+def test_overlay_draw_is_independent_of_earlier_engine_draws(ctx, plates):
     """The draw below keeps its samples only where one goes on from it: that is part of its key."""
     below = plates(("one", "", {}, "back"), samples=4)
     both = plates(("one", "", {}, "back"), ("two", "", {"depth": 0.5, "right": 0.3}, "one"), samples=4)
@@ -175,7 +175,7 @@ def test_a_draw_on_top_does_not_depend_on_what_was_drawn_before_it(ctx, plates):
         assert engine.runs["one"] == 2
 
 
-def test_the_number_of_samples_makes_draws_stale_and_nothing_else(any_engine, plates):
+def test_sample_count_invalidates_draws_and_no_other_pass(any_engine, plates):
     sketch = plates(("one", "", {}, "back"), samples=1)
     any_engine.texture(sketch, "one")
     any_engine.texture(sketch.with_picture(samples=4), "one")
@@ -420,7 +420,7 @@ set = {{ depth = 0.5, colour = [0.0, 0.0, 1.0, 1.0] }}
 
 
 @pytest.mark.parametrize("samples", [1, 4])
-def test_a_draw_over_another_is_where_that_has_drawn_and_has_its_depth(any_engine, folder, samples):
+def test_overlay_draw_shares_coverage_and_depth_of_its_base(any_engine, folder, samples):
     sketch = over_sketch(folder).with_picture(samples=samples)
     back = any_engine.read(sketch, "back")
     shaded, far = any_engine.read(sketch, "shaded"), any_engine.read(sketch, "far")

@@ -125,7 +125,7 @@ def test_the_answer_is_one_line_of_whole_sentences(message, platform):
 
 @each("platform", ["darwin", "win32"])
 @each(("name", "message"), MESSAGES)
-def test_no_other_platform_is_advised_to_use_a_linux_package_manager(name, message, platform):
+def test_linux_package_manager_advice_is_never_given_elsewhere(name, message, platform):
     answer = advice(message, platform, {"DISPLAY": ":0", "WSL_DISTRO_NAME": "Debian"})
     assert "apt" not in answer.split()
     assert "dnf" not in answer.split()
@@ -143,7 +143,7 @@ def test_an_unknown_platform_is_taken_for_linux():
 
 
 @each("message", ["libEGL.so not loaded", "libGL.so.1: cannot open shared object file"])
-def test_a_missing_library_names_the_package_that_brings_it_and_not_the_one_for_developers(message):
+def test_missing_library_names_runtime_package_not_dev_package(message):
     answer = advice(message, "linux", {})
     assert f"apt install {' '.join(DEBIAN_RENDER)}" in answer
     assert "-dev" not in answer
@@ -178,7 +178,7 @@ def test_the_environment_shows_the_likelier_cause(message, environ, expected):
     assert len(advice(message, "linux", {})) < len(advice(message, "linux", environ))
 
 
-def test_a_container_without_an_nvidia_card_gets_no_advice_about_one():
+def test_container_without_nvidia_gpu_gets_no_nvidia_advice():
     answer = advice("found 0 devices", "linux", {"NVIDIA_VISIBLE_DEVICES": "void"})
     assert "NVIDIA" not in answer
 

@@ -47,7 +47,7 @@ def test_a_complaint_inside_an_include_names_the_include(engine, folder):
     assert first.chain[1].endswith("outer.glsl:2")
 
 
-def test_a_complaint_after_includes_names_the_right_line_of_the_kernel(engine, folder):
+def test_error_after_includes_has_correct_kernel_line(engine, folder):
     long = "\n".join(f"float f{i}() {{ return {i}.0; }}" for i in range(50)) + "\n"
     error = mistake(engine, folder, '#include "long.glsl"\n' + GOOD.replace("1.0", "f49() + bad"), long=long)
     assert error.diagnostics[0].file.endswith("one.glsl")
@@ -135,7 +135,7 @@ def test_previous_by_the_wrong_name(engine, folder):
 @pytest.mark.parametrize(
     "text", [GOOD.rstrip().removesuffix("}"), GOOD.replace("return 1.0;", "if (true) {\n    return 1.0;")]
 )
-def test_an_unclosed_bracket_at_the_end_names_the_file_and_its_last_line(engine, folder, text):
+def test_unclosed_bracket_names_file_and_last_line(engine, folder, text):
     first = mistake(engine, folder, text).diagnostics[0]
     assert first.file.endswith("one.glsl")
     assert first.line >= 3

@@ -99,7 +99,7 @@ def test_a_verified_variant_runs_and_says_nothing(drawing, hill):
 
 
 @pytest.mark.parametrize("around", [False, True], ids=["alone", "inside"])
-def test_an_input_that_a_variant_does_not_have_has_the_plain_form_run(drawing, hill, kind, around):
+def test_wired_input_missing_in_variant_runs_canonical_form(drawing, hill, kind, around):
     """A variant would leave out what is wired: of the inputs it may have fewer."""
     more = HALF.replace("float kernel", 'uniform sampler2D more;  //! input("black")\nfloat kernel')
     hill.write("part.glsl", more.replace("return", "return 4.0 * texelFetch(more, texel, 0).r +"))
@@ -127,7 +127,7 @@ def test_an_input_that_a_variant_does_not_have_has_the_plain_form_run(drawing, h
     assert list(omitted(wired, (kind,))) == sentences
 
 
-def test_a_renamed_parameter_of_the_plain_text_leaves_the_variant_out(drawing, hill):
+def test_renamed_canonical_parameter_disables_variant(drawing, hill):
     engine, sentences = drawing
     hill.write("hill.glsl", HILL.replace("scale", "steepness"))
     np.testing.assert_array_equal(engine.read(hill.sketch(BODY), "h"), slopes())
@@ -138,7 +138,7 @@ def test_a_renamed_parameter_of_the_plain_text_leaves_the_variant_out(drawing, h
     assert not verdict.ok and "'scale' is not among the parameters and inputs of hill" in verdict.words
 
 
-def test_an_edit_of_the_plain_text_shows_and_one_sentence_says_why(drawing, hill):
+def test_edited_canonical_text_shows_and_is_reported_once(drawing, hill):
     engine, sentences = drawing
     engine.read(hill.sketch(BODY), "h")
     hill.write("hill.glsl", HILL.replace("+ scale", "+ 0.5 * scale"))
@@ -151,7 +151,7 @@ def test_an_edit_of_the_plain_text_shows_and_one_sentence_says_why(drawing, hill
 
 
 @pytest.mark.parametrize("accepts", ["n up to 17, m up to 16", "2**n + 1, 2**m"])
-def test_a_size_that_a_variant_does_not_take_has_the_plain_form_run(drawing, hill, kind, accepts):
+def test_size_outside_variant_range_runs_canonical_form(drawing, hill, kind, accepts):
     """It says so once, and is not refused; at its own sizes the variant runs."""
     engine, sentences = drawing
     if kind == "compute":
@@ -174,7 +174,7 @@ def test_a_size_that_a_variant_does_not_take_has_the_plain_form_run(drawing, hil
 
 
 @pytest.mark.parametrize(("most", "fast"), [(17, True), (16, False), (8, False)])
-def test_in_a_loop_over_levels_a_variant_runs_if_it_takes_every_size(drawing, hill, kind, most, fast):
+def test_loop_over_levels_uses_variant_if_it_accepts_every_size(drawing, hill, kind, most, fast):
     """Sizes 5, 9 and 17."""
     engine, sentences = drawing
     accepts = f'accepts = "n up to {most}"'
@@ -462,7 +462,7 @@ def test_a_fast_toml_has_its_technique_s_shape(folder, words):
         folder.sketch(BODY)
 
 
-def test_a_fast_toml_is_not_used_by_its_own_name_and_opens_its_technique(folder):
+def test_fast_toml_is_refused_by_name_and_opens_its_technique(folder):
     for name, text in {"hill.glsl": HILL, "rise.glsl": RISE, "part.glsl": HALF, "twice.glsl": TWICE}.items():
         folder.write(name, text)
     path = folder.write("hill.fast.toml", PASSES)

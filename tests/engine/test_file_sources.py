@@ -43,7 +43,7 @@ def test_the_kernel_declares_what_the_source_reads():
     assert all(name in KIND.parameters for name in KIND.files)
 
 
-def test_the_triangulation_s_kernel_declares_what_its_source_reads():
+def test_triangulation_kernel_declares_parameters_of_its_source():
     kind = source_kind("delaunay")
     parameters = read_technique("generation/delaunay/triangulation", GLSL, GLSL).parameters
     assert set(kind.parameters) == {p.name for p in parameters}
@@ -87,7 +87,7 @@ def test_flat_terrain_is_0(values, tmp_path):
     assert (KIND.make(values(elevation=str(tmp_path / "flat.npy")), (9, 9))["height"] == 0).all()
 
 
-def test_metres_that_the_user_gives_are_those_of_the_file_s_codes(values, tmp_path):
+def test_user_metres_map_full_range_of_file_codes(values, tmp_path):
     from PIL import Image
 
     Image.fromarray(HEIGHTS).save(tmp_path / "a.png")
@@ -136,9 +136,7 @@ def test_a_file_that_does_not_change_is_read_once(values, tmp_path, monkeypatch)
     np.testing.assert_array_equal(KIND.make(value, (3, 2))["height"], first)
 
 
-def test_large_heights_are_not_kept_once_a_texture_was_made_and_are_known_all_the_same(
-    values, tmp_path, monkeypatch
-):
+def test_large_heights_are_freed_after_upload_and_stay_described(values, tmp_path, monkeypatch):
     os.utime(tmp_path / "a.npy", (0, 0))
     value = values()
     terrain, kept = KIND.describe(value), KIND.make(value, (3, 2))["height"]

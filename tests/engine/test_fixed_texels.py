@@ -94,9 +94,7 @@ def test_they_change_with_the_input_and_are_read_back_once(any_engine: Engine, f
     assert len(own) == 3, "of two pictures with the same row, the second reads nothing back"
 
 
-def test_an_input_of_one_texel_answers_for_every_place_where_another_is_unwired(
-    any_engine: Engine, folder: Folder, software
-):
+def test_one_texel_input_reads_alike_at_all_fixed_texels(any_engine: Engine, folder: Folder, software):
     """As the fetches do: what is not wired has one texel, and they cannot tell the two apart."""
     with Engine(any_engine.ctx) as engine:
         result = engine.read(sketch_of(folder, size="1, 1"), "a")
@@ -202,9 +200,7 @@ float kernel(ivec2 texel) { return texelFetch(first, texel, 0).r + 100.0 * texel
 """
 
 
-def test_passes_of_one_picture_that_read_the_same_texels_have_each_a_result(
-    any_engine: Engine, folder: Folder, monkeypatch
-):
+def test_passes_sharing_fixed_texels_keep_separate_results(any_engine: Engine, folder: Folder, monkeypatch):
     """Two passes change places, so that each has what was the other's; then one goes on."""
     monkeypatch.setattr(ContextInfo, "software", True)
     folder.write("row.glsl", DATES)

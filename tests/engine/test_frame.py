@@ -59,7 +59,7 @@ def test_fewer_channels_are_grey_or_red_and_green_and_opaque(any_engine, corners
     assert pair[-1, -1].tolist() == [0, 255, 0, 255]
 
 
-def test_what_is_not_a_number_is_black_and_what_is_too_bright_is_white(any_engine, folder):
+def test_nan_renders_black_and_overbright_clamps_to_white(any_engine, folder):
     folder.write("one.glsl", '#pragma kernel(output = "h:r32f")\nfloat kernel(ivec2 texel) { return 0.0; }\n')
     folder.write(
         "look.glsl",

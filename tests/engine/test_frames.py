@@ -138,12 +138,12 @@ def drawing(folder):
     return looped(folder, "draw", "frame", "iChannel0")
 
 
-def test_another_tools_shader_reads_zeros_of_its_own_size_before_the_first_frame(any_engine, drawing):
+def test_foreign_shader_reads_zeros_before_first_frame(any_engine, drawing):
     result = any_engine.read(drawing, "view.loop", size=(5, 4))
     np.testing.assert_array_equal(np.round(255 * result), np.broadcast_to([0, 1, 50, 255], (4, 5, 4)))
 
 
-def test_the_mouse_enters_at_its_frame_and_makes_no_frame_before_stale(any_engine, drawing):
+def test_mouse_applies_from_its_frame_and_keeps_earlier_frames(any_engine, drawing):
     any_engine.read(drawing, "view.loop", size=(4, 4), time=4 / 60)
     any_engine.runner.drag = (2.0, 0.0, 0.0, 0.0)
     any_engine.read(drawing, "view.loop", size=(4, 4), time=4 / 60)
@@ -153,7 +153,7 @@ def test_the_mouse_enters_at_its_frame_and_makes_no_frame_before_stale(any_engin
     np.testing.assert_array_equal(np.round(255 * result[0, 0]), [6, 8, 47, 255])
 
 
-def test_all_that_the_window_changes_from_frame_to_frame_belongs_to_a_frame(any_engine, drawing):
+def test_window_inputs_changing_per_frame_are_frame_uniforms(any_engine, drawing):
     any_engine.draw(drawing, size=(4, 4))
     runner, step = any_engine.runner, any_engine.record.plan.step("view.loop.view")
     before = runner._usual(step, 3)
@@ -171,7 +171,7 @@ float kernel(ivec2 texel) {
 """
 
 
-def test_a_kernel_of_ones_own_gets_the_frames_time_and_its_fallback_as_in_any_loop(engine, folder):
+def test_own_kernel_frame_loop_gets_frame_time_and_fallback(engine, folder):
     folder.write("sum.glsl", KERNEL)
     sketch = folder.sketch(
         '[[pass]]\nname = "a"\nuse = "./sum"\nrepeat = "frames"\nfeedback = { before = "sum" }\n'
@@ -182,7 +182,7 @@ def test_a_kernel_of_ones_own_gets_the_frames_time_and_its_fallback_as_in_any_lo
     assert engine.runs["a"] < 13 + 13 + 18, "it went on"
 
 
-def test_a_kernel_that_repeats_by_frames_itself_gets_their_times_and_goes_on(engine, folder):
+def test_self_repeating_frame_kernel_gets_frame_time_and_resumes(engine, folder):
     sketch = folder.one(
         '#pragma kernel(output = "sum:r32f", repeat = "frames")\n'
         "float kernel(ivec2 texel) { return previous(texel) + time; }\n"
@@ -193,7 +193,7 @@ def test_a_kernel_that_repeats_by_frames_itself_gets_their_times_and_goes_on(eng
     assert engine.record.texels == 18 * 17 * 17, "18 more frames"
 
 
-def test_an_inner_loop_and_what_is_around_it_have_the_time_of_the_frame(engine, folder):
+def test_inner_loop_and_siblings_use_time_of_outer_frame(engine, folder):
     folder.write(
         "sum.glsl", KERNEL.replace('("black")', '("zero")').replace("time", "time * float(iteration + 1)")
     )
@@ -221,7 +221,7 @@ def test_a_sketch_that_counts_frames_is_known_to_move(sketch):
     assert has_moving_counts(sketch)
 
 
-def test_a_parameter_called_frames_is_refused_where_the_frames_are_counted(folder):
+def test_parameter_named_frames_is_refused_in_frame_loop(folder):
     folder.write(
         "p.glsl",
         '#pragma kernel(output = "v:r32f", repeat = "frames")\nuniform int frames = 3;\n'

@@ -64,7 +64,7 @@ def test_the_vector_towards_a_direction(any_engine, asked, sun):
         assert sorted(np.abs(value[:3])) == [0, 0, 1]
 
 
-def test_moving_the_direction_is_seen_though_only_its_vector_is_read(any_engine, asked):
+def test_direction_change_invalidates_reader_of_its_vector(any_engine, asked):
     before = any_engine.read(asked, "asked")
     assert (before != any_engine.read(asked.with_values({"asked.sun": (31, 60)}), "asked")).any()
 

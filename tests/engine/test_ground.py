@@ -113,7 +113,7 @@ def test_an_eye_that_stays_under_the_terrain_costs_one_drawing(any_engine, sketc
     assert (other.array != first).any()
 
 
-def test_a_terrain_that_becomes_wider_or_another_is_looked_at_again(any_engine, sketch):
+def test_resized_or_edited_terrain_rechecks_eye_height(any_engine, sketch):
     any_engine.render(sketch.with_camera(UNDER), size=(64, 36))
     raised = any_engine.eye_height.raised_by
     x, y, _ = any_engine.record.plan.eye.position

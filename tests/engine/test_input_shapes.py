@@ -139,7 +139,7 @@ def test_what_nothing_feeds_is_black_and_opaque(any_engine, folder, shape):
     np.testing.assert_allclose(picture[0, 0], [64, 0, 0, 255], atol=1)
 
 
-def test_a_texture_that_cannot_be_a_cube_is_one_sentence_at_the_wire(folder):
+def test_texture_of_wrong_cube_layout_is_refused_at_its_input(folder):
     for shape, size, expected in [
         ("cube", (8, 32), r"data reads 'data', 8 x 32 texels; .*1 : 6, as 8 x 48"),
         ("volume", (8, 32), r"n slices above each other, as 8 x 64"),

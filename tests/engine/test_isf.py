@@ -49,7 +49,7 @@ def kernels(path):
 
 
 @pytest.mark.parametrize("name", TEXTS)
-def test_each_is_drawn_and_at_a_time_it_is_always_the_same_picture(any_engine, ctx, isf, name):
+def test_isf_shader_is_deterministic_at_fixed_time(any_engine, ctx, isf, name):
     path = isf(name)
     first = drawn(any_engine, path, 1.0)
     assert colours(first) > 1
@@ -276,7 +276,7 @@ def test_a_target_that_nobody_writes_is_one_sentence(isf):
     assert caught.value.diagnostics[0].line == 3
 
 
-def test_the_last_pass_is_the_picture_even_with_a_target_and_a_size(any_engine, isf):
+def test_last_isf_pass_is_picture_despite_target_and_size(any_engine, isf):
     passes = ', "PASSES": [{"TARGET": "a"}, {"TARGET": "b", "WIDTH": "2", "FLOAT": true}]'
     path = isf(ONE.format("", passes, "vec4(isf_FragNormCoord, float(PASSINDEX), 1.0)"))
     picture = drawn(any_engine, path)
@@ -322,7 +322,7 @@ def test_a_vertex_file_is_followed_and_one_that_comes_is_read(any_engine, isf, f
     assert not np.array_equal(turned, drawn(any_engine, path, **{"view.turn": 1.0}))
 
 
-def test_a_clamp_at_the_corners_of_a_vertex_shader_changes_nothing(any_engine, isf):
+def test_clamped_vertex_coordinates_leave_isf_picture_unchanged(any_engine, isf):
     text = '/*{"ISFVSN": "2", "INPUTS": []}*/\nvarying vec2 at;\n'
     text += "void main() { gl_FragColor = vec4(at, 0, 1); }\n"
     vertex = (

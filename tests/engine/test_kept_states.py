@@ -59,7 +59,7 @@ def steps_of(engine: Engine, sketch, frame: int) -> int:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_any_order_of_times_gives_the_bits_that_a_cold_engine_gives(ctx, sketch, seed):
+def test_times_in_any_order_match_cold_engine_bit_for_bit(ctx, sketch, seed):
     with Engine(ctx) as cold:
         truth = {}
         for frame in range(400):
@@ -122,7 +122,7 @@ def test_gaps_grow_with_the_distance(last):
 
 
 @pytest.mark.parametrize("last", [40, 600, 36_000])
-def test_of_a_long_run_few_states_are_due_and_their_gaps_grow_with_the_distance(last):
+def test_kept_states_of_long_run_are_few_with_growing_gaps(last):
     kept = KeptStates(10**9, FakePool())  # type: ignore[arg-type]
     due = [n for n in range(1, last) if kept.is_due("loop", "key", n, last) and not kept_at(kept, n, last)]
     assert due == list(kept.numbers("loop", "key")), "none is kept that would go again"
@@ -176,7 +176,7 @@ def test_the_cache_counts_and_drops_them(ctx, sketch):
         assert engine.cache.bytes == 0
 
 
-def test_a_changed_value_starts_anew_and_the_former_ones_states_are_gone_when_forgotten(any_engine, sketch):
+def test_changed_value_restarts_loop_and_forget_frees_old_states(any_engine, sketch):
     steps_of(any_engine, sketch, 100)
     assert steps_of(any_engine, sketch.with_values({"grow.state.rate": 3.5}), 50) == 51
     assert steps_of(any_engine, sketch, 50) < 51, "of two versions, both are kept"
@@ -184,7 +184,7 @@ def test_a_changed_value_starts_anew_and_the_former_ones_states_are_gone_when_fo
     assert steps_of(any_engine, sketch.with_values({"grow.state.rate": 3.5}), 40) == 41
 
 
-def test_a_frame_that_fails_after_going_back_leaves_nothing_half_done(any_engine, sketch, monkeypatch):
+def test_failed_frame_after_rewind_leaves_no_partial_state(any_engine, sketch, monkeypatch):
     truth = {frame: after(any_engine, sketch, frame) for frame in (30, 50)}
     steps_of(any_engine, sketch, 100)
     run = any_engine.runner.run

@@ -47,7 +47,7 @@ def once(engine: Engine) -> Engine:
     return engine
 
 
-def test_the_picture_is_the_same_and_what_is_read_no_more_is_gone(ctx, chain):
+def test_last_use_release_keeps_picture_and_frees_read_textures(ctx, chain):
     with Engine(ctx) as usual, Engine(ctx) as engine:
         expected = usual.render(chain(), size=(40, 30))
         render = once(engine).render(chain(), size=(40, 30))
@@ -59,7 +59,7 @@ def test_the_picture_is_the_same_and_what_is_read_no_more_is_gone(ctx, chain):
         assert engine.runner.pool.made < usual.runner.pool.made
 
 
-def test_passes_of_one_key_share_a_texture_until_the_last_of_them_is_read(ctx, folder):
+def test_equal_passes_share_texture_until_last_read(ctx, folder):
     folder.write("ground.glsl", GROUND)
     folder.write("raised.glsl", RAISED.replace("WHAT", "0.9 * h"))
     two = RAISED.replace("uniform", "uniform sampler2D other; //! input\nuniform", 1)
@@ -98,7 +98,7 @@ def test_what_was_not_finite_in_a_texture_that_is_gone_is_told(ctx, chain):
         assert "pass 'second', output 'height'" in str(engine.not_finite())
 
 
-def test_a_texture_with_mipmaps_has_no_framebuffer_that_holds_its_first_texels(ctx, chain):
+def test_mipmapped_texture_keeps_no_base_level_framebuffer(ctx, chain):
     with Engine(ctx) as engine:
         engine.render(chain(), size=(16, 16))
         assert engine.record.results["last"].mipmapped

@@ -117,16 +117,14 @@ def test_a_run_goes_on_from_what_it_knows_and_ends_the_same(
     np.testing.assert_array_equal(engine.read(sketch, "height.raw"), whole)
 
 
-def test_all_iterations_none_and_no_stop_at_all_are_left_as_they_are(tmp_path: Path) -> None:
+def test_full_zero_or_unset_steps_are_not_interpolated(tmp_path: Path) -> None:
     sketch = sketch_of(tmp_path, "diamond_square")
     for steps in ({}, {"height.raw": 0}, {"height.raw": 9}):
         step = make_plan(sketch, PlanRequest(frame_size=(9, 9), steps=steps)).step("height.raw")
         assert step is not None and step.between is None
 
 
-def test_the_picture_of_a_stopped_run_has_a_fingerprint_and_a_hash_of_its_own(
-    engine: Engine, tmp_path: Path
-) -> None:
+def test_interpolated_picture_has_its_own_fingerprint_and_hash(engine: Engine, tmp_path: Path) -> None:
     sketch, steps = sketch_of(tmp_path, "diamond_square"), {"height.raw": 3}
     engine.render(sketch, size=(9, 9), steps=steps)
     drawn = engine.drawn()

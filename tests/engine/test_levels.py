@@ -80,7 +80,7 @@ def levels(folder):
     return folder
 
 
-def test_each_iteration_has_its_size_and_reads_the_coarser_texture(engine, levels):
+def test_each_level_has_its_size_and_reads_coarser_texture(engine, levels):
     result = engine.read(levels.sketch(LOOP, size="size = 33"), "a")
     hand = engine.read(levels.sketch(by_hand([5, 9, 17, 33]), size="size = 33"), "level3")
     assert result.shape == (33, 33)
@@ -146,7 +146,7 @@ def test_the_innermost_loop_gives_the_names(engine, levels):
     np.testing.assert_array_equal(result, engine.read(levels.sketch(hand), f"level{len(sides) - 1}"))
 
 
-def test_an_input_that_is_fed_back_has_the_size_of_the_iteration_before(engine, levels):
+def test_feedback_input_has_size_of_previous_iteration(engine, levels):
     levels.write(
         "twice.toml",
         '[[pass]]\nname = "grow"\nuse = "./grow"\nsize = "2 * ground_before.size.x - 1 + 0 * iteration"\n'
@@ -168,7 +168,7 @@ def test_outside_its_size_is_that_of_the_last_iteration(engine, levels):
     assert engine.read(sketch, "b", steps={"a": 2}).shape == (17, 17)
 
 
-def test_what_stays_runs_once_and_what_has_another_size_runs_in_each(engine, levels):
+def test_constant_pass_runs_once_and_resized_pass_each_level(engine, levels):
     levels.write(
         "two.glsl",
         '#pragma kernel(output = "ground:r32f")\nuniform sampler2D ground_before; //! input("black")\n'
@@ -203,7 +203,7 @@ def test_only_what_is_stale_runs_again(engine, levels):
         np.testing.assert_array_equal(result, fresh.read(changed, "a"))
 
 
-def test_more_levels_begin_again_since_the_first_have_other_sizes(engine, levels):
+def test_more_levels_restart_loop_as_first_sizes_differ(engine, levels):
     engine.texture(levels.sketch(LOOP, size="size = 33"), "a")
     more = levels.sketch(LOOP.replace("repeat = 4", "repeat = 5"), size="size = 33")
     result = engine.read(more, "a")

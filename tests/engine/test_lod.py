@@ -46,7 +46,7 @@ def faces_of(piece: lod.Piece) -> np.ndarray:
     return lod.vertices()[lod.pieces()[piece].reshape(-1, 3)].astype(int)
 
 
-def test_five_levels_from_512_triangles_to_2_share_one_tile_s_vertices():
+def test_five_lod_levels_share_vertices_of_one_tile():
     counts = [len(faces_of(("fans", level, 0))) for level in range(lod.LEVELS)]
     assert counts == [512, 128, 32, 8, 2]
     assert len(lod.vertices()) == 17 * 17 + 4 * 17
@@ -149,7 +149,7 @@ def test_a_tile_that_forgets_its_neighbour_would_leave_one(monkeypatch):
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_no_place_moved_upwards_moves_further_in_the_picture_than_the_view_says(seed):
+def test_screen_shift_of_raised_points_is_within_view_bound(seed):
     rng = np.random.default_rng(seed)
     view = view_of(random_camera(rng))
     corners = rng.uniform(-1, 1, (4000, 3))
@@ -195,7 +195,7 @@ def test_looking_at_one_corner_leaves_most_of_the_terrain_out():
 
 @pytest.mark.parametrize("tolerance", [0.0, 0.5, 2.0, 8.0])
 @pytest.mark.parametrize("seed", range(3))
-def test_each_tile_is_as_coarse_as_its_error_and_its_neighbours_allow(seed, tolerance):
+def test_tile_takes_coarsest_level_error_and_neighbours_allow(seed, tolerance):
     rng = np.random.default_rng(seed)
     view = view_of(random_camera(rng))
     errors = np.sort(10.0 ** rng.uniform(-7, -1, (7, 9, 4)), axis=-1).astype(np.float32)
@@ -220,7 +220,7 @@ def test_each_tile_is_as_coarse_as_its_error_and_its_neighbours_allow(seed, tole
     np.testing.assert_array_equal(levels, (alone + way).min(axis=(2, 3)))
 
 
-def test_holes_and_heights_without_bound_stay_fine_and_break_nothing():
+def test_holes_and_unbounded_heights_keep_finest_level():
     view = far_view()
     spans = np.float32([[[0, 1], [0, 1e30]], [[-1e30, 0], [np.nan, np.nan]]])
     around = lod.boxes_of(spans_of_tiles(np.nan_to_num(spans)), view)
@@ -229,7 +229,7 @@ def test_holes_and_heights_without_bound_stay_fine_and_break_nothing():
     assert lod.tiles_at(np.zeros((2, 2), int), around, view).runs
 
 
-def test_flat_terrain_takes_two_triangles_a_tile_at_no_tolerance_at_all():
+def test_flat_terrain_has_two_triangles_a_tile_at_zero_tolerance():
     view = far_view()
     tables = {"spans": spans_of_tiles(np.zeros((3, 4, 2))), "errors": np.zeros((3, 4, 4), np.float32)}
     chosen = lod.geomipmap({"tolerance": 0.0}, tables, view)

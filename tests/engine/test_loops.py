@@ -152,7 +152,7 @@ def test_what_reads_a_loop_is_stale_when_its_iterations_are(engine, rain):
     assert engine.runs["after"] == 2
 
 
-def test_a_repeat_that_reads_time_goes_on_and_goes_back_to_an_earlier_state(engine, rain):
+def test_time_repeat_continues_and_rewinds_to_earlier_state(engine, rain):
     sketch = rain("floor(time * 2)")
     counts = []
     for time in (0.0, 1.0, 1.2, 4.0, 4.0, 1.0, 1.5):
@@ -196,7 +196,7 @@ def test_the_iteration_is_known_inside(engine, folder):
     np.testing.assert_allclose(stopped, sum(range(3)) + 3 * 0.05, rtol=1e-5)
 
 
-def test_what_reads_the_iteration_runs_in_every_iteration_though_nothing_is_fed_to_it(engine, folder):
+def test_pass_reading_iteration_runs_each_time_without_feedback(engine, folder):
     folder.write(
         "turn.glsl",
         '#pragma kernel(output = "now:r32f")\n'
@@ -328,7 +328,7 @@ def test_a_loop_that_no_loop_around_it_changes_runs_once(engine, folder):
     assert engine.runs == {"o.round.still": 1, "o.round.slow": 1, "o.round.go": 3, "o.sum": 4}
 
 
-def test_what_changes_with_an_outer_loop_by_way_of_what_is_fed_back(engine, folder):
+def test_outer_loop_change_through_feedback_reruns_inner_pass(engine, folder):
     """Inside, ``a`` reads only what the inner loop feeds back;
     that comes from ``b``, which reads the outer loop."""
     item = '#pragma kernel(output = "{out}:r32f")\nuniform sampler2D {of}; //! input("black")\n'
@@ -379,7 +379,7 @@ float kernel(ivec2 texel) {
 """
 
 
-def test_passes_of_one_text_in_a_loop_keep_their_own_values_and_wires(engine, folder):
+def test_looped_passes_of_one_kernel_keep_own_values_and_inputs(engine, folder):
     """What a program was set to for one pass is not taken for the next one's."""
     folder.write("same.glsl", SAME)
     folder.write("start.glsl", START)
@@ -419,7 +419,7 @@ def test_an_iteration_sets_only_what_changes(engine, rain, monkeypatch):
 # ── what it costs ────────────────────────────────────────────────────────────
 
 
-def test_five_hundred_iterations_need_no_more_memory_than_a_hundred(any_engine, rain):
+def test_five_hundred_iterations_use_memory_of_one_hundred(any_engine, rain):
     sketch = rain("floor(time)")
     for time in range(MAX_STATES + 2):
         any_engine.texture(sketch, "rain:water", time=float(time))  # as many states are kept as may be

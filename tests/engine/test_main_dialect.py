@@ -30,7 +30,7 @@ def drawn(engine, path, time=0.0, size=SIZE, **values):
 
 
 @pytest.mark.parametrize("name", MAIN_TEXTS)
-def test_each_is_drawn_and_at_a_time_it_is_always_the_same_picture(any_engine, ctx, folder, name):
+def test_main_shader_is_deterministic_at_fixed_time(any_engine, ctx, folder, name):
     path = folder.write(f"{name}.frag", MAIN_TEXTS[name])
     first = drawn(any_engine, path, 1.0)
     assert len(np.unique(first[..., :3].reshape(-1, 3), axis=0)) > 1
@@ -77,7 +77,7 @@ COUNT = "vec4(floor(texture2D({0}, vec2(0.5)).r * 255.0 + 1.5) / 255.0, 0.0, 0.0
 
 
 @pytest.mark.parametrize("name", ["backbuffer", "u_backbuffer", "prevFrame", "prevPass", "texPreviousFrame"])
-def test_the_frame_before_is_what_was_drawn_a_sixtieth_of_a_second_before(any_engine, folder, name):
+def test_previous_frame_is_a_sixtieth_of_a_second_earlier(any_engine, folder, name):
     text = f"uniform sampler2D {name};\nvoid main() {{ gl_FragColor = {COUNT.format(name)}; }}\n"
     path = folder.write("t.frag", text)
     for time, frames in {0.0: 1, 1 / 60: 2, 0.5: 31, 1.0: 61}.items():
@@ -104,7 +104,7 @@ void main() {
     assert np.flatnonzero(result[0, :, 0]).tolist() == [5]
 
 
-def test_a_double_buffer_counts_in_floats_and_a_buffer_keeps_what_it_wrote(any_engine, folder):
+def test_double_buffer_accumulates_floats_and_buffer_persists(any_engine, folder):
     text = """uniform sampler2D u_doubleBuffer0, u_buffer0, u_buffer1;
 void main() {
 #if defined(DOUBLE_BUFFER_0)
@@ -168,7 +168,7 @@ def test_each_of_an_array_of_samplers_may_be_wired(any_engine, folder):
     assert (note.line, note.message) == (2, "nothing feeds maps_0, maps_1, maps_2: it reads black")
 
 
-def test_a_text_that_is_edited_has_its_stand_in_before_it_is_saved(any_engine, folder):
+def test_edited_text_gets_channel_stand_ins_before_saving(any_engine, folder):
     path = folder.write("t.frag", "void main() { gl_FragColor = vec4(0.0, 0.0, 0.0, 1.0); }\n")
     text = "uniform sampler2D u_tex3; uniform sampler2D backbuffer;\nvoid main() {"
     text += " gl_FragColor = texture2D(u_tex3, gl_FragCoord.xy / 8.0);"
@@ -233,7 +233,7 @@ def test_what_needs_the_whole_picture_says_so(any_engine, folder, name):
         list(strips(any_engine, sketch, SIZE, tile=(20, 8), time=0.1))
 
 
-def test_a_uniform_that_no_panel_shows_and_nothing_feeds_is_named(any_engine, folder):
+def test_unfed_uniform_without_widget_is_named_in_warning(any_engine, folder):
     text = """struct Light { vec3 colour; float power; };
 uniform Light key;
 uniform Light lights[2];

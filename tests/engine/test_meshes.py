@@ -153,7 +153,7 @@ def shaded(indices: np.ndarray, pieces: int = 1024, remembered: int = 256) -> in
 
 @pytest.mark.parametrize(("name", "more"), [("grid", {}), ("land", {"detail": 0})])
 @pytest.mark.parametrize("n", [2, 17, 97, 129, 257])
-def test_a_grid_is_drawn_in_an_order_that_shades_few_vertices_twice(name: str, more: dict[str, int], n: int):
+def test_grid_index_order_shades_few_vertices_twice(name: str, more: dict[str, int], n: int):
     key = mesh_key(name, {"grid": n, **more})
     built, drawn = build_mesh(name, key), drawn_mesh(name, key)
     assert shaded(drawn.indices) < 1.3 * len(drawn.attributes["corner"]) + 8

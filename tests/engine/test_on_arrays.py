@@ -126,7 +126,7 @@ def test_a_technique_of_the_library_is_named(any_engine):
     np.testing.assert_array_equal(result["light"], product)
 
 
-def test_the_picture_stays_the_last_frame_and_nothing_of_the_arrays_stays_cached(engine, sketch, slumps):
+def test_runs_on_arrays_leave_last_frame_and_cache_unchanged(engine, sketch, slumps):
     engine.draw(sketch, size=(32, 24))
     hills = engine.read(sketch, "hills").copy()
     engine.draw(sketch, size=(32, 24))

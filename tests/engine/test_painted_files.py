@@ -10,7 +10,7 @@ from playground.data import content_hash as hashes
 from playground.engine.painted_images import PaintedFiles
 
 
-def test_a_file_of_many_gigabytes_is_not_read_to_tell_whether_a_texture_is_stale(
+def test_huge_file_staleness_is_checked_without_reading(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "a.r16"

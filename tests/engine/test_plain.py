@@ -70,7 +70,7 @@ def test_the_frame_number_fits_its_type(any_engine, folder, kind):
     assert picture[0, 0, 2] == 255
 
 
-def test_the_mouse_is_passed_on_and_a_still_one_makes_nothing_stale(any_engine, toy):
+def test_mouse_is_passed_and_unmoved_mouse_invalidates_nothing(any_engine, toy):
     any_engine.render(toy, size=(8, 8), time=1.0)
     any_engine.render(toy, size=(8, 8), time=1.0)
     assert any_engine.record.ran == []

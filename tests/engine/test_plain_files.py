@@ -50,7 +50,7 @@ def test_sampling_options_hold(any_engine, folder, pixels):
     np.testing.assert_allclose(frame.array[0, 0], expected, atol=2)  # two levels, each rounded to a byte
 
 
-def test_it_is_drawn_again_when_the_file_s_contents_change_and_only_then(any_engine, folder, pixels):
+def test_changed_file_contents_redraw_and_equal_contents_do_not(any_engine, folder, pixels):
     sketch = load(folder.write("t.frag", COPY))
     any_engine.render(sketch, size=(8, 6))
     write_png(folder.path / "x.png", pixels)
@@ -96,7 +96,7 @@ def test_a_plain_compute_shader_reads_one_too(any_engine, folder, pixels):
     np.testing.assert_array_equal(frame.array, pixels)
 
 
-def test_a_sampler_that_nothing_feeds_is_a_warning_once_at_its_line(any_engine, folder, pixels):
+def test_unfed_sampler_warns_once_at_its_line(any_engine, folder, pixels):
     text = COPY.replace("out vec4", "uniform sampler2D iChannel0, other;\nuniform samplerCube sky;\nout vec4")
     text = text.replace("u_resolution);", "u_resolution) + texture(iChannel0, vec2(0.5)) * 0.0;")
     kernel = kernel_of(folder.write("t.frag", text))
@@ -154,7 +154,7 @@ def test_a_mistake_in_an_old_version_is_reported_at_its_own_line(any_engine, fol
 
 
 @pytest.mark.parametrize("version", ["999", "330 compatibility"])
-def test_a_version_that_the_driver_refuses_is_one_sentence_at_its_line(any_engine, folder, version):
+def test_refused_glsl_version_is_one_error_at_its_line(any_engine, folder, version):
     try:
         any_engine.render(load(folder.write("t.frag", SINCE.format(version, ""))), size=(4, 2))
     except ShaderError as error:

@@ -57,7 +57,7 @@ def test_an_engine_reports_each_once(any_engine, sketch):
     assert sum("#line is left out" in message for _, message in reports) == 1
 
 
-def test_steps_past_the_end_of_a_repeat_that_follows_the_time_are_said_once(any_engine, folder):
+def test_steps_past_end_of_time_repeat_are_reported_once(any_engine, folder):
     """One whose number stays is refused; this one may grow."""
     reports: list[str] = []
     any_engine.warnings.report = lambda result: reports.append(f"{result.severity}: {result.message}")
@@ -107,7 +107,7 @@ def test_the_window_lists_them(any_engine, sketch):
     assert [w.line for w in known_names.of(loaded, any_engine.record.plan)] == [2, 3, 5]
 
 
-def test_a_file_that_goes_while_its_picture_is_shown_is_no_mistake_of_the_list(any_engine, sketch):
+def test_file_removed_while_shown_gives_no_warning(any_engine, sketch):
     loaded = load(sketch)
     any_engine.render(loaded, size=(8, 8))
     (sketch.parent / "two.tif").unlink()
@@ -129,7 +129,7 @@ def test_a_hidden_default_is_reported_by_render_and_check(folder, monkeypatch, c
     assert f"warning: one.glsl:2: {printed} in pass 'a'" in capsys.readouterr().out
 
 
-def test_a_shot_that_stops_beyond_the_repeat_is_refused_at_its_line(folder, monkeypatch, capsys):
+def test_shot_stopping_beyond_repeat_is_refused_at_its_line(folder, monkeypatch, capsys):
     more = '[[shot]]\nname = "end"\nsteps = { a = 99 }\n'
     folder.one(KERNEL.replace('32f")', '32f", repeat = "5")').replace("#line 7\n", ""), more=more)
     monkeypatch.chdir(folder.path)

@@ -117,7 +117,7 @@ def test_a_driver_that_gives_no_reason_is_reported_so(kernel):
     assert error.diagnostics[0].file.endswith("k.glsl")
 
 
-def test_a_complaint_about_the_wrapper_s_own_lines_becomes_a_sentence(kernel):
+def test_compile_error_in_wrapper_lines_names_missing_kernel(kernel):
     wrapped = wrap(kernel(), FRAGMENT)
     last = wrapped.stages["fragment"].text.count("\n")
     log = (

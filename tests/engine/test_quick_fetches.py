@@ -137,9 +137,7 @@ vec4 kernel(ivec2 texel) { return vec4(texelFetch(rough, texel, 0).rg, textureSi
 """
 
 
-def test_sizes_are_those_of_the_textures_whether_known_or_asked_for(
-    any_engine: Engine, folder: Folder, monkeypatch
-):
+def test_texture_sizes_match_whether_known_or_queried(any_engine: Engine, folder: Folder, monkeypatch):
     """The same kernel runs with an input of its own size, then with one of another."""
     monkeypatch.setattr(ContextInfo, "software", True)
     folder.write("rough.glsl", ROUGH.replace("FORMAT", "rgba32f"))
@@ -228,7 +226,7 @@ float kernel(ivec2 texel) {
 """
 
 
-def test_an_input_that_is_read_by_shares_keeps_its_sampler_while_that_of_texels_is_made(
+def test_filtered_input_keeps_its_sampler_beside_texel_fetches(
     any_engine: Engine, folder: Folder, monkeypatch
 ):
     sketch_of(folder)

@@ -236,7 +236,7 @@ def test_iterations_at_once_take_so_many_runs(engine, folder, monkeypatch, most,
     assert sum(started) == runs
 
 
-def test_each_step_of_iterations_at_once_goes_on_from_the_one_before(engine, folder):
+def test_step_of_batched_iterations_continues_from_previous(engine, folder):
     sketch = folder.one(AT_ONCE).with_values({"a.most": 50})
     steps = [(iteration, values.copy()) for iteration, values in engine.steps(sketch, "a")]
     assert [iteration for iteration, _ in steps] == list(range(12))
@@ -283,7 +283,7 @@ float kernel(ivec2 texel) {
 
 
 @pytest.mark.parametrize("size", ["2", "17", "[17, 33]"])
-def test_a_lattice_that_closes_gives_the_same_bits_with_and_without_its_stride(ctx, folder, size):
+def test_closing_lattice_gives_same_bits_with_and_without_stride(ctx, folder, size):
     result = []
     for stride, driver in (("", "fragment"), (' stride = "(size.x - 1) // 2**iteration",', "fragment")):
         text = LATTICE.replace("STRIDE", stride)
@@ -313,7 +313,7 @@ def test_a_stride_that_is_no_power_of_two_is_refused(ctx, folder):
 
 
 @pytest.mark.parametrize("left", [1e9, 0.7, -3e38])
-def test_an_iteration_is_not_touched_by_what_an_earlier_one_left_in_its_texture(engine, folder, left):
+def test_iteration_ignores_stale_contents_of_its_texture(engine, folder, left):
     text = """#pragma kernel(output = "a:r32f", repeat = "4")
     float kernel(ivec2 texel) { return iteration < 2 ? LEFT : 0.123 + 0.0 * previous(texel); }
     """.replace("LEFT", f"{left:.1e}").replace("\n    ", "\n")
@@ -321,7 +321,7 @@ def test_an_iteration_is_not_touched_by_what_an_earlier_one_left_in_its_texture(
     np.testing.assert_array_equal(result, np.full((17, 17), 0.123, np.float32))
 
 
-def test_keyframes_may_change_how_many_steps_there_are_to_stop_at(any_engine):
+def test_keyframes_may_lower_iteration_count_below_stop(any_engine):
     """In a film the count may fall below what was asked for at its beginning."""
     sketch = load("fault_formation")
     names = {"height.iterations": 12}
@@ -403,7 +403,7 @@ def test_a_stride_that_names_iterations_begins_again(ctx, folder):
         assert engine.record.texels == 17 * 17 * 5
 
 
-def test_the_earlier_result_is_taken_over_and_copied_only_where_another_pass_reads_it(engine, folder):
+def test_earlier_result_is_reused_and_copied_if_read_elsewhere(engine, folder):
     folder.write("one.glsl", ADD)
     folder.write("sum.glsl", SUM)
     both = folder.sketch(passes(a="./one", b="./one", sum=("./sum", 'inputs = { a = "a:a", b = "b:a" }')))
@@ -440,7 +440,7 @@ float kernel(ivec2 texel) { return float(iteration) + 1.0; }
 
 
 @pytest.mark.parametrize(("kernel", "value"), [(COUNT, counted), (VISITED, float)], ids=["all", "visited"])
-def test_what_goes_on_from_fewer_iterations_has_mipmaps_of_its_own(any_engine, folder, kernel, value):
+def test_resumed_iterations_rebuild_their_own_mipmaps(any_engine, folder, kernel, value):
     """Each stop is two iterations or more after the last, whose texture, mipmaps and all, is used again."""
     folder.write("one.glsl", kernel)
     folder.write("mean.glsl", MEAN)

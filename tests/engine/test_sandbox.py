@@ -126,7 +126,7 @@ feedback = { own = "a" }
 
 
 @pytest.mark.parametrize("wrong", [False, True])
-def test_a_late_time_of_a_sketch_with_state_is_tried_at_an_earlier_one(sandbox, folder, wrong):
+def test_late_time_of_stateful_sketch_is_tried_at_earlier_time(sandbox, folder, wrong):
     """Its 900,000 frames take minutes; what comes after them is drawn all the same."""
     folder.write("counts.glsl", COUNTS)
     folder.write("after.glsl", AFTER.replace("1.0", "1.0 / 0.0") if wrong else AFTER)
@@ -138,7 +138,7 @@ def test_a_late_time_of_a_sketch_with_state_is_tried_at_an_earlier_one(sandbox, 
     assert report.seconds < 20.0, "as long as all frames"
 
 
-def test_what_cannot_be_sent_is_a_sentence_and_the_next_request_works(sandbox, folder):
+def test_unpicklable_request_is_reported_and_next_one_works(sandbox, folder):
     report = sandbox.run(replace(TrySketch(folder.one(GOOD)), drivers=lambda: None))
     assert not report.ok
     assert re.fullmatch(r"the sandbox failed: \w+: .*(pickle|local object).*", str(report.error))
@@ -246,7 +246,7 @@ MONSTERS = {
 @pytest.mark.always
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MONSTERS)
-def test_a_monstrous_text_is_stopped_or_crashes_and_the_next_is_tried(folder, name):
+def test_pathological_shader_is_stopped_or_crashes_and_next_runs(folder, name):
     kernel = GOOD.replace("float kernel", f"{MONSTERS[name]}\nfloat kernel").replace(
         "float(texel.x)", "run(float(texel.x))"
     )
@@ -335,7 +335,7 @@ def test_submit_never_waits_and_the_newest_wins(folder):
 
 
 @pytest.mark.slow
-def test_a_worker_that_takes_long_has_a_spare_that_takes_its_place(folder):
+def test_slow_worker_has_spare_ready_to_replace_it(folder):
     with Sandbox(limit_seconds=3600.0) as sandbox:
         assert sandbox.run(TrySketch(folder.one(GOOD))).ok
         sandbox.submit(TrySketch(folder.one(SLOW)))

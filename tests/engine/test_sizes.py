@@ -80,7 +80,7 @@ def test_an_expression_names_the_size_of_what_feeds_an_input(engine: Engine, fol
 
 
 @pytest.mark.usefixtures("trusted_variants")
-def test_a_compute_variant_has_the_size_of_the_pass_that_it_replaces(engine: Engine, folder: Path):
+def test_compute_variant_has_size_of_replaced_pass(engine: Engine, folder: Path):
     (folder / "sum.comp").write_text(VARIANT, encoding="utf-8")
     sketch = load(folder)
     result = engine.read(sketch, "sum")
@@ -91,7 +91,7 @@ def test_a_compute_variant_has_the_size_of_the_pass_that_it_replaces(engine: Eng
 
 
 @pytest.mark.usefixtures("trusted_variants")
-def test_a_pass_that_a_compute_variant_replaces_can_still_be_looked_at(engine: Engine, folder: Path):
+def test_pass_replaced_by_compute_variant_can_still_be_read(engine: Engine, folder: Path):
     (folder / "sum.comp").write_text(VARIANT, encoding="utf-8")
     assert engine.read(load(folder), "sum.rows").shape == (12, 1)
 

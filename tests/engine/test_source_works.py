@@ -265,7 +265,7 @@ def test_works_are_one_for_each_step():
     assert ran == ["a", "b", "c", "d"]
 
 
-def test_of_a_step_one_work_runs_at_a_time_however_often_it_is_cancelled():
+def test_one_source_work_runs_per_step_despite_cancels():
     """One that does not look whether it is cancelled goes on to its end; no other begins meanwhile."""
     works, may_end, started = SourceWorks(), threading.Event(), []
     works.waits = False

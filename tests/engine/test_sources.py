@@ -98,9 +98,7 @@ def refused(any_engine, sketch) -> str:
 @pytest.mark.parametrize(
     "body", [PASS, '[[pass]]\nname = "height"\nuse = "./inner"\n'], ids=["source", "nested"]
 )
-def test_a_data_file_that_is_wrong_is_reported_at_the_pass_that_names_it(
-    any_engine, heightmap, monkeypatch, body
-):
+def test_invalid_data_file_is_reported_at_its_pass(any_engine, heightmap, monkeypatch, body):
     folder, _ = heightmap
     monkeypatch.chdir(folder.path)
     folder.write("inner.toml", '[[pass]]\nname = "height"\nuse = "./terrain"\n')
@@ -119,7 +117,7 @@ def test_a_data_file_that_is_wrong_is_reported_at_the_pass_that_names_it(
     assert "there is no such file" in message
 
 
-def test_a_picture_that_is_wrong_is_reported_at_the_pass_that_names_it(any_engine, folder, monkeypatch):
+def test_invalid_image_is_reported_at_its_pass(any_engine, folder, monkeypatch):
     monkeypatch.chdir(folder.path)
     folder.write("grass.png", "no picture")
     folder.write(
@@ -131,7 +129,7 @@ def test_a_picture_that_is_wrong_is_reported_at_the_pass_that_names_it(any_engin
     assert refused(any_engine, folder.sketch(PASS)).startswith("grass.png: not a picture")
 
 
-def test_a_source_that_knows_nothing_of_its_terrain_leaves_it_to_the_next(any_engine, heightmap):
+def test_source_without_terrain_info_defers_to_next_source(any_engine, heightmap):
     folder, _ = heightmap
     made = '[[pass]]\nname = "tin"\nuse = "generation/delaunay"\n'
     sketch = folder.sketch(f'{made}[[pass]]\nname = "height"\nuse = "./terrain"\n', size="")

@@ -166,7 +166,7 @@ def test_a_file_matters_by_its_contents(engine, folder, tmp_path):
     assert engine.record.ran == ["a"]
 
 
-def test_a_count_of_visits_may_depend_on_a_parameter_that_the_code_never_names(any_engine, folder):
+def test_visit_count_may_depend_on_parameter_unused_in_code(any_engine, folder):
     kernel = """#pragma kernel(output = "h:r32f", repeat = "2", visits = "count, 1")
 uniform int count = 3; //! slider(1, 17)
 ivec2 visit(ivec2 cell) { return cell; }

@@ -226,9 +226,7 @@ def test_reopened_textures_of_every_format_have_the_same_bits(shelf, folder):
     assert np.isnan(floats).any() and (floats.view(np.uint32) & 0x7F800000 == 0).any()
 
 
-def test_reopened_mipmaps_of_every_format_have_the_same_bits_and_are_not_made_anew(
-    shelf, folder, monkeypatch
-):
+def test_cached_mipmaps_of_every_format_reload_bit_for_bit(shelf, folder, monkeypatch):
     if not shelf.engine().info.software:
         pytest.skip("a graphics card makes them anew")
     sketch = sketch_of_every_format(
@@ -281,7 +279,7 @@ def test_bits_are_the_same_where_there_is_no_compute():
     assert "passed" in done.stdout
 
 
-def test_a_reopened_sketch_shows_the_same_and_runs_only_what_the_camera_changes(shelf, worn):
+def test_reopened_sketch_matches_and_runs_camera_passes_alone(shelf, worn):
     """Loops, several outputs, mipmaps and a mesh over them; the terrain itself is not even read."""
     first = shelf.engine()
     seen = picture(first, worn)
@@ -320,7 +318,7 @@ def test_what_was_skipped_runs_where_it_is_wanted(any_shelf, worn):
 
 
 @pytest.mark.parametrize("memory", [20_000, 2**24])
-def test_any_order_of_edits_and_sessions_shows_what_an_engine_without_a_store_shows(any_shelf, worn, memory):
+def test_edits_and_sessions_in_any_order_match_uncached_engine(any_shelf, worn, memory):
     """Values back and forth, loops stopped, sessions that end; also in memory too small for two terrains."""
     rng = random.Random(memory)
     sketch, reads, steps = worn, 0, {}
@@ -374,7 +372,7 @@ def cached(any_shelf, worn) -> Shelf:
     return any_shelf
 
 
-def test_another_text_is_another_terrain_and_another_comment_is_none(cached, folder, worn):
+def test_cached_terrain_is_invalidated_by_code_not_by_comment(cached, folder, worn):
     folder.write("terrain.glsl", "// a remark\n" + TERRAIN.replace("    water", "    // more\n  water"))
     assert reopened(cached, folder.sketch(BODY, size="size = 33")) == set()
     folder.write("terrain.glsl", TERRAIN.replace("64.0", "32.0"))
@@ -482,7 +480,7 @@ def cached_of(shelf: Shelf, sketch, **options) -> set[str]:
     return {each.textures.made_for.partition(": ")[2] for each in listed(shelf.folder)}
 
 
-def test_what_reads_the_time_or_the_camera_is_not_cached_nor_what_reads_it(any_shelf, folder):
+def test_time_and_camera_passes_and_their_readers_are_not_cached(any_shelf, folder):
     passes = ""
     for name, reads, body in (
         ("still", "", "0.5"),
@@ -542,7 +540,7 @@ def test_what_reads_a_painted_file_is_not_cached(any_shelf, folder, worn):
     assert cached_of(any_shelf, worn) == {"worn.add", "light"}, "without the strokes"
 
 
-def test_a_draw_that_another_goes_on_from_keeps_its_samples_and_is_not_cached(any_shelf, folder):
+def test_draw_continued_by_another_keeps_samples_and_is_uncached(any_shelf, folder):
     draw = '#pragma draw(mesh = "triangles", count = "1", output = "v:rgba16f", depth = "none")\n'
     draw += "INITIALvec4 vertex(int corner) { return vec4(corner == 1, corner == 2, 0, 1); }\n"
     draw += "vec4 fragment() { return vec4(0.5); }\n"
@@ -681,7 +679,7 @@ def test_what_has_mipmaps_is_worth_more_on_a_software_renderer(any_shelf, worn, 
     assert result.made_for.endswith("worn.add") and result.cost == pytest.approx(2.0)
 
 
-def test_costs_are_measured_where_terrain_is_made_and_a_loop_counts_as_one(any_shelf, worn):
+def test_cost_is_measured_per_terrain_pass_with_loop_as_one(any_shelf, worn):
     engine = any_shelf.engine()
     picture(engine, worn)
     keys = engine.keys_of(engine.record.plan)
@@ -693,7 +691,7 @@ def test_costs_are_measured_where_terrain_is_made_and_a_loop_counts_as_one(any_s
     assert light.cost == pytest.approx(sum(engine.disk_caching._costs.values()), abs=0.01)
 
 
-def test_it_waits_until_the_terrain_rests_and_reads_a_piece_a_call(any_shelf, worn, monkeypatch):
+def test_caching_waits_for_idle_terrain_and_reads_piece_by_piece(any_shelf, worn, monkeypatch):
     monkeypatch.setattr("playground.engine.disk_caching.PIECE", 33 * 4 * 10)  # rows of 33 floats, ten at once
     now = 100.0
     engine = any_shelf.engine()
@@ -732,7 +730,7 @@ def test_a_terrain_that_goes_while_it_is_read_back_is_not_cached(any_shelf, worn
     assert reopened(any_shelf, worn) == set(TERRAIN_PASSES)
 
 
-def test_another_sketch_that_is_drawn_before_it_begins_is_not_cached_for_the_first(any_shelf, worn, folder):
+def test_sketch_drawn_before_caching_is_not_stored_as_another(any_shelf, worn, folder):
     bare = folder.sketch(
         '[[pass]]\nname = "terrain"\nuse = "./terrain"\n[view]\nuse = "./light"\n'
         'inputs = { height = "terrain:height" }\n',
@@ -840,7 +838,7 @@ def test_sessions_write_read_and_clear_at_once(tmp_path):
     assert not list(tmp_path.glob("*.part"))
 
 
-def test_where_nothing_can_be_written_it_is_reported_and_nothing_more_is_tried(tmp_path):
+def test_unwritable_cache_is_reported_once_and_disabled(tmp_path):
     (tmp_path / "terrain").write_text("a file where the folder should be")
     store = DiskCache(tmp_path / "terrain")
     store.write("one", some(1))

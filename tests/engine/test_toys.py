@@ -63,7 +63,7 @@ def notes(sketch):
 
 
 @pytest.mark.parametrize("name", TOYS)
-def test_each_is_drawn_and_at_a_time_it_is_always_the_same_picture(any_engine, ctx, opened, name):
+def test_toy_is_deterministic_at_fixed_time(any_engine, ctx, opened, name):
     sketch = opened(TOYS[name].files, TOYS[name].opens)
     first = drawn(any_engine, sketch, 1.0)
     assert len(np.unique(first[..., :3].reshape(-1, 3), axis=0)) > 1
@@ -91,7 +91,7 @@ def first_texel(engine, sketch, time=0.0, size=(4, 4)):
     return drawn(engine, sketch, time, size)[0, 0].astype(int)
 
 
-def test_a_buffer_is_drawn_before_what_reads_it_and_the_last_frame_s_where_it_is_later(any_engine, opened):
+def test_buffer_feeds_later_passes_and_earlier_ones_next_frame(any_engine, opened):
     count = "void mainImage(out vec4 c, in vec2 p) {{ c = vec4(float(iFrame + {}) / 255.0); }}"
     plain = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(0), 0); }"
     later = opened({"a.json": export(
@@ -150,7 +150,7 @@ def test_a_sampler_says_how_a_buffer_is_read(any_engine, opened):
 
 
 @pytest.mark.slow
-def test_a_cube_map_pass_is_read_by_direction_by_later_passes_and_by_itself(any_engine, opened):
+def test_cube_map_pass_is_sampled_by_direction_and_by_itself(any_engine, opened):
     image = "void mainImage(out vec4 c, in vec2 p) {{ c = texture(iChannel0, {}); }}"
     wire = {"id": 41, "ctype": "cubemap", "channel": 0}
     for way in np.vstack([np.eye(3), -np.eye(3), [[0.3, -0.5, 0.8], [-0.7, 0.6, -0.2]]]):
@@ -277,7 +277,7 @@ def test_a_picture_drawn_in_parts_is_the_picture_drawn_whole(any_engine, opened,
     np.testing.assert_allclose(parts.astype(int), whole, atol=1)
 
 
-def test_one_pass_is_reduced_and_of_several_a_sentence_says_why_not(opened):
+def test_one_pass_toy_is_reduced_and_several_passes_are_refused(opened):
     files, _ = TOYS["one_pass"].with_mistake()
     (one_pass,) = inline_sketch(opened(files, "shader.json"), frame=SIZE).passes
     assert one_pass.suffix == ".frag" and "not_declared" in one_pass.text
@@ -291,7 +291,7 @@ def test_what_cannot_be_drawn_in_parts_says_so(any_engine, opened, name):
         list(strips(any_engine, opened(TOYS[name].files, TOYS[name].opens), SIZE, tile=(20, 8)))
 
 
-def test_a_sketch_may_use_an_export_or_a_folder_and_feed_its_channels(any_engine, folder):
+def test_sketch_may_use_toy_export_or_folder_and_wire_channels(any_engine, folder):
     folder.write("toy.json", export(one("Image", IMAGE, {"id": "a", "src": "/media/a.jpg", "channel": 0})))
     folder.write("Image.glsl", IMAGE)
     folder.write("Common.glsl", "float nothing;\n")
@@ -372,7 +372,7 @@ COUNTS = "void mainImage(out vec4 c, in vec2 p) {{ c = vec4(float(iFrame + {}) /
 FETCH = "void mainImage(out vec4 c, in vec2 p) {{ c = texelFetch({}, ivec2(0), 0); }}\n"
 
 
-def test_channels_of_a_folder_are_its_buffers_in_order_unless_a_line_says_otherwise(any_engine, opened):
+def test_folder_channels_are_buffers_in_order_unless_directed(any_engine, opened):
     buffers = {"Buffer A.glsl": COUNTS.format(10), "BufferC.frag": COUNTS.format(30)}
     for head, channel, value in [
         ("", "iChannel0", 10),
@@ -424,7 +424,7 @@ def test_a_channel_that_is_handed_on_is_a_cube_map_or_a_volume(any_engine, opene
         np.testing.assert_allclose(result, expected, atol=0.51 / 255 + 1e-6)
 
 
-def test_a_channel_that_is_read_by_direction_is_the_cube_map_or_a_sky(any_engine, opened, folder):
+def test_channel_read_by_direction_is_cube_map_or_sky(any_engine, opened, folder):
     text = "void mainImage(out vec4 c, in vec2 p) { vec3 rd = -vec3(0, 1, 0); c = texture(iChannel1, rd); }\n"
     alone = opened({"a.frag": text}, "a.frag")
     assert first_texel(any_engine, alone)[2] < 102, "the ground of a sky"
@@ -468,7 +468,7 @@ def test_a_pass_that_comes_or_changes_is_read(any_engine, opened, folder):
 
 
 @pytest.mark.parametrize("name", FOLDERS)
-def test_every_file_of_a_folder_is_one_of_the_sketch_so_that_a_pack_has_it(opened, name):
+def test_every_toy_folder_file_belongs_to_sketch_for_packing(opened, name):
     names = {path.rpartition("/")[2] for path in opened(TOYS[name].files, TOYS[name].opens).files}
     assert names >= set(TOYS[name].files)
 
@@ -539,7 +539,7 @@ def test_uniforms_are_parameters_with_their_ranges(any_engine, opened):
         ('#iChannel0 "file://bb.glsl"', "no file 'bb.glsl'; did you mean 'b.glsl'"),
     ],
 )
-def test_a_directive_that_cannot_be_read_is_one_sentence_at_its_line(opened, line, words):
+def test_unreadable_directive_is_one_error_at_its_line(opened, line, words):
     with pytest.raises(ShaderError) as caught:
         opened({"a.glsl": f"// first\n{line}\n{PLAIN}", "b.glsl": PLAIN}, "a.glsl")
     (result,) = caught.value.diagnostics
@@ -624,7 +624,7 @@ def test_two_passes_may_read_two_files_by_one_channel(any_engine, opened, folder
     assert first_texel(any_engine, opened(files, "a.glsl"))[0] == 120
 
 
-def test_a_cube_of_six_files_has_each_where_it_belongs_and_the_right_way_up(any_engine, opened, folder):
+def test_cube_of_six_files_has_faces_placed_and_upright(any_engine, opened, folder):
     (folder.path / "six").mkdir()
     levels = {"px": 20, "nx": 60, "py": 100, "ny": 140, "pz": 180, "nz": 220}
     for face, level in levels.items():

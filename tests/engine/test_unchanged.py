@@ -219,7 +219,7 @@ CHAINED = "the picture reads all of them"
 
 
 @pytest.mark.parametrize("what", ["camera", CHAINED])
-def test_a_frame_takes_next_to_nothing_for_a_pass_that_has_not_changed(any_engine, folder, what):
+def test_unchanged_pass_costs_next_to_nothing_per_frame(any_engine, folder, what):
     folder.write("flat.glsl", KERNELS["flat"])
     folder.write("more.glsl", KERNELS["spaced"])
     calls = {}

@@ -36,7 +36,7 @@ def test_its_size_is_one_texel(any_engine, folder):
     assert np.all(any_engine.read(folder.one(kernel.replace("WORD", "white")), "a") == 11.0)
 
 
-def test_one_that_is_wired_is_read_as_it_is_even_next_to_one_that_is_not(any_engine, folder):
+def test_wired_input_reads_its_texture_beside_unwired_one(any_engine, folder):
     folder.write(
         "ramp.glsl",
         '#pragma kernel(output = "a:r32f")\nfloat kernel(ivec2 t) { return float(t.x + 20 * t.y); }\n',

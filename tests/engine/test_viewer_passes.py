@@ -60,7 +60,7 @@ def picture(any_engine, folder):
 # ── buffers ──────────────────────────────────────────────────────────────────
 
 
-def test_a_buffer_is_the_text_with_its_macro_and_is_read_by_its_sampler(picture):
+def test_buffer_is_text_with_its_macro_and_feeds_its_sampler(picture):
     text = text_of("BUFFER_0", "vec4(st, 0.25, 1.0)", "texture2D(u_buffer0, st).grba")
     result = picture(text)
     centres = (np.arange(24) + 0.5) / 24, (np.arange(16) + 0.5) / 16
@@ -78,7 +78,7 @@ def test_a_buffer_is_the_text_with_its_macro_and_is_read_by_its_sampler(picture)
         ("// the first", (24, 16)),
     ],
 )
-def test_the_size_of_a_buffer_is_in_its_comment_and_its_resolution_is_its_own(picture, comment, size):
+def test_buffer_size_comes_from_comment_and_sets_its_resolution(picture, comment, size):
     head = f"uniform sampler2D u_buffer0; {comment}\n"
     text = text_of("BUFFER_0", "vec4(u_resolution / 64.0, 0.0, 1.0)", "texture2D(u_buffer0, st)", head)
     expected = [size[0] / 64, size[1] / 64]
@@ -92,7 +92,7 @@ def test_a_buffer_holds_numbers_beyond_one(picture):
     np.testing.assert_allclose(picture(text)[0, 0], [1, 1, 0, 1])
 
 
-def test_buffers_run_in_the_order_of_their_numbers_and_read_each_other(picture):
+def test_buffers_run_in_number_order_and_read_each_other(picture):
     text = """uniform sampler2D u_buffer0, u_buffer1, u_buffer2;
 void main() {
 #ifdef BUFFER_1
@@ -258,7 +258,7 @@ void main() {
 
 
 @pytest.mark.parametrize("passes", [False, True])
-def test_a_shadow_map_that_is_read_without_a_question_is_black_and_named(picture, read, passes):
+def test_unguarded_shadow_map_reads_black_and_is_named(picture, read, passes):
     post = "#ifdef POSTPROCESSING\nvoid main() { gl_FragColor = texture2D(u_scene, vec2(0.5)); }\n#else\n"
     text = f"{post}{SHADOWS}#endif\n" if passes else SHADOWS
     assert (picture(text)[..., 2] == 0).all()
@@ -470,7 +470,7 @@ def test_a_pyramid_of_a_share_of_the_picture(read):
     assert read(text, "pyramid0", (64, 40)).shape == (20, 32, 4)
 
 
-def test_what_only_an_algorithm_reads_is_not_missed_in_other_passes(folder):
+def test_sampler_of_algorithm_pass_is_not_unfed_elsewhere(folder):
     head = "uniform sampler2D u_pyramid0, u_pyramidTex0;\nuniform sampler2D u_pyramidTex1;\n"
     head += "uniform bool u_pyramidUpscaling;\nuniform int u_pyramidDepth;\n"
     body = """void main() {

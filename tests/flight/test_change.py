@@ -41,9 +41,7 @@ def sketch_of(folder: Path, terrain: str = TERRAIN) -> Sketch:
     return load(folder)
 
 
-def test_it_goes_on_from_the_same_place_once_all_that_is_near_is_made(
-    any_engine: Engine, tmp_path: Path
-) -> None:
+def test_edited_flight_continues_in_place_once_near_parts_ready(any_engine: Engine, tmp_path: Path) -> None:
     with Flight(any_engine, sketch_of(tmp_path), radius=1.5, samples=1) as flight:
         flight.make_all()
         for _ in range(30):

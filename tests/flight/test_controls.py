@@ -18,7 +18,7 @@ from playground.flight.craft import Controls
 from playground.flight.instruments import HELP, clock
 
 
-def test_keys_ask_for_all_or_nothing_and_opposite_ones_for_nothing():
+def test_keys_command_full_deflection_and_opposites_cancel():
     assert by_keys(()) == Controls()
     assert by_keys({"up", "right"}) == Controls(0, 100, 100, 0)
     assert by_keys({"up", "down", "yaw_left", "faster"}) == Controls(100, 0, 0, -100)
@@ -32,7 +32,7 @@ def test_the_mouse_is_a_stick_around_where_its_button_went_down():
     assert by_mouse(10, 10, 0) == Controls(), "a window without height"
 
 
-def test_a_notch_of_the_wheel_is_some_steps_of_throttle_and_the_other_way_ends_it():
+def test_wheel_notch_is_timed_throttle_and_reverse_cancels_it():
     wheel = Wheel()
     wheel.scroll(1.0)
     result = [wheel.next().throttle for _ in range(NOTCH + 2)]
@@ -42,7 +42,7 @@ def test_a_notch_of_the_wheel_is_some_steps_of_throttle_and_the_other_way_ends_i
     assert [wheel.next().throttle for _ in range(NOTCH + 1)] == [-100] * NOTCH + [0]
 
 
-def test_a_gamepad_at_rest_asks_for_nothing_and_pushed_out_for_all():
+def test_gamepad_at_rest_is_neutral_and_full_throw_is_maximum():
     rest = [REST, -REST / 2, 0.01, 0.0, -1.0, -1.0]
     assert by_gamepad(rest) == Controls()
     assert by_gamepad([1.0, 1.0, -1.0, 0.0, -1.0, 1.0]) == Controls(100, 100, 100, -100)

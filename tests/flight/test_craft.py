@@ -29,7 +29,7 @@ def test_in_level_flight_the_throttle_holds_a_speed(throttle):
     assert craft.up == pytest.approx(3000.0) and craft.east == pytest.approx(0.0)
 
 
-def test_downhill_is_faster_than_uphill_and_never_past_the_bounds():
+def test_descent_is_faster_than_climb_and_within_speed_bounds():
     down = flown(Craft(up=8000.0), Controls(pitch=-100), 8)
     up = flown(Craft(up=2000.0), Controls(pitch=100), 8)
     level = flown(HIGH, Controls(), 8)

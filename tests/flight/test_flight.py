@@ -53,7 +53,7 @@ def test_what_is_recorded_is_read_again(tmp_path):
     assert len(rows) == 7 and json.loads(rows[1]) == [50, 10, -20, 30, 0]
 
 
-def test_what_was_flown_is_in_the_file_a_second_later_though_nobody_closes_it(tmp_path):
+def test_flight_record_is_on_disk_within_one_second_unclosed(tmp_path):
     """A flight may end by a signal or a crash; steps alike wait no longer than others."""
     recorder = Recorder(tmp_path / "a.jsonl", Header("flight"))
     for _ in range(150):
@@ -129,9 +129,7 @@ def test_a_record_that_is_not_there_or_is_no_text_says_so(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_replay_gives_the_same_bits_from_cold_and_from_warm_and_however_often_one_looks(
-    ctx, terrain_of, tmp_path
-):
+def test_replay_is_bit_identical_cold_or_warm_at_any_interval(ctx, terrain_of, tmp_path):
     record, sketch = weave(4.0, 15.0, 1.2), terrain_of(daylight=True)
     seen = []
     with Engine(ctx, cache_bytes=2 * 2**20) as warm:
@@ -148,7 +146,7 @@ def test_a_replay_gives_the_same_bits_from_cold_and_from_warm_and_however_often_
 
 
 @pytest.mark.slow
-def test_what_was_flown_and_written_down_flies_the_same_way_again(small_engine, terrain_of, tmp_path):
+def test_recorded_live_flight_replays_same_path(small_engine, terrain_of, tmp_path):
     """Live, parts come by time and not by number: the way flown does not know of it."""
     sketch, record = terrain_of(), weave(6.0)
     with (
@@ -252,9 +250,7 @@ def test_the_hole_finder_finds_a_hole(flight):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("skirt", [None, 0.0])
-def test_no_crack_shows_between_levels_and_without_skirts_some_would(
-    small_engine, terrain_of, monkeypatch, skirt
-):
+def test_skirts_close_cracks_between_levels(small_engine, terrain_of, monkeypatch, skirt):
     """Rough terrain, seen from low over borders of two levels; heights 0 to 900 m over 60 m of spacing."""
     if skirt is not None:
         monkeypatch.setattr("playground.flight.scene.SKIRT", skirt)
@@ -302,7 +298,7 @@ def test_where_the_terrain_ends_nothing_is_seen_of_it(flight):
     assert len(beyond) >= 4 and changes[0] <= 1 and changes[1] > 50
 
 
-def test_nearer_terrain_has_more_triangles_and_none_behind_is_drawn(flight):
+def test_near_terrain_has_more_triangles_and_rear_is_culled(flight):
     flight.draw(SIZE)
     whole = len(flight.parts.visible) * 2 * flight.plot.intervals**2
     assert 0 < flight.scene.triangles < whole / 2
@@ -321,7 +317,7 @@ float kernel(ivec2 texel) {
 """
 
 
-def test_one_s_own_terrain_can_be_flown_over_and_a_hole_in_it_brings_nobody_down(small_engine, tmp_path):
+def test_own_terrain_can_be_flown_and_its_holes_crash_no_craft(small_engine, tmp_path):
     (tmp_path / "mine.glsl").write_text(OWN, encoding="utf-8")
     text = (
         'format = 1\nsize = 17\nextent = 640.0\nrelief = 200.0\n[[pass]]\nname = "height"\nuse = "./mine"\n'

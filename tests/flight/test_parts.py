@@ -79,7 +79,7 @@ def test_neighbours_share_their_border_to_the_last_bit(parts):
     np.testing.assert_array_equal(here[-1], north[0])
 
 
-def test_the_nearest_are_made_first_and_those_in_view_before_those_behind(parts):
+def test_nearest_parts_come_first_and_visible_before_rear(parts):
     parts.look(*middle(parts.plot, (0, 0)), 0.0)  # to the north
     first = parts.visible[0]
     assert first == (0, 0)
@@ -90,7 +90,7 @@ def test_the_nearest_are_made_first_and_those_in_view_before_those_behind(parts)
 
 
 @pytest.mark.slow
-def test_a_part_that_comes_again_has_the_same_bits_and_was_dropped_between(small_engine, terrain_of):
+def test_dropped_part_is_rebuilt_with_same_bits(small_engine, terrain_of):
     with Engine(small_engine.ctx, cache_bytes=2**20) as forgetful:
         parts = Parts(forgetful, plot_of(terrain_of(), forgetful), 2.0)
         first = contents(parts.make((0, 0)))
@@ -135,7 +135,7 @@ def test_work_for_some_time_ends_where_whole_parts_would(small_engine, terrain_o
     staged.release()
 
 
-def test_at_another_hour_all_are_lit_anew_nearest_first_and_the_terrain_stays(small_engine, terrain_of):
+def test_new_hour_relights_nearest_first_and_keeps_terrain(small_engine, terrain_of):
     plot = plot_of(terrain_of(daylight=True), small_engine)
     parts = Parts(small_engine, plot, 1.0)
     parts.look(*middle(plot, (0, 0)), 0.0)
@@ -206,7 +206,7 @@ def test_shadows_that_reach_beyond_the_apron_are_refused(small_engine, terrain_o
     assert plot_of(sketch.with_values({"light.max_distance": 8}), small_engine).apron == 8
 
 
-def test_parts_that_would_fill_the_memory_are_refused_before_any_is_made(small_engine, terrain_of):
+def test_parts_exceeding_memory_are_refused_before_building(small_engine, terrain_of):
     plot = replace(plot_of(terrain_of(), small_engine), intervals=1024, ground=2049)
     with pytest.raises(SketchError, match=r"are more than 2 GiB; --radius 2 would fit"):
         Parts(small_engine, plot, 16.0)

@@ -142,7 +142,7 @@ def test_a_replay_flies_by_itself_and_stops_at_its_end(open_app: Callable[..., A
 
 
 @pytest.mark.slow
-def test_a_save_is_flown_over_from_the_same_place_and_a_wrong_one_is_reported(
+def test_saved_edit_is_flown_in_place_and_error_is_reported(
     open_app: Callable[..., App], tmp_path: Path
 ) -> None:
     app = open_app("sketch.toml", "--radius", "1.5")

@@ -67,7 +67,7 @@ def planted(small_engine, terrain_of) -> Iterator:
 
 
 @pytest.mark.slow
-def test_trees_stand_by_the_world_s_cells_and_meet_at_the_borders_of_parts(planted):
+def test_trees_follow_world_cells_and_match_at_part_borders(planted):
     """Each tree of two parts against the twin: none is missing, none is twice, wherever the border is."""
     plot, plant = planted
     cells, side = cells_of(plot)
@@ -101,7 +101,7 @@ def test_a_part_that_is_made_again_has_the_same_trees(planted):
     np.testing.assert_array_equal(plant((3, -2)), plant((3, -2)))
 
 
-def test_without_a_density_there_are_no_trees_and_without_light_they_are_refused(small_engine, terrain_of):
+def test_no_density_means_no_trees_and_unlit_trees_are_refused(small_engine, terrain_of):
     assert plot_of(terrain_of(daylight=True), small_engine).trees is None
     with pytest.raises(SketchError, match="'density' has trees, which are lit by a pass 'daylight'"):
         plot_of(wooded(terrain_of, daylight=False), small_engine)

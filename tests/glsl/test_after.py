@@ -45,7 +45,7 @@ def test_the_mean_of_logarithms_becomes_the_key(any_engine, picture, key, least,
     np.testing.assert_array_equal(off.ravel(), 0.0)
 
 
-def test_a_pixel_too_bright_for_half_floats_leaves_the_mean_a_number(any_engine, picture):
+def test_overbright_pixel_keeps_exposure_mean_finite(any_engine, picture):
     """It counts as the brightest half float, 65504: one of 5917 pixels moves the mean by 16 / 5917 stops."""
     light = "vec4(vec3(texel == ivec2(20, 31) ? uintBitsToFloat(0x7f800000u) : 1.0), 1.0)"
     sketch = picture(light, "view/exposure", "adapts = true")

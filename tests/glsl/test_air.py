@@ -429,7 +429,7 @@ def test_from_a_height_it_is_the_sky_of_that_height(engine, make_sketch, height,
         )
 
 
-def test_from_606_metres_the_horizon_has_a_third_more_blue_than_from_the_sea(engine, make_sketch):
+def test_horizon_at_606_metres_has_a_third_more_blue_than_at_sea(engine, make_sketch):
     """Half of the haze lies below; the level horizon of the sea's own sky lacks it."""
     value = 'position = "free", sun = [150.0, 40.0], turbidity = 3.0, adaptation = 0.0'
     seen = '[[pass]]\nname = "seen"\nuse = "./from_above"\nsize = [50, 9]\n'

@@ -241,7 +241,7 @@ def test_moving_the_sun_looks_at_no_terrain(kept, sketch, use):
     assert ran(kept) == ["light.light", "light.table"]
 
 
-def test_a_sun_that_comes_between_two_other_horizons_has_those_taken(kept, sketch):
+def test_sun_between_two_other_horizons_reads_those_two(kept, sketch):
     made = sketch(steep(33), "horizon_sun", measured="eight directions", arc=0.0)
     for azimuth, taken in (
         (100, True),
@@ -296,7 +296,7 @@ def test_a_sun_off_its_arc_is_lit_from_its_own_azimuth(read, way, directions):
     np.testing.assert_allclose(light[open_to_sun], normals[open_to_sun], atol=0.01)
 
 
-def test_a_sun_on_a_free_arc_is_measured_anew_when_its_azimuth_changes(kept, sketch):
+def test_free_arc_sun_is_remeasured_when_azimuth_changes(kept, sketch):
     made = sketch(steep(33), "horizon_sun")
     kept.read(made, "light")
     kept.read(made.with_values({"light.sun": (135, 60)}), "light")
@@ -424,7 +424,7 @@ vec4 kernel(ivec2 texel) {
 """
 
 
-def test_a_sky_factor_texel_for_texel_is_that_of_a_finer_one_at_the_same_places(any_engine, make_sketch):
+def test_equal_size_sky_factor_matches_finer_one_at_same_texels(any_engine, make_sketch):
     """Of one as large as the light a texel is fetched, of another what is between its texels."""
     text = '[[pass]]\nname = "height"\nuse = "generation/diamond_square"\n'
     for name, size in (("same", 33), ("finer", 65)):

@@ -37,7 +37,7 @@ def tile(make_sketch):
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("size", [384, 301])
-def test_a_tile_meets_its_own_copy_as_smoothly_as_it_goes_on_inside(any_engine, tile, name, size):
+def test_tile_seam_is_as_smooth_as_its_interior(any_engine, tile, name, size):
     colour = any_engine.read(tile(name, size), "colour")[..., :3].astype(float)
     for axis in (0, 1):
         steps = np.abs(colour - np.roll(colour, 1, axis)).mean(axis=(1 - axis, 2))
@@ -91,7 +91,7 @@ def test_a_tint_dyes_the_tile(any_engine, tile, name):
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("end", ["low", "high"])
-def test_the_ends_of_every_slider_and_the_smallest_tiles_give_colours(any_engine, make_sketch, name, end):
+def test_slider_extremes_and_smallest_tiles_give_valid_colours(any_engine, make_sketch, name, end):
     sketch = make_sketch(f'[[pass]]\nname = "c"\nuse = "texturing/{name}"\n', size=17)
     sliders = [p for p in sketch.graph.passes[0].technique.parameters if p.widget.kind == "slider"]
     assert len(sliders) >= 4

@@ -208,7 +208,7 @@ def test_without_clouds_it_is_the_sky_and_the_sun(any_engine, outdoors, drawn):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("drawn", ["flat", "heaped"])
-def test_no_cloud_is_brighter_than_what_it_receives_and_none_lights_up_at_night(any_engine, outdoors, drawn):
+def test_clouds_never_exceed_received_light_nor_glow_at_night(any_engine, outdoors, drawn):
     rest = SKY + f'set = {{ clouds = "{drawn}" }}\n'
     brightest = []
     for elevation in (60.0, 20.0, 3.0, -1.0, -4.0, -12.0, -40.0):

@@ -30,7 +30,7 @@ def test_encoding_keeps_within_the_screen_s_range(on_gpu):
     np.testing.assert_allclose(result[:, 0], [0, 0, 1, 1], atol=1e-6)
 
 
-def test_the_ramp_grows_lighter_at_every_step_and_for_the_colour_blind(on_gpu):
+def test_ramp_lightness_increases_even_for_colour_blindness(on_gpu):
     colours = on_gpu("colour/ramp.glsl", "ramp_blue_yellow(t)", t=np.linspace(0, 1, 257)).astype(float)
     linear = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
     assert (np.diff(luminance(linear)) > 0).all()
@@ -73,7 +73,7 @@ def test_published_ramps_grow_lighter_at_every_step(on_gpu, name):
     assert (np.diff(luminance(linear)) > 0).all()
 
 
-def test_the_diverging_ramp_is_lightest_in_the_middle_and_its_sides_differ(on_gpu):
+def test_diverging_ramp_is_lightest_mid_and_sides_stay_distinct(on_gpu):
     colours = on_gpu("colour/ramp.glsl", "ramp_cool_warm(t)", t=np.linspace(0, 1, 257)).astype(float)
     linear = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
     light = luminance(linear)
@@ -109,7 +109,7 @@ def test_reinhard_brings_white_to_one_and_keeps_hues(on_gpu, white):
     np.testing.assert_allclose(brightest, 1.0, rtol=1e-6)
 
 
-def test_the_film_curve_rises_from_black_to_white_and_stays_there(on_gpu):
+def test_film_curve_rises_from_black_and_saturates_at_white(on_gpu):
     light = np.concatenate([[-1.0, 0.0], np.geomspace(1e-4, 1e4, 400)])
     result = on_gpu("colour/tone.glsl", "tone_film(c)", c=grey(light))[:, 0].astype(float)
     assert result[0] == result[1] == 0

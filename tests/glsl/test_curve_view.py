@@ -77,7 +77,7 @@ def test_rows_have_panels_the_first_on_top(engine, picture):
     np.testing.assert_allclose(middle_of(fewer[125:]), 37.5, atol=0.05)
 
 
-def test_overlaid_rows_share_a_panel_and_have_colours_of_their_own(engine, picture):
+def test_overlaid_curve_rows_share_panel_with_own_colours(engine, picture):
     value = {"arranged": "overlaid", "line": "#ff0000", "line_last": "#0000ff", "width": 4.0}
     shown = picture(engine, "0.25 + 0.25 * float(texel.y)", (4, 3), (40, 200), **value)
     for row, colour in ((50, (1, 0, 0)), (150, (0, 0, 1))):

@@ -424,7 +424,7 @@ def test_the_colours_stay_what_they_were(any_engine, outdoors):
 
 
 @pytest.mark.parametrize("sun", [(180.0, 2.0), (95.0, 5.0), (300.0, 0.6)])
-def test_the_sun_s_disc_is_where_the_sun_is_and_half_a_degree_wide(any_engine, outdoors, sun):
+def test_sun_disc_is_at_sun_direction_and_half_a_degree_wide(any_engine, outdoors, sun):
     sketch = looking(outdoors(sun), sun[0] + 1.0, field=12.0)
     size = (320, 240)
     result = any_engine.read(sketch, "view.sky", size=size)[..., 0].astype(np.float64)

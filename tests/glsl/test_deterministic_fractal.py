@@ -212,7 +212,7 @@ def test_the_label_says_copies_scale_and_dimension(engine, sketch_of, name):
     assert not dark[:low].any() and not dark[low + 5 * scale : low + 5 * scale + 8].any()
 
 
-def test_side_by_side_they_are_the_same_in_the_order_of_their_dimension(engine, sketch_of):
+def test_fractals_side_by_side_match_single_ones_by_dimension(engine, sketch_of):
     all_of_them = engine.read(sketch_of((630, 360), depth=3), "fractal:set_distance").copy()
     colours = engine.read(sketch_of((630, 360), depth=3), "fractal:colour").copy()
     dimensions = [math.log(n) / math.log(m) for n, m in COPIES.values()]

@@ -288,7 +288,7 @@ def test_terrain_is_below_its_heights_and_sky_above(any_engine, diagram):
     assert checked > 8
 
 
-def test_the_horizon_s_line_touches_the_terrain_and_its_arc_is_as_long_as_its_angle(engine, diagram):
+def test_horizon_line_touches_terrain_and_arc_spans_its_angle(engine, diagram):
     sketch = diagram("horizon", rough=0.0, step_up=0.4, viewpoint=16)
     picture = engine.read(sketch, "diagram")[..., :3]
     on_paper = paper_of(np.where(np.arange(COLUMNS) >= 40, 0.4, 0.0) * RELIEF)
@@ -518,7 +518,7 @@ def test_the_share_that_is_written_is_the_method_s(any_engine, diagram, assert_w
     assert_written(picture, (12, 329), f"here {height:5.1f}")
 
 
-def test_texels_higher_than_the_middle_are_brown_and_lower_ones_blue(any_engine, diagram, assert_written):
+def test_texels_above_middle_one_are_brown_and_below_blue(any_engine, diagram, assert_written):
     sketch = diagram("grid", column=32, row=4, sun=(90.0, 25.0), softness=0.05, texels=11, text=True)
     picture = any_engine.read(sketch, "diagram")[..., :3]
     heights = any_engine.read(sketch, "height").astype(np.float64)

@@ -199,7 +199,7 @@ def test_without_roughness_the_corners_alone_shape_the_terrain(engine, make_sket
     assert tilted.min() == np.float32(0.1) and tilted.max() == np.float32(0.9)
 
 
-def test_positive_numbers_lift_the_terrain_and_centred_ones_do_not(any_engine, make_sketch):
+def test_positive_random_numbers_lift_terrain_centred_do_not(any_engine, make_sketch):
     means = {}
     for random in ("centred", "positive"):
         terrains = [

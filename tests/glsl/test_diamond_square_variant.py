@@ -87,7 +87,7 @@ def test_an_iteration_on_the_way_is_the_kernel_s(fast, make_sketch):
     assert fast.record.ran in ([], ["terrain"])
 
 
-def test_sizes_it_cannot_make_are_refused_as_the_kernel_refuses_them(fast, slow, make_sketch):
+def test_variant_refuses_sizes_refused_by_its_kernel(fast, slow, make_sketch):
     for engine in (fast, slow):
         with pytest.raises(SketchError, match="65 x 65 or 129 x 129"):
             engine.read(sketch_of(make_sketch, 100), "terrain")

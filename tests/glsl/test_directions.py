@@ -90,7 +90,7 @@ def test_on_an_even_slope_water_wanders_to_both_sides_alike(engine, make_sketch)
     assert abs(sideways.mean()) < 4 * sideways.std() / 159
 
 
-def test_a_terrain_with_more_texels_than_a_float_numbers_is_refused(engine, make_sketch):
+def test_terrain_too_large_for_float_indices_is_refused(engine, make_sketch):
     sketch = make_sketch(PASSES, size=[5001, 33], rough=ROUGH)
     with pytest.raises(SketchError, match=r"takes n up to 4096, m up to 4096 texels a side, not 5001 x 33"):
         engine.read(sketch, "down")

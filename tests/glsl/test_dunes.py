@@ -34,7 +34,7 @@ def dunes(engine, make_sketch):
     return read
 
 
-def test_straight_dunes_fall_at_the_angle_of_repose_and_rise_slower(dunes):
+def test_dune_lee_falls_at_repose_and_windward_side_is_gentler(dunes):
     """With wind from the west crests lie from south to north, and the steep sides look east."""
     sand, lies = dunes(wind=270.0, bends=0.0, between=400.0, tallest=40.0)
     assert lies.min() == 1 and sand.min() > -1e-3 and sand.max() < 40

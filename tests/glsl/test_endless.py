@@ -183,7 +183,7 @@ def test_the_detail_fits_next_to_its_copy(any_engine, part_of):
     np.testing.assert_array_equal(there, here)  # 12 parts of 32 are the 384 texels of the tile
 
 
-def test_light_of_a_part_is_that_of_one_large_terrain_where_shadows_fit_the_apron(any_engine, part_of):
+def test_part_light_matches_large_terrain_if_shadows_fit_apron(any_engine, part_of):
     """Sun 40 degrees up: a shadow of the apron's 40 texels, 960 m, needs 805 m of mountain."""
     sun = {"light.sun": (120.0, 40.0)}
     small = inside(any_engine.read(part_of((3, 1), 64, 40, **sun), "light"), 40)
@@ -199,9 +199,7 @@ def test_light_of_a_part_is_that_of_one_large_terrain_where_shadows_fit_the_apro
 
 
 @pytest.mark.parametrize("elevation", [25.0, 9.0, 4.0])
-def test_with_a_reach_of_the_apron_light_is_the_same_from_any_part_however_low_the_sun(
-    any_engine, part_of, elevation
-):
+def test_reach_within_apron_gives_equal_light_from_any_part(any_engine, part_of, elevation):
     """Every texel then sees as far, whichever part it is lit with: no border shows."""
     value = {"light.sun": (120.0, elevation), "light.max_distance": 24}
     small = inside(any_engine.read(part_of((2, 5), 64, 24, **value), "light"), 24)

@@ -34,7 +34,7 @@ def stamped(run: OnArrays, height: np.ndarray, weight: np.ndarray, stamps: int, 
     return height, water
 
 
-def test_what_the_terrain_loses_is_carried_or_has_left_with_the_water(engine: Engine):
+def test_brush_erosion_conserves_material_with_outflow(engine: Engine):
     run, before, weight = OnArrays(engine, "erosion/brush"), hills(), brush()
     after, water = stamped(run, before, weight, 30)
     change = after.astype(np.float64) - before

@@ -135,7 +135,7 @@ def test_it_agrees_in_every_sketch_that_uses_it(ctx, name):
             assert not verdict.wrong, f"{use.path}: {verdict.words}"
 
 
-def test_where_the_plain_form_runs_nothing_is_compared_and_nothing_drawn(ctx):
+def test_pass_running_canonical_form_compares_and_draws_nothing(ctx):
     """A pixel of several samples is drawn by no fast variant, though both forms of a view share files."""
     sketch = load("fbm")
     assert sketch.picture.samples > 1
@@ -146,7 +146,7 @@ def test_where_the_plain_form_runs_nothing_is_compared_and_nothing_drawn(ctx):
 
 
 @pytest.mark.parametrize("path", ["height.noise.direction", "height.spectrum.direction"])
-def test_a_parameter_inside_that_a_variant_has_not_has_the_plain_form_run(path):
+def test_inner_parameter_unknown_to_variant_runs_canonical_form(path):
     """Set by whatever means: a variant would ignore it."""
     sketch = load("fourier")
 

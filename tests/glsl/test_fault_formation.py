@@ -210,7 +210,7 @@ def test_turns_are_faults(engine, sketch_of, drawn, heights_of):
         np.testing.assert_array_equal(result, expected)
 
 
-def test_a_terrain_to_begin_with_stays_and_the_grouping_is_still_free(engine, sketch_of):
+def test_initial_terrain_is_added_to_faults_at_any_grouping(engine, sketch_of):
     before = '[[pass]]\nname = "start"\nuse = "generation/layered_noise"\n'
     values = {"size": (33, 33), "iterations": 50, "seed": 6}
     sketch = sketch_of(before=before, inputs='inputs = { "sum.initial" = "start" }\n', **values)

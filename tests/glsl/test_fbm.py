@@ -172,7 +172,7 @@ def many_curves(any_engine, sketch_of, hurst):
 
 
 @pytest.mark.parametrize("hurst", [0.2, 0.4, 0.6, 0.8])
-def test_the_power_of_curves_falls_as_fractional_brownian_motion_s(any_engine, sketch_of, hurst):
+def test_curve_power_spectrum_matches_fractional_brownian_motion(any_engine, sketch_of, hurst):
     """Power spectrum f^-(2H + 1), the mean over 48 curves."""
     rows = many_curves(any_engine, sketch_of, hurst)
     windowed = (rows - rows.mean(axis=1, keepdims=True)) * np.hanning(4096)

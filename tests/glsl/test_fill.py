@@ -85,7 +85,7 @@ float kernel(ivec2 texel) {
     [(ROUGH, [71, 53]), (ROUGH, [200, 129]), (ROUGH, [2, 3]), (MAZE, [71, 53])],
     ids=["71x53", "200x129", "2x3", "maze"],
 )
-def test_tiles_fall_to_the_bits_of_a_flood_that_falls_step_by_step(ctx, make_sketch, size, rough):
+def test_tiled_flood_matches_stepwise_flood_bit_for_bit(ctx, make_sketch, size, rough):
     """In whatever order texels fall, a flood ends at the same levels; and they are the water's."""
     if ctx.version_code < 430:
         pytest.skip("tiles fall by compute shaders")

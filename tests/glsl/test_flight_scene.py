@@ -15,7 +15,7 @@ def test_the_air_hides_nothing_here_and_all_at_the_end(on_gpu):
     np.testing.assert_allclose(on_gpu(FILE, "air_share(3.0 * d, 30000.0)", d=far), share, atol=1e-6)
 
 
-def test_under_water_the_ground_goes_and_at_a_flat_angle_the_air_is_mirrored(on_gpu):
+def test_water_hides_ground_with_depth_and_mirrors_at_grazing(on_gpu):
     depth = np.array([0.0, 5.0, 20.0, 500.0])
     glsl = "under_water(vec3(1.0), d, vec3(0.0, sqrt(1.0 - z * z), z), vec3(0.0), 10.0, vec3(0.0, 0.0, 1.0))"
     down = on_gpu(FILE, glsl, d=depth, z=1.0)
@@ -26,7 +26,7 @@ def test_under_water_the_ground_goes_and_at_a_flat_angle_the_air_is_mirrored(on_
     np.testing.assert_allclose(flat, np.tile([0, 0, 1], (4, 1)), atol=1e-6)
 
 
-def test_the_brightest_sky_is_brought_down_and_keeps_its_order_and_its_hue(on_gpu):
+def test_bright_sky_compression_keeps_order_and_hue(on_gpu):
     light = np.geomspace(1e-3, 1e3, 60)
     result = on_gpu(FILE, "eased(vec3(l, 0.5 * l, 2.0 * l))", l=light)
     assert (np.diff(result[:, 0]) > 0).all() and (result[light < 0.01, 0] > 0.99 * light[light < 0.01]).all()

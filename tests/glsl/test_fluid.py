@@ -102,7 +102,7 @@ def test_the_divergence_is_what_flows_out_of_each_cell(engine, sketch, frame):
 
 
 @pytest.mark.parametrize("frame", FRAMES)
-def test_each_wave_of_the_divergence_falls_as_jacobis_iteration_says(engine, sketch, frame):
+def test_divergence_modes_decay_as_jacobi_iteration_predicts(engine, sketch, frame):
     pressure = state(engine, sketch, "solved", frame - 1)
     carried = state(engine, sketch, "carried", frame)
     left = divergence(carried) - five_points(pressure)

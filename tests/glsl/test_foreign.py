@@ -61,7 +61,7 @@ def test_an_image_has_the_bytes_of_its_file(texels, tmp_path):
     np.testing.assert_allclose(result[::-1] * 255, pixels, atol=1)
 
 
-def test_a_sky_has_its_horizon_its_sun_and_its_ground_where_the_cube_map_says(texels):
+def test_sky_cube_map_places_horizon_sun_and_ground(texels):
     side = 32
     ways = directions(side)
     ways /= np.linalg.norm(ways, axis=2, keepdims=True)

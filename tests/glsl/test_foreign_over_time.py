@@ -54,7 +54,7 @@ def shown(pixels: np.ndarray) -> np.ndarray:
     return pixels[1, -2, :3] * 255
 
 
-def test_a_film_shows_each_frame_at_its_time_whatever_came_before(any_engine, sketch, tmp_path):
+def test_film_shows_frame_of_its_time_in_any_seek_order(any_engine, sketch, tmp_path):
     stamps = [0, 40, 50, 120, 500, 510, 900]
     uneven_film(tmp_path / "v.mkv", stamps)
     made = sketch("video", 'video = "v.mkv", loop = false')

@@ -58,9 +58,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_heights_keep_more_than_eight_bits_and_the_size_is_the_pass_s(
-    folder: Path, any_engine: Engine
-) -> None:
+def test_foreign_heights_keep_over_8_bits_at_pass_size(folder: Path, any_engine: Engine) -> None:
     result = any_engine.read(load(folder / "placed.toml"), "height")
     x, y = np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1]))
     np.testing.assert_allclose(result, 0.5 + (x + SIZE[0] * y) / 65536.0, rtol=0, atol=2**-23)

@@ -442,7 +442,7 @@ def test_the_magnitude_of_a_spectrum(engine, make_sketch):
 # ── the fast variant ────────────────────────────────────────────────────────────
 
 
-def test_the_fast_variant_makes_the_terrain_where_there_is_compute(any_engine, sketch_of):
+def test_fourier_variant_makes_terrain_if_compute_exists(any_engine, sketch_of):
     sketch = sketch_of((64, 64))
     any_engine.read(sketch, "terrain")
     assert (any_engine.record.ran == ["terrain"]) == any_engine.info.compute
@@ -464,7 +464,7 @@ def test_the_fast_variant_is_the_passes_at_every_size(ctx, sketch_of, side):
                 )
 
 
-def test_sides_too_long_for_the_fast_variant_have_the_plain_form_run(ctx, sketch_of):
+def test_sides_too_long_for_variant_run_canonical_form(ctx, sketch_of):
     """Which says so once; the terrain is the plain form's, and that of the fast variant where it can run."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")

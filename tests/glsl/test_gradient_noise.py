@@ -157,7 +157,7 @@ def field(seed, side=SIDE):
 
 
 @pytest.mark.parametrize("seed", [0, 7, 9999 * 0x2545F491])
-def test_random_bits_are_even_and_know_nothing_of_their_neighbours(seed):
+def test_random_bits_are_uniform_and_uncorrelated(seed):
     turns = field(seed)
     counts = np.histogram(turns, 64, (0, 2 * np.pi))[0]
     chi = ((counts - SIDE**2 / 64) ** 2 / (SIDE**2 / 64)).sum()

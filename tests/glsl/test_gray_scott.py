@@ -61,7 +61,7 @@ def test_steps_in_a_frame_are_steps(engine, sketch_of):
         np.testing.assert_array_equal(amounts(engine, four, frame), amounts(engine, sketch, 4 * frame + 3))
 
 
-def test_the_first_frame_is_a_step_from_squares_of_the_other_substance(engine, sketch_of):
+def test_first_gray_scott_frame_steps_from_seed_squares(engine, sketch_of):
     sketch = sketch_of((64, 64), steps=1, spots=1, seed=3)
     u, v = np.moveaxis(engine.read(sketch, "made.start").astype(float), -1, 0)
     assert (v == 0.25).sum() == (u == 0.5).sum() == 9 * 9

@@ -66,14 +66,14 @@ def test_it_is_the_difference_of_two_heights_over_the_softness(engine, lit, azim
     np.testing.assert_allclose(result[..., 0], expected, atol=HALF)
 
 
-def test_a_plane_that_rises_to_the_sun_loses_light_in_step_with_its_slope(engine, lit):
+def test_plane_rising_toward_sun_loses_light_linearly_with_slope(engine, lit):
     for rise in (0.0, 0.01, 0.02, 0.06):
         light = engine.read(lit(rise=(rise, 0.0), sun=(90.0, 30.0), softness=0.05), "light")
         np.testing.assert_allclose(light[:, :-1, 3], max(1 - rise / 0.05, 0), atol=HALF)
         np.testing.assert_array_equal(light[:, -1, 3], 1.0)
 
 
-def test_the_defect_of_the_method_a_slope_away_from_the_sun_is_as_bright_as_level_terrain(engine, lit):
+def test_slope_away_from_sun_is_as_bright_as_level_ground(engine, lit):
     light = engine.read(lit(rise=(0.0, -0.5), sun=(0.0, 5.0)), "light")
     np.testing.assert_array_equal(light[..., 3], 1.0)
 

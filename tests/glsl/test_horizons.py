@@ -387,7 +387,7 @@ def test_k_of_more_directions(engines, measured, directions):
         np.testing.assert_array_equal(maps, measured(engine, terrain, directions=8)[0])
 
 
-def test_numbers_between_count_as_the_next_multiple_of_eight_below(engines, measured):
+def test_direction_count_rounds_down_to_supported_value(engines, measured):
     terrain = real(33)
     for engine in engines:
         for asked, taken in ((6, 2), (12, 8), (30, 24)):

@@ -95,7 +95,7 @@ def test_a_step_is_that_of_the_equations(engine, eroded):
 
 
 @pytest.mark.parametrize("rain", [0.003, 0.01])
-def test_rock_and_water_are_conserved_in_a_thousand_steps_with_closed_edges(engine, eroded, rain):
+def test_closed_edges_conserve_rock_and_water_over_1000_steps(engine, eroded, rain):
     heights = hills((65, 65), 3)
     sketch = eroded(heights, edges="closed", evaporation=0.0, rain=rain, hours=5000, capacity=8.0)
     bed, water, load, _, _ = state(engine, sketch, 1000)
@@ -224,7 +224,7 @@ def test_outputs_say_what_was_done(engine, eroded):
 
 
 @pytest.mark.parametrize("aslant", [False, True])
-def test_a_stream_a_texel_wide_carries_as_much_aslant_as_along_an_axis(engine, eroded, aslant):
+def test_one_texel_stream_flows_alike_diagonally_and_along_axis(engine, eroded, aslant):
     """It rains on a groove only: through each texel of it, round corners or not, goes what fell above it."""
     y, x = np.mgrid[:41, :41]
     groove = (y == x) | (y == x + 1) if aslant else y == 20

@@ -196,7 +196,7 @@ def test_coarse_layers_left_out(engine, sketch_of):
     np.testing.assert_array_equal(raw(engine, nothing), 0)
 
 
-def test_as_many_intervals_as_gaps_give_each_texel_its_own_number(engine, sketch_of, python_random):
+def test_lattice_at_texel_spacing_gives_each_texel_own_number(engine, sketch_of, python_random):
     result = raw(engine, sketch_of(frequency=32, octaves=1))
     y, x = np.mgrid[0:33, 0:33] * (RANDOM_SIDE // 32)
     np.testing.assert_allclose(result, python_random(x, y, DRAWN), atol=4e-7)

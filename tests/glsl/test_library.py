@@ -137,7 +137,7 @@ def test_a_driver_takes_what_this_asks_of_it(ctx):
 
 
 @pytest.mark.slow
-def test_what_makes_and_lights_the_terrain_does_not_follow_the_camera():
+def test_terrain_and_light_kernels_do_not_depend_on_camera():
     """A name that the engine gives makes a pass follow it, even where it names a variable or a field."""
     folders = ("generation/", "erosion/", "texturing/", "lighting/")
     follows = "texturing/alpha_map/distance.glsl"  # by its purpose

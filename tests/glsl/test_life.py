@@ -55,7 +55,7 @@ def test_the_trail_is_life_fading(engine, sketch_of):
 
 
 @pytest.mark.parametrize("size", [(16, 16), (48, 32)], ids=str)
-def test_a_glider_flies_one_cell_south_east_in_four_generations_and_round_the_torus(engine, sketch_of, size):
+def test_glider_moves_one_cell_in_four_steps_and_wraps_torus(engine, sketch_of, size):
     sketch = sketch_of("gliders", size=size)
     first = cells_at(engine, sketch, 0)
     assert first.sum() == 5 * (size[0] // 16) * (size[1] // 16)

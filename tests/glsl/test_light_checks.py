@@ -115,7 +115,7 @@ def test_lifting_the_terrain_changes_nothing(light, method):
     [(250, 20), (90, 20), pytest.param((20, 12), marks=SLOW), pytest.param((225, 30), marks=SLOW)],
     ids=str,
 )
-def test_turned_and_mirrored_terrain_has_turned_and_mirrored_light(light, method, sun):
+def test_rotated_and_mirrored_terrain_rotates_and_mirrors_light(light, method, sun):
     terrain = rough()
     here = light(method, terrain, sun)
     turned = Land(np.rot90(terrain.heights, -1), terrain.spacing[::-1])  # rows go north: to the left
@@ -129,7 +129,7 @@ def test_turned_and_mirrored_terrain_has_turned_and_mirrored_light(light, method
     [("l_dot_n", {"normal": "one triangle"}), ("ray_cast", {"sampling": "cut down"})],
     ids=["one triangle", "cut down"],
 )
-def test_the_thesis_own_ways_are_exempt_because_they_lean_to_one_side(light, use, values):
+def test_thesis_methods_are_exempt_from_symmetry_as_one_sided(light, use, values):
     method = Method("the thesis's", use, {"gain": 1.0, **values})
     terrain = rough()
     result = light(method, Land(terrain.heights[:, ::-1], terrain.spacing), (-20, 12))
@@ -243,7 +243,7 @@ def test_tiny_terrains_are_numbers(light, method, size):
 
 
 @pytest.mark.parametrize("elevation", [5.0, 40.0, 90.0])
-def test_on_flat_terrain_the_cylinder_is_half_of_the_light_everywhere(light, elevation):
+def test_cylinder_on_flat_terrain_is_half_lit_everywhere(light, elevation):
     method = Method("cylinder", "soft_cylinder", {"gain": 1.0})
     result = light(method, flat(), (250, elevation))
     np.testing.assert_array_equal(result[..., 3], 0.5)
@@ -253,9 +253,7 @@ def test_on_flat_terrain_the_cylinder_is_half_of_the_light_everywhere(light, ele
 @pytest.mark.parametrize("delta_r", [0.5, 1.5])
 @pytest.mark.parametrize("elevation", [5.0, 25.0, 60.0])
 @pytest.mark.parametrize("form", ["march", "sweep"])
-def test_on_flat_terrain_a_cone_wider_than_the_sun_is_high_is_cut_by_the_ground(
-    light, form, elevation, delta_r
-):
+def test_cone_wider_than_sun_elevation_is_cut_by_flat_ground(light, form, elevation, delta_r):
     """V = (1 + L_z / delta_r) / 2, but for texels whose first step leaves the terrain."""
     method = Method("cone", "soft_cone", {"gain": 1.0, "delta_r": delta_r, "form": form})
     result = light(method, flat(), (250, elevation))[1:-1, 1:-1, 3]

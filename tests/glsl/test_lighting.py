@@ -169,7 +169,7 @@ def test_turned_terrain_under_a_turned_sun_has_turned_light(engine, lit, method,
 
 @BOTH
 @pytest.mark.parametrize("sun", [(135, 25), (20, 12), (90, 20), (45, 35)], ids=str)
-def test_mirrored_terrain_under_a_mirrored_sun_has_mirrored_light(engine, lit, method, sun):
+def test_mirrored_terrain_and_sun_mirror_light(engine, lit, method, sun):
     straight = engine.read(lit(HILLS, method, sun, relief=300.0), "light")
     mirrored = engine.read(
         lit(HILLS, method, (-sun[0], sun[1]), relief=300.0, given={"turned": "mirrored"}), "light"
@@ -318,7 +318,7 @@ def test_a_wall_throws_its_shadow_in_metres_to_the_west_and_east(engine, lit, az
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 180.0, 30.0, 200.0])
-def test_a_wall_throws_its_shadow_in_metres_to_the_north_and_south(engine, lit, azimuth):
+def test_wall_shadow_has_metric_length_north_and_south(engine, lit, azimuth):
     sun = (azimuth, 25.0)
     sketch = lit(
         WALL, "ray_cast", sun, size=[129, 65], extent=[1280, 1280], given={"at": (-1, 32)}, step_length=0.25
@@ -369,7 +369,7 @@ def test_cutting_places_down_moves_shadows_and_is_the_thesis_way(any_engine, lit
 
 
 @pytest.mark.parametrize("form", ["march", "sweep"])
-def test_moving_the_sun_leaves_the_terrain_and_what_is_known_of_it_alone(any_engine, lit, form):
+def test_sun_change_reuses_terrain_and_its_block_maxima(any_engine, lit, form):
     sketch = lit(HILLS, "ray_cast", (135, 25), form=form)
     any_engine.read(sketch, "light")
     existing = {"light.visibility.fast.block_maxima", "light.visibility.fast.range.whole"}
@@ -429,7 +429,7 @@ ambient = 0.3
     np.testing.assert_allclose(light, expected, rtol=2 * HALF, atol=1e-4)
 
 
-def test_light_of_another_size_reads_what_it_is_given_between_texels(engine, make_sketch):
+def test_light_of_other_size_interpolates_its_inputs(engine, make_sketch):
     value = """
 #pragma kernel(output = "v:r32f")
 float kernel(ivec2 texel) { return float(texel.x + 2 * texel.y) / 64.0; }
@@ -443,7 +443,7 @@ float kernel(ivec2 texel) { return float(texel.x + 2 * texel.y) / 64.0; }
     np.testing.assert_allclose(light[..., 3], (x / 3 + 2 * (y / 4)) / 64, rtol=2 * HALF, atol=1e-4)
 
 
-def test_slopes_between_texels_are_the_texels_slopes_interpolated(engine, lit):
+def test_slopes_between_texels_are_interpolated_from_texels(engine, lit):
     """Texels of the light on texels of the terrain are next to others that are not."""
     sun = (135, 25)
     sketch = lit(HILLS, "l_dot_n", sun, light_size="[129, 97]", relief=300.0, extent=640.0)

@@ -53,7 +53,7 @@ def test_corners_stand_on_corners(on_gpu, small, large):
     np.testing.assert_array_equal(result, truth)
 
 
-def test_a_place_on_another_grid_is_the_same_share_of_the_terrain(on_gpu):
+def test_grid_position_keeps_its_terrain_fraction_on_other_grid(on_gpu):
     texels = np.stack([np.arange(344), np.arange(344) % 403], axis=1)
     places = on_gpu(
         "maths/land.glsl", "place_on(to, texel, grid)", to=(1025, 77), texel=texels, grid=(344, 403)
@@ -75,7 +75,7 @@ def test_spacing_counts_the_gaps(on_gpu):
     np.testing.assert_array_equal(result, [[5.0, 7.0]])
 
 
-def test_bilinear_is_two_interpolations_and_keeps_level_ground_level(on_gpu):
+def test_bilinear_matches_two_lerps_and_keeps_level_ground(on_gpu):
     corners, part = RNG.uniform(-5, 5, (500, 4)), RNG.random((500, 2))
     result = on_gpu("maths/land.glsl", "bilinear(corner, part)", corner=corners, part=part)
     truth = [
@@ -88,7 +88,7 @@ def test_bilinear_is_two_interpolations_and_keeps_level_ground_level(on_gpu):
     np.testing.assert_array_equal(result, level[:, 0].astype(np.float32))
 
 
-def test_the_nodes_around_a_place_weigh_as_in_bilinear_interpolation(on_gpu):
+def test_node_weights_match_bilinear_interpolation(on_gpu):
     """A sum over the nodes is a bilinear function itself, whose value at a place is known."""
     places = np.concatenate([RNG.uniform(0, 50, (200, 2)), RNG.integers(0, 50, (50, 2))]).astype(np.float32)
     places[200:220, 0] += np.float32(0.25)  # between two nodes of a row
@@ -108,7 +108,7 @@ def test_the_nodes_around_a_place_weigh_as_in_bilinear_interpolation(on_gpu):
     np.testing.assert_allclose(total, (3.0 + x) * (7.0 - 2.0 * y), rtol=1e-4, atol=1e-3)
 
 
-def test_the_distance_to_a_segment_is_that_to_the_nearest_of_its_points(on_gpu):
+def test_segment_distance_is_to_its_nearest_point(on_gpu):
     position, start, end = (RNG.uniform(-5, 5, (200, 2)).astype(np.float32) for _ in range(3))
     end[:20] = start[:20]  # pieces without length
     result = on_gpu(
@@ -120,7 +120,7 @@ def test_the_distance_to_a_segment_is_that_to_the_nearest_of_its_points(on_gpu):
 
 
 @pytest.mark.slow
-def test_a_way_through_a_rectangle_is_where_its_places_are_inside(on_gpu):
+def test_ray_interval_in_rectangle_matches_points_inside(on_gpu):
     position, ahead = RNG.uniform(-8, 8, (300, 2)), RNG.uniform(-1, 1, (300, 2))
     ahead[:20, 0] = 0.0
     sides = np.array([5.0, 3.0])

@@ -55,7 +55,7 @@ def places(within_x, within_y, shift=0.0):
     return (x + within_x - WIDE / 2) / (WIDE / 2) * far, far + shift
 
 
-def test_each_level_is_the_mean_of_four_and_the_mean_of_all_is_kept(engine, plain):
+def test_each_mip_level_averages_four_texels_and_preserves_mean(engine, plain):
     sketch = plain("./noise")
     image = engine.read(sketch, "pattern").astype(float)
     for k, level in enumerate(levels(engine.read(sketch, "plain:chain"))):
@@ -89,7 +89,7 @@ def test_many_samples_come_to_the_share_of_white_in_a_pixel(engine, plain):
     assert np.abs(result - total / 4096).mean() < 0.05
 
 
-def test_the_level_is_that_of_the_longer_side_of_what_a_pixel_sees(engine, plain):
+def test_mip_level_follows_longer_side_of_pixel_footprint(engine, plain):
     """At a distance d a pixel sees d² / (eye · f) of a plain's length, d / f of its width; f in pixels."""
     result = engine.read(plain(), "plain:level")
     far = places(0.5, 0.5)[1]

@@ -43,7 +43,7 @@ def solid(position, seed):
 
 
 @pytest.mark.parametrize("seed", [0, 4711])
-def test_noise_in_space_is_a_sum_over_corners_and_its_slopes_are_its_derivatives(on_gpu, seed):
+def test_solid_noise_matches_corner_sum_and_its_derivatives(on_gpu, seed):
     places = RNG.uniform(-40, 40, (400, 3)).astype(np.float32)
     result = on_gpu("noise/solid.glsl", "solid(p, s)", p=places, s=np.uint32(seed)).astype(float)
     exact, step = places.astype(float), 1e-5
@@ -58,7 +58,7 @@ def test_noise_in_space_is_a_sum_over_corners_and_its_slopes_are_its_derivatives
 # ── octaves ──────────────────────────────────────────────────────────────────
 
 
-def test_no_octave_is_shown_below_two_pixels_nor_above_two_spacings(on_gpu):
+def test_octaves_appear_between_two_pixels_and_two_spacings(on_gpu):
     file = "scene/near/ladder.glsl"
     cells = (COARSEST * 0.5 ** np.arange(RUNGS)).astype(np.float32)
     for pixel in np.geomspace(1e-4, 40.0, 60).astype(np.float32):
@@ -190,7 +190,7 @@ def test_soil_has_the_brightness_of_what_it_replaces(on_gpu):
     np.testing.assert_allclose(result @ luma, colours @ luma, rtol=1e-5)
 
 
-def test_rock_is_more_where_it_is_steeper_and_kinds_are_all_there_is(on_gpu):
+def test_rock_grows_with_slope_and_ground_kinds_sum_to_one(on_gpu):
     slope = np.tile(np.linspace(0, 2.5, 200), 5).astype(np.float32)
     patchy = np.repeat(np.linspace(-1, 1, 5), 200).astype(np.float32)
     call = "kinds_of_ground(s, vec2(0.6, 1.1), true, 0.0, 0.3, p, 0.2)"
@@ -224,7 +224,7 @@ def test_layers_follow_the_height(on_gpu):
     assert abs(tone.mean()) < 4 * 0.5 / np.sqrt(4500 / 12.0) and tone.std() > 0.2
 
 
-def test_on_a_plane_of_the_axes_rock_shows_that_plane_s_tile_alone(on_gpu):
+def test_axis_aligned_normal_takes_one_triplanar_plane(on_gpu):
     axes = np.eye(3, dtype=np.float32)
     file, call = "texturing/planes.glsl", "planes_of(n, vec2(30.0, 45.0), 4.0)"
     np.testing.assert_allclose(on_gpu(file, call, n=axes), axes, atol=1e-12)
@@ -286,7 +286,7 @@ def test_snow_covers_hollows_first_and_everything_at_last(on_gpu):
         assert np.all(np.diff(depths, axis=1) <= 0), "what stands higher is bare longer"
 
 
-def test_as_much_snow_lies_on_bumps_that_are_seen_as_on_those_that_are_not(on_gpu):
+def test_snow_amount_matches_on_resolved_and_unresolved_bumps(on_gpu):
     """Near by, the mean over places; far away, the fraction of a pixel that shows none of its bumps."""
     places = RNG.uniform(0, 5000, (20000, 2)).astype(np.float32)
     files = {name: f"scene/near/{name}.glsl" for name in ("bumps", "snow")}
@@ -322,7 +322,7 @@ def of_land(any_engine, make_sketch):
     return read
 
 
-def test_snow_lies_high_on_gentle_slopes_in_winter_and_in_the_lee(of_land):
+def test_snow_depends_on_height_slope_season_and_lee(of_land):
     depth = lambda height, **v: of_land("texturing/snow_depth", height, **{"line": 200.0} | v)  # noqa: E731
     calm = {"season": 0.0, "drift": 0.0, "maximum": 20.0}
     ramp = depth(f"0.6 * {EAST}", **calm)
@@ -425,7 +425,7 @@ def test_detail_leaves_the_mean_light_and_colour(from_above, elevation, wide):
     assert result[..., 1].std() > 3 * plain[..., 1].std() and bumps[..., 2].min() > 0
 
 
-def test_wetness_darkens_and_shines_and_deep_snow_is_white_and_smooth(from_above):
+def test_wet_ground_is_dark_and_shiny_deep_snow_white_and_smooth(from_above):
     field = '#pragma kernel(output = "{0}:r32f")\nfloat kernel(ivec2 t) {{ return {1}; }}\n'
     extra = '[[pass]]\nname = "{0}"\nuse = "./{0}"\n'
     value = "fine_ground = true, gain = 2.0, ambient = 0.4, sun = { azimuth = 250.0, elevation = 40.0 }"

@@ -44,19 +44,19 @@ def blend(array: np.ndarray, corner: object) -> float:
     return total
 
 
-def test_value_noise_blends_the_numbers_of_the_four_lattice_points_around(on_gpu, places):
+def test_value_noise_interpolates_four_lattice_values(on_gpu, places):
     result = on_gpu(FILE, f"value_noise_periodic(p, ivec2{PERIOD}, {SEED}u)", p=places)
     expected = [blend(p, lambda x, y, _: number(x, y)[0]) for p in places]
     np.testing.assert_allclose(result, expected, atol=2e-6)
 
 
-def test_gradient_noise_blends_the_planes_of_the_four_lattice_points_around(on_gpu, places):
+def test_gradient_noise_interpolates_four_lattice_planes(on_gpu, places):
     result = on_gpu(FILE, f"gradient_noise_periodic(p, ivec2{PERIOD}, {SEED}u)", p=places)
     expected = [blend(p, lambda x, y, d: (number(x, y) * 2 - 1) @ d) for p in places]
     np.testing.assert_allclose(result, expected, atol=3e-6)
 
 
-def test_cells_are_the_two_nearest_of_all_points_and_their_copies(on_gpu, places):
+def test_periodic_cells_find_two_nearest_points_with_wraparound(on_gpu, places):
     result = on_gpu(FILE, f"cells_periodic(p, ivec2{PERIOD}, {SEED}u)", p=places)
     x, y = np.meshgrid(np.arange(-20, 21), np.arange(-20, 21))
     cells = np.stack([x.ravel(), y.ravel()], axis=1)
@@ -86,7 +86,7 @@ def test_a_copy_one_period_away_is_the_same(on_gpu, places, expression, away):
         np.testing.assert_array_equal(here, there)
 
 
-def test_gradient_noise_is_nought_on_the_lattice_and_stays_within_one(on_gpu):
+def test_gradient_noise_is_zero_on_lattice_and_within_one(on_gpu):
     x, y = np.meshgrid(np.arange(-3.0, 8.0), np.arange(-3.0, 8.0))
     lattice = np.stack([x.ravel(), y.ravel()], axis=1)
     assert not on_gpu(FILE, "gradient_noise_periodic(p, ivec2(16), 2u)", p=lattice).any()

@@ -66,7 +66,7 @@ def test_weighed_sharp_ridges_are_the_technique_s(read):
     assert abs(read(RIDGES, weighed=False, **value) - technique).max() > 0.05
 
 
-def test_with_as_many_bends_as_octaves_it_is_the_technique_s_warp(read):
+def test_warp_with_one_bend_per_octave_matches_technique(read):
     value = {"octaves": 4, "frequency": CELLS, "gain": 0.45, "warp": 0.7, "seed": 3}
     technique = read("generation/gradient_noise/sum", shape="warped", **value)
     np.testing.assert_allclose(read(WARPING, ":height", bends=4, **value), technique, atol=3e-5)

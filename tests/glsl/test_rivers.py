@@ -50,7 +50,7 @@ def test_a_river_covers_its_width_at_any_size(engine, make_sketch, size, diagona
     assert across == pytest.approx(2 * wide, rel=0.125 if diagonal else 0.02)
 
 
-def test_a_river_begins_where_it_drains_enough_and_widens_by_a_power(engine, make_sketch):
+def test_river_starts_at_drainage_threshold_and_widens_by_power(engine, make_sketch):
     river, _ = drawn(engine, make_sketch, 65, rivers_source=4.1)
     assert not river.any()
     _, width = drawn(engine, make_sketch, 65, rivers_source=3.9, rivers_growth=1.0, rivers_wide=5.0)

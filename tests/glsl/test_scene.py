@@ -162,7 +162,7 @@ def test_a_footprint_is_the_way_to_the_points_of_the_next_pixels(any_engine, on_
 
 
 @pytest.mark.parametrize("size", ["", "size = [33, 57]\n"])
-def test_the_ground_has_slopes_in_metres_and_what_the_light_gives(any_engine, make_sketch, size):
+def test_scene_ground_has_metric_slopes_and_input_light(any_engine, make_sketch, size):
     maps = '#pragma kernel(output = "{}:rgba16f")\nvec4 kernel(ivec2 t) {{ return vec4({}); }}\n'
     text = PASSES + '[[pass]]\nname = "sun"\nuse = "./sun"\n[[pass]]\nname = "sky"\nuse = "./sky"\n'
     text += f'[[pass]]\nname = "ground"\nuse = "scene/ground"\n{size}'

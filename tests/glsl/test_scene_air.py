@@ -241,7 +241,7 @@ def test_nothing_lights_up_at_night_and_all_are_numbers(any_engine, outdoors):
     assert (np.diff(bright) <= 0).all() and bright[-2] < 1e-6 * bright[0]
 
 
-def test_mist_is_as_bright_as_a_white_thing_in_the_same_light_at_most(any_engine, outdoors):
+def test_mist_is_no_brighter_than_white_surface_in_same_light(any_engine, outdoors):
     """It scatters what comes to it and adds none: away from the sun no mist outshines paper that faces it."""
     for elevation in (60.0, 20.0, 3.0):
         sketch = outdoors({"mist": 8.0, "mist_top": 800.0}, look=(150.0, 3.0), sun=[330.0, elevation])

@@ -121,9 +121,7 @@ def test_behind_the_terrain_is_the_picture_of_the_sky(any_engine, scene):
 
 
 @pytest.mark.parametrize("drawn", ["flat", "heaped"])
-def test_the_sky_is_made_where_it_is_seen_and_as_if_it_were_made_everywhere(
-    any_engine, make_sketch, scene, drawn
-):
+def test_sky_computed_where_visible_matches_full_sky(any_engine, make_sketch, scene, drawn):
     whole = '[[pass]]\nname = "air"\nuse = "scene/air"\nsize = [128, 80]\n'
     whole += f'[[pass]]\nname = "whole"\nuse = "scene/sky"\nsize = [96, 64]\nset = {{ clouds = "{drawn}" }}\n'
     whole += 'inputs = { scattered = "air:scattered", left = "air:left", columns = "daylight:columns", '

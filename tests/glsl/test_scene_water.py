@@ -62,7 +62,7 @@ def read(engine, sketch, name, size=SIZE):
 # ── where ───────────────────────────────────────────────────────────────────────
 
 
-def test_water_is_where_the_rays_meet_its_level_before_the_ground(any_engine, scene):
+def test_water_appears_where_rays_meet_its_level_before_ground(any_engine, scene):
     result = read(any_engine, scene(), "watered.where:seen_water")
     eye, ahead = rays(any_engine.record.plan, all_pixels())
     ground = on_plane(eye, ahead)
@@ -254,7 +254,7 @@ def mirrored_and_above(engine, make_sketch, cover):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("cover", [0.4, 0.7])
-def test_mirrored_clouds_have_the_light_and_colour_of_those_above(any_engine, make_sketch, cover):
+def test_reflected_clouds_match_light_and_colour_of_real_ones(any_engine, make_sketch, cover):
     """On the mean to a tenth of the light; the air before the water makes it a little bluer."""
     below, above = mirrored_and_above(any_engine, make_sketch, cover)
     below, above = below.mean(axis=(0, 1, 2)), above.mean(axis=(0, 1, 2))

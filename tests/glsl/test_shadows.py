@@ -150,7 +150,7 @@ def test_a_march_rounds_alike_by_uniforms_and_by_constants(ctx, make_sketch, mon
 
 
 @pytest.mark.parametrize("size", [(1, 1), (16, 17), (65, 33), (40, 100)], ids=str)
-def test_block_maxima_are_the_highest_of_blocks_and_of_their_borders(any_engine, make_sketch, size):
+def test_block_maxima_cover_blocks_and_their_borders(any_engine, make_sketch, size):
     passes = (
         '[[pass]]\nname = "height"\nuse = "generation/white_noise"\n'
         '[[pass]]\nname = "maxima"\nuse = "lighting/block_maxima"\nsize = "(height.size + 15) // 16"\n'
@@ -192,7 +192,7 @@ float kernel(ivec2 texel) { return texel.x == size.x - 1 ? 1.0 : 0.0; }
 
 
 @pytest.mark.parametrize("method", ["ray_cast", "sun_disc"])
-def test_a_shadow_crosses_the_widest_terrain_in_the_shortest_steps(any_engine, lit, method):
+def test_shadow_crosses_widest_terrain_at_shortest_step(any_engine, lit, method):
     """A wall of 300 m hides all of a disc at 0.7 degrees as far as 17.8 km away: on 16384 texels of 1 m."""
     values = {
         "size": [MAX_SIDE, 2],
@@ -231,7 +231,7 @@ def test_the_cone_is_that_of_a_slow_march(any_engine, lit, sun, delta_r, step_le
 
 
 @pytest.mark.parametrize("sun", SUNS[:3], ids=str)
-def test_the_thesis_counts_steps_so_that_half_the_step_doubles_its_cone(any_engine, lit, sun):
+def test_thesis_step_counting_doubles_cone_at_half_step_length(any_engine, lit, sun):
     sketch = lit(HILLS, "soft_cone", sun, delta_r=0.05, step_length=0.5, growth="per step", **GRID)
     views = Views(heights_of(any_engine, sketch), sun, SPACING, 0.5)
     expected = views.free_of_beam(sun[1], lambda far: far * 0.1 / np.cos(np.radians(sun[1])))
@@ -321,7 +321,7 @@ def test_on_flat_terrain_the_disc_sets(any_engine, lit, form, elevation):
 
 
 @pytest.mark.parametrize("sun", [(135, 25), (262, 7), (45, 12)], ids=str)
-def test_a_thin_cone_is_a_ray_and_half_of_any_cone_is_what_a_ray_meets(any_engine, lit, sun):
+def test_thin_cone_is_ray_cast_and_ray_hit_blocks_half_a_cone(any_engine, lit, sun):
     ray = visible(any_engine, lit(HILLS, "ray_cast", sun, **GRID))
     assert 0.02 < ray.mean() < 0.98
     for delta_r in (0.0, 1e-6):
@@ -345,7 +345,7 @@ def test_lifting_the_terrain_changes_nothing(any_engine, lit, method, form):
 
 @EVERY_METHOD
 @pytest.mark.parametrize("sun", [(135, 25), (20, 12)], ids=str)
-def test_turned_and_mirrored_terrain_has_turned_and_mirrored_light(any_engine, lit, method, form, sun):
+def test_rotated_and_mirrored_terrain_rotates_and_mirrors_light(any_engine, lit, method, form, sun):
     values = {"form": form, "relief": 300.0, "extent": 640.0}
     straight = any_engine.read(lit(HILLS, method, sun, **values), "light")
     y, x = np.mgrid[0:65, 0:65]
@@ -415,7 +415,7 @@ def test_both_drivers_sweep_alike(ctx, lit):
 
 
 @pytest.mark.parametrize("method", ["ray_cast", "soft_cone", "sun_disc"])
-def test_without_compute_shaders_the_sweep_is_a_march_and_one_sentence_says_so(ctx, lit, method):
+def test_sweep_without_compute_marches_and_reports_it_once(ctx, lit, method):
     """The plain form looks along a texel's whole line: half a minute on 1537 texels a side, the march 2 s."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
@@ -590,7 +590,7 @@ def test_the_lamp_s_shadows_are_those_of_a_slow_march(any_engine, lit):
     np.testing.assert_array_equal(light[sure] > 0, expected[sure])
 
 
-def test_a_lamp_on_the_ground_and_one_on_a_terrain_of_one_texel_are_numbers(any_engine, lit):
+def test_lamp_on_ground_or_one_texel_terrain_gives_finite_light(any_engine, lit):
     for size in ([1, 1], [2, 2], [1, 20], [33, 33]):
         for height in (0.0, 40.0):
             values = {"lamp_gain": 8.0, "lamp": (0.5, 0.5), "lamp_height": height, "lamp_radius": 0.0}

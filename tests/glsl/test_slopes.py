@@ -45,7 +45,7 @@ def test_a_plane_has_its_slope_everywhere_whatever_the_spacing(read, way, apart)
 
 
 @pytest.mark.parametrize("apart", [1, 4])
-def test_of_a_parabola_both_sides_are_exact_inside_and_one_side_is_half_a_step_late(read, apart):
+def test_parabola_slopes_are_exact_two_sided_and_lag_one_sided(read, apart):
     x, inside = np.arange(31) * 30.0, np.s_[:, apart:-apart]
     slope = 2 * x / 900**2
     for way, late in (("both sides", 0.0), ("one side", apart * 30.0 / 2)):
@@ -57,13 +57,13 @@ def test_of_a_parabola_both_sides_are_exact_inside_and_one_side_is_half_a_step_l
         assert abs(result[:, 0] - slope[0]).min() > 0.9 * apart * 30.0 / 900**2
 
 
-def test_a_texture_of_another_size_takes_the_slopes_of_the_nearest_texels(read):
+def test_resized_texture_takes_slopes_of_nearest_texels(read):
     small = by_differences(read, f"{EAST} * {NORTH}")
     large = by_differences(read, f"{EAST} * {NORTH}", "size = [61, 25]")
     np.testing.assert_allclose(large[::2, ::2], small, rtol=1e-6)
 
 
-def test_errors_fall_with_the_square_of_the_spacing_on_both_sides_and_with_it_on_one(read):
+def test_slope_error_is_second_order_two_sided_first_one_sided(read):
     """Second and first order, of smooth noise; measured inside, where both sides are there."""
     octaves = "set = { octaves = 2, frequency = 3.0 }"
     for way, order in (("both sides", 2), ("one side", 1)):
@@ -148,7 +148,7 @@ def test_contour_lines_are_those_of_view_contours(read, height):
     assert mine.max() > 0.9 and mine.min() < 0.1
 
 
-def test_a_width_in_metres_of_height_is_wide_where_the_slope_is_gentle(read):
+def test_contour_width_in_height_metres_widens_on_gentle_slope(read):
     """A line of 2 m is covered for 2 m of height: 40 m of way where it rises 1 m in 20."""
     for relief, texels in ((100.0, 4.0), (50.0, 8.0)):
         text = f'{LINES}, ground = "#ffffff", measured = "metres of height"'

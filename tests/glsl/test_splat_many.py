@@ -96,7 +96,7 @@ def test_no_material_appears_or_goes_with_a_jump(any_engine, make_sketch):
     assert np.abs(np.diff(shown, axis=0)).max() < 0.05
 
 
-def test_where_nothing_claims_the_first_lies_and_nan_harms_nothing(any_engine, make_sketch):
+def test_unclaimed_texel_takes_first_layer_and_nan_is_harmless(any_engine, make_sketch):
     none = np.tile([2.0, 3.0, 0.0, 90.0], (16, 1))
     terrain = HEIGHT.format("texel.x > 8 ? uintBitsToFloat(0x7fc00000u) : 0.5")
     sketch = make_sketch(MANY.format(settings(none, chance=0)), size=17, terrain=terrain, **FLAT)
@@ -174,7 +174,7 @@ def test_a_tile_repeats_and_meets_its_own_copy(any_engine, make_sketch, number, 
     np.testing.assert_allclose(row, expected, atol=0.012 if repeats == 4 else 0.03)
 
 
-def test_far_more_repeats_than_texels_give_the_mean_of_that_tile_alone(any_engine, make_sketch):
+def test_repeats_beyond_texel_count_give_mean_of_their_tile(any_engine, make_sketch):
     alone = np.tile([2.0, 3.0, 0.0, 90.0], (16, 1))
     alone[6] = [-1.0, 2.0, -90.0, 180.0]
     text = MANY.format(settings(alone, chance=0, repeats=512) + "size = 65\n")

@@ -227,7 +227,7 @@ def test_fewer_layers_leave_the_others_out(any_engine, make_sketch, layers):
     assert (result.sum(axis=-1) == 255).all()
 
 
-def test_paint_of_full_strength_alone_counts_and_none_changes_nothing(any_engine, make_sketch):
+def test_full_strength_paint_overrides_and_none_changes_nothing(any_engine, make_sketch):
     plain = bytes_of(any_engine, make_sketch(STACK.format("", ""), size=33, **COVERS))
     brush = '[[pass]]\nname = "brush"\nuse = "./brush"\nsize = 33\n'
     half = "texel.x < 11 ? vec4(0.0) : texel.x < 22 ? vec4(0.0, 0.0, 0.5, 0.0) : vec4(0.0, 0.0, 1.0, 1.0)"

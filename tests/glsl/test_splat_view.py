@@ -44,7 +44,7 @@ def above(sketch):
     return sketch.with_camera(Camera(azimuth=180, elevation=89.9, distance=2200, target=(500, 500, 0)))
 
 
-def test_each_pixel_of_level_terrain_has_its_layers_by_their_weights(any_engine, make_sketch):
+def test_level_terrain_pixels_mix_layers_by_their_weights(any_engine, make_sketch):
     sketch = make_sketch(
         TERRAIN + VIEW.format("view/splat", 1, ""), terrain=HEIGHT.format("0.0"), weights=SPREAD, **FLAT
     )

@@ -24,7 +24,7 @@ def weights():
     return dirichlet / dirichlet.sum(axis=1, keepdims=True)
 
 
-def test_covers_become_what_laying_them_one_over_the_other_leaves(on_gpu):
+def test_cover_weights_match_layers_composited_in_order(on_gpu):
     covers = np.random.default_rng(4).uniform(size=(3000, 3))
     result = on_gpu(FILE, "weights_of_covers(c)", c=covers)
     for k in range(4):
@@ -40,14 +40,14 @@ def test_covers_past_their_range_are_held_in_it(on_gpu):
     np.testing.assert_allclose(result, [[1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], atol=1e-7)
 
 
-def test_a_mask_counts_in_proportion_and_nothing_is_the_first_layer(on_gpu):
+def test_mask_weights_are_proportional_and_empty_is_first_layer(on_gpu):
     masks = np.random.default_rng(5).uniform(size=(500, 4)) * np.array([1, 200.0, 1e-3, 1])
     result = on_gpu(FILE, "weights_of_mask(m)", m=masks)
     np.testing.assert_allclose(result, masks / masks.sum(axis=1, keepdims=True), atol=1e-6)
     np.testing.assert_array_equal(on_gpu(FILE, "weights_of_mask(m)", m=np.zeros((1, 4))), [[1, 0, 0, 0]])
 
 
-def test_in_bytes_the_sum_is_255_in_every_texel_and_none_is_off_by_more_than_rounding(on_gpu, weights):
+def test_byte_weights_sum_to_255_within_rounding(on_gpu, weights):
     result = on_gpu(FILE, "weights_in_bytes(w)", w=weights).astype(float) * 255
     whole = np.round(result)
     np.testing.assert_allclose(result, whole, atol=1e-4)
@@ -59,7 +59,7 @@ def test_in_bytes_the_sum_is_255_in_every_texel_and_none_is_off_by_more_than_rou
     assert np.sort(off, axis=1)[:, :3].max() <= 0.5 + 1e-4
 
 
-def test_alphas_composited_one_over_the_other_give_the_weights_back(on_gpu, weights):
+def test_composited_layer_alphas_reproduce_weights(on_gpu, weights):
     alphas = np.stack([on_gpu(FILE, f"alpha_of_layer(w, {k})", w=weights) for k in range(4)])
     assert alphas.min() >= 0 and alphas.max() <= 1
     assert np.isfinite(alphas).all()
@@ -85,7 +85,7 @@ def test_heights_shift_the_odds_and_nothing_else(on_gpu, weights):
     np.testing.assert_allclose(logs - logs[:, :1], 0.0, atol=2e-4)
 
 
-def test_a_material_alone_stays_alone_and_equal_heights_change_nothing(on_gpu, weights):
+def test_single_material_and_equal_heights_keep_their_weights(on_gpu, weights):
     alone = on_gpu(FILE, "weights_by_heights(w, h, 20.0)", w=np.eye(4), h=np.full((4, 4), 1.0) - np.eye(4))
     np.testing.assert_array_equal(alone, np.eye(4))
     level = on_gpu(FILE, "weights_by_heights(w, vec4(0.7), 20.0)", w=weights)

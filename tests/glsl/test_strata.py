@@ -83,7 +83,7 @@ height = "fallen:height"
 """
 
 
-def test_erosion_follows_erosion_and_the_layers_that_it_lays_bare(engine, make_sketch, tmp_path):
+def test_repeated_erosion_follows_newly_exposed_strata(engine, make_sketch, tmp_path):
     (tmp_path / "round.toml").write_text(ROUND)
     hills = "generation/gradient_noise", "set = { frequency = 3, octaves = 5 }"
     wired = 'inputs = { height = "raw" }'

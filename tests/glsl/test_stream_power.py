@@ -199,7 +199,7 @@ coarse_level = "rivers:height"
 
 
 @pytest.mark.slow
-def test_twice_as_hard_is_half_as_erodible_and_uplift_is_a_factor(worn):
+def test_hardness_divides_erodibility_and_uplift_multiplies_rate(worn):
     values = {"steps": 12, "finer_steps": 2, "erodibility": 8.0}
     factor = 'inputs = { height = "low", INPUT = "two" }'
     two = '[[pass]]\nname = "two"\nuse = "./two"\nsize = 5\n' + PASSES

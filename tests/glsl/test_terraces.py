@@ -39,7 +39,7 @@ def test_even_layers_are_the_curve_through_their_edges(stepped):
     assert np.ptp(result, axis=1).max() == 0
 
 
-def test_uneven_layers_rise_with_the_ground_and_move_it_by_less_than_a_layer(stepped):
+def test_uneven_terraces_rise_with_ground_within_one_layer(stepped):
     result = stepped(thickness=100.0, uneven=1.0, wall=0.1, bench=0.3, seed=8)[:, 1]
     assert np.diff(result).min() >= 0 and np.abs(result - METRES).max() < 140
     assert (result <= METRES + 1e-3).all()

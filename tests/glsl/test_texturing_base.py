@@ -36,7 +36,7 @@ def test_a_swatch_repeats_the_whole_image(any_engine, make_sketch):
     np.testing.assert_array_equal(row.round(), (np.arange(64) % 32 < 16).astype(float))
 
 
-def test_one_of_gives_the_colour_that_is_chosen_and_white_for_none(engine, make_sketch):
+def test_one_of_returns_chosen_colour_or_white(engine, make_sketch):
     use = (
         '[[pass]]\nname = "colour"\nuse = "texturing/one_of"\n'
         'inputs = { first = "red", second = "green", third = "blue" }\n'
@@ -47,7 +47,7 @@ def test_one_of_gives_the_colour_that_is_chosen_and_white_for_none(engine, make_
         np.testing.assert_array_equal(colour, np.broadcast_to(expected, (9, 9, 3)))
 
 
-def test_one_of_keeps_a_colour_of_its_own_size_and_interpolates_a_coarser_one(engine, make_sketch):
+def test_one_of_copies_same_size_colour_and_interpolates_coarser(engine, make_sketch):
     eastward = PLAIN.format("vec3(float(texel.x) / float(size.x - 1))")
     passes = '[[pass]]\nname = "fine"\nuse = "./red"\n[[pass]]\nname = "coarse"\nuse = "./red"\nsize = 3\n'
     use = '[[pass]]\nname = "c"\nuse = "texturing/one_of"\ninputs = { first = "fine", second = "coarse" }\n'

@@ -76,7 +76,7 @@ def nearness(distance, reach):
     return np.interp(share, steps, area)
 
 
-def test_the_image_moves_the_cover_s_colour_by_its_ratio_to_its_mean_and_by_nearness(any_engine, terrain):
+def test_detail_scales_cover_by_ratio_to_mean_and_by_nearness(any_engine, terrain):
     reach, repeats, strength = 700.0, 4.0, 0.8
     sketch = terrain(
         f", detail_max_distance = {reach}, detail_repeats = {repeats}, detail_strength = {strength}"
@@ -145,7 +145,7 @@ def test_under_small_moves_it_hardly_flickers(any_engine, terrain):
 
 
 @pytest.mark.parametrize(("value", "fine"), [(", detail_strength = 0", "fine"), ("", "flat")])
-def test_without_strength_or_with_an_even_image_it_is_the_plain_view(any_engine, terrain, value, fine):
+def test_zero_strength_or_uniform_detail_matches_plain_view(any_engine, terrain, value, fine):
     height, cover = "0.4 * sin(float(texel.x) * 0.3) + 0.3", "vec3(float(texel.x % 5), 1.0, 0.5) * 0.2"
     plain = terrain(wired=False, height=height, cover=cover)
     expected = any_engine.render(plain, size=(160, 90)).array

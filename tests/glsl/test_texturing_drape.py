@@ -37,7 +37,7 @@ def rgb(engine, sketch, name="c"):
     return engine.read(sketch, name).astype(float)[..., :3]
 
 
-def test_as_a_tile_of_its_own_size_an_image_is_its_own_texels_decoded(engine, make_sketch, picture):
+def test_native_size_tile_returns_decoded_image_texels(engine, make_sketch, picture):
     pixels = np.random.default_rng(4).integers(0, 256, (6, 10, 3))
     sketch = make_sketch(use("image", f'image = "{picture(pixels)}"'), size=[10, 6])
     # The software renderer decodes by a polynomial, off by up to 0.0015: less than half a level of the file.
@@ -64,9 +64,7 @@ def test_a_finer_image_is_averaged_in_linear_light(engine, make_sketch, picture,
     np.testing.assert_allclose(rgb(engine, sketch), 0.5, atol=0.01)
 
 
-def test_over_the_terrain_its_corners_stand_on_the_terrain_s_and_no_edge_takes_from_the_opposite(
-    engine, make_sketch, picture
-):
+def test_draped_image_meets_terrain_corners_without_edge_wrap(engine, make_sketch, picture):
     pixels = np.zeros((32, 32, 3))
     pixels[:16, :16, 0] = pixels[:16, 16:, 1] = pixels[16:, :16, 2] = 255  # red in the north-west
     sketch = make_sketch(use("drape", f'image = "{picture(pixels)}"'), size=65)
@@ -96,7 +94,7 @@ def test_a_tile_meets_its_own_copy(any_engine, make_sketch, picture):
     np.testing.assert_allclose(colour, along(along(source, 0), 1), atol=5e-3)
 
 
-def test_a_pass_in_the_image_s_place_keeps_its_bits_at_its_own_size(engine, make_sketch):
+def test_pass_replacing_image_keeps_its_bits_at_own_size(engine, make_sketch):
     text = '[[pass]]\nname = "photo"\nuse = "./photo"\n' + use(
         "drape", "", 'inputs = { "laid.colour" = "photo" }\n'
     )

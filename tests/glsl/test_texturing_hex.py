@@ -11,7 +11,7 @@ REPEATS, SIZE = 8, 513
 PERIOD = (SIZE - 1) // REPEATS
 
 
-def test_weights_are_hats_over_the_corners_of_equilateral_triangles(on_gpu):
+def test_hex_weights_are_linear_hats_over_triangle_corners(on_gpu):
     """A corner's weight falls evenly from 1 to 0 at the six lines that join its neighbours."""
     tile = np.random.default_rng(2).uniform(-9, 9, (3000, 2))
     cells = 2.5
@@ -46,7 +46,7 @@ def test_sharpened_weights_still_sum_to_one_and_keep_their_order(on_gpu, power):
 
 
 @pytest.mark.parametrize("weights", [(1 / 3, 1 / 3, 1 / 3), (0.6, 0.3, 0.1), (0.5, 0.5, 0.0)])
-def test_a_mixture_of_three_that_share_nothing_has_the_mean_and_the_variance_of_each(on_gpu, weights):
+def test_mix_of_three_independent_images_keeps_mean_and_variance(on_gpu, weights):
     random = np.random.default_rng(5)
     images = [random.normal(0.5, 0.08, (60000, 3)) for _ in range(3)]
     a, b, c = images
@@ -82,7 +82,7 @@ def correlation(colour, north, east):
 
 
 @pytest.mark.parametrize(("image", "turn"), [("rock", 0), ("path", 180), ("sand", 0)])
-def test_one_tile_away_it_agrees_with_itself_five_times_less_than_tiles_do(any_engine, laid, image, turn):
+def test_hex_tiling_repeats_five_times_less_than_plain_tiles(any_engine, laid, image, turn):
     lags = [(0, PERIOD), (PERIOD, 0), (PERIOD, PERIOD), (0, 2 * PERIOD)]
     plain = rgb(any_engine, laid("tiled", "variety = 0.0", image))
     twice = rgb(any_engine, laid("tiled", "variety = 0.5", image))
@@ -113,7 +113,7 @@ def test_the_mean_and_the_contrast_are_the_image_s(any_engine, laid, image):
     np.testing.assert_allclose(result.std(axis=(0, 1)), np.sqrt(np.mean(variances, axis=0)), rtol=0.05)
 
 
-def test_the_contrast_does_not_depend_on_how_narrow_the_borders_are(any_engine, laid):
+def test_hex_contrast_is_independent_of_border_sharpness(any_engine, laid):
     """A plain mean of three copies would lose a fifth of it where the borders are wide."""
     wide, narrow = (
         rgb(any_engine, laid("hex_tiled", f"sharpness = {s}", "rock")).std(axis=(0, 1)) for s in (1.0, 16.0)
@@ -149,7 +149,7 @@ def test_far_more_tiles_than_texels_are_the_mean(any_engine, laid):
 
 
 @pytest.mark.slow
-def test_a_mixture_by_height_in_hexagons_has_the_colours_of_the_one_in_tiles(any_engine, make_sketch):
+def test_hex_height_blend_matches_colours_of_tiled_height_blend(any_engine, make_sketch):
     ramp = '#pragma kernel(output = "height:r32f")\n'
     ramp += "float kernel(ivec2 texel) { return float(texel.x) / float(size.x - 1); }\n"
     bands = {}

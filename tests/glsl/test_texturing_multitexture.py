@@ -95,7 +95,7 @@ def test_the_share_is_one_for_all_the_terrain(any_engine, make_sketch):
     np.testing.assert_allclose(between, 0.6 * ends[0] + 0.4 * ends[1], atol=2e-3)
 
 
-def test_the_shadow_map_is_the_slope_against_the_sun_at_the_heights_size(engine, make_sketch):
+def test_shadow_map_is_slope_toward_sun_at_height_map_size(engine, make_sketch):
     """A roof: its eastern side turns to the sun, its western side from it."""
     sun = np.array([90.0, 30.0])
     sketch = sketch_of(

@@ -146,7 +146,7 @@ def test_a_tower_falls_into_a_cone_of_its_angle_of_repose(engine, fallen, repose
 
 
 @pytest.mark.parametrize("way", ["quarter", "half", "mirrored", "transposed"])
-def test_a_terrain_that_is_turned_or_mirrored_falls_alike_to_the_last_bit(engine, fallen, way):
+def test_thermal_erosion_commutes_with_rotation_and_mirroring(engine, fallen, way):
     turned = {
         "quarter": np.rot90,
         "half": lambda a: np.rot90(a, 2),

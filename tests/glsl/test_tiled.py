@@ -147,7 +147,7 @@ def test_more_tiles_than_texels_and_no_layers_are_numbers(engine, sketch_of, use
             assert np.isfinite(engine.read(sketch_of(use, size, **values), "terrain")).all()
 
 
-def test_a_terrain_that_is_no_whole_number_of_parts_cuts_the_last(any_engine, sketch_of):
+def test_last_tile_is_cropped_if_parts_do_not_divide_terrain(any_engine, sketch_of):
     result = any_engine.read(sketch_of("layered_noise_tiled", 100, tiles=4, normalise="none"), "terrain.tile")
     assert result.shape == (26, 26)  # four parts of 25 texels are 100 wide: one more than there are gaps
 

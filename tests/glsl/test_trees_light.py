@@ -32,7 +32,7 @@ def free_share(height, elevation, rng, rays=20000, wide=400.0):
 
 
 @pytest.mark.parametrize("elevation", [7.0, 20.0, 45.0, 80.0])
-def test_what_reaches_the_ground_is_what_no_crown_is_in_the_way_of(on_gpu, elevation):
+def test_ground_light_is_fraction_unblocked_by_crowns(on_gpu, elevation):
     angle = np.radians(elevation)
     stand = "Stand({}, {}, {}, {}, 1.0, 0.0)".format(*FIELD)
     towards = np.array([[np.cos(angle) * 0.6, np.cos(angle) * 0.8, np.sin(angle)]], np.float32)
@@ -261,7 +261,7 @@ def test_a_wood_shades_the_meadow_beside_it_and_lights_none(kept, ctx, make_sket
 
 
 @pytest.mark.slow
-def test_where_all_trees_have_needles_their_wood_has_the_light_of_needles(kept, ctx, make_sketch):
+def test_all_needle_wood_matches_needle_light(kept, ctx, make_sketch):
     """Above `needles_from`, as with needles only; 2000 m above sea level here, far beyond single trees."""
     high, only = (
         stand(kept, make_sketch, 6000.0, value=name)
@@ -360,7 +360,7 @@ def test_the_sun_beside_a_wood_is_what_its_trees_leave(kept, ctx, on_gpu, make_s
     assert ((share < 0.5) != hidden).mean() < 0.01
 
 
-def test_beyond_the_square_of_tree_shadows_the_wood_shades_as_one_body(kept, ctx, make_sketch):
+def test_woods_beyond_tree_shadow_square_shade_as_one_body(kept, ctx, make_sketch):
     position, share, _ = meadow_sun(kept, make_sketch, 100.0)
     east, north = np.array(kept.record.plan.eye.position[:2])
     beyond = np.maximum(abs(position[:, 0] - east), abs(position[:, 1] - north)) > 50.0

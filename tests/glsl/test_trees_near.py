@@ -63,7 +63,7 @@ def drawn(engine, make_sketch, near, species="oaks", azimuth=200.0, distance=120
 
 
 @pytest.mark.parametrize("species", SPECIES)
-def test_a_mesh_is_as_large_and_as_bright_as_the_crown_it_becomes(kept, ctx, make_sketch, species):
+def test_tree_mesh_matches_area_and_brightness_of_its_crown(kept, ctx, make_sketch, species):
     """From two sides, with the sun ahead and behind: areas to a tenth, light to a twentieth of the sun."""
     for azimuth in (200.0, 20.0):
         area, light = zip(

@@ -147,7 +147,7 @@ def test_as_many_trees_are_of_a_species_as_its_share_says(on_gpu):
     assert np.abs(np.bincount(kind % 8) / n - 1 / 8).max() < 4 * np.sqrt(1 / 8 / n)
 
 
-def test_a_wood_has_the_mean_colour_of_what_one_sees_of_its_trees(kept, ctx, on_gpu, make_sketch):
+def test_wood_colour_is_visible_area_mean_of_its_trees(kept, ctx, on_gpu, make_sketch):
     """By areas of crowns from the side: a b of an ellipse, 2 / pi of that of a cone."""
     _, sketch = shares(kept, make_sketch, "needles = 0.2", size=9)
     table = kept.read(sketch, "leaves").astype(np.float64)

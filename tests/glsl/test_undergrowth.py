@@ -19,9 +19,7 @@ SCREE = DENSITY.replace("trees/density", "objects/scree").replace('name = "densi
         (0.0, "paths", 0.1),
     ],
 )
-def test_rocks_lie_where_it_is_steep_and_on_rock_and_not_on_paths(
-    kept, ctx, make_sketch, slope, wired, expected
-):
+def test_rocks_lie_on_steep_slopes_and_rock_but_not_on_paths(kept, ctx, make_sketch, slope, wired, expected):
     wires = f', {wired} = "ground:a_{wired}"' if wired else ""
     text = SCREE.format(slope=slope, wired=wires, values="strewn = 0.1, piled = 0.6, heaps = 0")
     result = kept.read(make_sketch(text, size=33, extent=32.0, relief=100.0, plane=PLANE), "rocks")

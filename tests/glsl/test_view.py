@@ -86,7 +86,7 @@ def test_vertices_stand_where_the_camera_s_matrix_says(any_engine, terrain):
     np.testing.assert_allclose(middle, expected, atol=1.0)
 
 
-def test_colour_and_light_of_other_sizes_share_the_terrain_s_corners(on_gpu):
+def test_cover_and_light_of_any_size_align_to_terrain_corners(on_gpu):
     for texels in (2, 33, 1025):
         ends = on_gpu("maths/drape.glsl", f"drape_uv(s, ivec2({texels}))", s=np.array([[0.0] * 2, [1.0] * 2]))
         np.testing.assert_allclose(ends * texels - 0.5, [[0, 0], [texels - 1, texels - 1]], atol=1e-4)
@@ -248,7 +248,7 @@ def test_a_sea_far_below_the_ground_does_not_float_in_the_air(any_engine, terrai
     np.testing.assert_array_equal(array, without)
 
 
-def test_a_valley_below_height_0_is_filled_by_a_sea_far_below_the_hills(any_engine, terrain):
+def test_low_sea_level_fills_valley_below_zero_height(any_engine, terrain):
     valley = "abs(texel.x - 16) < 6 ? -2.0 : 1.0"
     sketch = above(terrain(height=valley, given=f"{SHOWN}, sea_level = -150"), elevation=89.0)
     any_engine.render(sketch, size=(200, 200))

@@ -40,7 +40,7 @@ def test_on_a_plane_lines_stand_where_the_elevation_is_theirs(engine, cover, wid
 
 
 @pytest.mark.parametrize("size", [[101, 101], [257, 257], [301, 151]])
-def test_on_a_cone_they_are_circles_of_one_width_at_any_resolution(any_engine, cover, size):
+def test_contours_on_cone_are_circles_of_even_width_at_any_size(any_engine, cover, size):
     """1000 m of cone, 5 lines; the terrain has 513 texels a side, the lines a size of their own."""
     cone = "1.0 - length(vec2(texel) / float(size.x - 1) - 0.5) * 2.0"
     value = "interval = 200, every = 0, width = 2"
@@ -80,7 +80,7 @@ def test_every_so_manieth_line_is_thick_counted_from_sea_level(any_engine, make_
         np.testing.assert_allclose(result[x - 6 : x + 7].sum(), 4 if elevation % 50 == 0 else 1, atol=0.02)
 
 
-def test_where_they_crowd_their_mean_is_drawn_and_nothing_flickers(any_engine, cover):
+def test_crowded_contours_fade_to_mean_without_flicker(any_engine, cover):
     result = cover(any_engine, EASTWARD, "interval = 0.5, every = 0, width = 0.8", size=[101, 5], relief=50.0)
     np.testing.assert_allclose(result, min(0.8 * 50 / 100 / 0.5, 1.0), atol=2e-3)
 

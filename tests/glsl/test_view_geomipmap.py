@@ -143,9 +143,7 @@ def true_errors(heights: np.ndarray, level: int) -> np.ndarray:
         ("random(texel, 2u)", [2, 5]),
     ],
 )
-def test_an_error_is_the_largest_height_between_a_level_s_triangles_and_the_terrain(
-    any_engine, errors_of, text, size
-):
+def test_tile_error_is_max_height_gap_between_level_and_terrain(any_engine, errors_of, text, size):
     heights, spans, errors = errors_of(any_engine, text, size)
     tiles = tiles_of(nodes_of(heights))
     truth = np.stack([true_errors(heights, level) for level in range(1, 5)], axis=-1)
@@ -167,7 +165,7 @@ def test_both_drivers_give_the_same_bits(ctx, errors_of):
         np.testing.assert_array_equal(first, other)
 
 
-def test_a_tile_with_a_hole_stays_whole_and_its_span_is_of_numbers(any_engine, errors_of):
+def test_tile_with_hole_stays_full_detail_with_finite_span(any_engine, errors_of):
     _, spans, errors = errors_of(any_engine, HOLE, 33)
     assert (errors[0, 1] > 1e29).all() and (errors[1] < 1).all() and (errors[0, 0] < 1).all()
     assert np.isfinite(spans).all() and spans[0, 1, :2].tolist() == [0.0, pytest.approx(0.7)]
@@ -375,7 +373,7 @@ def test_no_tolerance_at_all_is_the_full_grid(engine, shown, size):
     assert different.mean() < 0.01
 
 
-def test_fewer_triangles_the_more_is_allowed_and_no_errors_for_a_full_grid(engine, shown):
+def test_tolerance_reduces_triangles_and_full_grid_has_no_errors(engine, shown):
     counts = []
     for tolerance in (0.0, 0.5, 1.0, 2.0, 4.0):
         engine.render(shown(size=257).with_values({"view.tolerance": tolerance}), size=SIZE)

@@ -82,7 +82,7 @@ def assert_agree(result, expected, alike, most=1 / 64 + 1e-3):
     assert np.sqrt(((result - expected) ** 2).mean()) < 0.01
 
 
-def test_each_pixel_has_its_place_its_distance_and_how_far_the_next_is(software, make_sketch):
+def test_pixel_has_ground_position_distance_and_next_spacing(software, make_sketch):
     """Level ground under a perspective camera: the pixels' rays meet a plane."""
     sketch = make_sketch(READ, terrain=HEIGHT.format("0.0"), place=PLACE).with_camera(LOOKS[0])
     result = software.read(sketch, "ground").astype(float)

@@ -135,7 +135,7 @@ def test_vertices_begin_to_slide_where_the_choice_of_levels_says():
 
 
 @pytest.mark.parametrize("size", [[257, 257], [300, 130], [129, 500]])
-def test_levels_meet_where_one_has_morphed_and_the_other_not_begun(engine, shown, all_seen, size):
+def test_levels_meet_where_one_is_morphed_and_next_not_started(engine, shown, all_seen, size):
     sketch = shown(size)
     tables = tables_of(engine, sketch)
     cells = [-(-(n - 1) // 16) * 16 for n in size]
@@ -182,7 +182,7 @@ def test_a_pyramid_holds_the_least_and_the_most_of_its_squares():
             assert squares[j, i].tolist() == [inside[..., 0].min(), *inside[..., 1:].max(axis=(0, 1))]
 
 
-def test_a_box_s_distances_are_those_of_its_nearest_and_its_furthest_point():
+def test_box_distances_are_to_nearest_and_furthest_point():
     rng = np.random.default_rng(4)
     view = view_of(Camera())
     boxes = sight.boxes_of(spans_of_tiles(np.sort(rng.uniform(0, 1, (4, 3, 2)), axis=-1)), view)
@@ -271,9 +271,7 @@ def pixels(view: sight.View, truth: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("tolerance", [1.0, 2.0, 8.0])
 @pytest.mark.parametrize("detail", ["morph", "geomipmap"])
 @pytest.mark.parametrize("size", [257, [203, 146], [84, 115]], ids=str)
-def test_no_place_is_drawn_further_from_the_terrain_than_the_tolerance(
-    engine, shown, all_seen, tolerance, detail, size
-):
+def test_drawn_surface_stays_within_tolerance_of_terrain(engine, shown, all_seen, tolerance, detail, size):
     sketch = shown(size, tolerance=tolerance, detail=detail)
     full = shown(size, tolerance=1e-9)
     worst = []

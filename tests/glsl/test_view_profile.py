@@ -170,7 +170,7 @@ def test_ticks_stand_at_round_numbers(any_engine, section):
         assert (elevations % steps[0] == 0).all()
 
 
-def test_elevations_are_above_sea_level_and_a_long_line_is_in_kilometres(any_engine, make_sketch):
+def test_profile_shows_elevation_above_sea_and_long_lines_in_km(any_engine, make_sketch):
     text = "base_elevation = 1400.0\n" + PASSES.format("", "start = [0.0, 0.5], finish = [1.0, 0.5]")
     sketch = make_sketch(text, size=65, extent=40000.0, relief=500.0, terrain=HEIGHT.format(EASTWARD))
     result = Section(any_engine.render(sketch, size=SIZE).array)
@@ -178,7 +178,7 @@ def test_elevations_are_above_sea_level_and_a_long_line_is_in_kilometres(any_eng
     assert max(result.along().values()) in (35, 40)
 
 
-def test_the_section_has_room_for_the_line_or_for_the_whole_terrain(any_engine, section):
+def test_profile_elevation_range_fits_line_or_whole_terrain(any_engine, section):
     value = 'start = [0.0, 0.5], finish = [0.3, 0.5], elevations = "{}"'
     line, terrain = (
         section(any_engine, EASTWARD, value.format(what), size=65, relief=1000.0)

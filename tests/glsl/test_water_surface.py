@@ -136,7 +136,7 @@ def test_without_wind_there_is_no_wave(waves):
     np.testing.assert_array_equal(waves(wind=0.0, fetch=500.0, pixel=0.01), 0.0)
 
 
-def test_waves_are_as_long_and_as_high_as_the_fetch_lets_them_grow(on_gpu):
+def test_wave_length_and_height_are_limited_by_fetch(on_gpu):
     """A fully grown sea by Pierson and Moskowitz: its peak at 0.88 g / U, 0.21 U^2 / g high."""
     wind = np.float32([5.0, 10.0, 10.0])
     fetch = np.float32([1e6, 5e6, 2000.0])

@@ -105,7 +105,7 @@ def test_the_panel_offers_tools_for_heights_and_layers_for_masks(bare: Bare) -> 
         bare.type("1")
 
 
-def test_while_the_button_is_down_the_brush_works_without_a_motion(bare: Bare, act: Act) -> None:
+def test_held_brush_paints_without_mouse_motion(bare: Bare, act: Act) -> None:
     painting = bare.bench.painting
     bare.key(_K.b)
     painting.choose("height.image")

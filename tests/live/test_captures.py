@@ -88,7 +88,7 @@ def notices_of(bench: Workbench) -> str:
 
 
 @pytest.mark.slow
-def test_a_picture_is_what_the_window_shows_with_all_that_is_set_by_hand(bench: Workbench) -> None:
+def test_capture_matches_window_with_all_manual_settings(bench: Workbench) -> None:
     bench.session.drafts.set("height.level", 0.2)
     bench.session.clock.time = 1.5
     bench.session.frame(SIZE)
@@ -111,7 +111,7 @@ def test_a_picture_is_what_the_window_shows_with_all_that_is_set_by_hand(bench: 
 
 
 @pytest.mark.slow
-def test_what_stops_leaves_nothing_and_the_window_may_close_meanwhile(bench: Workbench) -> None:
+def test_stopped_capture_leaves_no_file_and_window_may_close(bench: Workbench) -> None:
     bench.captures.capture_settings = CaptureSettings(PICTURE, multiple=0, size=(6000, 6000))
     bench.captures.start()
     assert bench.captures.working is not None

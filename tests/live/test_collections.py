@@ -11,7 +11,7 @@ from playground.errors import ContextError
 from playground.live import app
 
 
-def test_what_was_imported_is_not_collected_while_a_window_is_open(monkeypatch):
+def test_imports_are_frozen_from_gc_while_window_is_open(monkeypatch):
     frozen = []
 
     def no_window(*_: object) -> None:

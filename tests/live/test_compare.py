@@ -161,7 +161,7 @@ def test_an_image_of_another_content_alone_is_another(
     assert any("mask.png is another file now" in note for note in session.notes)
 
 
-def test_an_image_that_is_another_now_leaves_the_picture_as_it_was(
+def test_changed_image_leaves_kept_comparison_unchanged(
     session: Session, compare: Compare, folder: Path
 ) -> None:
     before = draw_frame(session, compare)

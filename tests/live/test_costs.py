@@ -130,9 +130,7 @@ def _triangles(engine: Engine, side: int) -> int:
 FAST = 'agrees = "exact"\n[[pass]]\nname = "height"\nuse = "./twin"\n[parameters]\nlevel = "height.level"\n'
 
 
-def test_the_switch_runs_the_plain_form_and_is_there_only_where_there_is_another(
-    bare: Bare, tmp_path: Path
-) -> None:
+def test_cost_switch_runs_canonical_form_and_shows_if_one_exists(bare: Bare, tmp_path: Path) -> None:
     bare.click("Cost###costs")
     bare.run_frames(2)
     assert "Plain form" not in bare.places

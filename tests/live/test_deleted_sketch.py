@@ -40,7 +40,7 @@ def test_there_are_many_kinds_of_errors() -> None:
 
 
 @pytest.mark.parametrize("kind", [*family(), RuntimeError, MemoryError], ids=lambda kind: kind.__name__)
-def test_every_kind_of_error_without_a_file_is_drawn_with_the_sketch_s(
+def test_every_error_without_file_is_shown_at_sketch_file(
     bare: Bare, kind: type[Exception], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     session, raised = bare.session, kind("this went wrong")
@@ -83,7 +83,7 @@ def test_a_refusal_of_the_sandbox_names_the_sketch(
     session.release()
 
 
-def test_a_sketch_that_is_gone_says_so_and_goes_on_when_it_is_back(folder: Path, any_engine: Engine) -> None:
+def test_missing_sketch_is_reported_and_resumes_once_restored(folder: Path, any_engine: Engine) -> None:
     session, path = Session(any_engine, folder), folder / "sketch.toml"
     session.frame((32, 32))
     before = session.read()

@@ -152,9 +152,7 @@ def test_it_waits_for_the_picture_to_rest_and_says_for_how_long(harness: Harness
     assert cached(tmp_path) == {"sketch: height"}
 
 
-def test_nothing_is_cached_of_terrain_in_which_a_number_is_not_finite(
-    harness: Harness, tmp_path: Path
-) -> None:
+def test_non_finite_terrain_is_not_cached(harness: Harness, tmp_path: Path) -> None:
     """The next session must name the pass that made it, and so must run it."""
     assert harness.session is not None
     harness.run_frames()
@@ -275,7 +273,7 @@ class TestWindow:
             screen.close()
 
 
-def test_terrain_that_was_read_is_recognised_by_itself_and_not_by_its_texture(harness: Harness) -> None:
+def test_cached_terrain_is_identified_by_itself_not_its_texture(harness: Harness) -> None:
     """What is read does not run, and its texture may be one that held another terrain before."""
     harness.run_frames()
     session = harness.session

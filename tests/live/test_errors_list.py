@@ -56,7 +56,7 @@ def diagnostic(file: str, line: int, message: str, severity: str = "error") -> D
 # ── the list itself ──────────────────────────────────────────────────────────
 
 
-def test_files_with_errors_come_first_and_the_words_are_the_terminal_s(folder: Path) -> None:
+def test_files_with_errors_come_first_in_terminal_wording(folder: Path) -> None:
     wrong = diagnostic("wave.glsl", 3, "this is wrong")
     odd = diagnostic("terrain.glsl", 5, "this is odd", "warning")
     problems, error = Problems(), ShaderError(diagnostics=[wrong])
@@ -67,7 +67,7 @@ def test_files_with_errors_come_first_and_the_words_are_the_terminal_s(folder: P
     assert problems.open
 
 
-def test_warnings_alone_do_not_open_it_and_it_closes_when_all_is_fixed(folder: Path) -> None:
+def test_warnings_do_not_open_list_and_fixes_close_it(folder: Path) -> None:
     problems = Problems()
     odd = diagnostic("terrain.glsl", 5, "this is odd", "warning")
     problems.take(None, [odd])

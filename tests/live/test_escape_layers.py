@@ -111,7 +111,7 @@ def test_a_field_in_a_popup_is_left_before_the_popup(bare: Bare) -> None:
     assert open_layers(bare.bench) == []
 
 
-def test_an_editor_with_changes_asks_and_esc_answers_that_by_staying(bare: Bare, tmp_path: Path) -> None:
+def test_esc_on_unsaved_editor_prompt_keeps_editor_open(bare: Bare, tmp_path: Path) -> None:
     bare.bench.files.open(tmp_path / "terrain.glsl", here=True)
     bare.run_frames(3)
     bare.type("// more")
@@ -143,7 +143,7 @@ def test_ctrl_q_quits_also_out_of_a_field(bare: Bare) -> None:
     assert bare.quits
 
 
-def test_what_is_typed_before_a_field_has_the_keys_is_the_field_s(bare: Bare) -> None:
+def test_keys_typed_before_field_gets_focus_go_to_field(bare: Bare) -> None:
     """On a slow renderer some frames pass between a double click and the field that it opens."""
     session, io = bare.session, imgui.get_io()
     bare.point("##height.level", 0.2)

@@ -86,7 +86,7 @@ def draw_frame(draw: Callable[[], None]) -> tuple[float, int]:
 
 
 @pytest.mark.parametrize("bug", BUGS, ids=lambda bug: bug.__name__)
-def test_a_bug_becomes_a_notice_and_the_next_part_is_drawn_as_always(
+def test_panel_bug_becomes_notice_and_next_part_is_drawn(
     interface: None, bug: Callable[[], None], caplog: pytest.LogCaptureFixture
 ) -> None:
     notices: list[str] = []

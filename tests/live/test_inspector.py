@@ -88,9 +88,7 @@ def test_a_texel_is_the_one_of_a_whole_reading(any_engine: Engine, form: str) ->
     texture.release()
 
 
-def test_every_pass_is_read_exactly_where_the_ray_meets_the_terrain(
-    session: Session, inspector: Inspector
-) -> None:
+def test_every_pass_is_read_exactly_at_ray_terrain_hit(session: Session, inspector: Inspector) -> None:
     picture = session.frame(SIZE)
     assert not session.error, str(session.error)
     assert picture is not None and session.plan is not None

@@ -56,7 +56,7 @@ def test_it_ends_at_the_smallest_and_at_the_largest() -> None:
     assert size.size == SIZES[0]
 
 
-def test_it_is_remembered_and_what_cannot_be_read_is_the_screen_s(tmp_path: Path) -> None:
+def test_interface_size_persists_and_invalid_file_uses_default(tmp_path: Path) -> None:
     assert remembered_size(tmp_path).size == 1.0
     remembered_size(tmp_path).step(1)
     assert remembered_size(tmp_path).size == 1.1

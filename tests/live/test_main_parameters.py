@@ -51,7 +51,7 @@ def drawn_for(name: str, *, everything: bool = False) -> tuple[list[str], str]:
     return [path for path, _ in result], words
 
 
-def test_the_main_parameters_stand_first_in_their_order_and_the_passes_are_folded(bare: Bare) -> None:
+def test_main_parameters_come_first_in_order_with_passes_folded(bare: Bare) -> None:
     result = bare.panel.memory.listing.main(bare.session.shown)
     assert [item.path for item in result] == ["light.seed", "height.seed"]
     assert [item.title for item in result] == ["Light: seed", "Height: seed"], "a title alone would not do"
@@ -69,7 +69,7 @@ def test_a_label_that_leans_on_its_group_has_it_before_it() -> None:
 
 
 @pytest.mark.slow
-def test_the_main_parameters_of_shipped_sketches_read_differently_and_whole(bare: Bare) -> None:
+def test_shipped_main_parameter_titles_are_distinct_and_fit(bare: Bare) -> None:
     room = 97.0  # what the panel's first width leaves a label
     imgui.new_frame()
     for name in shipped_sketches():
@@ -108,7 +108,7 @@ def test_the_menu_of_a_main_parameter_resets_it(bare: Bare) -> None:
     assert value(bare, "height.seed") == 3.0
 
 
-def test_random_values_are_for_the_shape_unless_everything_is_chosen(bare: Bare) -> None:
+def test_random_values_affect_shape_unless_everything_is_chosen(bare: Bare) -> None:
     bare.click("Random")
     bare.click("Random values")
     assert value(bare, "height.seed") != 3.0

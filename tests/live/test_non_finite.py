@@ -80,7 +80,7 @@ def test_the_first_pass_is_named_and_what_follows_is_counted(harness: Harness) -
     assert harness.watch.patience is None, "nothing more is waited for"
 
 
-def test_it_waits_for_rest_and_for_the_button_and_looks_at_one_pass_a_turn(harness: Harness) -> None:
+def test_non_finite_scan_waits_for_idle_and_reads_pass_by_pass(harness: Harness) -> None:
     harness.run_frames()
     harness.run_frames(REST / 2)
     assert harness.watch.looks == 0 and harness.watch.patience is not None
@@ -102,7 +102,7 @@ def test_it_goes_once_fixed(harness: Harness) -> None:
     assert harness.rest() == ["first", "second"]
 
 
-def test_a_map_of_the_texture_shows_it_in_magenta_where_the_mark_is(harness: Harness) -> None:
+def test_texture_map_shows_non_finite_texels_in_magenta(harness: Harness) -> None:
     assert harness.rest()
     first = harness.watch.non_finite[0]
     harness.bench.session.show(ref_of(first))

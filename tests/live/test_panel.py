@@ -160,7 +160,7 @@ def test_the_search_finds_and_only_changed_ones_show(bare: Bare) -> None:
     assert COUNT in bare.places and LEVEL not in bare.places
 
 
-def test_a_value_is_saved_in_the_fewest_digits_and_then_is_the_file_s(bare: Bare, folder: Path) -> None:
+def test_saved_value_has_fewest_digits_and_belongs_to_file(bare: Bare, folder: Path) -> None:
     bare.session.drafts.set("height.level", 1 / 3)
     bare.run_frames(2)
     bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
@@ -171,7 +171,7 @@ def test_a_value_is_saved_in_the_fewest_digits_and_then_is_the_file_s(bare: Bare
     assert value(bare, "level") == 0.6
 
 
-def test_the_lines_at_the_panel_s_foot_are_whole_however_narrow_it_is(bare: Bare) -> None:
+def test_panel_footer_lines_fit_at_any_width(bare: Bare) -> None:
     for width in (240.0, 330.0, 620.0):
         bare.panel.width = width
         bare.run_frames(3)
@@ -179,7 +179,7 @@ def test_the_lines_at_the_panel_s_foot_are_whole_however_narrow_it_is(bare: Bare
         assert panel.content_size.y + 2 * panel.window_padding.y <= panel.size.y + 1, width
 
 
-def test_presets_say_what_was_changed_since_and_new_ones_are_saved(bare: Bare, folder: Path) -> None:
+def test_preset_shows_changes_since_and_new_one_is_saved(bare: Bare, folder: Path) -> None:
     bare.click("##preset")
     bare.click("high")
     assert (value(bare, "level"), value(bare, "count")) == (1.0, 5)
@@ -327,9 +327,7 @@ def test_a_sketch_that_is_dropped_opens(bare: Bare, folder: Path) -> None:
 
 
 @pytest.mark.slow
-def test_an_elevation_file_that_is_dropped_opens_where_nothing_takes_it_and_is_saved_beside_it(
-    bare: Bare, folder: Path
-) -> None:
+def test_dropped_dem_opens_alone_and_saves_sketch_beside_it(bare: Bare, folder: Path) -> None:
     dem = folder / "dem.npy"
     np.save(dem, np.add.outer(np.arange(9.0), np.arange(7.0)))
     bare.drops.take([dem])
@@ -349,7 +347,7 @@ def test_an_elevation_file_that_is_dropped_opens_where_nothing_takes_it_and_is_s
     assert 'elevation = "dem.npy"' in (folder / "dem.toml").read_text("utf-8")
 
 
-def test_a_sketch_that_does_not_open_leaves_the_panel_the_title_and_the_path_of_the_one_shown(
+def test_unopenable_sketch_keeps_title_and_path_of_shown_one(
     bare: Bare, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     other = folder / "two"

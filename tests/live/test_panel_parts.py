@@ -49,7 +49,7 @@ def test_a_number_keeps_to_its_steps_and_its_range() -> None:
     assert decimals(parameter) == 1
 
 
-def test_the_middle_of_the_sky_is_the_zenith_and_its_rim_the_horizon() -> None:
+def test_sky_disc_middle_is_zenith_and_rim_is_horizon() -> None:
     assert dot_of(123.0, 90.0) == pytest.approx((0.0, 0.0))
     assert dot_of(90.0, 0.0) == pytest.approx((1.0, 0.0))
     assert dot_of(0.0, 0.0) == pytest.approx((0.0, 1.0))
@@ -66,7 +66,7 @@ def test_a_dot_outside_the_disc_is_on_the_horizon() -> None:
     assert direction_at(7.0, 0.0) == pytest.approx((90.0, 0.0))
 
 
-def test_lines_are_numbered_their_indentation_goes_and_a_mark_is_below_the_column() -> None:
+def test_excerpt_lines_are_numbered_dedented_with_column_mark() -> None:
     lines = [(9, "    float a;"), (10, "\tfloat x = foo;"), (11, "")]
     rows, wrong = numbered(lines, 10, 12, 60)
     assert rows == [" 9 | float a;", "10 | float x = foo;", "   |           ^", "11 |"]

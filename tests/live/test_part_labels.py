@@ -27,7 +27,7 @@ def test_three_methods_of_light_are_named_between_their_lines() -> None:
     assert parts[1].end == parts[2].start == pytest.approx(0.6667)
 
 
-def test_behind_the_same_filter_it_is_what_is_filtered_that_is_named() -> None:
+def test_equally_filtered_parts_are_named_by_filter_input() -> None:
     parts = parts_of(sketch_of("lighting_ray_cone"))
     assert [part.name for part in parts] == ["Ray filtered", "Cone filtered"]
     assert [part.method for part in parts] == ["Ray cast", "Soft shadows by a cone"]

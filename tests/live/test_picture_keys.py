@@ -73,7 +73,7 @@ def test_a_key_that_is_no_shortcut_reaches_the_picture_at_once(bare, keys):
     assert down(bare) == ()
 
 
-def test_after_a_click_on_the_picture_all_keys_are_its_own_until_esc(bare, keys):
+def test_clicked_picture_takes_all_keys_until_esc(bare, keys):
     imgui.get_io().add_mouse_pos_event(1000, 400)
     keys.frames()
     imgui.get_io().add_mouse_button_event(0, True)

@@ -55,7 +55,7 @@ def move(share: float) -> tuple[float, float]:
     return position
 
 
-def test_a_drag_ends_where_it_was_let_go_however_slow_the_frames_are(slider: Slider) -> None:
+def test_drag_ends_at_release_position_at_any_frame_rate(slider: Slider) -> None:
     io = imgui.get_io()
     move(0.2)
     slider.frames()

@@ -98,7 +98,7 @@ def bare(tmp_path: Path, any_engine: Engine) -> Iterator[Bare]:
     made.close()
 
 
-def test_each_part_of_a_vector_has_a_slider_of_its_own_one_below_the_other(bare: Bare) -> None:
+def test_vector_parameter_has_one_stacked_slider_per_component(bare: Bare) -> None:
     names = ["SW", "SE", "NW", "NE"]
     heights = [bare.places[f"##height.corners.{name}"][1] for name in names]
     assert heights == sorted(heights) and len(set(heights)) == 4

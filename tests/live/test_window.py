@@ -120,7 +120,7 @@ def test_an_edit_that_works_one_that_breaks_and_one_that_fixes(shared: App) -> N
 
 
 @pytest.mark.slow
-def test_a_sketch_that_vanishes_says_so_and_goes_on_when_it_is_back(shared: App) -> None:
+def test_missing_sketch_is_reported_and_resumes_once_restored(shared: App) -> None:
     folder, path = shared.sketch, shared.sketch / "sketch.toml"
     first, errors = shared.now()["picture"], shared.complaint().count("the file is gone")
     path.unlink()

@@ -47,9 +47,7 @@ def clipboard(screen: Screen) -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("clipboard")
-def test_a_text_is_pasted_into_the_window_and_the_first_sketch_comes_back(
-    screen: Screen, folder: Path
-) -> None:
+def test_pasted_text_opens_in_window_and_first_sketch_returns(screen: Screen, folder: Path) -> None:
     command = [sys.executable, "-c", script((800, 500)), str(folder / "first.frag")]
     program = Program(screen, folder, command, folder)
     try:

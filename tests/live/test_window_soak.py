@@ -164,7 +164,7 @@ def window(screen: Screen, tmp_path: Path) -> Iterator[Program]:
         made.close()
 
 
-def test_the_window_outlives_every_save_and_shows_the_last_good_one(window: Program, tmp_path: Path) -> None:
+def test_window_survives_every_save_and_shows_last_good_one(window: Program, tmp_path: Path) -> None:
     rng, home = random.Random(SEED), tmp_path / "sketch"
     names = learned(window, home)
     assert len(set(names.values())) == len(FILES) * (GOOD - 1) + 1, "each good text has its own picture"

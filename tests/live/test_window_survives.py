@@ -104,7 +104,7 @@ def test_a_slow_sandbox_check_is_announced(screen: Screen, window: Program, fold
 
 
 @pytest.mark.slow
-def test_a_double_click_on_a_slow_renderer_opens_a_field_and_no_key_is_lost(
+def test_slow_double_click_opens_field_without_losing_keys(
     screen: Screen, tmp_path: Path, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SLOW", "0.4")

@@ -54,7 +54,7 @@ def test_a_mistake_in_an_included_text_is_shown_there(editor: Editor, folder: Pa
     assert {d["range"]["start"]["line"] for d in diagnostics} == {11}
 
 
-def test_an_include_that_is_not_open_gets_the_mistake_that_it_has(editor: Editor, folder: Path) -> None:
+def test_unopened_include_gets_its_own_diagnostic(editor: Editor, folder: Path) -> None:
     (folder / "shade.glsl").write_text(LIBRARY.replace("value *", "valu *"))
     before = len(editor.notes)
     editor.open((folder / "hill.glsl").as_uri(), KERNEL)
@@ -200,9 +200,7 @@ def test_an_endless_loop_does_not_hold_up_what_is_typed_next(editor: Editor, fol
 
 
 @pytest.mark.slow
-def test_a_crash_of_the_compiler_is_a_diagnostic_and_the_next_text_is_checked(
-    editor: Editor, folder: Path
-) -> None:
+def test_compiler_crash_is_diagnostic_and_next_text_is_checked(editor: Editor, folder: Path) -> None:
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, CRASH)
     (result,) = editor.diagnostics(uri, 1)
@@ -211,7 +209,7 @@ def test_a_crash_of_the_compiler_is_a_diagnostic_and_the_next_text_is_checked(
 
 
 @pytest.mark.slow
-def test_without_a_gpu_there_is_one_message_and_texts_are_checked(tmp_path: Path) -> None:
+def test_missing_gpu_gives_one_message_and_texts_are_checked(tmp_path: Path) -> None:
     folder = written(tmp_path / "bare")
     with Editor(folder, "--device", "97") as editor:
         uri = (folder / "hill.glsl").as_uri()
@@ -247,7 +245,7 @@ def test_nothing_sent_makes_a_traceback(editor: Editor, folder: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_diagnostic_comes_within_300_ms_of_a_keystroke_on_a_shipped_kernel(editor: Editor) -> None:
+def test_shipped_kernel_diagnostic_arrives_within_300_ms(editor: Editor) -> None:
     path = GLSL / "lighting" / "l_dot_n.glsl"
     uri, text = path.as_uri(), path.read_text(encoding="utf-8")
     editor.open(uri, text)

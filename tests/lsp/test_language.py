@@ -449,7 +449,7 @@ def test_a_uniform_behind_a_pragma_with_slashes_has_a_symbol(editor: Editor, fol
 # ── colours ──────────────────────────────────────────────────────────────────
 
 
-def test_colours_of_a_kernel_are_shown_encoded_and_written_linear(editor: Editor, folder: Path) -> None:
+def test_kernel_colours_are_shown_encoded_and_written_linear(editor: Editor, folder: Path) -> None:
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, KERNEL)
     (result,) = editor.ask("textDocument/documentColor", textDocument={"uri": uri})

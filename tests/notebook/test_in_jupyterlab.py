@@ -76,7 +76,7 @@ def expected(engine, sketch):
 
 
 @pytest.mark.parametrize(("name", "at"), [("b", BROWSER), ("k", KERNEL_DRAWN)])
-def test_a_slider_acts_on_the_picture_and_on_python_and_python_on_both(lab, any_engine, name, at):
+def test_slider_and_python_stay_in_sync_with_picture(lab, any_engine, name, at):
     """Whoever draws: to the pixel what the engine draws of these values."""
     who = {"b": "browser", "k": "kernel"}[name]
     assert lab.python(f"print({name}.drawn_by)") == who
@@ -96,7 +96,7 @@ def test_a_slider_acts_on_the_picture_and_on_python_and_python_on_both(lab, any_
 
 
 @pytest.mark.parametrize(("name", "at"), [("b", BROWSER), ("k", KERNEL_DRAWN)])
-def test_a_drag_over_the_picture_turns_the_camera_that_python_reads(lab, any_engine, name, at):
+def test_drag_over_picture_turns_camera_seen_by_python(lab, any_engine, name, at):
     lab.python(f"{name}['height.rise'] = 0.5\n{name}.camera = None")
     lab.browser.run(f"const c = {widget(at)}.querySelector('canvas'); c.id = 'c{at}'; c.scrollIntoView()")
     lab.browser.drag(f"#c{at}", (0, 0), (18, 9))
@@ -123,7 +123,7 @@ def test_a_mistake_is_a_sentence_and_the_last_good_picture_stays(lab, any_engine
     np.testing.assert_array_equal(picture(lab, BROWSER), expected(any_engine, steep))
 
 
-def test_two_that_are_compared_have_their_own_values_and_one_camera(lab, any_engine):
+def test_compared_widgets_have_own_values_and_shared_camera(lab, any_engine):
     lab.python("c.camera = playground.Camera(azimuth=90.0, elevation=45.0, distance=500.0)")
     for side, rise in enumerate((0.2, 0.8)):
         sketch = lab.sketch.with_values({"height.rise": rise}).with_camera(Camera(90.0, 45.0, 500.0))

@@ -157,7 +157,7 @@ def test_what_cannot_be_drawn_is_answered_as_well(widget, answers, monkeypatch):
         answers(widget)
 
 
-def test_a_changed_sketch_is_shown_and_a_mistake_leaves_the_last_good_one(widget, engine, slope):
+def test_changed_sketch_is_shown_and_error_keeps_last_good_one(widget, engine, slope):
     page, picture = widget.page, widget.picture
     np.testing.assert_array_equal(pixels(picture), engine.render(widget.sketch, size=SIZE).array)
     kernel = slope.with_name("slope.glsl")
@@ -188,7 +188,7 @@ def test_what_a_page_cannot_change_is_changed_with_another_page(engine):
     assert widget.page != page and widget["height.longest"] == 128 and widget["light.sun"] == (250.0, 12.0)
 
 
-def test_what_no_page_can_run_the_kernel_draws_and_it_is_said_why(engine, slope, answers):
+def test_sketch_no_page_can_run_is_drawn_by_kernel_with_reason(engine, slope, answers):
     toy = slope.with_name("toy.frag")
     toy.write_text(TOY, encoding="utf-8")
     widget = playground.widget(toy, size=SIZE)

@@ -313,7 +313,7 @@ MAP = f'{PASS}[view]\nuse = "view/map"\ninputs = {{ shown = "height" }}\n{SHOT}'
 
 
 @pytest.mark.slow
-def test_a_shot_off_its_reference_keeps_the_constant_that_was_edited(sketch, worker, warm, tmp_path, capsys):
+def test_reduced_shot_off_reference_keeps_edited_constant(sketch, worker, warm, tmp_path, capsys):
     path = sketch(BANDS, MAP)
     shot = load(path).shots[0]
     good = worker.draw(DrawTask(sketch=load(path), ref="", driver="auto", frame=shot.size))
@@ -369,7 +369,7 @@ def test_a_command_judges_and_the_folder_says_how(sketch, tmp_path, capsys):
     assert (folder / "note.txt").read_text() == "mine"
 
 
-def test_a_folder_of_the_user_s_is_refused_before_anything_is_drawn(sketch, tmp_path, capsys):
+def test_user_folder_is_refused_before_drawing(sketch, tmp_path, capsys):
     path = sketch(MAGIC)
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "thesis.txt").write_text("mine")
@@ -521,7 +521,7 @@ NOT_INLINED = {
         for n in sorted({*of_each_kind(), *WITH_VARIANTS} - NOT_INLINED.keys())
     ],
 )
-def test_a_shipped_sketch_inlined_is_a_sketch_with_the_same_passes(name, tmp_path):
+def test_inlined_shipped_sketch_has_same_passes(name, tmp_path):
     case = inline_sketch(load(name), frame=(64, 36))
     Probe(NotFinite(), [], tmp_path, 1.0).write(case)
     again = inline_sketch(load(tmp_path / "sketch.toml"), frame=(64, 36))

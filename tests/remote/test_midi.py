@@ -110,7 +110,7 @@ def test_a_knob_is_learned_goes_over_the_range_and_is_remembered(harness: Harnes
 
 
 @pytest.mark.slow
-def test_a_value_does_not_jump_but_is_taken_over_where_the_knob_passes_it(harness: Harness, device: Device):
+def test_soft_takeover_waits_until_knob_passes_value(harness: Harness, device: Device):
     device.learn("height.level")
     device.turn(KNOB, 20)
     assert harness.value("height.level") == 0.25, "0.157 lies below, the knob came from below"
@@ -246,7 +246,7 @@ def test_a_locked_parameter_stays_and_a_lost_one_is_named_once(harness: Harness,
     assert len(named) == 1 and "did you mean 'height.level'?" in named[0]
 
 
-def test_what_is_remembered_is_played_as_soon_as_the_sketch_is_open(harness: Harness):
+def test_saved_bindings_play_as_soon_as_sketch_opens(harness: Harness):
     write_bindings(file_of(harness.session.path), [Binding("height.level", "", Source(3, "control", 9))])
     device = Device(harness)
     harness.frame()
@@ -255,7 +255,7 @@ def test_what_is_remembered_is_played_as_soon_as_the_sketch_is_open(harness: Har
     assert harness.value("height.level") == 1.0
 
 
-def test_the_file_is_read_as_it_is_written_and_its_mistakes_have_lines(tmp_path: Path):
+def test_bindings_file_round_trips_and_errors_have_lines(tmp_path: Path):
     file = tmp_path / "a.controllers"
     bindings = (
         Binding("height.level", "", Source(16, "control", 7), fine=True),
@@ -327,7 +327,7 @@ def test_without_a_device_or_a_package_one_sentence_says_so(
 
 
 @pytest.mark.slow
-def test_a_device_that_is_connected_later_is_found_and_one_pulled_out_is_no_error(
+def test_hotplugged_device_is_found_and_unplugging_is_no_error(
     harness: Harness, device: Device, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setattr("playground.remote.midi._LOOKS", 0.05)

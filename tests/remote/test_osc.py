@@ -203,7 +203,7 @@ def test_an_address_that_fits_several_names_them(harness: Harness):
     assert "/height/level or /second/level" in harness.notices[-1]
 
 
-def test_values_go_out_when_they_change_but_not_back_to_who_sent_them(harness: Harness, surface: Surface):
+def test_changed_values_are_sent_but_not_back_to_sender(harness: Harness, surface: Surface):
     assert surface.greeting["/height/level"] == [0.25] and surface.greeting["/height/kind"] == ["round"]
     assert surface.greeting["/height/sun"] == [135.0, 25.0] and surface.greeting["/height/rocks"] == [1]
     harness.session.drafts.set("height.level", 0.5)
@@ -263,7 +263,7 @@ def test_bytes_that_are_no_osc_raise_nothing():
         assert [m for value in osc._waiting.values() for m in messages_of(value)] == []
 
 
-def test_a_taken_port_an_unknown_host_and_a_missing_package_are_one_sentence(monkeypatch: pytest.MonkeyPatch):
+def test_osc_port_host_and_package_errors_are_one_message(monkeypatch: pytest.MonkeyPatch):
     import sys
 
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as other:

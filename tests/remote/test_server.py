@@ -104,7 +104,7 @@ def test_it_listens_on_this_machine_alone(harness: Harness):
 # ── what is answered ─────────────────────────────────────────────────────────
 
 
-def test_parameters_are_listed_with_their_ranges_units_and_groups(harness: Harness):
+def test_parameters_are_listed_with_range_unit_and_group(harness: Harness):
     opened(harness)
     result = {item["path"]: item for item in get(harness, "parameters")}
     level = result["height.level"]
@@ -210,7 +210,7 @@ def test_the_picture_is_the_windows_or_one_of_a_size(harness: Harness):
 
 
 @pytest.mark.slow
-def test_a_picture_waits_for_the_frames_before_it_and_does_not_hold_the_window_up(
+def test_picture_waits_for_earlier_frames_without_blocking(
     harness: Harness, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     url = opened(harness)

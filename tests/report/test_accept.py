@@ -52,7 +52,7 @@ def test_undo_puts_every_file_back_to_the_byte(leave, also: bool) -> None:
     assert files() == before
 
 
-def test_a_further_one_takes_the_next_number_and_keeps_the_others(leave) -> None:
+def test_further_reference_takes_next_number_and_keeps_others(leave) -> None:
     (PLACE).mkdir(parents=True)
     (PLACE / "dawn.2.png").write_bytes(encode_png(picture(7)))
     record = leave(actual=picture(1), expected=picture(2))

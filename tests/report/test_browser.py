@@ -57,7 +57,7 @@ def shown(browser: Browser, selector: str) -> str:
     return browser.run("return document.querySelector(arguments[0])?.textContent ?? ''", selector)
 
 
-def test_values_are_those_of_the_files_also_where_they_are_not_opaque(page: Browser) -> None:
+def test_shown_values_match_files_even_with_alpha(page: Browser) -> None:
     """A canvas would give other colours back: it keeps them multiplied by alpha."""
     now, before = picture(1, 64, 36), picture(2, 64, 36)
     page.run('document.querySelector(".current .panes").focus()')

@@ -89,7 +89,7 @@ def test_every_picture_is_inside_and_shows_what_was_drawn(leave) -> None:
     assert len(page.all("img")) == 3  # there is no FLIP map here, and nothing replaces it
 
 
-def test_nothing_is_fetched_from_a_network_and_only_its_own_script_runs(leave) -> None:
+def test_report_needs_no_network_and_runs_its_own_script_alone(leave) -> None:
     leave(actual=picture(1), expected=picture(2))
     page = made()
     policy = next(a["content"] for a, _ in page.all("meta", http_equiv="Content-Security-Policy"))
@@ -229,7 +229,7 @@ def test_differences_of_fingerprints_are_listed_and_marked(leave) -> None:
     assert BEFORE["version"] != TEXTS["version"]
 
 
-def test_pictures_of_passed_shots_are_left_out_and_too_many_become_links(leave, tmp_path: Path) -> None:
+def test_passed_shots_have_no_picture_and_excess_become_links(leave, tmp_path: Path) -> None:
     for number in range(4):
         leave(f"a/shot-{number}", picture(number), picture(number + 10))
     records = read_results(Path("results"))

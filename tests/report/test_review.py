@@ -253,7 +253,7 @@ def test_a_second_tab_cannot_accept_or_undo_twice(client: Client) -> None:
     assert files() == before
 
 
-def test_what_the_tests_have_done_again_is_not_what_was_looked_at(client: Client) -> None:
+def test_result_rerun_since_review_is_not_accepted(client: Client) -> None:
     before = files()
     dawn = records()["dawn"]
     write_result(
@@ -296,7 +296,7 @@ def test_many_at_once_are_done_one_after_the_other(client: Client) -> None:
     assert sorted(files()) == ["dawn.2.png", "dawn.png", "noon.png"]
 
 
-def test_a_record_that_cannot_be_read_is_reported_and_does_not_end_it(client: Client) -> None:
+def test_unreadable_record_is_reported_and_server_continues(client: Client) -> None:
     path = RESULTS / "hills/dawn.json"
     before = path.read_text(encoding="utf-8")
     path.write_text("{", encoding="utf-8")
@@ -347,12 +347,12 @@ def test_a_port_that_is_taken_is_reported(leave) -> None:
         Review(RESULTS, first.server.guard.port)
 
 
-def test_a_folder_without_results_is_refused_before_anything_listens(leave, capsys) -> None:
+def test_folder_without_results_is_refused_before_listening(leave, capsys) -> None:
     assert main(["shots", "review", "nowhere", "--no-open"]) == 2
     assert "nowhere: there is no such folder" in capsys.readouterr().err
 
 
-def test_the_command_prints_its_address_and_says_at_the_end_what_was_accepted(
+def test_review_prints_address_and_accepted_shots_at_end(
     leave, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     record = leave(actual=picture(1), expected=picture(2))

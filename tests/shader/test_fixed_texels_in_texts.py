@@ -145,9 +145,7 @@ def source_of(folder: Path, text: str):
 
 
 @pytest.mark.parametrize("how", ALONE)
-def test_an_input_is_read_by_single_texels_alone_where_the_text_does_nothing_else_with_it(
-    tmp_path: Path, how: str
-):
+def test_fixed_texel_inputs_are_detected_from_kernel_text(tmp_path: Path, how: str):
     text, expected = ALONE[how]
     assert read_by_texels_alone(source_of(tmp_path, text)) == expected
 

@@ -184,7 +184,7 @@ def test_a_library_file_declares_nothing(parse):
     assert parse('/* #pragma kernel(output = "h:r32f") */\n// #pragma kernel(\n') is None
 
 
-def test_an_included_kernel_gives_its_functions_and_parameters_only(parse, tmp_path):
+def test_included_kernel_provides_functions_and_parameters_alone(parse, tmp_path):
     (tmp_path / "other.glsl").write_text('#pragma kernel(output = "x:r8")\nuniform float gain = 1.0;\n')
     result = parse(KERNEL + '#include "other.glsl"\n')
     assert [o.name for o in result.outputs] == ["height"] and [p.name for p in result.parameters] == ["gain"]

@@ -103,7 +103,7 @@ def test_another_folder_for_a_name_is_read_at_once(write, stones, any_engine):
     assert any_engine.render(load(path), size=(4, 2)).array[0, 3, 0] == 51
 
 
-def test_the_environment_names_libraries_too_and_takes_precedence(write, stones, monkeypatch):
+def test_environment_libraries_take_precedence(write, stones, monkeypatch):
     write("other/colour/red.glsl", "float red(float a) { return 0.2; }\n")
     named.add_library("stones", stones.parent.parent / "other")
     monkeypatch.setenv(named.VARIABLE, f"stones={stones}{os.pathsep}more = {stones}")
@@ -179,7 +179,7 @@ def test_what_is_wrong_is_one_sentence(write, stones, tmp_path):
         load(write("own/a.frag", TOP))
 
 
-def test_no_sketch_but_those_that_include_needs_the_file_of_names(write):
+def test_sketch_without_includes_ignores_damaged_libraries_file(write):
     named.libraries_file().parent.mkdir(parents=True)
     named.libraries_file().write_text("damaged")
     load(write("own/a.frag", "void main() { gl_FragColor = vec4(1.0); }\n"))

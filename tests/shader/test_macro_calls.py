@@ -32,7 +32,7 @@ def test_calls(lines, joined):
     assert with_calls_joined([SUM, *lines]) == [SUM, *joined]
 
 
-def test_a_name_for_a_macro_is_one_too_and_a_plain_constant_is_none():
+def test_macro_alias_call_is_joined_and_plain_constant_is_not():
     text = [SUM, "#define ADD SUM", "#define PI 3.14", "ADD(1,", "2)", "PI * (1,", "2)"]
     assert with_calls_joined(text)[3:] == ["ADD(1, 2)", "", "PI * (1,", "2)"]
 

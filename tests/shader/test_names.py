@@ -145,9 +145,7 @@ def test_nothing_is_guessed_where_nothing_is_sure(tmp_path: Path, line: str, mes
     assert guess(message, kernel.source, position) == ""
 
 
-def test_what_a_driver_warns_of_is_reported_in_the_kernel_s_lines(
-    ctx: moderngl.Context, tmp_path: Path
-) -> None:
+def test_driver_warning_is_reported_at_kernel_line(ctx: moderngl.Context, tmp_path: Path) -> None:
     if "llvmpipe" not in ctx.info["GL_RENDERER"]:
         pytest.skip("each driver warns of other things")
     wrapped = wrap(read(tmp_path, BODY.format("float a; return a;")), FRAGMENT)

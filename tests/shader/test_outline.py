@@ -32,7 +32,7 @@ uniform vec3 tint = vec3(1.0);  //! colour
 """
 
 
-def test_each_declaration_has_its_kind_its_signature_and_its_comment() -> None:
+def test_each_declaration_has_kind_signature_and_comment() -> None:
     result = {item.name: item for item in outline(TEXT)}
     assert {name: item.kind for name, item in result.items()} == {
         "TWICE": "macro",
@@ -71,7 +71,7 @@ def test_what_a_bracket_never_closes_is_no_other_function() -> None:
     assert [item.name for item in outline(text)] == ["a"]
 
 
-def test_every_function_of_the_library_is_in_the_outline_of_its_file() -> None:
+def test_every_library_function_is_in_outline_of_its_file() -> None:
     """``library`` finds them by another way, by lines that begin like one."""
     missing = [
         name

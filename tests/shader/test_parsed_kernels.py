@@ -60,7 +60,7 @@ def test_an_include_that_goes_is_missed_and_found_again(files):
     assert "1.0" in read(files).source.code
 
 
-def test_a_link_that_leads_elsewhere_is_seen_though_the_text_is_the_same(files):
+def test_retargeted_symlink_is_detected_despite_equal_text(files):
     (files / "one.glsl").write_text(PART)
     (files / "two.glsl").write_text(PART)
     (files / "part.glsl").unlink()
@@ -76,7 +76,7 @@ void main() {}
 """
 
 
-def test_a_kernel_and_its_variant_stay_one_object_until_either_changes(files):
+def test_kernel_and_variant_stay_cached_until_either_changes(files):
     path = files / "inner" / "k.glsl"
     path.with_suffix(".comp").write_text(VARIANT)
     first = read_kernel(path, files)

@@ -172,7 +172,7 @@ def test_one_colour_and_many_follow_the_same_curve():
     np.testing.assert_allclose(linear_to_srgb(decoded), encoded, atol=1e-7)
 
 
-def test_a_label_is_the_name_in_words_and_another_tool_s_name_stays():
+def test_label_is_name_in_words_and_foreign_name_is_kept():
     assert [label_of(n) for n in ("rock_from", "seed2", "iChannel0", "u_lightColor")] == [
         "Rock from",
         "Seed2",

@@ -94,7 +94,7 @@ def test_a_pattern_that_matches_nothing_is_a_mistake(run: Run) -> None:
 
 
 @pytest.mark.slow
-def test_what_is_no_sketch_fails_in_a_sentence_and_the_others_run(run: Run, edit: Edit) -> None:
+def test_invalid_sketch_fails_with_message_and_others_run(run: Run, edit: Edit) -> None:
     Path("pyproject.toml").write_text('[project]\nname = "x"\n')
     edit("slope.toml", 'use = "./terrain"', 'use = "./terrian"')
     Path("empty.toml").write_text("format = 1\nsize = 32\n[[pass]]\nname = 'height'\nuse = './terrain'\n")

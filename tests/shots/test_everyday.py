@@ -30,7 +30,7 @@ def test_a_change_is_of_the_code_and_of_no_declaration_or_loop(tmp_path: Path) -
     assert changes[0].text().splitlines()[4] == "    return min(x, 0.25) - 4.5 * x;"
 
 
-def test_who_kills_nothing_more_is_not_needed_but_a_sketch_keeps_one() -> None:
+def test_shot_killing_no_extra_mutant_is_redundant_but_one_stays() -> None:
     defects = list(rendering_mutants()[:2])
 
     def case(sketch: str, shot: str) -> ShotCase:

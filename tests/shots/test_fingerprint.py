@@ -120,7 +120,7 @@ def test_silence_is_no_excuse_but_is_reported() -> None:
     assert OURS.differences(Fingerprint())
 
 
-def test_a_png_keeps_it_whole_and_the_same_picture_gives_the_same_file(tmp_path: Path) -> None:
+def test_png_fingerprint_round_trips_and_file_is_reproducible(tmp_path: Path) -> None:
     pixels = np.arange(4 * 6 * 4, dtype=np.uint8).reshape(4, 6, 4)
     path, _ = write_reference_in(tmp_path / "a", "dawn", OURS, pixels, "hills")
     reference = read_reference(path)

@@ -172,7 +172,7 @@ def test_two_tests_may_not_write_one_reference_differently(tests: Run, edit: Edi
     )
 
 
-def test_without_the_expected_renderer_what_opengl_drew_is_skipped(tests: Run) -> None:
+def test_opengl_shots_are_skipped_without_expected_renderer(tests: Run) -> None:
     tests("--shots-renderer", "nvidia-h200").assert_outcomes(passed=1, skipped=1)
 
 
@@ -180,7 +180,7 @@ STALE = ["no test uses 1 reference; remove:", "    screenshots/test_slope.py/llv
 
 
 @pytest.mark.slow
-def test_a_reference_that_no_test_uses_fails_when_all_tests_of_its_file_ran(tests: Run, edit: Edit) -> None:
+def test_unused_reference_fails_when_all_tests_of_file_ran(tests: Run, edit: Edit) -> None:
     edit("test_slope.py", '"seven"', '"eight"')
     result = tests("--shots-update")
     result.assert_outcomes(passed=2, failed=1)
@@ -292,7 +292,7 @@ def test_a_reference_that_is_no_file_fails_in_a_sentence(tests: Run, kind: str) 
     assert reference.is_file() and not reference.is_symlink()
 
 
-def test_references_of_a_test_file_that_is_gone_or_compares_nothing_any_more_fail(tests: Run) -> None:
+def test_references_of_removed_or_unused_test_file_fail(tests: Run) -> None:
     Path("test_other.py").write_text("def test_one(): pass\n")
     FOLDER.with_name("test_other.py").joinpath("llvmpipe").mkdir(parents=True)
     (FOLDER / "llvmpipe/seven.png").rename("screenshots/test_other.py/llvmpipe/old.png")

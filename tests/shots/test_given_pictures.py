@@ -23,7 +23,7 @@ Run = Callable[..., pytest.RunResult]
 # ── numbers ──────────────────────────────────────────────────────────────────
 
 
-def test_grey_alpha_and_wide_integers_become_four_bytes_to_the_nearest_level() -> None:
+def test_grey_alpha_and_wide_integers_round_to_nearest_level() -> None:
     grey = np.array([[0, 128, 255]], np.uint8)
     assert levels_of(grey)[0].tolist() == [[[v, v, v, 255] for v in (0, 128, 255)]]
     assert levels_of(grey[..., None])[0].tolist() == levels_of(grey)[0].tolist()
@@ -36,7 +36,7 @@ def test_grey_alpha_and_wide_integers_become_four_bytes_to_the_nearest_level() -
 
 
 @pytest.mark.parametrize("beyond", [1.1, -0.1, 40.0])
-def test_floats_that_no_level_is_near_are_refused_and_not_clamped(beyond: float) -> None:
+def test_out_of_range_floats_are_refused_not_clamped(beyond: float) -> None:
     picture = np.full((2, 3, 3), 0.5, np.float32)
     picture[1, 1, 1] = beyond
     with pytest.raises(DataError, match=r"from 0 to 1, and this one from .*; say what they mean with tone="):
@@ -174,7 +174,7 @@ def test_a_picture_is_named_after_its_test(node: str, name: str) -> None:
     assert name_of_test(node) == name and not why_no_name(name)
 
 
-def test_ids_that_differ_only_in_what_no_file_can_have_get_names_that_differ() -> None:
+def test_ids_differing_in_invalid_file_characters_stay_distinct() -> None:
     ids = [
         "1.0",
         "1,0",
@@ -263,9 +263,7 @@ def test_{name}(shot):
     assert read_png(written)[0][0, 0, 0] == 0  # the first one's
 
 
-def test_a_reference_that_matches_is_not_written_for_another_test(
-    run: Run, pytester: pytest.Pytester
-) -> None:
+def test_matching_reference_is_not_rewritten_by_another_test(run: Run, pytester: pytest.Pytester) -> None:
     """Else the tests would take turns in writing it, and each --shots-update would say that all is well."""
     test = "def test_{0}(shot): shot.check(RAMP[::{1}], 'sea', by='numpy')\n"
     both = test.format("first", 1) + test.format("second", -1)
@@ -353,7 +351,7 @@ def test_day(shot):
 
 
 @pytest.mark.parametrize("end", ["raise KeyError('tide')", "pytest.fail('tide')", "pytest.skip('tide')"])
-def test_what_a_test_raises_is_shown_with_the_pictures_that_differ(
+def test_exception_in_test_is_shown_with_differing_pictures(
     several: Callable[[str], pytest.RunResult], end: str
 ) -> None:
     result = several(end)

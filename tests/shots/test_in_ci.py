@@ -39,7 +39,7 @@ def test_only_what_failed_before_is_written(accepted: Run, edit: Edit) -> None:
     accepted("slope.toml", "--shots-update=failed").assert_outcomes(passed=3)
 
 
-def test_where_nothing_failed_before_nothing_is_written_and_that_is_said(accepted: Run) -> None:
+def test_shots_update_failed_reports_if_nothing_failed_before(accepted: Run) -> None:
     result = accepted("slope.toml", "--shots-update=failed")
     result.assert_outcomes(passed=3)
     result.stdout.fnmatch_lines(["--shots-update=failed wrote nothing: *"])
@@ -104,7 +104,7 @@ def test_the_first_line_whose_references_are_there_counts() -> None:
     assert fallback_for(table, "nvidia", lambda _: True) is None
 
 
-def test_the_references_of_another_renderer_stand_in_and_that_is_said(accepted: Run, edit: Edit) -> None:
+def test_fallback_renderer_references_are_used_and_reported(accepted: Run, edit: Edit) -> None:
     """To pytest here, llvmpipe is the renderer without references, and apple-m1 one that is not there."""
     FOLDER.rename(FOLDER.with_name("apple-m1"))
     missing = accepted("slope.toml")
@@ -124,7 +124,7 @@ def test_the_references_of_another_renderer_stand_in_and_that_is_said(accepted: 
     strictly.stdout.fnmatch_lines(["slope/plain: differs: *"])
 
 
-def test_a_renderer_of_the_table_may_draw_in_place_of_the_expected_one(accepted: Run) -> None:
+def test_fallback_renderer_may_draw_for_expected_one(accepted: Run) -> None:
     FOLDER.rename(FOLDER.with_name("apple-m1"))
     options = ("slope.toml", "--shots-renderer=apple-m1")
     accepted(*options).assert_outcomes(skipped=2, passed=1)

@@ -138,7 +138,7 @@ def test_of_another_build_four_levels_fail_at_one_pixel(channel: int) -> None:
 
 
 @pytest.mark.parametrize(("count", "word"), [(100, "same"), (101, "differs")])
-def test_of_another_build_half_a_percent_of_the_pixels_may_differ(count: int, word: str) -> None:
+def test_other_build_may_differ_in_half_percent_of_pixels(count: int, word: str) -> None:
     base = picture()
     judgement = by(changed(base, scattered(count), 2), base, NEWER)
     assert (judgement.word, judgement.comparison.over) == (word, count)
@@ -193,7 +193,7 @@ def test_the_worst_window_is_the_worst_of_all_places(size: tuple[int, int], shar
 # ── several accepted ones ────────────────────────────────────────────────────
 
 
-def test_one_of_this_very_build_is_not_loosened_by_another_builds() -> None:
+def test_same_build_reference_is_not_loosened_by_other_builds() -> None:
     base = picture()
     actual = changed(base, [(5, 5)], 2)
     references = [reference(base, OURS), reference(base, NEWER, "dawn.2.png")]
@@ -203,7 +203,7 @@ def test_one_of_this_very_build_is_not_loosened_by_another_builds() -> None:
     assert nearest is not None
 
 
-def test_an_accepted_picture_passes_to_one_level_even_of_another_build() -> None:
+def test_accepted_other_build_picture_passes_within_one_level() -> None:
     base = picture()
     actual = changed(base, block(64), 9)
     references = [reference(base, OURS), reference(actual, NEWER, "dawn.2.png")]
@@ -213,7 +213,7 @@ def test_an_accepted_picture_passes_to_one_level_even_of_another_build() -> None
         assert nearest is references[1]
 
 
-def test_of_several_other_builds_any_may_match_and_else_the_nearest_is_reported() -> None:
+def test_any_other_build_may_match_else_nearest_is_reported() -> None:
     base = picture()
     far, near = changed(base, block(80), 9), changed(base, scattered(12), 3)
     references = [reference(far, NEWER), reference(near, OTHERS["processor"], "dawn.2.png")]
@@ -249,7 +249,7 @@ SHIPPED = ["jacksboro/morning", "splat/near", "contours/over-the-land"]
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_another_renderers_edges_pass_and_what_that_means_is_reported(name: str) -> None:
+def test_other_renderer_passes_on_structure_and_reports_it(name: str) -> None:
     base = shot(name)
     judgement = by_eye(softened(base), base)
     assert judgement.comparison.most > 20
@@ -294,13 +294,13 @@ def test_structural_defects_fail_on_another_renderer(defect: str) -> None:
     assert judgement.sentence.startswith("structure: FLIP ")
 
 
-def test_to_within_one_level_another_renderers_picture_is_simply_the_same() -> None:
+def test_other_renderer_within_one_level_is_simply_same() -> None:
     base = picture()
     judgement = by_eye(changed(base, scattered(99), 1), base)
     assert (judgement.word, judgement.tier, judgement.perceived) == ("same", OTHER_RENDERER, None)
 
 
-def test_another_renderers_picture_counts_for_nothing_where_there_is_an_own_one() -> None:
+def test_other_renderer_reference_is_ignored_if_own_exists() -> None:
     base, other = shot("jacksboro/morning"), shot("jacksboro/evening")
     result, nearest = judge(base, CARD, [reference(other, CARD)], [reference(base, OURS)])
     assert (result.word, result.tier) == ("differs", SAME_BUILD)
@@ -311,7 +311,7 @@ def test_another_renderers_picture_counts_for_nothing_where_there_is_an_own_one(
 
 
 @pytest.mark.parametrize("drawn_by", [OURS, NEWER])
-def test_an_opengl_error_and_a_number_that_is_none_fail_the_very_same_picture(drawn_by: Fingerprint) -> None:
+def test_gl_error_or_nan_fails_even_identical_picture(drawn_by: Fingerprint) -> None:
     base = picture()
     judgement = by(base, base, drawn_by, not_finite="pass 'light', output 'light': NaN at texel (1, 2)")
     assert (judgement.word, judgement.sentence) == (

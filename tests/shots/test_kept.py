@@ -102,7 +102,7 @@ def test_of_two_tests_that_check_one_name_what_failed_stays(run: Run, first: str
     assert words() == {"test_x.py/ramp": "same"}
 
 
-def test_a_sketch_that_does_not_load_is_on_the_page_until_it_does(accepted: Run, edit: Edit) -> None:
+def test_unloadable_sketch_stays_on_page_until_it_loads(accepted: Run, edit: Edit) -> None:
     accepted("slope.toml", "--shots-report")
     assert "All 2 shots passed" in headline()
     edit("slope.toml", 'use = "./terrain"', 'use = "./terrian"')
@@ -169,7 +169,7 @@ def test_meant(shot):
     ],
     ids=["crash", "hang"],
 )
-def test_what_render_raised_is_reported_in_its_word_and_on_the_page(
+def test_render_exception_is_reported_by_its_word_and_on_page(
     run: Run, ends: dict[str, Exception], end: Exception, word: str
 ) -> None:
     Path("test_x.py").write_text(RENDERS)
@@ -187,7 +187,7 @@ def test_what_render_raised_is_reported_in_its_word_and_on_the_page(
     assert words() == {"test_x.py/one": "same"} and "1 shot passed" in headline()
 
 
-def test_a_sketch_with_a_mistake_is_reported_in_render_without_our_frames(run: Run, edit: Edit) -> None:
+def test_sketch_error_in_render_omits_internal_frames(run: Run, edit: Edit) -> None:
     Path("test_x.py").write_text(RENDERS)
     edit("slope.toml", 'use = "./terrain"', 'use = "./terrian"')
     result = run("-k", "one")
@@ -246,7 +246,7 @@ def test_where_results_cannot_be_recorded_one_sentence_says_so(accepted: Run, ed
 
 
 @pytest.mark.slow
-def test_from_a_subfolder_the_command_that_accepts_names_the_file_from_there(
+def test_accept_command_names_file_relative_to_subfolder(
     accepted: Run, edit: Edit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Pytest's own ids begin at its root folder."""
@@ -266,7 +266,7 @@ def test_from_a_subfolder_the_command_that_accepts_names_the_file_from_there(
         accepted(value, "-k", "plain").assert_outcomes(passed=1, deselected=2)
 
 
-def test_of_sketches_of_one_name_that_come_at_once_one_has_the_plain_folder(tmp_path: Path) -> None:
+def test_concurrent_sketches_of_one_name_get_distinct_folders(tmp_path: Path) -> None:
     homes = [tmp_path / name / "screenshots" for name in "abcdefgh"]
     start = threading.Barrier(len(homes))
 

@@ -179,14 +179,14 @@ def test_texts_read_again_with_comments_draw_the_same_bits(bench: MutantRunner):
     assert frame.drawn == expected.drawn != ""
 
 
-def test_the_hash_of_what_was_drawn_knows_every_defect_of_rendering(results: list[MutantResult]):
+def test_drawn_content_hash_detects_every_rendering_defect(results: list[MutantResult]):
     for result in results:
         if result.applies:
             reported = any("the drawn content has changed" in line for line in result.tiers[0].differences)
             assert reported is (result.mutant.kind == "rendering"), result.mutant.name
 
 
-def test_values_that_are_no_numbers_have_their_own_word_in_every_tier(results: list[MutantResult]):
+def test_non_finite_values_are_reported_as_nan_in_every_tier(results: list[MutantResult]):
     (result,) = (r for r in results if r.mutant.name == "not-numbers")
     assert [judgement.word for judgement in result.tiers] == ["nan"] * len(TIERS)
 
@@ -215,9 +215,7 @@ def test_wires_are_exchanged(jacksboro: Sketch):
         (Edit("view/present.glsl", "light", ""), "expected once, found"),
     ],
 )
-def test_an_anchor_that_is_not_there_once_is_a_mistake_of_the_mutant(
-    edit: Edit, message: str, jacksboro: Sketch
-):
+def test_missing_or_repeated_anchor_is_mutant_error(edit: Edit, message: str, jacksboro: Sketch):
     with pytest.raises(DataError, match=message) as caught:
         broken(Rendering(name="old", broke="It is old.", edits=(edit,)), jacksboro)
     assert "present.glsl" in str(caught.value) and "'old'" in str(caught.value)
@@ -247,7 +245,7 @@ def test_a_shot_that_does_not_show_a_defect_says_so(bench: MutantRunner):
     assert shown(2).counts and not shown(2).unseen
 
 
-def test_names_are_of_one_mutant_each_and_sentences_are_sentences():
+def test_mutant_names_are_unique_and_descriptions_are_sentences():
     names = [m.name for m in all_mutants()]
     assert len(set(names)) == len(names) >= 60
     assert all(m.broke[0].isupper() and m.broke.endswith(".") for m in all_mutants())
@@ -275,7 +273,7 @@ def test_a_mistake_in_the_table_is_reported(text: str, message: str, tmp_path: P
 # ── finished pictures ────────────────────────────────────────────────────────
 
 
-def test_pictures_are_broken_as_they_say_and_the_original_is_left_alone():
+def test_picture_mutants_break_as_described_and_keep_original():
     picture = noise_like()
     original = picture.copy()
     for item in FINISHED:

@@ -83,7 +83,7 @@ def test_update_leaves_what_matches_alone_and_says_so(accepted: Run, edit: Edit)
 
 
 @pytest.mark.parametrize("factor", ["0.95", "1.05"], ids=["darker", "brighter"])
-def test_a_visible_change_of_the_kernel_fails_with_everything_to_see_it_by(
+def test_visible_kernel_change_fails_with_all_comparison_images(
     accepted: Run, edit: Edit, factor: str
 ) -> None:
     edit("terrain.glsl", "return gain *", f"return {factor} * gain *")
@@ -113,7 +113,7 @@ def test_an_invisible_change_passes(accepted: Run, edit: Edit) -> None:
     accepted("slope.toml").assert_outcomes(passed=3)
 
 
-def test_each_failure_has_its_own_word_and_the_next_shot_still_runs(
+def test_each_failure_has_its_own_word_and_next_shot_runs(
     accepted: Run, edit: Edit, ends: dict[str, Exception]
 ) -> None:
     """Another size, a crash, a hang and a mistake, and a shot that passes, in one run."""
@@ -153,7 +153,7 @@ def test_each_failure_has_its_own_word_and_the_next_shot_still_runs(
     accepted("slope.toml", "-k", "not crashed and not hung").assert_outcomes(passed=5, deselected=2)
 
 
-def test_any_further_reference_may_match_and_an_update_removes_them(accepted: Run, edit: Edit) -> None:
+def test_any_further_reference_may_match_and_update_removes_them(accepted: Run, edit: Edit) -> None:
     edit("terrain.glsl", "return gain *", "return 0.5 * gain *")
     shutil.copy(FOLDER / "plain.png", FOLDER / "plain.2.png")
     result = accepted("slope.toml", "-k", "plain", "--shots-update")
@@ -232,7 +232,7 @@ def test_a_reference_of_another_build_is_named_when_it_differs(accepted: Run) ->
 
 
 @pytest.mark.parametrize("value", ["", "0", "false", "true"])
-def test_another_renderer_is_a_failure_in_ci_and_a_skip_with_its_reason_elsewhere(
+def test_other_renderer_fails_in_ci_and_skips_elsewhere(
     accepted: Run, monkeypatch: pytest.MonkeyPatch, value: str
 ) -> None:
     before = references()
@@ -249,9 +249,7 @@ def test_another_renderer_is_a_failure_in_ci_and_a_skip_with_its_reason_elsewher
     assert references() == before
 
 
-def test_another_renderer_may_be_allowed_and_is_then_reported_as_compared_loosely(
-    accepted: Run, edit: Edit
-) -> None:
+def test_allowed_other_renderer_is_reported_as_compared_loosely(accepted: Run, edit: Edit) -> None:
     """To pytest here, llvmpipe is the other renderer, and the references are of one that is not there."""
     FOLDER.rename(FOLDER.with_name("nvidia-h200"))
     options = ("slope.toml", "--shots-renderer=nvidia-h200", "--shots-any-renderer")
@@ -279,7 +277,7 @@ gain = "height.gain"
 """
 
 
-def test_a_fast_variant_that_is_left_out_is_reported_and_may_be_left_out(accepted: Run, edit: Edit) -> None:
+def test_left_out_fast_variant_is_reported_and_may_be_allowed(accepted: Run, edit: Edit) -> None:
     shutil.copyfile("terrain.glsl", "twin.glsl")
     edit("twin.glsl", "return gain *", "return 0.9999 * gain *")
     Path("terrain.fast.toml").write_text(FAST)

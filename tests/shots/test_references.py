@@ -107,7 +107,7 @@ def test_further_ones_are_accepted_in_the_order_of_their_numbers(tmp_path: Path)
     assert accepted(sketch, "dawn", "llvmpipe") == expected
 
 
-def test_a_new_reference_removes_the_further_ones_of_its_shot_alone(tmp_path: Path) -> None:
+def test_new_reference_removes_further_ones_of_its_shot_alone(tmp_path: Path) -> None:
     sketch = sketch_in(tmp_path)
     home = home_of(sketch) / "hills"
     second, third = put(home / "llvmpipe", "dawn.2.png", "dawn.3.png")

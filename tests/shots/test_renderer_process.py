@@ -128,7 +128,7 @@ def test_cases_and_frames_cross_over_whole(cases: dict[str, ShotCase]) -> None:
         assert pickle.loads(pickle.dumps(case)) == case
 
 
-def test_a_mistake_of_the_sketch_crosses_over_and_the_next_shot_still_runs(
+def test_sketch_error_reaches_parent_and_next_shot_runs(
     cases: dict[str, ShotCase], warm_renderer: RendererProcess, tmp_path: Path
 ) -> None:
     (tmp_path / "terrain.glsl").write_text(KERNEL.replace("gain *", "gian *"))
@@ -276,7 +276,7 @@ def test_a_worker_that_cannot_start_is_tried_thrice_and_no_more(fake: RendererPr
 
 
 @pytest.mark.slow
-def test_a_worker_that_died_between_two_shots_is_nobodys_crash_and_closing_ends_the_next(
+def test_dead_idle_worker_is_no_crash_and_close_ends_successor(
     fake: RendererProcess,
 ) -> None:
     fake.render(made_up("first"))

@@ -101,7 +101,7 @@ def test_a_result_is_there_with_its_pictures_and_again_without(tmp_path: Path) -
     assert [p.name for p in (folder / FULL.sketch).iterdir()] == ["dawn.json"]
 
 
-def test_a_new_folder_stays_out_of_a_repository_but_a_given_one_is_left_alone(tmp_path: Path) -> None:
+def test_new_results_folder_is_git_ignored_existing_one_is_not(tmp_path: Path) -> None:
     write_result(tmp_path / "new", FULL, {})
     assert "*" in (tmp_path / "new/.gitignore").read_text().splitlines()
     (tmp_path / "mine").mkdir()

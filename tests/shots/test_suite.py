@@ -58,7 +58,7 @@ def checked(case: ShotCase, pixels: np.ndarray, renderer: ContextInfo, **more: s
     return outcome
 
 
-def test_without_any_reference_it_is_missing_and_says_where_it_would_be(case: ShotCase) -> None:
+def test_missing_reference_reports_its_expected_path(case: ShotCase) -> None:
     for renderer in (LLVMPIPE, CARD):
         result = checked(case, smooth(), renderer)
         assert (result.word, result.reference) == ("missing", None)
@@ -91,7 +91,7 @@ def test_what_was_drawn_is_reported_and_excuses_nothing(case: ShotCase) -> None:
     )
 
 
-def test_another_renderer_is_judged_by_the_reference_renderers_picture(case: ShotCase) -> None:
+def test_other_renderer_is_judged_by_reference_renderer_picture(case: ShotCase) -> None:
     path, _ = write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
     result = checked(case, smooth(40), CARD)
     assert (result.word, result.tier, result.path) == ("same", OTHER_RENDERER, path)
@@ -100,7 +100,7 @@ def test_another_renderer_is_judged_by_the_reference_renderers_picture(case: Sho
     assert (upside_down.word, upside_down.tier) == ("structure", OTHER_RENDERER)
 
 
-def test_with_a_reference_of_its_own_another_renderer_is_held_to_that(case: ShotCase) -> None:
+def test_other_renderer_with_own_reference_is_held_to_it(case: ShotCase) -> None:
     write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
     own, _ = write_reference(case.sketch, "dawn", CARD, smooth(40), "ab12")
     assert own.parent.name == "nvidia-h200"
@@ -109,7 +109,7 @@ def test_with_a_reference_of_its_own_another_renderer_is_held_to_that(case: Shot
     assert checked(case, smooth(), LLVMPIPE).ok
 
 
-def test_on_the_reference_renderer_another_ones_picture_is_no_reference(case: ShotCase) -> None:
+def test_other_picture_is_no_reference_for_reference_renderer(case: ShotCase) -> None:
     write_reference(case.sketch, "dawn", CARD, smooth(), "ab12")
     assert checked(case, smooth(), LLVMPIPE).word == "missing"
     assert checked(case, smooth(), OTHER_CARD).word == "missing"
@@ -139,9 +139,7 @@ def test_one_that_cannot_be_read_is_never_passed_over(
 
 
 @pytest.mark.parametrize(("what", "word"), [("not_finite", "nan"), ("gl_error", "gl-error")])
-def test_what_is_wrong_with_how_it_was_drawn_fails_the_very_same_picture(
-    case: ShotCase, what: str, word: str
-) -> None:
+def test_drawing_fault_fails_even_identical_picture(case: ShotCase, what: str, word: str) -> None:
     write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
     result = checked(case, smooth(), LLVMPIPE, **{what: "GL_INVALID_VALUE"})
     assert result.word == word

@@ -241,9 +241,7 @@ def test_drawn(shot):
 """
 
 
-def test_a_check_of_a_test_has_a_tolerance_and_a_mask_that_its_report_shows(
-    run: Run, pytester: pytest.Pytester, edit: Edit
-) -> None:
+def test_check_report_shows_its_tolerance_and_mask(run: Run, pytester: pytest.Pytester, edit: Edit) -> None:
     pytester.makepyfile(test_sea=TESTS)
     sky = np.zeros((40, 50, 4), np.uint8)
     sky[30:, :, 0] = 255
@@ -266,9 +264,7 @@ def test_a_check_of_a_test_has_a_tolerance_and_a_mask_that_its_report_shows(
     assert "Not compared" in Path("shots-report/index.html").read_text()
 
 
-def test_a_mask_of_a_test_that_its_sketch_has_not_is_a_sentence_at_the_test_s_line(
-    run: Run, pytester: pytest.Pytester
-) -> None:
+def test_unknown_mask_pass_in_test_is_one_error_at_test_line(run: Run, pytester: pytest.Pytester) -> None:
     pytester.makepyfile(test_sea=TESTS.replace('mask="height"', 'mask="hieght"'))
     result = run("--shots-update", "test_sea.py::test_drawn")
     result.assert_outcomes(failed=1)

@@ -39,7 +39,7 @@ def hills(tmp_path: Path) -> Path:
     return folder
 
 
-def test_the_root_is_the_library_or_the_sketch_s_folder_or_the_file_s_own(hills: Path):
+def test_root_is_library_sketch_folder_or_own_folder(hills: Path):
     part = hills / "parts" / "k.glsl"
     assert root_of(GLSL / "noise" / "hash.glsl") == GLSL
     assert root_of(part) == hills / "parts"
@@ -82,7 +82,7 @@ def test_links_are_followed_once_in_a_load_and_anew_in_the_next(tmp_path):
     assert real(link) == second
 
 
-def test_a_load_reads_a_text_once_and_its_parts_note_the_signature_of_what_was_read(tmp_path):
+def test_load_reads_text_once_and_parts_note_its_signature(tmp_path):
     file = tmp_path / "text.glsl"
     file.write_text("first")
     before = signature(file)
@@ -133,9 +133,7 @@ def link_to(link: Path, target: Path) -> None:
         pytest.skip("this system makes no links")
 
 
-def test_a_load_looks_at_a_path_and_reads_a_text_once_and_the_next_load_does_it_anew(
-    hills: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_each_load_stats_and_reads_every_file_once(hills: Path, monkeypatch: pytest.MonkeyPatch):
     looked: Counter[Path] = Counter()
     texts: Counter[Path] = Counter()
     lstat, read_regular = Path.lstat, source.read_regular

@@ -73,9 +73,7 @@ void main() { gl_FragColor = IMG_THIS_PIXEL(inputImage); }
 """
 
 
-def test_a_stand_in_for_a_filter_s_image_stays_as_large_as_the_picture(
-    folder: Path, any_engine: Engine
-) -> None:
+def test_filter_image_stand_in_has_picture_size(folder: Path, any_engine: Engine) -> None:
     (folder / "filter.fs").write_text(FILTER, "utf-8")
     result = load(folder / "filter.fs")
     for source in ("foreign/picture", "foreign/noise", "foreign/black"):
@@ -128,7 +126,7 @@ def test_channels_are_in_the_order_of_their_numbers(folder: Path) -> None:
     assert [c.name for c in channels(load(folder / "main.frag"))] == ["u_tex0", "u_tex2"]
 
 
-def test_what_may_feed_a_channel_is_every_stand_in_and_every_other_pass(folder: Path) -> None:
+def test_channel_sources_are_stand_ins_and_every_other_pass(folder: Path) -> None:
     assert sources(load(folder / "two.frag"), "view.iChannel0") == STAND_INS
     wired = sketch(folder, 'use = "./two"\ninputs = { iChannel0 = "photo" }', LAND, PHOTO)
     assert [(c.path, c.source) for c in channels(wired)] == [

@@ -20,7 +20,7 @@ def dem(tmp_path):
     return path
 
 
-def test_the_sketch_around_a_file_names_it_and_leaves_the_rest_to_it(dem):
+def test_dem_sketch_names_its_file_and_leaves_terrain_to_it(dem):
     sketch = load(dem)
     assert (sketch.file, sketch.folder, sketch.name) == (str(dem), str(dem.parent), dem.stem)
     assert sketch.terrain == TerrainSettings()

@@ -31,7 +31,7 @@ def test_a_file_that_stays_is_not_looked_for_anew(places, monkeypatch):
     assert found(places) == places[1] / "p.png"
 
 
-def test_one_that_comes_to_the_place_that_is_looked_at_first_is_found(places):
+def test_file_appearing_in_first_search_folder_is_found(places):
     (places[1] / "p.png").write_bytes(b"1")
     assert found(places) == places[1] / "p.png"
     (places[0] / "p.png").write_bytes(b"2")
@@ -66,7 +66,7 @@ def test_a_link_that_leads_elsewhere_is_followed_there(places, tmp_path):
         found(places, "link/p.png")
 
 
-def test_a_file_beside_it_that_leads_out_is_refused_whenever_it_comes(places, tmp_path):
+def test_sidecar_link_out_of_folder_is_refused_once_it_appears(places, tmp_path):
     (places[0] / "dem.asc").write_text("1", encoding="utf-8")
     assert found(places, "dem.asc") == places[0] / "dem.asc"
     (tmp_path / "dem.prj").write_text("1", encoding="utf-8")

@@ -83,7 +83,7 @@ def wires(sketch, *, variants=(), **options) -> dict[str, dict[str, str]]:
 # One rule for wiring
 
 
-def test_an_unwired_input_takes_the_latest_earlier_pass_of_its_name_then_output(make):
+def test_unwired_input_takes_latest_same_name_pass_then_output(make):
     result = wires(make(passes("a h", "height h", "b h", "light light")))
     assert result["light"] == {"height": "height:height", "water": "nothing"}
     result = wires(make(passes("a h", "b h", "water water", "light light")))
@@ -131,7 +131,7 @@ def test_a_pass_that_reads_itself_is_a_circle(make):
     make.folder.refused("pass 'p' reads itself; feedback", 2, body=text)
 
 
-def test_any_order_of_the_file_runs_each_pass_after_what_it_reads(make):
+def test_passes_run_after_their_inputs_in_any_file_order(make):
     rng = random.Random(1)
     for _ in range(60):
         count = rng.randint(2, 9)
@@ -231,7 +231,7 @@ def test_what_is_wired_inside_wins_over_the_export_around_it(make):
     assert wires(make(body, one=item))["t.x"] == {"height": "late:height"}
 
 
-def test_optional_inputs_stay_empty_and_are_optional_through_a_technique(make):
+def test_optional_inputs_stay_empty_through_techniques(make):
     shell = passes("inner light") + '[inputs]\nheight = "inner.height"\nwet = "inner.water"\n'
     result = wires(make(passes("a h", "t shell"), shell=shell))
     assert result["t.inner"] == {"height": "a:height", "water": "nothing"}
@@ -354,7 +354,7 @@ def test_a_fast_variant_replaces_its_technique_where_it_can_run(doubled):
         passes("h h", "t around; inputs = { 'f.b.height' = 'h' }", "l light"),
     ],
 )
-def test_a_fast_variant_steps_back_where_something_is_wired_to_what_is_inside(doubled, body):
+def test_variant_gives_way_when_inner_pass_is_wired(doubled, body):
     sketch = doubled(body)
     result = wires(sketch, variants=VARIANTS)
     assert result == wires(sketch)

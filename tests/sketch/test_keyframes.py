@@ -65,7 +65,7 @@ def curve(track: Track, many: np.ndarray) -> np.ndarray:
     return np.array([track.at(float(t)) for t in many])
 
 
-def test_a_track_goes_through_its_keyframes_and_stays_before_and_after():
+def test_track_passes_its_keyframes_and_holds_at_ends():
     for ease in EASES:
         track = Track((1.0, 2.0, 4.5), (3.0, -1.0, 8.0), (ease,) * 3)
         assert [track.at(t) for t in (1.0, 2.0, 4.5)] == [3.0, -1.0, 8.0]
@@ -80,7 +80,7 @@ def test_linear_is_linear_and_hold_holds():
     assert track.at(4.9999) == 8.0 and track.at(5.0) == 0.0
 
 
-def test_smooth_has_no_jump_and_no_kink_and_never_leaves_what_it_goes_between():
+def test_smooth_track_is_continuous_and_never_overshoots():
     random = np.random.default_rng(5)
     for _ in range(40):
         times = np.cumsum(random.uniform(0.05, 3.0, 7))
@@ -97,7 +97,7 @@ def test_smooth_has_no_jump_and_no_kink_and_never_leaves_what_it_goes_between():
             assert abs(before - after) < 1e-2, "its slope has no jump"
 
 
-def test_smooth_begins_and_ends_at_rest_and_passes_a_keyframe_on_its_way_without_stopping():
+def test_smooth_track_rests_at_ends_and_not_at_inner_keyframes():
     track = Track((0.0, 1.0, 2.0), (0.0, 1.0, 2.0), ("smooth",) * 3)
     step = 1e-5
     assert abs(track.at(step)) < 1e-8
@@ -155,7 +155,7 @@ def test_whole_numbers_and_checkboxes_hold(sketch: Sketch):
     assert values(sketch, 0.0)["view.sea"] is True  # its only keyframe
 
 
-def test_the_camera_moves_in_what_keyframes_name_and_stays_in_the_rest(sketch: Sketch):
+def test_camera_keyframes_animate_named_fields_alone(sketch: Sketch):
     assert sketch.at(0.0).camera == Camera(350.0, 20.0, 9000.0)
     assert sketch.at(5.0).camera == Camera(30.0, 20.0, 9000.0)
     assert sketch.at(3.0).camera.azimuth == pytest.approx(10.0)

@@ -469,7 +469,7 @@ def test_a_key_in_quotes_that_holds_a_dot_has_its_own_line(folder, parts, words,
 
 
 @each(("key", "line"), [("parameters", 6), ("inputs", 6), ("outputs", 6)])
-def test_a_name_in_quotes_that_a_technique_may_not_export_has_its_own_line(folder, key, line):
+def test_invalid_quoted_export_name_is_refused_at_its_line(folder, key, line):
     folder.write("t.toml", f"[[pass]]\nname = 'a'\nuse = './terrain'\n[{key}]\n\n'x.y' = 'a.rise'\n")
     folder.refused("expected a name of letters", line, file="t.toml", body=PASS.replace("terrain", "t"))
 

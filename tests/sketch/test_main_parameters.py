@@ -58,7 +58,7 @@ def test_it_stays_when_a_value_is_saved(folder):
     assert HEAD in (folder.path / "s.toml").read_text(encoding="utf-8")
 
 
-def test_one_that_a_new_technique_lacks_goes_with_the_old_technique(folder):
+def test_parameter_missing_in_new_technique_leaves_main_list(folder):
     folder.write("other.glsl", OTHER)
     file = folder.sketch(head=HEAD)
     other = with_technique(file, "height", "./other")

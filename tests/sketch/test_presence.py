@@ -247,7 +247,7 @@ def test_a_sketch_itself_has_no_conditions(make, more, words):
         make(f"it inner {more}", "late density")
 
 
-def test_all_parameters_are_exported_by_name_unless_passes_disagree(make):
+def test_all_parameters_export_by_name_unless_passes_conflict(make):
     make.folder.write(
         "odd.glsl", NUMBER.format(name="odd", value=1.0).replace("common_share = 1.0", "common_share = 2.0")
     )

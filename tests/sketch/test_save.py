@@ -56,9 +56,7 @@ def some(places: Iterable[KeyPath], count: int) -> list[KeyPath]:
 @pytest.mark.slow
 @few_or_many
 @each_shipped
-def test_every_value_of_every_shipped_file_is_found_and_can_be_written_over_alone(
-    path: Path, count: int
-) -> None:
+def test_every_shipped_value_can_be_overwritten_alone(path: Path, count: int) -> None:
     text = path.read_bytes().decode()
     spans, result = TomlPlaces(text), dict(leaves(tomllib.loads(text)))
     assert {position for position in spans.pairs if position in result} == set(result), (
@@ -81,7 +79,7 @@ def test_every_value_of_every_shipped_file_is_found_and_can_be_written_over_alon
 @pytest.mark.slow
 @few_or_many
 @each_shipped
-def test_any_value_of_any_shipped_file_can_be_added_and_taken_out(path: Path, count: int) -> None:
+def test_any_shipped_value_can_be_added_and_removed(path: Path, count: int) -> None:
     text = path.read_bytes().decode()
     result = dict(leaves(tomllib.loads(text)))
     for table in some({position[:-1] for position in result}, count):
@@ -199,7 +197,7 @@ def test_one_value_changes_its_own_bytes_only(folder: Path) -> None:
     assert after == SKETCH.replace("0.25", "0.75").replace("200", "300")
 
 
-def test_a_direction_stays_in_its_braces_and_a_whole_number_without_a_point(folder: Path) -> None:
+def test_direction_keeps_braces_and_integer_has_no_point(folder: Path) -> None:
     old = "level = 0.25"
     text = SKETCH.replace(old, "level = 1, sun = { azimuth = 1, elevation = 2 }")
     expected = rewritten(folder, text).with_values({"height.sun": (3.5, 40.0), "height.level": 0.0})
@@ -231,7 +229,7 @@ def test_a_technique_is_saved_without_what_it_has_no_place_for(folder: Path) -> 
     assert saved(folder, expected) == SKETCH.replace("./terrain", "./bare").replace(", count=4", "")
 
 
-def test_a_value_set_inside_is_written_over_where_the_file_has_another_name_for_it(folder: Path) -> None:
+def test_inner_value_is_saved_under_its_exported_name(folder: Path) -> None:
     (folder / "both.toml").write_text(
         '[[pass]]\nname = "inner"\nuse = "./terrain"\n[parameters]\nhigh = "inner.level"\n', encoding="utf-8"
     )
@@ -249,9 +247,7 @@ def test_a_file_from_elsewhere_is_copied_into_the_folder(folder: Path, tmp_path:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="files have no limit there")
-def test_a_file_from_elsewhere_that_cannot_be_copied_whole_is_not_there_at_all(
-    folder: Path, tmp_path: Path
-) -> None:
+def test_failed_file_copy_on_save_leaves_no_partial_file(folder: Path, tmp_path: Path) -> None:
     import resource
 
     image = tmp_path / "large.png"
@@ -287,9 +283,7 @@ def test_presets_are_saved_and_saved_over(folder: Path) -> None:
         (float(np.float32(1e-7)), "1e-07"),
     ],
 )
-def test_a_number_has_the_fewest_digits_that_read_back_as_the_same_float(
-    folder: Path, value: float, written: str
-) -> None:
+def test_saved_number_has_fewest_round_trip_digits(folder: Path, value: float, written: str) -> None:
     save(load(folder), load(folder).with_values({"height.level": value}))
     assert f"level = {written}" in (folder / "sketch.toml").read_text(encoding="utf-8")
     assert np.float32(values_of(load(folder))["height.level"]) == np.float32(value)
@@ -382,7 +376,7 @@ def test_a_copy_that_fails_leaves_nothing(folder: Path, tmp_path: Path) -> None:
     assert sorted(p.name for p in tmp_path.iterdir()) == ["file", "own"]
 
 
-def test_lines_at_the_end_follow_a_text_that_does_not_end_its_line() -> None:
+def test_appended_lines_follow_text_without_final_newline() -> None:
     assert append("a = 1", ["b = 2"]) == "a = 1\n\nb = 2\n"
     assert put("a = 1", (), "b", "2") == "a = 1\nb = 2"
     assert drop("a = 1\nb = 2", (), "b") == "a = 1\n"

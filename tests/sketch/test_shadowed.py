@@ -79,7 +79,7 @@ def test_each_default_that_a_file_sets_over_names_its_line(folder):
     assert (Path(warning.file).name, warning.line, warning.severity) == ("terrain.glsl", 2, "warning")
 
 
-def test_what_is_set_by_users_or_ships_or_sets_the_very_default_needs_no_word(folder):
+def test_user_shipped_or_default_value_is_not_reported_shadowed(folder):
     sketch = load(folder).with_values({"height.rise": 1.0, "nested.two.free": 2.0})
     assert [item.path for item in shadowed_by_files(sketch)] == ["height.kind", "nested.two.rise"]
     assert shadowed_by_files(load("jacksboro")) == []
@@ -102,6 +102,6 @@ def test_an_edit_of_a_default_is_reported_where_it_has_no_effect(folder):
     assert newly_shadowed(old, moving)[0].by.endswith("sketch.toml:20")
 
 
-def test_where_the_new_default_is_the_value_set_nothing_is_hidden(folder):
+def test_new_default_equal_to_set_value_is_not_shadowed(folder):
     old, now = edited(folder, "rise = 2.0", "rise = 5.0")
     assert [item.path for item in newly_shadowed(old, now)] == ["nested.two.rise"]

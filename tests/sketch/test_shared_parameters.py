@@ -53,7 +53,7 @@ def folder(tmp_path: Path) -> Folder:
     return made
 
 
-def test_an_included_parameter_has_its_annotation_and_its_own_place(folder: Folder) -> None:
+def test_included_parameter_keeps_its_annotation_and_location(folder: Folder) -> None:
     gain = folder.kernel(PRAGMA + '#include "sun.glsl"\n').parameters[0]
     assert (gain.default, gain.widget.high, gain.group, gain.tooltip) == (
         2.0,
@@ -87,7 +87,7 @@ def test_a_file_that_comes_twice_gives_its_parameters_once(folder: Folder) -> No
         ('#include "sun.glsl"\nuniform float gain = 1.0;\n', ("kernel.glsl", 3, ())),
     ],
 )
-def test_a_kernel_that_declares_it_again_is_reported_with_both_places(
+def test_redeclared_shared_parameter_is_reported_at_both_places(
     folder: Folder, own: str, position: tuple[str, int, tuple[str, ...]]
 ) -> None:
     message, *result = folder.refused(PRAGMA + own)
@@ -96,7 +96,7 @@ def test_a_kernel_that_declares_it_again_is_reported_with_both_places(
     assert message.startswith("'gain' is declared twice: first at ") and message.endswith(first)
 
 
-def test_one_that_differs_is_in_the_kernel_and_the_rest_is_included(folder: Folder) -> None:
+def test_kernel_declares_differing_parameter_and_includes_rest(folder: Folder) -> None:
     folder.write(steps="uniform int steps = 4;\n")
     text = f'{PRAGMA}uniform float gain = 1.0;  //! label("Brightness")\n#include "steps.glsl"\n'
     gain, steps = folder.kernel(text).parameters
@@ -113,7 +113,7 @@ def test_one_that_differs_is_in_the_kernel_and_the_rest_is_included(folder: Fold
         ("uniform float a;  //! step(1)\n//! slider(0,\n", 2, "'slider(' is not closed"),
     ],
 )
-def test_a_mistake_in_an_included_annotation_is_reported_at_its_line(
+def test_error_in_included_annotation_is_reported_at_its_line(
     folder: Folder, text: str, line: int, words: str
 ) -> None:
     folder.write(shared=text)
@@ -167,7 +167,7 @@ def test_where_names_expressions_of_the_pragma(folder: Folder) -> None:
     assert kernel.repeat == "2 * ((size.x // 2) + steps)"
 
 
-def test_where_applies_to_groups_and_the_counts_of_buffers_not_their_names(folder: Folder) -> None:
+def test_where_applies_to_groups_and_buffer_counts_not_names(folder: Folder) -> None:
     kernel = folder.kernel(
         '#pragma compute(where = "row = size.x + 1; float = 2", groups = "row, 1", \\\n'
         '                buffers = "row:float:row * size.y * float")\n'

@@ -113,9 +113,7 @@ def test_they_are_copied_with_a_sketch(folder: Path, tmp_path: Path) -> None:
     assert sorted(p.name for p in (copy / "data").iterdir()) == ["a.bil", "a.hdr", "a.prj"]
 
 
-def test_they_are_copied_into_a_sketch_under_a_name_that_no_other_file_has(
-    folder: Path, tmp_path: Path
-) -> None:
+def test_sidecars_are_copied_to_sketch_under_unused_name(folder: Path, tmp_path: Path) -> None:
     source = grid(tmp_path / "elsewhere/b.bil", ".hdr", ".prj")
     sketch = load(folder)
     save(sketch, sketch.with_values({"height.shape": str(source)}))

@@ -74,7 +74,7 @@ def test_line_ends_marks_and_a_missing_last_end_change_nothing(write, end, mark,
     assert result.canonical == "first\nfloat x;\nthird"
 
 
-def test_the_driver_sees_neither_comments_nor_quotes_nor_more_than_ascii(write):
+def test_driver_text_has_no_comments_quotes_or_non_ascii(write):
     write("lib.glsl", "float x;\n")
     text = 'float a; // größe "quoted"\n/* ü " */ float b; /* // */ float c;\n'
     text += '#pragma kernel(output = "h:r32f") // x\n'
@@ -108,7 +108,7 @@ def stripped(text: str) -> str:
     )
 
 
-def test_comments_are_blanked_as_by_a_pattern_over_the_whole_text(write):
+def test_comment_blanking_matches_whole_text_pattern(write):
     rng = random.Random(1)
     for _ in range(500):
         pieces = ["//", "/*", "*/", "\n", "a", " ", "x y", '"q//"', "//!", "/", "*", "\t"]
@@ -299,7 +299,7 @@ def test_files_that_cannot_be_read_are_sentences(write, tmp_path):
 # Values
 
 
-def test_a_text_is_a_value_and_travels_without_what_was_worked_out(write):
+def test_source_text_is_a_value_and_pickles_without_caches(write):
     path = write("main.glsl", "float a;\n")
     item, two = read(path), read(path)
     assert item == two and hash(item) == hash(two) and item.canonical

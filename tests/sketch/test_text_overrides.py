@@ -37,7 +37,7 @@ def test_a_main_parameter_that_a_text_lacks_is_one_no_more(folder):
     assert with_texts(sketch, {str(folder.path / "terrain.glsl"): steep}).main == ()
 
 
-def test_a_text_is_read_in_place_of_its_file_and_declares_what_it_declares(folder):
+def test_override_text_replaces_file_and_its_declarations(folder):
     sketch = folder.sketch()
     steep = TERRAIN.replace("rise", "climb").replace("0.5", "0.75")
     result = with_texts(sketch, {str(folder.path / "terrain.glsl"): steep})
@@ -71,7 +71,7 @@ def test_texts_that_a_sketch_does_not_use_change_nothing(folder):
     assert with_texts(sketch, {str(folder.path / "other.glsl"): "not GLSL"}) == sketch
 
 
-def test_a_fast_variant_is_left_out_unless_the_texts_say_the_same(folder):
+def test_variant_is_disabled_unless_override_equals_file(folder):
     file = folder.write("terrain.comp", '#pragma compute(groups = "1, 1")\nuniform float rise = 0.5;\n')
     sketch = folder.sketch()
     sketch = replace(sketch, graph=trusted(sketch.graph))

@@ -47,7 +47,7 @@ def test_what_anything_reads_is_none(tmp_path: Path, declared: str, body: str, p
     assert found_in(tmp_path, declared, body, pragma) == []
 
 
-def test_a_name_that_only_a_comment_or_a_longer_name_has_is_not_read(tmp_path: Path) -> None:
+def test_name_in_comment_or_longer_name_does_not_count_as_read(tmp_path: Path) -> None:
     body = "// level\n float levels = 1.0; /* level */"
     assert len(found_in(tmp_path, "uniform float level = 0.5;", body)) == 1
 

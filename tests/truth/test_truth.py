@@ -181,7 +181,7 @@ def test_a_sun_half_behind_a_wall_is_half_seen():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("elevation", "distance", "thin"), [(5.0, 1250.0, 5.0), (25.0, 222.0, 0.5)])
-def test_a_walls_shadow_ends_and_its_penumbra_is_as_wide_as_the_sun(elevation, distance, thin):
+def test_wall_shadow_end_and_penumbra_match_sun_disc(elevation, distance, thin):
     """A straight edge x radii above the middle leaves (acos(x) - x sqrt(1 - x²)) / pi of a disc.
 
     Across the ray, the penumbra is the way from the wall's crest times 2 tan(0.265 degrees) wide.

@@ -25,7 +25,7 @@ def test_a_page_carries_what_its_sketch_needs(name: str):
     assert addons.page_script(page) == expected
 
 
-def test_a_page_of_several_sketches_carries_what_any_of_them_needs():
+def test_page_of_several_sketches_bundles_needs_of_any():
     page = page_data([load("diamond_square"), load("sun_flight")])
     assert read_bundle("with_keyframes.js") in addons.page_script(page)
 

@@ -66,7 +66,7 @@ def test_what_cannot_be_read_is_said_at_its_line(node: Node, line: str, message:
     assert message in result.value.message and result.value.details["line"] == 2
 
 
-def test_an_annotation_goes_on_over_lines_and_a_plain_uniform_is_a_number(node: Node):
+def test_annotation_spans_lines_and_bare_uniform_is_number(node: Node):
     first, second = written(
         node,
         'uniform float a = 0.5;  //! slider(0, 1) label("Share")',

@@ -87,11 +87,11 @@ def test_choices_are_written_as_the_engine_writes_them(node: Node):
 
 @each("around", [{"software": False, "parallel": True}, {"software": True, "parallel": None},
                  {"software": True, "parallel": True, "kind": "plain_fragment"}])  # fmt: skip
-def test_nothing_is_written_in_where_that_gains_nothing_or_would_wait(node: Node, around: dict[str, object]):
+def test_values_are_not_inlined_if_useless_or_blocking(node: Node, around: dict[str, object]):
     assert node.run(AFTER, {**around, "shapes": [0, 0, 0]}, []) == 3 * [[True, 0, 0]]
 
 
-def test_a_program_is_used_once_it_is_ready_and_made_again_where_it_is_gone(node: Node):
+def test_inlined_program_is_used_once_ready_and_rebuilt_if_lost(node: Node):
     around = {"software": True, "parallel": True, "shapes": [0, 0, 0, 0]}
     assert node.run(AFTER, around, ["ready"]) == [[True, 0, 1], *3 * [[False, 1, 1]]]
     assert node.run(AFTER, around, ["asked"]) == [[True, 0, 1], *3 * [[True, 1, 1]]]

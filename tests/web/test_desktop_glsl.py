@@ -51,7 +51,7 @@ void main() {{
 
 
 @pytest.mark.parametrize("name", ["constructor", "toString", "hasOwnProperty"])
-def test_a_call_by_a_name_that_javascript_gives_every_object_is_not_known(node: Node, name: str):
+def test_call_named_like_object_prototype_member_is_unknown(node: Node, name: str):
     macro = f"#define {name}2(a) {name}(a)\n"
     text = f"{macro}void main() {{ int a = {name}(1) * 2; float b = 2 * 1.0; }}\n"
     result = node.call("conversions.js", "withConversions", text)

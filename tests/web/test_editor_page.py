@@ -199,7 +199,7 @@ def test_a_lost_context_comes_back_with_the_same_picture(page: Browser):
     assert pixel(page) == before and page.run("return still") == [True, False]
 
 
-def test_a_text_that_was_tried_when_the_context_was_lost_is_taken_back(page: Browser):
+def test_text_tried_at_context_loss_is_reverted(page: Browser):
     typed(page, "return level", "return 0.25 * level")
     before = pixel(page)
     page.run("guard.trying('./k.glsl', 'endless', player.texts); player.texts['./k.glsl'] = 'endless'")

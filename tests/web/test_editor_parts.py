@@ -196,7 +196,7 @@ def test_a_time_is_told_from_smaller_pictures(node: Node):
     assert 0.25 + per_pixel * width * height == pytest.approx(2, rel=0.15)
 
 
-def test_a_quick_picture_is_not_asked_about_and_a_slow_one_not_tried_larger(node: Node):
+def test_quick_picture_needs_no_smaller_frame_slow_stops_early(node: Node):
     assert node.run(PACED, 0.01, 1e-7, 4)["smaller"] is None
     slow = node.run(PACED, 0, 0.02, 4)
     assert len(slow["drawn"]) == 2 and slow["seconds"] > 1000

@@ -348,7 +348,7 @@ def test_any_texture_is_shown_from_above(pages: Pages, drawn: Engine, sketch: Ma
     assert pages.picture(whole.name, map=None).levels_off(before.pixels) == 0
 
 
-def test_what_a_load_has_compiled_is_drawn_without_waiting_for_the_compiler(pages: Pages, sketch: Made):
+def test_page_draws_loaded_programs_without_compiler_wait(pages: Pages, sketch: Made):
     """The map of a texture, its levels, and what shows a picture on a canvas."""
     begun(pages, sketch(CHAIN))
     script = """const { gl, parallel } = engine.parts.context, waited = [];

@@ -77,7 +77,7 @@ def test_what_packs_numbers_compiles_as_es(node: Node, ctx: moderngl.Context, tm
     ctx.program(vertex_shader=vertex, fragment_shader=fragment).release()
 
 
-def test_a_line_is_as_it_was_but_for_the_version_the_precisions_and_initial_values(node: Node):
+def test_es_lines_differ_in_version_precision_and_initial_value(node: Node):
     texts = [text for kernel in kernels().values() for text in stages_of(kernel)]
     initialised = 0
     for text, result in zip(texts, node.each("es.js", "toES", [[text] for text in texts]), strict=True):

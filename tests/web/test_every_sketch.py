@@ -100,7 +100,7 @@ def unfiltered(begun: Callable[..., Pages]) -> Pages:
 
 
 @pytest.mark.parametrize("name", shipped_sketches())
-def test_a_device_that_filters_no_floats_draws_a_sketch_within_3_levels(
+def test_device_without_float_filter_draws_within_3_levels(
     name: str, unfiltered: Pages, drawn: Engine, written: dict[str, Any]
 ):
     data = next(item for item in written["sketches"] if item["name"] == name)

@@ -110,7 +110,7 @@ def rows(name: str) -> dict[str, dict[str, Any]]:
     return {row["path"]: row for row in page_data([load(name)])["sketches"][0]["shown"]}
 
 
-def test_terrain_of_a_file_has_its_size_and_one_that_is_computed_has_any():
+def test_file_terrain_has_fixed_size_and_computed_terrain_any():
     made, computed = (page_data([load(name)])["sketches"][0] for name in ("jacksboro", "fbm"))
     assert made["terrain"]["locked"].startswith("The elevation file's terrain was made in this size")
     assert computed["terrain"]["locked"] == ""
@@ -170,7 +170,7 @@ def test_kernels_that_a_source_reads_are_locked(any_engine: Engine, tmp_path: Pa
     assert stopped == {"spread": made, "looped": made}, "their iterations would change nothing"
 
 
-def test_what_a_kernel_before_a_source_is_given_is_locked_or_said(any_engine: Engine, tmp_path: Path):
+def test_inputs_of_kernel_before_source_are_locked_or_noted(any_engine: Engine, tmp_path: Path):
     (tmp_path / "sea.glsl").write_text(
         '#pragma kernel(output = "height:r32f")\n'
         "float kernel(ivec2 t) { return base_elevation + fract(time) + float(t.x); }\n"
@@ -206,7 +206,7 @@ def inner(tmp_path: Path, trusted_variants: None) -> Sketch:
 
 
 @pytest.mark.parametrize("name", ["inner", "circles", "fault_formation", "layered_noise"])
-def test_what_would_need_another_plan_is_locked_and_nothing_else_is(name: str, inner: Sketch):
+def test_parameters_needing_another_plan_are_locked_alone(name: str, inner: Sketch):
     """Set each parameter: where a fast variant gives way to its technique, other passes run."""
     sketch = inner if name == "inner" else load(name)
     result = {row["path"]: row for row in page_data([sketch])["sketches"][0]["shown"]}

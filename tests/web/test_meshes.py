@@ -68,6 +68,6 @@ def test_pieces_of_a_tile_are_joined_as_the_engine_joins_them(node: Node):
     assert ranges == {" ".join(map(str, piece)): list(both) for piece, both in lod.ranges().items()}
 
 
-def test_what_is_chosen_from_has_the_inputs_that_the_engine_reads(node: Node):
+def test_mesh_choosers_read_same_inputs_as_engine(node: Node):
     result = node.run("async (load) => (await load('detail.js')).CHOSEN_BY")
     assert result == {name: list(chooser.inputs) for name, chooser in lod.CHOOSERS.items()}

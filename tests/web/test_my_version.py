@@ -104,7 +104,7 @@ def test_what_was_edited_and_set_is_the_same_picture_in_python(
     assert (rendered(ctx, path, tmp_path) == result).all()
 
 
-def test_a_broken_text_leaves_the_picture_and_is_told_at_its_line(page: Browser):
+def test_broken_text_keeps_picture_and_is_reported_at_its_line(page: Browser):
     before = picture(page)
     put(page, "noise/hash.glsl", "1.0 / 16777216.0", "1.0 / nothing_such")
     (result,) = page.run("return page.editor.problems")
@@ -155,7 +155,7 @@ def replaced(page: Browser, old: str, new: str) -> None:
     page.press(*new)
 
 
-def test_an_exported_page_is_broken_repaired_saved_and_loaded_again(tmp_path: Path):
+def test_exported_page_survives_break_repair_save_and_reload(tmp_path: Path):
     path = tmp_path / "page.html"
     command = [sys.executable, "-m", "playground", "export", "diamond_square", "--to", str(path)]
     subprocess.run([*command, "--set", "size=65"], check=True, capture_output=True)

@@ -175,7 +175,7 @@ def test_an_edited_text_is_that_of_every_pass_that_reads_it(node: Node, tmp_path
         assert any("MY_EDIT" in kernel.source.names for kernel in kernels.values())
 
 
-def test_a_text_that_no_file_of_the_sketch_reads_is_said_to_be_aside(node: Node, tmp_path: Path):
+def test_text_read_by_no_sketch_file_is_reported_aside(node: Node, tmp_path: Path):
     page = page_of("flood")
     rewritten = next(file for file in page["shared"]["files"] if ":" in file)
     path, aside = version(node, tmp_path, page, texts={rewritten: "void main() {}", "nowhere.glsl": "x"})
@@ -186,7 +186,7 @@ def test_a_text_that_no_file_of_the_sketch_reads_is_said_to_be_aside(node: Node,
     assert opened(path, tmp_path).name == "flood"
 
 
-def test_data_that_are_too_large_for_a_page_are_listed_in_the_zip(node: Node):
+def test_oversized_page_data_is_listed_in_zip(node: Node):
     script = """async (page, leftOut, load) => {
         const { versionFiles } = await load("my_version.js"), { shared, sketches: [sketch] } = page;
         const pack = { ...sketch.pack, leftOut };

@@ -228,7 +228,7 @@ async (loader, text, old, load) => {
     ],
     ids=["whole", "old browser", "a part less", "a letter less", "nothing"],
 )
-def test_the_loader_says_whether_the_browser_is_too_old_or_the_file_is_damaged(
+def test_loader_tells_old_browser_from_damaged_file(
     text: str, old: bool, made: list[str], names: list[str], node: Node
 ):
     assert node.run(LOADED, read_bundle("loader.js"), text, old) == [made, names]

@@ -154,7 +154,7 @@ def test_orbiting_draws_and_the_picture_is_whole_again_at_rest(
     assert browser.log() == []
 
 
-def test_a_drag_writes_a_camera_into_the_address_only_where_one_sees(browser: Browser, exported: Any):
+def test_drag_writes_camera_to_address_if_picture_uses_it(browser: Browser, exported: Any):
     for name, sees in (("hex_tiled", True), ("white_noise_image", False)):
         _, url = exported(name)
         opened(browser, url)

@@ -198,7 +198,7 @@ def test_right_and_shift_drags_move_the_target_alike(page: Page):
     assert page.state(".camera.target") == pytest.approx(target)
 
 
-def test_the_wheel_zooms_by_the_windows_notch_and_a_double_click_resets(page: Page):
+def test_wheel_zooms_by_window_notch_and_double_click_resets(page: Page):
     page.wheel((300, 400), -100)
     assert page.state(".camera.distance") == pytest.approx(5000 * 0.88)
     page.wheel((300, 400), 200)
@@ -208,7 +208,7 @@ def test_the_wheel_zooms_by_the_windows_notch_and_a_double_click_resets(page: Pa
     assert page.state(".camera.distance") == 5000
 
 
-def test_a_drag_with_ctrl_moves_the_sun_and_the_line_follows_its_drag(page: Page):
+def test_ctrl_drag_moves_sun_and_divider_follows_its_drag(page: Page):
     page.drag((300, 400), (360, 400), held=CTRL)
     height, width = page.run(
         "const c = document.querySelector('canvas'); return [c.clientHeight, c.clientWidth]"
@@ -234,7 +234,7 @@ def test_keys_orbit_zoom_and_reset(page: Page):
     assert not page.run("return document.querySelector('dialog').open")
 
 
-def test_a_slow_picture_gets_fewer_pixels_in_motion_and_all_of_them_at_rest(page: Page):
+def test_slow_picture_drops_pixels_in_motion_and_is_full_at_rest(page: Page):
     whole = page.run("return probe.frames[probe.frames.length - 1]")
     page.run("probe.slow = 250")
     page.drag(*((300 + 12 * n, 600) for n in range(16)))
@@ -382,7 +382,7 @@ def test_iterations_that_change_nothing_are_locked(wide: Browser, script: Path, 
 # ── time, maps, address ──────────────────────────────────────────────────────
 
 
-def test_time_waits_where_less_motion_is_wanted_and_runs_when_it_is_asked_to(film: Page):
+def test_reduced_motion_pauses_time_until_played(film: Page):
     assert film.state(".time") == 0
     assert film.run("return document.querySelectorAll('.marks span').length") == 3
     film.run("document.querySelector('canvas').focus()")
@@ -596,7 +596,7 @@ return [...document.querySelectorAll(".side *")].filter((e) => {
 """
 
 
-def test_the_keyboard_reaches_the_picture_first_then_tools_time_and_panel(film: Page):
+def test_tab_order_is_picture_tools_time_panel(film: Page):
     film.run("document.body.focus()")
     order = []
     for _ in range(14):

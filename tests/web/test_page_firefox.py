@@ -16,8 +16,8 @@ from .test_page_browser import (  # noqa: F401  the same tests, with the pages o
     script,
     test_a_button_is_pressed_while_it_is_held,
     test_a_drag_of_the_pictures_height_turns_half_around,
-    test_a_drag_with_ctrl_moves_the_sun_and_the_line_follows_its_drag,
     test_a_map_is_moved_enlarged_and_read,
+    test_ctrl_drag_moves_sun_and_divider_follows_its_drag,
     test_each_widget_sets_its_value,
     test_hostile_texts_stay_texts,
     test_keys_orbit_zoom_and_reset,
@@ -27,7 +27,7 @@ from .test_page_browser import (  # noqa: F401  the same tests, with the pages o
     test_search_presets_techniques_iterations,
     test_the_address_holds_the_state_and_brings_it_back,
     test_the_panel_hides_and_the_code_has_its_tab,
-    test_the_wheel_zooms_by_the_windows_notch_and_a_double_click_resets,
+    test_wheel_zooms_by_window_notch_and_double_click_resets,
     test_why_rows_are_locked_is_said_once_in_each_group,
 )
 

@@ -125,7 +125,7 @@ def test_a_button_is_true_for_a_frame_at_least(node: Node):
     assert run(node, body) == [True, True, None, False, True]
 
 
-def test_a_button_pressed_while_a_picture_is_made_is_seen_by_the_next(node: Node):
+def test_button_pressed_during_draw_is_seen_by_next_picture(node: Node):
     body = """leaves(); session.press("light.flash", true); session.press("light.flash", false);
         return [session.drawn(), leaves()["light.flash"], session.drawn(), leaves()["light.flash"]]"""
     assert run(node, body) == [False, True, True, None]

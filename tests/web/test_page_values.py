@@ -227,7 +227,7 @@ def test_a_dome_is_the_windows(node: Node):
         np.testing.assert_allclose(dot, dome.dot_of(*dome.direction_at(*position)), rtol=1e-12, atol=1e-12)
 
 
-def test_gestures_move_the_camera_as_the_mouse_does_in_the_window(node: Node):
+def test_page_gestures_move_camera_like_window_mouse(node: Node):
     extent, relief, size = (4096.0, 3000.0), 800.0, (960, 540)
     script = """async (camera, eye, across, down, wheel, load) => {
         const { moved, turned, zoomed } = await load("camera_moves.js");

@@ -90,7 +90,7 @@ def test_another_tools_shader_is_drawn_with_the_engines_bits(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SHIPPED)
-def test_a_shipped_sketch_with_foreign_passes_has_the_engines_bits(pages: Pages, drawn: Engine, name: str):
+def test_shipped_sketch_with_foreign_passes_matches_engine_bits(pages: Pages, drawn: Engine, name: str):
     agree(pages, drawn, load(name), TIME)
 
 

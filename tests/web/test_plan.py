@@ -34,8 +34,8 @@ SETTINGS = 3
 ASK = """async (sketch, states, load) => {
     const { makePlan } = await load("plan.js");
     const flat = (node) => node.loop
-        ? [["loop", node.path, node.repeat, node.whole, node.countsFrames], ...node.body.flatMap(flat)]
-        : [[node.kernel.name, node.path, node.repeat, node.whole, node.size,
+        ? [["loop", node.path, node.repeat, node.total, node.countsFrames], ...node.body.flatMap(flat)]
+        : [[node.kernel.name, node.path, node.repeat, node.total, node.size,
             node.between && Object.values(node.between), node.values]];
     return states.map((state) => {
         try {
@@ -335,7 +335,7 @@ def test_a_moved_camera_leaves_every_step_as_it_is(node: Node, shared: SharedDat
     assert result == {"other": [], "nodes": True}
 
 
-def test_a_moved_slider_makes_only_the_steps_anew_that_have_its_value(node: Node, shared: SharedData):
+def test_moved_slider_reruns_steps_with_its_value_alone(node: Node, shared: SharedData):
     data = exported(load("jacksboro"), shared)
     row = next(row for row in data["shown"] if row["path"] == "colour.grass_below")
     moved = Settings(values={row["path"]: row["value"] + 1.0}).state(data)

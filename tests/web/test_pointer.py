@@ -96,7 +96,7 @@ def test_the_right_button_presses_nothing(node: Node):
     assert message["changes"] == 0 and "drag" not in message
 
 
-def test_seconds_between_pictures_are_told_while_it_plays_but_for_pauses(node: Node):
+def test_frame_delta_is_sent_while_playing_except_after_pauses(node: Node):
     turns = [{"events": [], "after": after} for after in (5000, 20, 50, 3000, 10)]
     message = [value.get("delta") for value in followed(node, *turns, playing=True)]
     assert message == [None, pytest.approx(0.02), pytest.approx(0.05), None, pytest.approx(0.01)]

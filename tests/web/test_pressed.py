@@ -42,7 +42,7 @@ def test_a_letter_of_one_byte_holds_seven_bits():
     assert len(dense(data).encode()) <= 80_002
 
 
-def test_every_letter_stays_as_it_is_in_a_script_element_and_in_an_editor():
+def test_packed_letters_survive_script_element_and_editor():
     letters = {ord(letter) for letter in dense(RANDOM.randbytes(200_000) + bytes(range(256)))}
     assert not letters & set(b"\0\a\b\t\n\v\f\r\x1a\x1b&<\x7f")
     assert not letters & set(range(0x80, 0xA0)) and max(letters) < 0x800

@@ -31,7 +31,7 @@ def scales(node: Node, *motions: tuple[float, float], frames: int = 14) -> list[
     return values
 
 
-def test_a_quick_picture_is_whole_though_its_first_frames_are_slow(node: Node) -> None:
+def test_quick_picture_is_full_size_despite_slow_first_frames(node: Node) -> None:
     [result] = scales(node, (40, 2))
     assert result[-5:] == [1] * 5
 
@@ -44,7 +44,7 @@ def test_a_slow_picture_is_small_from_its_second_frame_on(node: Node) -> None:
 
 
 @pytest.mark.parametrize("fixed", [100, 300])
-def test_where_pixels_are_not_what_takes_time_they_are_given_back(node: Node, fixed: float) -> None:
+def test_pixels_are_restored_where_fewer_save_no_time(node: Node, fixed: float) -> None:
     [result] = scales(node, (0, fixed))
     assert result[-6:] == [1] * 6
 

@@ -92,7 +92,7 @@ def test_a_long_film_is_cut_and_says_so(tmp_path: Path, monkeypatch: pytest.Monk
     assert any("has the first 0.5 s" in note for note in page["sketches"][0]["notes"])
 
 
-def test_what_says_which_second_shows_may_be_changed_and_the_rest_not(tmp_path: Path):
+def test_playback_parameters_are_editable_and_others_locked(tmp_path: Path):
     uneven_film(tmp_path / "f.mkv", [0, 40])
     page = page_data([made(tmp_path, "video", "f.mkv", False)])
     locked = {row["path"]: row["locked"] for row in page["sketches"][0]["shown"]}

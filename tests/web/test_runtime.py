@@ -42,7 +42,7 @@ def test_a_module_is_no_longer_and_no_wider_than_it_should_be():
     assert not long and not wide
 
 
-def test_a_module_depends_on_other_modules_alone_and_never_on_itself():
+def test_modules_import_other_modules_without_cycles():
     names = {
         name: [Path(path).name for path in IMPORT.findall(without_comments(text))]
         for name, text in modules().items()

@@ -81,9 +81,7 @@ def hostile(rng: np.random.Generator, lengths: tuple[int, int]) -> str:
 
 
 @pytest.mark.slow
-def test_random_texts_are_flattened_as_python_does_and_refused_where_python_refuses_them(
-    node: Node, tmp_path: Path
-):
+def test_random_texts_flatten_or_fail_as_in_python(node: Node, tmp_path: Path):
     rng = np.random.default_rng(1)
     kinds = {"lines": 0, "error": 0}
     (tmp_path / "sub").mkdir()
@@ -150,7 +148,7 @@ def test_too_many_levels_and_too_many_includes_are_refused(node: Node):
 # ── edits ────────────────────────────────────────────────────────────────────
 
 
-def test_an_edited_text_replaces_the_file_wherever_it_is_included(node: Node):
+def test_edited_text_replaces_file_at_every_include(node: Node):
     files = {"./a.glsl": '#include "b.glsl"\nint a;', "./b.glsl": "int b;"}
     shared = {"files": files, "includes": {}}
     flat = node.call("source.js", "flatten", shared, "./a.glsl", {"./b.glsl": "int edited;"})

@@ -81,7 +81,7 @@ def test_a_literal(node: Node, code: str, value: object):
         f"uniform float a = {'9' * 400}.0;",
     ],
 )
-def test_what_is_no_literal_of_its_type_is_refused_with_its_place(node: Node, code: str):
+def test_initial_value_of_wrong_type_is_refused_at_its_line(node: Node, code: str):
     with pytest.raises(NodeError, match="the initialiser of 'a' must be a literal") as caught:
         declared(node, "", code)
     assert caught.value.details == {"file": "./a.glsl", "line": 2}

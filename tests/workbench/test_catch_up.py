@@ -47,7 +47,7 @@ def slow(session, monkeypatch):
     return session
 
 
-def test_a_jump_shows_how_far_it_came_and_ends_at_the_same_picture(slow):
+def test_time_jump_shows_progress_and_ends_at_same_picture(slow):
     engine = slow.engine
     slow.clock.time, before = 1.0, engine.runs["count"]
     done = []

@@ -52,15 +52,13 @@ class Player(RandomPlayer):
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_what_was_chosen_last_is_shown_and_all_of_it_can_be_undone(harness: Harness, seed: int) -> None:
+def test_latest_choice_is_shown_and_all_edits_can_be_undone(harness: Harness, seed: int) -> None:
     check(harness, seed)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12, 212))
-def test_what_was_chosen_last_is_shown_and_all_of_it_can_be_undone_again_and_again(
-    harness: Harness, seed: int
-) -> None:
+def test_latest_choice_is_shown_and_edits_undone_for_many_seeds(harness: Harness, seed: int) -> None:
     check(harness, seed)
 
 

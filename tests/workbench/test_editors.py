@@ -121,7 +121,7 @@ def ended(opener: Opener) -> None:
         assert not thread.is_alive()
 
 
-def test_what_was_started_is_waited_for_and_gets_the_words_as_they_are(
+def test_editor_process_is_awaited_and_gets_verbatim_arguments(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     started: list[subprocess.Popen[bytes]] = []

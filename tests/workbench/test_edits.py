@@ -71,7 +71,7 @@ def test_a_parameter_of_another_type_falls_back_and_says_so(folder: Path) -> Non
     assert "was float and is int now" in notes[0]
 
 
-def test_a_value_out_of_a_new_range_goes_to_its_nearest_end_and_says_so(folder: Path) -> None:
+def test_value_outside_new_range_is_clamped_and_reported(folder: Path) -> None:
     old = edited(folder, level=0.9)
     change(folder / "terrain.glsl", "level = 0.5; //! slider(0, 1)", "level = 0.5; //! slider(0, 0.6)")
     draft, notes = reload_draft(old, load(folder))
@@ -99,7 +99,7 @@ def test_a_set_value_outlives_a_new_default_of_its_own(folder: Path) -> None:
     assert values_of(draft.sketch)["height.level"] == 0.75 and notes == []
 
 
-def test_a_value_that_the_file_has_come_to_say_is_no_longer_an_edit(folder: Path) -> None:
+def test_value_equal_to_file_stops_being_edit(folder: Path) -> None:
     old = edited(folder, other=0.75)
     change(folder / "sketch.toml", "other = 0.25", "other = 0.75")
     draft, notes = reload_draft(old, load(folder))
@@ -142,7 +142,7 @@ def test_a_value_outlives_its_pass(folder: Path) -> None:
     assert values_of(again.sketch)["height.level"] == 0.9 and notes == []
 
 
-def test_a_parameter_that_returns_with_another_type_leaves_the_value_waiting(folder: Path) -> None:
+def test_value_waits_while_parameter_has_another_type(folder: Path) -> None:
     old = edited(folder, level=1.0)
     text = (folder / "terrain.glsl").read_text(encoding="utf-8")
     line = "uniform float level = 0.5; //! slider(0, 1)"

@@ -56,7 +56,7 @@ def test_an_edit_belongs_to_the_sketch_that_is_shown(harness: Harness) -> None:
     assert harness.session.shown.edits.locked == (LEVEL,)
 
 
-def test_an_edit_of_the_frame_in_which_the_other_is_shown_is_remembered(harness: Harness) -> None:
+def test_edit_in_frame_of_sketch_switch_is_remembered(harness: Harness) -> None:
     harness.bench.commands.open(harness.folder / "two")
     harness.frame()
     harness.drafts.set(LEVEL, 0.5)
@@ -68,7 +68,7 @@ def test_an_edit_of_the_frame_in_which_the_other_is_shown_is_remembered(harness:
     assert harness.level == 0.5 and harness.session.view.steps == {"height": 2}
 
 
-def test_to_stay_restores_the_map_the_stopped_repeats_and_the_clock(harness: Harness) -> None:
+def test_staying_restores_map_stopped_repeats_and_clock(harness: Harness) -> None:
     harness.session.stop_at("height", 2)
     harness.session.show("height:height")
     harness.session.clock.time, harness.session.clock.playing = 3.0, False
@@ -83,7 +83,7 @@ def test_to_stay_restores_the_map_the_stopped_repeats_and_the_clock(harness: Har
     assert (clock.time, clock.playing) == (3.0, False)
 
 
-def test_an_opening_that_fails_leaves_the_sketch_its_edits_and_its_undo(harness: Harness) -> None:
+def test_failed_open_keeps_sketch_edits_and_undo(harness: Harness) -> None:
     harness.session.stop_at("height", 2)
     harness.drafts.set(LEVEL, 0.5)
     harness.frame()
@@ -110,9 +110,7 @@ def test_an_opening_that_fails_leaves_the_sketch_its_edits_and_its_undo(harness:
     assert harness.level == 0.625
 
 
-def test_a_sketch_that_does_not_draw_leaves_the_view_of_the_one_shown(
-    any_engine: Engine, harness: Harness
-) -> None:
+def test_undrawable_sketch_keeps_view_of_shown_one(any_engine: Engine, harness: Harness) -> None:
     harness.session.stop_at("height", 2)
     harness.frame()
     harness.write("two/hills.glsl", KERNEL.replace("level *", "levle *"))
@@ -138,7 +136,7 @@ def test_a_path_without_a_sketch_changes_nothing(harness: Harness) -> None:
     assert harness.level == 0.25
 
 
-def test_the_sketch_that_is_shown_is_opened_again_with_its_edits_and_its_undo(harness: Harness) -> None:
+def test_reopened_shown_sketch_keeps_edits_and_undo(harness: Harness) -> None:
     harness.drafts.set(LEVEL, 0.5)
     harness.frame()
     harness.bench.commands.open(harness.folder / "two")
@@ -153,7 +151,7 @@ def test_the_sketch_that_is_shown_is_opened_again_with_its_edits_and_its_undo(ha
         assert harness.level == level
 
 
-def test_what_needs_a_check_waits_until_the_other_sketch_is_there(harness: Harness) -> None:
+def test_edits_needing_check_are_refused_until_sketch_opens(harness: Harness) -> None:
     harness.drafts.choose("height", "./dunes")
     harness.answer(GOOD)
     harness.bench.commands.open(harness.folder / "two")
@@ -181,7 +179,7 @@ def test_no_keyframe_is_written_while_another_sketch_is_opened(harness: Harness)
     assert (harness.name, harness.level) == ("two", 0.25)
 
 
-def test_nothing_is_saved_while_another_sketch_does_not_open_and_no_edit_is_lost(harness: Harness) -> None:
+def test_save_is_refused_while_other_sketch_fails_and_edits_stay(harness: Harness) -> None:
     before = (harness.folder / "one/sketch.toml").read_bytes()
     harness.write("two/sketch.toml", "format = 1\n[view")
     harness.bench.commands.open(harness.folder / "two")
@@ -266,7 +264,7 @@ def test_what_fails_is_named_and_the_rest_is_taken(harness: Harness, first: str,
     assert harness.elevation == ("b.npy" if rest == "data" else "a.npy")
 
 
-def test_a_save_that_failed_stays_an_error_when_another_technique_is_shown(harness: Harness) -> None:
+def test_failed_save_stays_error_when_technique_is_switched(harness: Harness) -> None:
     harness.save("size = 9", "size = 17")
     harness.answer(BAD)
     error = harness.session.error

@@ -57,7 +57,7 @@ def work(on: Layer, *path: tuple[float, float], seconds: float, frames: int = 1,
     return on.pixels.astype(np.float64)
 
 
-def test_under_the_brush_the_terrain_is_worn_and_elsewhere_it_stays(any_engine: Engine, tmp_path: Path):
+def test_erode_brush_wears_terrain_under_it_and_nowhere_else(any_engine: Engine, tmp_path: Path):
     change = work(layer_of(any_engine, tmp_path), HERE, HERE, seconds=1.0, frames=4)
     away = np.hypot(X - 640, Y - 720)
     assert change.min() < -2 and change.sum() < 0, "what is not laid down again leaves with the water"
@@ -115,7 +115,7 @@ def waves(engine: Engine, tmp_path: Path, texels: int) -> tuple[Layer, float]:
 
 
 @pytest.mark.slow
-def test_a_brush_of_as_many_metres_erodes_alike_on_coarse_and_fine_grids(any_engine: Engine, tmp_path: Path):
+def test_metric_brush_erodes_alike_on_coarse_and_fine_grids(any_engine: Engine, tmp_path: Path):
     lost = {}
     for texels in (3, 16, 24, 30, 31, 47):
         on, spacing = waves(any_engine, tmp_path, texels)
@@ -128,7 +128,7 @@ def test_a_brush_of_as_many_metres_erodes_alike_on_coarse_and_fine_grids(any_eng
     assert seen < lost[3] / finest < 1.05
 
 
-def test_what_a_brush_leaves_has_the_same_shape_on_coarse_and_fine_grids(any_engine: Engine, tmp_path: Path):
+def test_brush_result_has_same_shape_on_coarse_and_fine_grids(any_engine: Engine, tmp_path: Path):
     result = []
     for per in (1, 2):
         on, _ = waves(any_engine, tmp_path, 16 * per)
@@ -181,7 +181,7 @@ def test_a_brush_that_is_wider_than_the_terrain_works(any_engine: Engine, tmp_pa
     assert np.isfinite(change).all() and (change != 0).mean() > 0.9
 
 
-def test_the_engine_keeps_its_frame_and_warm_stamps_compile_nothing(
+def test_warm_brush_stamps_compile_nothing_and_keep_engine_frame(
     any_engine: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     wholes = plans_made_whole(monkeypatch)
@@ -196,7 +196,7 @@ def test_the_engine_keeps_its_frame_and_warm_stamps_compile_nothing(
     assert existing[0] == existing[1]
 
 
-def test_in_a_session_a_stroke_is_seen_saved_and_undone_to_the_bit(
+def test_session_stroke_is_shown_saved_and_undone_bit_for_bit(
     session: Session, painting: Painting, tmp_path: Path
 ) -> None:
     painting.brush = Brush(tool="raise", radius=150.0, strength=1.0)

@@ -52,7 +52,7 @@ def test_a_view_is_never_opened_out_of_shape() -> None:
     assert field_for(110.0, DEFAULT_PICTURE, (400, 720)) == 110.0, "a wider one of the sketch's own stays"
 
 
-def test_a_gesture_moves_the_camera_as_it_is_seen_and_leaves_its_field_of_view() -> None:
+def test_gesture_moves_camera_as_seen_and_keeps_field_of_view() -> None:
     camera = Camera(distance=15_000.0)
     wide = replace(camera, field_of_view=field_for(camera.field_of_view, DEFAULT_PICTURE, NARROW))
     gesture = Gesture(height=720.0, across=100.0, panning=True)

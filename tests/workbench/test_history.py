@@ -260,7 +260,7 @@ def test_a_step_that_fails_gives_its_name_to_no_other(harness: Harness) -> None:
     assert [step.name for step in harness.bench.undo.history.steps] == [""]
 
 
-def test_a_saved_camera_has_as_many_digits_as_a_person_would_write() -> None:
+def test_saved_camera_is_rounded_to_short_decimals() -> None:
     result = rounded(Camera(12.3456, 30.0, 1234.5678, (1 / 3, 2.0, 3.0), 35.0))
     assert result == Camera(12.35, 30.0, 1234.57, (0.33, 2.0, 3.0), 35.0)
 
@@ -290,7 +290,7 @@ class Brush:
         self.strokes, self.undone = self.strokes + 1, self.undone - 1
 
 
-def test_while_painting_strokes_are_undone_and_redone_and_no_values(harness: Harness) -> None:
+def test_undo_and_redo_while_painting_affect_strokes_not_values(harness: Harness) -> None:
     harness.session.drafts.set("height.level", 0.5)
     harness.frame()
     brush = Brush(1)

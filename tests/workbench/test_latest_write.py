@@ -28,7 +28,7 @@ from .test_sculpted_sketch import painting as painting
 from .test_sculpted_sketch import session as session
 
 
-def test_of_what_is_given_while_it_writes_the_newest_alone_is_written() -> None:
+def test_newest_of_queued_writes_alone_is_written() -> None:
     event, may_end, seen = threading.Event(), threading.Event(), []
     writing = LatestWrite()
 
@@ -47,7 +47,7 @@ def test_of_what_is_given_while_it_writes_the_newest_alone_is_written() -> None:
     assert seen == [0, 3] and writing.writes == 2 and not writing.pending
 
 
-def test_an_error_is_of_the_last_write_and_the_next_one_takes_it_away() -> None:
+def test_error_belongs_to_last_write_and_next_one_clears_it() -> None:
     writing, ended = LatestWrite(), threading.Event()
     writing.ended = ended.set
 
@@ -142,7 +142,7 @@ def test_a_capture_waits_for_the_file_that_it_reads(
     painting.close()
 
 
-def test_what_is_painted_and_cannot_be_written_is_in_no_capture_and_missed_by_what_saves(
+def test_unwritable_painting_blocks_capture_and_save_reports_it(
     session: Session, painting: Painting, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stroke(painting, PLACE)

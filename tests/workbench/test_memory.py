@@ -142,7 +142,7 @@ def test_the_times_between_which_it_goes_round_come_back(place: Place) -> None:
 
 
 @pytest.mark.parametrize("moved", [False, True])
-def test_a_camera_by_hand_gives_way_where_the_file_moved_its_own_meanwhile(place: Place, moved: bool) -> None:
+def test_manual_camera_yields_if_file_camera_changed_meanwhile(place: Place, moved: bool) -> None:
     session, autosave = place.start()
     by_user = Camera(azimuth=70.0, elevation=50.0, distance=15000.0)
     session.drafts.set_camera(by_user)

@@ -140,7 +140,7 @@ def test_an_a_that_fails_the_sandbox_is_never_drawn(harness: Harness) -> None:
     assert harness.found is None, "it is not requested again"
 
 
-def test_closed_before_the_sandbox_has_answered_it_is_still_remembered(harness: Harness) -> None:
+def test_close_before_sandbox_answer_still_remembers_comparison(harness: Harness) -> None:
     compare_something(harness)
     for _ in range(2):
         harness.open()
@@ -149,7 +149,7 @@ def test_closed_before_the_sandbox_has_answered_it_is_still_remembered(harness: 
         harness.close()
 
 
-def test_a_of_a_sketch_that_is_left_meanwhile_is_not_compared_with_the_other(harness: Harness) -> None:
+def test_comparison_of_left_sketch_is_not_applied_to_other(harness: Harness) -> None:
     compare_something(harness)
     other = harness.folder / "other"
     other.mkdir()

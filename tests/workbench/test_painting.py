@@ -89,7 +89,7 @@ def test_a_new_mask_has_the_pass_s_size_and_a_new_name(tmp_path: Path):
     assert read_image(first.path).size == SIZE
 
 
-def test_a_layer_has_the_terrain_s_size_and_a_very_large_one_is_held_to_a_bound(tmp_path: Path):
+def test_layer_has_terrain_size_within_a_bound(tmp_path: Path):
     layer = Layer.create(tmp_path, "usual", WEIGHTS, (1025, 513))
     assert read_image(layer.path).size == layer.array.shape[1::-1] == (1025, 513)
     layer = Layer.create(tmp_path, "large", WEIGHTS, (4097, 2049), most=1024)
@@ -102,7 +102,7 @@ def read_written(layer: Layer) -> np.ndarray:
     return read_image(layer.path).pixels
 
 
-def test_strokes_are_saved_in_the_file_north_up_and_taken_back_one_by_one(tmp_path: Path):
+def test_strokes_are_saved_north_up_and_undone_one_by_one(tmp_path: Path):
     layer = Layer.create(tmp_path, "mask", WEIGHTS, SIZE)
     pictures = [read_written(layer)]
     for x in (0.2, 0.8):
@@ -130,7 +130,7 @@ def test_strokes_are_saved_in_the_file_north_up_and_taken_back_one_by_one(tmp_pa
     np.testing.assert_array_equal(read_written(layer), pictures[1])
 
 
-def test_after_another_stroke_what_was_taken_back_is_not_painted_again(tmp_path: Path):
+def test_new_edit_after_undo_discards_redo(tmp_path: Path):
     layer = Layer.create(tmp_path, "mask", WEIGHTS, SIZE)
     layer.begin()
     layer.paint(Dab((0.2, 0.5), (0.2, 0.5), EXTENT, HARD))
@@ -173,7 +173,7 @@ def test_a_mask_of_another_size_takes_the_pass_s(tmp_path: Path):
     assert array[0, 0, 1] == 200 and array[-1, -1, 1] == 0 and 90 < array[SIZE[1] // 2, 7, 1] < 110
 
 
-def test_a_layer_that_is_full_of_the_fourth_layer_is_read_back_as_that(tmp_path: Path):
+def test_layer_full_of_fourth_weight_reads_back_the_same(tmp_path: Path):
     layer = Layer.create(tmp_path, "full", WEIGHTS, SIZE)
     everything = Brush(channel=3, radius=5000.0, strength=1.0, softness=0.0)
     layer.begin()
@@ -344,9 +344,7 @@ def weights(session: Session) -> np.ndarray:
     return session.engine.read(session.sketch, "painted")
 
 
-def test_the_picture_follows_each_move_and_the_file_is_written_at_the_end(
-    session: Session, tmp_path: Path
-) -> None:
+def test_picture_follows_each_move_and_file_is_written_at_end(session: Session, tmp_path: Path) -> None:
     painting = Painting(session, tmp_path)
     painting.toggle()
     painting.press((0.4, 0.5))
@@ -430,9 +428,7 @@ def test_what_others_painted_since_is_not_taken_back(session: Session, tmp_path:
     assert any("was changed by another program" in note for note in session.notes)
 
 
-def test_a_layer_that_no_source_reads_texel_for_texel_is_followed_by_its_file(
-    tmp_path: Path, any_engine: Engine
-) -> None:
+def test_layer_resampled_by_its_source_is_followed_by_file(tmp_path: Path, any_engine: Engine) -> None:
     text = SKETCH.replace('set = { image = "none.png" }', 'set = { image = "none.png", texels = [4, 4] }')
     session = shown(tmp_path, any_engine, text)
     clock = [0.0]

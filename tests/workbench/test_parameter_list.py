@@ -165,7 +165,7 @@ def test_random_values_stay_in_the_ranges_and_repeat() -> None:
     assert all(tint[3] == 0.5 for tint in seen["p.tint"])  # type: ignore[index]
 
 
-def test_a_mutation_stays_near_and_goes_farther_with_its_strength() -> None:
+def test_mutation_stays_near_and_spreads_with_strength() -> None:
     parameters = dict([*MANY, FREE])
     values = {path: p.default for path, p in parameters.items()}
 
@@ -261,7 +261,7 @@ def test_what_goes_on_in_the_same_way_is_one_step() -> None:
     assert len(harness.history.steps) == 2
 
 
-def test_a_new_step_ends_what_could_be_redone_and_the_oldest_go_first() -> None:
+def test_new_step_clears_redo_and_oldest_steps_are_dropped() -> None:
     harness = Harness()
     harness.history = History(most=4)
     harness.frame()
@@ -274,7 +274,7 @@ def test_a_new_step_ends_what_could_be_redone_and_the_oldest_go_first() -> None:
     assert len(harness.history.steps) == 3 and not harness.history.can_redo
 
 
-def test_undo_leaves_alone_what_its_step_did_not_change_and_reloads_are_no_steps() -> None:
+def test_undo_keeps_unrelated_values_and_reload_adds_no_step() -> None:
     harness = Harness()
     harness.set("p.a", 1.0)
     harness.set("p.b", 1.0)

@@ -44,9 +44,7 @@ SOUND = "vec2 mainSound(int sample, float time) { return vec2(0.0); }\n"
         (f"\ufeff// Waves\r\n{MAIN}", "waves.frag"),
     ],
 )
-def test_a_text_gets_an_ending_by_its_dialect_and_a_name_by_its_title(
-    tmp_path: Path, text: str, name: str
-) -> None:
+def test_pasted_text_gets_dialect_extension_and_title_name(tmp_path: Path, text: str, name: str) -> None:
     path = keep_text(text, tmp_path)
     assert path == tmp_path / name
     assert path.read_text("utf-8") == text.removeprefix("\ufeff").replace("\r\n", "\n")

@@ -101,7 +101,7 @@ def test_the_preview_stays_until_the_last(session: Session):
     assert session.draws == draws + 1 and session.is_idle
 
 
-def test_what_moves_meanwhile_is_shown_at_once_and_drawn_in_full_later(session: Session):
+def test_motion_during_full_draw_shows_at_once_then_in_full(session: Session):
     turned(session, 40.0)
     for _ in range(3):
         session.frame(SIZE)

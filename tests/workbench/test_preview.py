@@ -105,7 +105,7 @@ def test_the_preview_shows_the_same_land(terrain: Sketch, any_engine: Engine):
     assert (preview != full).any() and far.mean() < 0.1
 
 
-def test_it_has_its_own_fast_variants_when_a_full_picture_starts_to_move(terrain: Sketch, any_engine: Engine):
+def test_preview_picks_own_variants_when_full_picture_moves(terrain: Sketch, any_engine: Engine):
     """What would run of the full picture is no pass of the preview, where the terrain is drawn first."""
     session = Session(any_engine, terrain.file)
     try:

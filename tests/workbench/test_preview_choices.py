@@ -123,7 +123,7 @@ def test_a_camera_that_moves_leaves_the_shadow_as_it_is(session: Session):
     assert shadow_runs(session) == before
 
 
-def test_a_preview_that_rests_runs_nothing_until_it_is_drawn_in_full(session: Session):
+def test_resting_preview_runs_nothing_until_full_draw(session: Session):
     session.drafts.set("light.sun", (200.0, 20.0))
     session.frame(SIZE)
     before = dict(session.engine.runs)

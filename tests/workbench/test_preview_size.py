@@ -162,7 +162,7 @@ def test_a_slider_that_runs_only_fast_passes_shows_all_pixels(slow: Slow):
     assert set(slow.move(3, "view.level")) == {1}
 
 
-def test_the_size_is_steady_while_the_machine_is_busy_now_and_then(slow: Slow):
+def test_preview_size_is_steady_under_varying_machine_load(slow: Slow):
     factors = itertools.cycle((1.0, 1.3, 0.9, 1.1))
     slow.timer.each["view"] *= 0.7
     slow.timer.busy = lambda: next(factors)
@@ -172,7 +172,7 @@ def test_the_size_is_steady_while_the_machine_is_busy_now_and_then(slow: Slow):
     assert sum(a != b for a, b in itertools.pairwise(divisors)) <= 1, str(divisors)
 
 
-def test_a_size_that_fits_stays_until_a_fifth_more_and_grows_where_a_fifth_is_left():
+def test_preview_size_changes_with_one_fifth_hysteresis():
     by_size = {d: 4.5 * BUDGETS[2] / d**2 for d in DIVISORS}  # a half: 1.125 of its budget
     assert chosen(by_size, 2) == 2 and chosen(by_size, 3) == 3 and chosen(by_size, 1) == 3
     by_size = {d: 3.6 * BUDGETS[2] / d**2 for d in DIVISORS}
@@ -196,7 +196,7 @@ def test_a_simulation_keeps_its_size(slow: Slow, tmp_path: Path):
         slow.session.clock.time += 0.1
 
 
-def test_time_that_is_too_slow_is_paused_once_so_that_the_picture_is_whole(slow: Slow, tmp_path: Path):
+def test_too_slow_time_is_paused_once_for_full_picture(slow: Slow, tmp_path: Path):
     (tmp_path / "ramp.glsl").write_text(RAMP.replace("level *", "fract(time) * level *"), encoding="utf-8")
     (tmp_path / "playing.toml").write_text(SKETCH, encoding="utf-8")
     session = slow.session
@@ -268,7 +268,7 @@ def test_compared_pictures_have_the_same_pixels(slow: Slow):
     compare.release()
 
 
-def test_a_shader_finds_the_mouse_at_the_same_place_of_a_smaller_picture(slow: Slow, tmp_path: Path):
+def test_shader_sees_mouse_at_same_place_in_smaller_picture(slow: Slow, tmp_path: Path):
     (tmp_path / "pointer.glsl").write_text(POINTER, encoding="utf-8")
     slow.session.open(tmp_path / "pointer.glsl")
     assert slow.frame() != SIZE
@@ -323,7 +323,7 @@ def test_grey_pictures_and_coloured_ones_are_enlarged_in_turn(any_engine: Engine
         made.release()
 
 
-def test_costs_between_sizes_and_beyond_them_are_linear_and_the_first_is_forgotten():
+def test_pass_costs_interpolate_linearly_and_drop_first_sample():
     costs = PassCosts()
     assert costs.expected("a", 100) is None
     costs.take({"a": 100}, {"a": 900.0})  # with its compiler

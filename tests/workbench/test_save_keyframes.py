@@ -63,7 +63,7 @@ def saved(path: Path, *expected: Keyframe) -> str:
     return path.read_text(encoding="utf-8")
 
 
-def test_a_time_an_ease_and_a_value_are_written_over_in_their_places(file: Path) -> None:
+def test_keyframe_time_ease_and_value_are_overwritten_in_place(file: Path) -> None:
     first, second = load(file).keyframes
     assert saved(file, first, replace(second, time=5.5)) == SKETCH.replace("time = 4.0", "time = 5.5")
     first, second = load(file).keyframes

@@ -139,9 +139,7 @@ def test_the_file_has_the_window_s_bits_and_draws_its_picture(
 
 
 @pytest.mark.parametrize("act", ["undo", "redo", "clear"])
-def test_what_ends_a_stroke_with_the_button_down_leaves_nothing_that_cannot_be_undone(
-    painting: Painting, act: str
-) -> None:
+def test_stroke_ended_with_button_down_is_fully_undoable(painting: Painting, act: str) -> None:
     stroke(painting, PLACE)
     layer = painting.layer
     assert layer is not None
@@ -210,9 +208,7 @@ def test_only_the_rectangle_goes_to_the_graphics_card(session: Session, painting
     painting.release()
 
 
-def test_flatten_goes_to_the_height_where_the_stroke_begins_or_to_a_level(
-    session: Session, painting: Painting
-) -> None:
+def test_flatten_targets_stroke_start_height_or_fixed_level(session: Session, painting: Painting) -> None:
     hills = read(session, "hills") * 200.0
     x, y = painting.ground(PLACE) or (0.0, 0.0)
     there = round(y * 64), round(x * 96)
@@ -239,7 +235,7 @@ def test_a_factor_is_painted_as_what_is_added_to_1(session: Session, painting: P
     assert (read(session, "height") == read(session, "hills")).all(), "the other layer is another"
 
 
-def test_a_file_of_another_size_is_taken_over_and_one_with_gaps_is_refused(tmp_path: Path) -> None:
+def test_file_of_other_size_is_resampled_and_gaps_are_refused(tmp_path: Path) -> None:
     write_numbers(tmp_path / "coarse.tif", np.array([[0, 8], [-4, 4]], np.float32))
     layer = Layer.create(tmp_path, "fine", NUMBERS, (9, 5), of=tmp_path / "coarse.tif")
     assert layer.path.name == "fine.tif" and layer.size == (9, 5)

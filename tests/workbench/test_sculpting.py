@@ -45,14 +45,14 @@ def test_raise_adds_rate_times_seconds_times_falloff(tool, sign):
 
 
 @pytest.mark.parametrize("tool", SHAPING)
-def test_what_a_tool_does_in_a_second_does_not_depend_on_the_frames(tool):
+def test_tool_effect_per_second_is_independent_of_frame_rate(tool):
     ground, start = hills(), np.full((NY, NX), 12.0, np.float32)
     once, often = (worked(tool, 1.0, ground=ground, start=start, steps=n) - 12.0 for n in (10, 100))
     assert np.abs(once).max() > 1
     np.testing.assert_allclose(once, often, atol=0.03 * np.abs(once).max())
 
 
-def test_a_stroke_along_a_line_is_the_integral_of_the_brush_over_time():
+def test_line_stroke_is_time_integral_of_brush():
     ends = (0.3, 0.4), (0.7, 0.6)
     value = worked("raise", 2.0, at=ends)
     shares = np.linspace(0, 1, 2001)
@@ -61,7 +61,7 @@ def test_a_stroke_along_a_line_is_the_integral_of_the_brush_over_time():
     np.testing.assert_allclose(value, expected, atol=0.02 * expected.max())
 
 
-def test_flatten_is_flat_in_the_hard_core_and_leaves_what_is_outside():
+def test_flatten_levels_hard_core_and_leaves_outside_unchanged():
     ground = hills()
     change = worked("flatten", 4.0, ground=ground, strength=1.0, softness=0.5)
     terrain = ground + change
@@ -132,7 +132,7 @@ def test_sharpen_raises_what_stands_above_its_mean():
 
 @pytest.mark.parametrize("tool", SHAPING)
 @pytest.mark.parametrize("position", [(0.0, 0.0), (1.0, 0.3), (3.0, 3.0), (-0.01, 1.005)])
-def test_at_the_edges_and_off_the_terrain_every_tool_stays_finite(tool, position):
+def test_every_tool_stays_finite_at_edges_and_off_terrain(tool, position):
     ground = hills()
     value = worked(tool, 0.1, ground=ground, at=(position, position))
     assert np.isfinite(value).all()

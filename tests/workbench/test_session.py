@@ -154,7 +154,7 @@ def test_a_save_of_an_included_parameter_shows(bench: Bench) -> None:
         ("terrain.glsl", "inc/tilt", "inc/tlit", "terrain.glsl:2"),
     ],
 )
-def test_what_is_broken_is_reported_and_the_last_good_picture_stays_until_it_is_fixed(
+def test_error_is_reported_and_last_good_picture_stays_until_fix(
     bench: Bench, name: str, old: str, new: str, location: str
 ) -> None:
     before = bench.picture()
@@ -179,9 +179,7 @@ def test_the_last_good_sketch_can_still_be_changed_by_the_user(bench: Bench) -> 
     assert values_of(bench.session.sketch)["height.level"] == 0.75
 
 
-def test_a_sketch_that_is_broken_from_the_start_is_shown_once_it_is_fixed(
-    tmp_path: Path, any_engine: Engine
-) -> None:
+def test_initially_broken_sketch_is_shown_once_fixed(tmp_path: Path, any_engine: Engine) -> None:
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     session = Session(any_engine, tmp_path)
     assert session.frame(SIZE) is None and session.sketch is None
@@ -210,9 +208,7 @@ def test_nothing_is_drawn_while_nothing_changes(bench: Bench) -> None:
     assert bench.session.draws == draws + 1
 
 
-def test_where_the_processor_draws_a_change_shows_at_once_and_in_full_when_it_rests(
-    tmp_path: Path, any_engine: Engine
-) -> None:
+def test_cpu_renderer_previews_at_once_and_draws_full_at_rest(tmp_path: Path, any_engine: Engine) -> None:
     if not any_engine.info.software:
         pytest.skip("on a GPU every picture is drawn in full")
     now = [100.0]
@@ -355,7 +351,7 @@ def test_any_texture_is_shown_as_a_map_fitted_to_its_values(bench: Bench) -> Non
     np.testing.assert_array_equal(bench.picture(), own)
 
 
-def test_what_one_looks_at_survives_saves_mistakes_and_their_repair(bench: Bench) -> None:
+def test_view_state_survives_saves_errors_and_fixes(bench: Bench) -> None:
     session = bench.session
     bench.picture()
     session.show("height:height")
@@ -398,7 +394,7 @@ def test_the_sandbox_comes_first(tried: tuple[Bench, FakeSandbox]) -> None:
     assert not bench.session.drafts.testing
 
 
-def test_it_is_planned_while_the_sandbox_tries_it_and_nothing_is_drawn(
+def test_save_is_planned_during_sandbox_check_without_drawing(
     tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Until it is allowed the driver gets nothing of it; then a save only has to be drawn."""
@@ -486,7 +482,7 @@ def test_what_the_driver_has_drawn_already_needs_no_sandbox(
     assert bench.session.drafts.coming is None, "the new text is the one shown"
 
 
-def test_a_fault_of_the_playground_itself_does_not_end_the_session(
+def test_internal_error_does_not_end_session(
     bench: Bench, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     before = bench.picture()
@@ -557,7 +553,7 @@ def test_a_repeat_is_shown_at_the_step_that_is_requested(bench: Bench) -> None:
     np.testing.assert_array_equal(bench.picture(), whole)
 
 
-def test_a_step_stays_over_a_save_and_is_let_go_where_there_are_fewer_steps(bench: Bench) -> None:
+def test_stop_step_survives_save_and_is_dropped_if_out_of_range(bench: Bench) -> None:
     session = stepped(bench)
     whole = bench.picture()
     session.stop_at("height.raw", 8)
@@ -598,7 +594,7 @@ void main() { colour = texelFetch(tex, ivec2(0), 0); }
 """
 
 
-def test_the_image_of_a_plain_shader_is_watched_and_its_change_shows(any_engine: Engine, tmp_path: Path):
+def test_plain_shader_image_is_watched_and_its_change_shows(any_engine: Engine, tmp_path: Path):
     for level in (50, 200):
         write_png(tmp_path / "x.png", np.full((2, 2, 4), level, np.uint8))
         if level == 50:

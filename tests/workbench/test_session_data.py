@@ -78,7 +78,7 @@ def test_the_first_picture_s_file_is_read_by_the_sandbox_first(session: Session,
     assert session.sketch is not None and set(read) == {"terrain.npy"}
 
 
-def test_a_file_saved_anew_is_tried_and_not_read_when_the_sandbox_dies(
+def test_resaved_file_is_tried_and_unread_if_sandbox_dies(
     session: Session, folder: Path, read: list[str]
 ) -> None:
     answer(session, SandboxReport(True))
@@ -130,9 +130,7 @@ def test_a_file_chosen_by_hand_is_drawn_once_it_proved_good(
     assert "view.channel" in dict(session.shown.edits.values)
 
 
-def test_a_save_during_its_check_does_not_lose_a_file_chosen_by_the_user(
-    session: Session, folder: Path
-) -> None:
+def test_save_during_check_keeps_user_chosen_file(session: Session, folder: Path) -> None:
     answer(session, SandboxReport(True))
     other = str(folder / "other.npy")
     for seed, text in enumerate((SKETCH, SKETCH.replace("100.0", "200.0"))):
@@ -205,7 +203,7 @@ def test_the_sandbox_says_what_is_wrong_with_a_bomb(folder: Path, any_engine: En
         assert sandbox.run(TrySketch(load(folder))).ok, "the same child goes on"
 
 
-def test_nothing_looks_into_the_picture_while_new_data_is_checked(session: Session, folder: Path) -> None:
+def test_nothing_reads_picture_while_new_data_is_checked(session: Session, folder: Path) -> None:
     answer(session, SandboxReport(True))
     picture = session.frame(SIZE)
     assert picture is not None and session.is_idle

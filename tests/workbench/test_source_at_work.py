@@ -109,9 +109,7 @@ def test_a_value_set_back_shows_at_once_and_stops_the_work(session, gate, cancel
     assert cancelled.wait(5.0)
 
 
-def test_a_first_picture_that_reads_a_file_is_drawn_once_the_source_has_ended(
-    session, any_engine, gate, tmp_path
-):
+def test_first_picture_reading_file_draws_once_source_ends(session, any_engine, gate, tmp_path):
     """What the sandbox has read is not new any more, though nothing was drawn with it yet."""
     np.save(tmp_path / "hills.npy", np.eye(9, dtype=np.float32))
     file = ("generation/heightmap", 'set = { elevation = "hills.npy" }')

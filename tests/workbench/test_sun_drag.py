@@ -31,7 +31,7 @@ def test_the_suns_are_those_of_the_passes(path: Path) -> None:
     assert suns_of(load(path)) == {"light.sun": (350.0, 20.0), "second.sun": (90.0, 85.0)}
 
 
-def test_the_pictures_height_is_half_a_turn_around_and_a_quarter_up() -> None:
+def test_full_height_drag_turns_sun_half_around_and_quarter_up() -> None:
     assert turned((10.0, 20.0), 1.0, 0.0) == (190.0, 20.0)
     assert turned((350.0, 20.0), 0.25, 0.5) == (35.0, 65.0)
 

@@ -123,7 +123,7 @@ def test_a_file_that_comes_where_another_was_looked_for_is_seen(files: Files):
     assert load_with(techniques.begin(), files.folder) == load(files.folder)
 
 
-def test_the_places_of_a_reading_are_all_there_though_little_was_read(files: Files):
+def test_cached_load_notes_same_places_as_full_load(files: Files):
     techniques = TechniqueCache()
     with noting_places() as anew:
         load(files.folder)
@@ -150,7 +150,7 @@ def test_cached_techniques_may_nest_no_deeper(files: Files):
         load_with(techniques.begin(), files.folder)
 
 
-def test_a_circle_that_closes_through_a_cached_technique_is_found(files: Files):
+def test_cycle_through_cached_technique_is_found(files: Files):
     techniques = TechniqueCache()
     load_with(techniques.begin(), files.folder)
     files.save("inner.toml", INNER.replace("./k", "./outer"))

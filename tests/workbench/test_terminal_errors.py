@@ -8,7 +8,7 @@ from playground.workbench.terminal_errors import TerminalErrors
 ONE, OTHER = Diagnostic("no name 'p'", "terrain.glsl", 3), Diagnostic("a ; is missing", "wave.glsl", 7)
 
 
-def test_each_error_is_reported_once_and_again_after_it_was_fixed() -> None:
+def test_each_error_is_reported_once_and_again_after_fix() -> None:
     printed: list[str] = []
     terminal = TerminalErrors(printed.append)
     for errors in ([ONE], [ONE], [ONE, OTHER], [OTHER], [], [ONE], [ONE]):

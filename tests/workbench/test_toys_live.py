@@ -30,7 +30,7 @@ def write(folder: Path, files: dict[str, str]) -> None:
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_a_save_of_any_pass_shows_and_a_mistake_keeps_the_last_picture(any_engine, tmp_path, name):
+def test_save_of_any_pass_shows_and_error_keeps_last_picture(any_engine, tmp_path, name):
     toy, file = CASES[name]
     write(tmp_path, toy.files)
     session = Session(any_engine, tmp_path / toy.opens)

@@ -72,7 +72,7 @@ def test_each_of_two_sketches_keeps_what_was_set_in_it(harness: Harness, seed: i
 
 
 @pytest.mark.parametrize("seed", range(24))
-def test_a_window_that_is_closed_at_any_moment_has_remembered_both(harness: Harness, seed: int) -> None:
+def test_window_closed_at_any_moment_remembers_both_sketches(harness: Harness, seed: int) -> None:
     player = Player(harness, seed)
     player.play(player.random.choice((2, 5, 9)))
     harness.frame()

@@ -176,7 +176,7 @@ def test_what_a_reader_saw_and_was_never_reported_is_reported(watched: Watched) 
     assert watched.sees_nothing()
 
 
-def test_a_save_that_bears_an_old_time_is_not_lost_while_it_is_read(watched: Watched) -> None:
+def test_old_dated_save_during_read_is_not_lost(watched: Watched) -> None:
     other = watched.folder / "late.toml"
     save_in_place(other, "one")
     read_at, read = time.time() + 1.0, {other: signature(other)}

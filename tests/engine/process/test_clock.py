@@ -73,7 +73,7 @@ def test_the_steps_of_a_loop_add_up(time: Time):
     assert clock.seconds == 0.0
 
 
-def test_what_a_pass_waited_for_a_processor_is_left_out_but_for_a_share(time: Time):
+def test_activity_clock_excludes_cpu_wait_except_for_a_fraction(time: Time):
     clock = ActivityClock(time.times)
     clock.begin("a")
     time.passes(40.0, waited=39.0)
@@ -83,7 +83,7 @@ def test_what_a_pass_waited_for_a_processor_is_left_out_but_for_a_share(time: Ti
     assert clock.seconds == pytest.approx(10.0), "what the pass before waited is not this one's"
 
 
-def test_a_reader_amid_the_end_of_an_activity_counts_nothing_twice(time: Time):
+def test_concurrent_clock_read_in_begin_counts_nothing_twice(time: Time):
     """Another thread may read the clock anywhere in ``begin``: here, where that reads what was waited."""
     totals: list[float] = []
 

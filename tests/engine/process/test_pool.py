@@ -252,7 +252,7 @@ def test_ctrl_c_leaves_no_process_and_no_answer_for_the_next(
 
 
 @pytest.mark.parametrize("idle", [True, False])
-def test_a_request_whose_process_died_before_it_began_is_sent_again(pool: Pool, idle: bool):
+def test_request_is_resent_if_process_died_before_start(pool: Pool, idle: bool):
     pid = value(pool, "number")
     os.kill(pid, signal.SIGKILL)
     if idle:
@@ -350,7 +350,7 @@ def test_a_parent_that_is_killed_leaves_no_worker(
             os.kill(pid, signal.SIGKILL)
 
 
-def test_what_it_waits_for_a_processor_does_not_count_but_for_a_fraction(
+def test_pool_task_time_excludes_cpu_wait_except_for_a_fraction(
     handler: str, soon: Soon, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ):
     """Its time begins when it is ready, and so do its waits."""

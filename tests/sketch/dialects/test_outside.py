@@ -65,7 +65,7 @@ def test_a_pass_of_a_folder_that_leads_out_of_it_is_not_read(folder, secret, ope
     assert not [name for name in opened if name.endswith("secret.glsl")]
 
 
-def test_an_image_that_leads_out_of_its_folder_is_none_of_the_folder_s(folder, secret, opened):
+def test_image_linked_outside_folder_is_not_used(folder, secret, opened):
     folder.write("Buffer A.glsl", PLAIN)
     (folder.path / "Image.glsl").symlink_to(secret)
     with pytest.raises(PlaygroundError, match="no Image of Shadertoy of its own"):

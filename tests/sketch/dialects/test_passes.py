@@ -47,7 +47,7 @@ def test_a_pass_reads_what_an_earlier_one_writes_in_this_frame(graph):
 
 
 @pytest.mark.parametrize("keeps", [True, False])
-def test_what_it_or_a_later_one_writes_is_of_the_frame_before_where_that_is_kept(graph, keeps):
+def test_kept_buffer_written_later_is_read_from_previous_frame(graph, keeps):
     result = graph(
         ("a", TOY.format("float", "iChannel0"), {"target": "A", "keeps": keeps, **reads("A")}),
         ("image", TOY.format("float", "iChannel0"), reads("A")),
@@ -86,7 +86,7 @@ def test_parameters_of_one_name_are_one_and_of_two_types_two(graph):
     assert [e.name for e in other.parameters] == ["a_level", "image_level"]
 
 
-def test_channels_that_are_fed_alike_are_one_input_and_others_two(graph):
+def test_channels_of_equal_source_share_one_input(graph):
     text = TOY.format("float", "iChannel0")
     alike = graph(("a", text, {"target": "A"}), ("image", text, {}))
     assert [spec.name for spec in alike.passes] == ["iChannel0", "view"]

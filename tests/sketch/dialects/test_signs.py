@@ -120,7 +120,7 @@ def test_what_a_vertex_shader_gives():
     }
 
 
-def test_uniforms_with_the_array_at_their_type_and_images_are_found():
+def test_array_typed_uniforms_and_images_are_found():
     code = "uniform float[3] a;\nlayout(r32ui) uniform coherent restrict uimage2D [2] b;\n"
     code += "uniform lowp sampler2D[4] maps, more;uniform vec2\tc;\n"
     result = uniforms(code)
@@ -133,7 +133,7 @@ def test_uniforms_with_the_array_at_their_type_and_images_are_found():
     }
 
 
-def test_macros_that_stand_for_a_precision_or_for_nothing_are_no_types():
+def test_precision_and_empty_macros_are_not_types():
     code = "#ifdef GL_ES\n#define LOWP lowp\n#else\n#define LOWP\n#endif\n#define HIGH highp\n#define GUARD\n"
     code += "uniform LOWP float a;\nin LOWP vec4 v_color;\nin HIGH vec2 v_uv;\nuniform HIGH sampler2D b;\n"
     assert {n: (d.type, d.line) for n, d in uniforms(code).items()} == {

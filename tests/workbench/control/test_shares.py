@@ -34,9 +34,7 @@ ALL: list[tuple[Parameter, Value]] = [
 
 
 @pytest.mark.parametrize(("parameter", "value"), ALL, ids=lambda item: getattr(item, "type", ""))
-def test_every_share_gives_a_value_that_the_parameter_takes_and_that_is_at_that_share(
-    parameter: Parameter, value: Value
-):
+def test_every_fraction_gives_valid_value_at_its_position(parameter: Parameter, value: Value):
     choices = len(parameter.widget.choices) or (2 if parameter.type == "bool" else 0)
     for part, step in itertools.product(range(len(part_names(parameter)) or 1), range(0, 128, 7)):
         share = step / 127
