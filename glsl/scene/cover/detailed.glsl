@@ -99,7 +99,8 @@ Surface detailed(vec3 at, GroundPixel pixel, vec3 colour, vec4 layer_shares, boo
     vec3 kinds = wired_layers ? kinds_of_layers(layer_shares)
             : kinds_of_ground(length(pixel.slope), rocky, cliffs, strata * layer.tone, stony,
                               patches.dry, map_of(exposed, at.xy, foot));
-    float depth = tufts ? 0.0 : max(map_of(snow_depth, at.xy, foot), 0.0);
+    float depth = 0.0;
+    if (wired_snow_depth && !tufts) depth = max(map_of(snow_depth, at.xy, foot), 0.0);
     // Where there are cliffs, rock has bumps of its own; sand has few.
     vec3 bumpy = vec3((1.0 - 0.8 * sandy) * kinds.xy, cliffs ? 0.0 : kinds.z);
     mat2 grain = grain_of_sand(sandy, ripples_from);
@@ -119,7 +120,7 @@ Surface detailed(vec3 at, GroundPixel pixel, vec3 colour, vec4 layer_shares, boo
         vec3 bare = mix(surface.albedo, cliff_colour, recoloured * coloured_rock);
         add_cliff(surface, cliff, kinds.z, bare);
     }
-    float soaked = wet * clamp(map_of(wetness, at.xy, foot), 0.0, 1.0);
+    float soaked = wired_wetness ? wet * clamp(map_of(wetness, at.xy, foot), 0.0, 1.0) : 0.0;
     add_water(surface, soaked, bumps, length(pixel.slope));
     add_snow(surface, depth, bumps, patches.dry);
     return surface;

@@ -27,6 +27,7 @@ float snow_share(float depth, float over, float whole, float hidden, float patch
 }
 
 void add_snow(inout Surface surface, float depth, Bumps bumps, float patchy) {
+    if (depth <= 0.0) return;
     float share = snow_share(depth, bumps.height, bumps.whole, bumps.hidden, patchy);
     surface.albedo = mix(surface.albedo, SNOW_COLOUR, share);
     surface.push = mix(surface.push, vec3(bumps.snowy, 0.0), share);

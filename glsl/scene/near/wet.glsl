@@ -31,6 +31,7 @@ float film_of(float wetness, float over, float hidden, float slope) {
 
 // Ground that is so wet is darker, and where water stands it is smooth.
 void add_water(inout Surface surface, float wetness, Bumps bumps, float slope) {
+    if (wetness <= 0.0) return;
     surface.albedo = mix(surface.albedo, wet_albedo(surface.albedo),
                          smoothstep(0.1, 0.6, wetness));
     surface.film = film_of(wetness, bumps.height, bumps.hidden, slope);
