@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -167,7 +166,7 @@ def test_tiles_cover_a_picture_once():
 
 
 def test_the_parts_of_a_supersampled_picture_are_counted(any_engine: Engine):
-    sketch = replace(load("white_noise_image"), supersample=3)
+    sketch = load("white_noise_image").with_picture(supersample=3)
     done = Counter()
     list(strips(any_engine, sketch, (3000, 400), done=lambda: done.update(["tile"])))
     assert done["tile"] == count_parts(sketch, (3000, 400)) > count_tiles((3000, 400))

@@ -32,13 +32,13 @@ def picture(make_sketch):
 
 
 @pytest.mark.parametrize(
-    ("key", "least", "most"), [(0.18, -16, 16), (0.5, -1, 16), (0.05, -16, 0), (1, -2, 0.5)]
+    ("key", "minimum", "maximum"), [(0.18, -16, 16), (0.5, -1, 16), (0.05, -16, 0), (1, -2, 0.5)]
 )
-def test_the_mean_of_logarithms_becomes_the_key(any_engine, picture, key, least, most):
-    text = f"adapts = true, key = {key}, least = {least}, most = {most}"
+def test_the_mean_of_logarithms_becomes_the_key(any_engine, picture, key, minimum, maximum):
+    text = f"adapts = true, key = {key}, minimum = {minimum}, maximum = {maximum}"
     sketch = picture(SCENE, "view/exposure", text)
     light = any_engine.read(sketch, "light").astype(float)[..., :3]
-    expected = np.clip(np.log2(key) - np.log2(light @ WEIGHTS).mean(), least, most)
+    expected = np.clip(np.log2(key) - np.log2(light @ WEIGHTS).mean(), minimum, maximum)
     result = any_engine.read(sketch, "view.adapted", size=SIZE)
     np.testing.assert_allclose(result.ravel(), [expected, 1.0], atol=2e-4)
     off = any_engine.read(sketch.with_values({"view.adapts": False}), "view.adapted", size=SIZE)

@@ -13,7 +13,7 @@ uniform sampler2D blocks;  //! input
 uniform float key = 0.18;    //! log_slider(0.02, 1) group("Picture")
                              //! Light that the mean is brought to: 0.18 is a grey card, less is
                              //! a night
-uniform float least = -6.0;  //! slider(-16, 0) step(0.1) unit("stops") group("Picture")
+uniform float minimum = -6.0;  //! slider(-16, 0) step(0.1) unit("stops") group("Picture")
                              //! No picture is darkened more
 uniform float maximum = 6.0;  //! slider(0, 16) step(0.1) unit("stops") group("Picture")
                              //! No picture is brightened more
@@ -24,5 +24,5 @@ vec2 kernel(ivec2 texel) {
     for (int y = 0; y < many.y; y++) {
         for (int x = 0; x < many.x; x++) total += texelFetch(blocks, ivec2(x, y), 0).rg;
     }
-    return vec2(clamp(log2(key) - total.x / total.y, least, maximum), 1.0);
+    return vec2(clamp(log2(key) - total.x / total.y, minimum, maximum), 1.0);
 }

@@ -21,4 +21,4 @@ Stand stand_at(float density, float metres) {
     return stand_of(density, cell, tallest, shortest, species_at(metres));
 }
 
-Stand drawn_of(Stand around, float away) { return thinned(around, away, whole, reach, room); }
+Stand drawn_of(Stand around, float away) { return thinned(around, drawn_of_stand(away, whole, reach, room)); }
