@@ -39,7 +39,7 @@ SUBJECTS = {
     "planner": ["playground/engine/planner.py", "playground/engine/sizes.py", "playground/engine/plan.py"],
     "staleness": ["playground/engine/cache_keys.py", "playground/engine/cache.py"],
     "drafts": ["playground/workbench/drafts.py", "playground/workbench/edits.py"],
-    "header": ["playground/shader/header.py", "playground/shader/options.py"],
+    "header": ["playground/shader/header.py", "playground/shader/kernel.py"],
     "save": ["playground/sketch/save.py", "playground/sketch/assign.py"],
     "judge": ["playground/shots/judge.py", "playground/shots/compare.py"],
     "elevation": ["playground/data/elevation.py", "playground/data/grid.py"],

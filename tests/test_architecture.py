@@ -16,6 +16,8 @@ import pytest
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from .power import SUBJECTS
+
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "playground"
 
@@ -447,6 +449,10 @@ def test_a_test_has_a_name_of_at_most_60_letters():
         if isinstance(node, ast.FunctionDef) and node.name.startswith("test_") and len(node.name) > 60
     ]
     assert not wrong, "\n".join(wrong)
+
+
+def test_the_modules_whose_tests_are_measured_exist():
+    assert not [file for files in SUBJECTS.values() for file in files if not (ROOT / file).is_file()]
 
 
 def test_the_checks_above_can_fail():

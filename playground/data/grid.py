@@ -135,7 +135,7 @@ class RasterFile:
 
     def in_unit(self, crs: Crs, stated: str = "") -> RasterFile:
         """Return the same in metres, of scale and offset in a stated unit, else in that of ``crs``."""
-        metres, assumed = crs.height_unit(stated)
+        metres, assumed = crs.resolve_height_unit(stated)
         return replace(self, scale=self.scale * metres, offset=self.offset * metres, assumed=assumed)
 
     def heights(self, band: NDArray[Any]) -> NDArray[np.floating[Any]]:

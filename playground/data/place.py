@@ -103,7 +103,7 @@ class Crs:
         """Return its code, as "EPSG:32633"; "" for one without."""
         return f"EPSG:{self.facts.epsg}" if self.facts.epsg else ""
 
-    def height_unit(self, stated: str = "") -> tuple[float, str]:
+    def resolve_height_unit(self, stated: str = "") -> tuple[float, str]:
         """Return the metres in a file's unit of height, and a note on what is assumed; "" for what it says.
 
         ``stated`` is the unit that the file names, "" for none; else that of its vertical system counts.

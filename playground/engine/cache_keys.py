@@ -113,7 +113,7 @@ class KeyMaker:
         last = self._last
         keys = last.copy() if last is not None and last.is_like(plan) else _PlanKeys(plan)
         computation = _KeyComputation(self.text_of, self._content, driver, uniforms_of, keys)
-        waiting = keys.doubtful(plan.nodes)  # places of nodes, the first on top
+        waiting = keys.possibly_stale(plan.nodes)  # places of nodes, the first on top
         queued, stale = set(waiting), set[int]()
         while waiting:
             index = heappop(waiting)
@@ -141,7 +141,7 @@ class _Text:
 
     digest: str
     used: frozenset[str]  # names in the text besides their declaration, or in its header
-    is_moving: bool  # the same plan of the same terrain may give it something else in the next frame
+    needs_check: bool  # the same plan of the same terrain may give it something else in the next frame
     by_texels: frozenset[str]  # inputs of which a kernel that runs once reads single texels and nothing else
 
 
@@ -163,7 +163,7 @@ def _read_text(kernel: Kernel, text_of: Callable[[Kernel], str]) -> _Text:
             used |= {p.name for p in kernel.parameters}
         case Draw():
             used |= set(mesh_parameters(kernel.mesh))
-    is_moving = (
+    needs_check = (
         not isinstance(kernel, TexelKernel | ComputeVariant)
         or bool(kernel.file_parameters)
         or not _FIXED.issuperset(kernel.engine_uniforms)
@@ -173,7 +173,7 @@ def _read_text(kernel: Kernel, text_of: Callable[[Kernel], str]) -> _Text:
     if isinstance(kernel, TexelKernel) and kernel.repeat == "1":
         by_texels = read_by_texels_alone(kernel.source)
         by_texels -= {name for name in by_texels if kernel.reads(f"{MATCHES}{name}")}
-    return _Text(_digest([header, text_of(kernel)]), frozenset(used), is_moving, by_texels)
+    return _Text(_digest([header, text_of(kernel)]), frozenset(used), needs_check, by_texels)
 
 
 def _vertex(vertex: VertexShader | tuple[tuple[str, str], ...]) -> list[Any]:
@@ -203,7 +203,7 @@ class _Reads(NamedTuple):
     clocked: frozenset[str]  # what is in no key, since it is that of the frame that a loop is at
 
 
-class _Known(NamedTuple):
+class _CachedKey(NamedTuple):
     """The key of a step in one plan; in the next it is the same if the step and what it reads are."""
 
     step: Step
@@ -215,7 +215,7 @@ class _NodeKeys(NamedTuple):
     """A node of a plan whose keys are known, with what is inside it."""
 
     node: PlanNode
-    steps: Mapping[int, _Known]  # by the step's identity
+    steps: Mapping[int, _CachedKey]  # by the step's identity
     moving: tuple[Step, ...]  # steps that the same plan may give something else in the next frame
     uniforms: str  # what they were given
     shown: list[tuple[str, frozenset[str]]]  # what the nodes that read it see of it: see ``_KeyComputation``
@@ -245,7 +245,7 @@ class _PlanKeys:
         copied.parts, copied.moving = self.parts.copy(), self.moving.copy()
         return copied
 
-    def doubtful(self, nodes: Sequence[PlanNode]) -> list[int]:
+    def possibly_stale(self, nodes: Sequence[PlanNode]) -> list[int]:
         """Return the places of nodes whose keys may be others now, ascending."""
         pairs = enumerate(zip(nodes, self.parts, strict=True))
         others = {index for index, (node, part) in pairs if part is None or part.node is not node}
@@ -290,8 +290,8 @@ class _KeyComputation:
         self.keys = keys.keys
         self.varies = keys.varies
         self.continued = keys.continued
-        self.before: Mapping[int, _Known] = {}
-        self.step_keys: dict[int, _Known] = {}
+        self.before: Mapping[int, _CachedKey] = {}
+        self.step_keys: dict[int, _CachedKey] = {}
         self.sized: dict[tuple[str, bool], frozenset[str]] = {}  # see ``_note_sized``
         self.text_of = text_of
         self.content = content
@@ -310,7 +310,7 @@ class _KeyComputation:
                 self.keys.changes.pop(id(old), None)
         self.add(node, _NO_LOOP, {}, {})
         steps = [step for step in _inside(node) if isinstance(step, Step)]
-        moving = tuple([step for step in steps if self.text_of(step.kernel).is_moving])
+        moving = tuple([step for step in steps if self.text_of(step.kernel).needs_check])
         shown = [(self.keys.steps[step.path].result, self.varies[step.path]) for step in steps]
         return _NodeKeys(node, self.step_keys, moving, self._given_to(moving) if moving else "", shown)
 
@@ -339,7 +339,7 @@ class _KeyComputation:
         reads = _Reads(self.driver(node), files, sources, uniforms, path in self.continued, clocked)
         cached, written = self.before.get(id(node)), repr(reads)
         if cached is None or cached.step is not node or cached.reads != written:
-            cached = _Known(node, written, self._key_of(node, reads))
+            cached = _CachedKey(node, written, self._key_of(node, reads))
         self.step_keys[id(node)] = cached
         self.keys.steps[path] = cached.key
         varies = self.sized.get((path, False), frozenset[str]())

@@ -59,16 +59,16 @@ DEFAULT_SIDE = 4097
 KEPT = 2**26
 """Texels above which heights are not kept in memory once a texture was made of them."""
 
-Asked = tuple[str, str, tuple[int, int] | None, Packing, Voids, Edge]
+ElevationRequest = tuple[str, str, tuple[int, int] | None, Packing, Voids, Edge]
 """A file's path, what changes whenever its contents do, and what its parameters say."""
 
 
 def describe(values: Mapping[str, Value]) -> Terrain:
     """Return what the file knows of its terrain."""
-    asked = _asked(values)
-    file = _opened(asked)
+    request = _request_of(values)
+    file = _opened(request)
     size = _size(file, values)
-    facts = _known(asked, size)
+    facts = _facts_of(request, size)
     low, high = facts.lowest, facts.highest
     metres = values["metres"]  # of the file's lowest and highest codes; equal: nothing is known
     relief = base = None
@@ -90,9 +90,9 @@ def make(
     Of a large file, those at less than half of the size that it has by itself are made of these: previews
     need not go through it again.
     """
-    asked = _asked(values)
-    own = _size(_opened(asked), values)
-    elevation = _at(asked, own if all(2 * a <= b for a, b in zip(size, own, strict=True)) else size)
+    request = _request_of(values)
+    own = _size(_opened(request), values)
+    elevation = _at(request, own if all(2 * a <= b for a, b in zip(size, own, strict=True)) else size)
     low, span, made = elevation.lowest, elevation.highest - elevation.lowest, elevation.size
     with _memory_explained(Path(str(values["elevation"]))):
         if span > 0:
@@ -111,10 +111,10 @@ def make(
 
 def notes(values: Mapping[str, Value]) -> tuple[str, ...]:
     """Return what was assumed of the file, or lost."""
-    asked = _asked(values)
-    file = _opened(asked)
+    request = _request_of(values)
+    file = _opened(request)
     size = _size(file, values)
-    facts = _known(asked, size).notes
+    facts = _facts_of(request, size).notes
     if not values.get("longest") and size != file.size:
         texels, fewer = (f"{x} x {y}" for x, y in (file.size, size))
         facts += (f"has {texels} texels; unless a size or `longest` says how many, {fewer} are read",)
@@ -130,7 +130,7 @@ def _size(file: ElevationFile, values: Mapping[str, Value]) -> tuple[int, int]:
     return fitted(file.size, DEFAULT_SIDE) if math.prod(file.size) > LARGE else file.size
 
 
-def _asked(values: Mapping[str, Value]) -> Asked:
+def _request_of(values: Mapping[str, Value]) -> ElevationRequest:
     path = str(values["elevation"])
     raw = values["raw_size"]
     size = (int(raw[0]), int(raw[1])) if isinstance(raw, tuple) and raw[0] and raw[1] else None
@@ -141,14 +141,14 @@ def _asked(values: Mapping[str, Value]) -> Asked:
 
 
 @SOURCES.cached(weight=2**26)
-def _opened(asked: Asked) -> ElevationFile:
-    path, _, raw_size, packing, _, first_row = asked
+def _opened(request: ElevationRequest) -> ElevationFile:
+    path, _, raw_size, packing, _, first_row = request
     with _memory_explained(Path(path)):
         return open_elevation(path, raw_size=raw_size, packing=packing, first_row=first_row)
 
 
 @dataclass(frozen=True)
-class _Known:
+class _ElevationFacts:
     """What is known of an elevation besides its heights."""
 
     lowest: float
@@ -160,9 +160,9 @@ class _Known:
 
 
 @FILES.cached()
-def _known(asked: Asked, size: tuple[int, int]) -> _Known:
-    elevation = _at(asked, size)
-    return _Known(
+def _facts_of(request: ElevationRequest, size: tuple[int, int]) -> _ElevationFacts:
+    elevation = _at(request, size)
+    return _ElevationFacts(
         elevation.lowest,
         elevation.highest,
         elevation.code_range,
@@ -172,20 +172,20 @@ def _known(asked: Asked, size: tuple[int, int]) -> _Known:
     )
 
 
-def _at(asked: Asked, size: tuple[int, int]) -> Elevation:
+def _at(request: ElevationRequest, size: tuple[int, int]) -> Elevation:
     """Return all heights of a file; of a large one, those of a size."""
-    with _memory_explained(Path(asked[0])):
-        return _large(asked, size) if math.prod(_opened(asked).size) > LARGE else _whole(asked)
+    with _memory_explained(Path(request[0])):
+        return _large(request, size) if math.prod(_opened(request).size) > LARGE else _whole(request)
 
 
 @SOURCES.cached(weight=bytes_held)
-def _whole(asked: Asked) -> Elevation:
-    return fill_no_data(_opened(asked).read(), asked[4])
+def _whole(request: ElevationRequest) -> Elevation:
+    return fill_no_data(_opened(request).read(), request[4])
 
 
 @SOURCES.cached(weight=bytes_held)
-def _large(asked: Asked, size: tuple[int, int]) -> Elevation:
-    return fill_no_data(_opened(asked).read_at(size), asked[4])
+def _large(request: ElevationRequest, size: tuple[int, int]) -> Elevation:
+    return fill_no_data(_opened(request).read_at(size), request[4])
 
 
 @contextmanager

@@ -176,11 +176,14 @@ class _Planning:
         if last is None:
             return {leaf.path: _given_values(leaf, sketch, flat) for leaf in flat.leaves}
         # Of the same values a file may have come that is found first.
-        doubtful, changed = [(leaf, True) for leaf in flat.with_files], dict[str, Mapping[str, Value]]()
+        candidates, changed = (
+            [(leaf, True) for leaf in flat.with_files],
+            dict[str, Mapping[str, Value]](),
+        )
         if flat is not last.flat:
             pairs_of_leaves = [(leaf, flat.has_values_of(last.flat, leaf)) for leaf in flat.leaves]
-            doubtful = [pair for pair in pairs_of_leaves if not pair[1] or pair[0].kernel.file_parameters]
-        for leaf, is_same in doubtful:
+            candidates = [pair for pair in pairs_of_leaves if not pair[1] or pair[0].kernel.file_parameters]
+        for leaf, is_same in candidates:
             now = _given_values(leaf, sketch, flat)
             if not is_same or now != last.basis.values[leaf.path]:
                 changed[leaf.path] = now

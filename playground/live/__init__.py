@@ -1,4 +1,4 @@
-"""The live window: the only place with a window, keys and a wall clock.
+"""The live window, its keys and its wall clock.
 
 ``app`` opens a sketch in a ``window`` and draws its frames; ``panel`` is made from the sketch's
 annotations, one row a parameter by ``widgets``; ``keys`` is the table of keys. Importing this opens

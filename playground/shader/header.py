@@ -3,7 +3,7 @@
 All of it is read from the text, never from the driver, where a uniform that is optimised away vanishes.
 
 An annotation as ``slider(0, 1) step(0.01) The tooltip`` is split into calls with their arguments, and a
-tooltip. The widgets are the rows of ``WIDGETS`` in ``parameter``, the options of a pragma those of the kernel
+tooltip. The widgets are the rows of ``WIDGETS`` in ``widgets``, the options of a pragma those of the kernel
 classes in ``kernel``.
 """
 

@@ -1,8 +1,8 @@
 """What fills a pass: a kernel, or a technique of several passes; frozen values.
 
 There is one class for each kind of GLSL file. A field with a row (``option``, ``expression``, ``choice``) is
-an option of its pragma. That row is all that the header reader, cache keys, page writer, language server and
-README know of it: a new option is a row and the code that executes it.
+an option of its pragma. That row is all that the header reader, cache keys, page writer and language server
+know of it: a new option is a row, a line in the README, and the code that executes it.
 
 Functions that read an option's text take its name, the text, and what it may name; they raise ``ValueError``
 with a message for users.

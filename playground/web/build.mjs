@@ -1,6 +1,6 @@
 // build.mjs -- bundles the runtime: each entry becomes one minified file in bundle/, which is committed.
 //
-//   node build.mjs               makes bundle/ anew
+//   node build.mjs               makes bundle/
 //   node build.mjs FILE OUT      bundles any module as one classic script, for tests
 //
 // The first line of a bundle holds a hash of everything that it may be made of, so that a bundle that is

@@ -1,6 +1,6 @@
 """A live session without a window: drafts, user edits, history, painting, inspection.
 
-    session.py          the sketch as it is shown: it has the four below
+    session.py          the sketch as it is shown: it has the five below
       drafts.py         what the files say, the user's edits, what is wrong
       pending.py        techniques and data files that are checked before they are shown
       view.py           a map instead of the sketch's own view, repeats stopped early

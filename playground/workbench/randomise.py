@@ -60,7 +60,7 @@ def _anywhere(parameter: Parameter, randoms: Random) -> Value | None:
         return _colour(parameter, [randoms.random() for _ in range(3)])
     if low is None or high is None:
         return None
-    return _number(parameter, [_on(parameter, randoms.random(), n) for n in range(_count(parameter))])
+    return _number(parameter, [_value_at(parameter, randoms.random(), n) for n in range(_count(parameter))])
 
 
 def _near(parameter: Parameter, value: Value, randoms: Random, strength: float) -> Value | None:
@@ -81,10 +81,10 @@ def _near(parameter: Parameter, value: Value, randoms: Random, strength: float) 
     if low is None or high is None:
         return _number(parameter, [n * math.exp(randoms.gauss(0, strength)) for n in numbers])
     shares = [_share(parameter, n, axis) + randoms.gauss(0, strength) for axis, n in enumerate(numbers)]
-    return _number(parameter, [_on(parameter, share, axis) for axis, share in enumerate(shares)])
+    return _number(parameter, [_value_at(parameter, share, axis) for axis, share in enumerate(shares)])
 
 
-def _on(parameter: Parameter, share: float, axis: int) -> float:
+def _value_at(parameter: Parameter, share: float, axis: int) -> float:
     """Return the number at a fraction of the slider's way; ``axis`` is its place in a vector."""
     low, high = parameter.widget.ends(axis)
     assert low is not None and high is not None

@@ -102,7 +102,7 @@ FEET = {
 }
 
 
-@pytest.mark.parametrize("compress", [None, "zstd"])  # read here, and by GDAL
+@pytest.mark.parametrize("compress", [None, "zstd"])
 @pytest.mark.parametrize("form", FEET)
 def test_a_geotiff_s_heights_are_in_metres(tmp_path, form, compress):
     crs, unit, factor = FEET[form]

@@ -61,7 +61,7 @@ class Declaration:
         return replace(self, names=tuple(names.get(n, n) for n in self.names), code=code, text=text)
 
 
-def made(text: str, *names: str, is_macro: bool = False) -> Declaration:
+def declaration_of(text: str, *names: str, is_macro: bool = False) -> Declaration:
     """Return a declaration of our own, which may end in a comment."""
     return Declaration(names, re.sub(r"//.*", "", text).rstrip(), text, is_macro)
 

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from playground.capture.shader_export.declarations import Declaration, declarations_of, made
+from playground.capture.shader_export.declarations import Declaration, declaration_of, declarations_of
 from playground.capture.shader_export.foreign_given import neutral
 from playground.capture.shader_export.passes import ShaderPass
 from playground.capture.shader_export.texts import Host, PassText, Sampled, variable_of, without_unwired
@@ -54,7 +54,7 @@ def foreign_text(pass_: ShaderPass, host: Host, expressions: Mapping[str, Callab
         kind, array = kinds.get(name, ("", ""))
         if not kind or (name, kind + array) in host.native:
             continue
-        value.append(made(f"{kind} {name}{array};", name) if array else variable_of(kind, name))
+        value.append(declaration_of(f"{kind} {name}{array};", name) if array else variable_of(kind, name))
         statements += _setting(name, kind, array, meaning, pass_, expressions)
     for parameter in kernel.parameters:
         own, setting = host.parameter(pass_, parameter, pass_.step.values[parameter.name])
@@ -110,8 +110,8 @@ def _prelude(line: str) -> Declaration | None:
     """Return what a line before the text declares for all of it, but for what is given otherwise."""
     if line.startswith("#define"):
         name = re.split(r"[\s(]", line.partition(" ")[2], maxsplit=1)[0]
-        return made(line, name, is_macro=True)
-    return made("vec4 k_frag_color;", "k_frag_color") if _OUT.match(line) else None
+        return declaration_of(line, name, is_macro=True)
+    return declaration_of("vec4 k_frag_color;", "k_frag_color") if _OUT.match(line) else None
 
 
 def _without_twins(declarations: list[Declaration]) -> list[Declaration]:

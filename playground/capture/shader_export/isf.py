@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from playground.capture.shader_export.declarations import Declaration, joined, made
+from playground.capture.shader_export.declarations import Declaration, declaration_of, joined
 from playground.capture.shader_export.passes import ExportPlan, ShaderPass
 from playground.capture.shader_export.texts import DECODE, DECODING, Host, PassText, is_sampled, variable_of
 from playground.data.image_files import read_image
@@ -70,7 +70,7 @@ class Inputs:
             declarations.append(DECODING)
         if parameter.widget.kind == "direction":
             name = f"{TOWARDS}{parameter.name}"
-            declarations += [made("\n".join(_UNIT), "unit_towards"), variable_of("vec3", name)]
+            declarations += [declaration_of("\n".join(_UNIT), "unit_towards"), variable_of("vec3", name)]
             lines.append(f"{name} = unit_towards({parameter.name});")
         return tuple(declarations), tuple(lines)
 
@@ -245,7 +245,7 @@ def written(
         passes.append(entry)
         call = _free_function(f"draw_{text.name}", merged.shared)
         lines = [*text.statements, f"gl_FragColor = {text.result};"]
-        body = made("\n".join(f"    {line}" for line in lines)).renamed(names).text
+        body = declaration_of("\n".join(f"    {line}" for line in lines)).renamed(names).text
         functions += [f"void {call}() {{" + (f"  // {text.title}" if text.title else ""), body, "}", ""]
         calls.append(f"    if (PASSINDEX == {index}) {call}();")
     header: dict[str, Any] = {
@@ -290,10 +290,10 @@ def _with_sampling(text: PassText) -> PassText:
     name = f"sampled_{'_'.join(way)}"
     swap = {"textureLod": name, "texture": name}
     changed = tuple(each.renamed(swap) for each in text.declarations)
-    functions = [made("\n".join(_sampler(name, *way)), name)]
+    functions = [declaration_of("\n".join(_sampler(name, *way)), name)]
     if any(each.reads("texture") for each in text.declarations):
         call = f"vec4 {name}(sampler2D texels, vec2 place) {{ return {name}(texels, place, 0.0); }}"
-        functions.append(made(call, name))
+        functions.append(declaration_of(call, name))
     return replace(text, declarations=(*functions, *changed))
 
 

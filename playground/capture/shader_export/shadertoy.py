@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 
-from playground.capture.shader_export.declarations import Declaration, made, with_common
+from playground.capture.shader_export.declarations import Declaration, declaration_of, with_common
 from playground.capture.shader_export.literals import literal, meaning
 from playground.capture.shader_export.passes import ShaderPass
 from playground.capture.shader_export.texts import (
@@ -52,7 +52,7 @@ def _constant(
 ) -> tuple[tuple[Declaration, ...], tuple[str, ...]]:
     text = f"const {parameter.type} {parameter.name} = {literal(parameter.type, value)};"
     comment = meaning(parameter)
-    lines = [made(f"{text}  // {comment}" if comment else text, parameter.name)]
+    lines = [declaration_of(f"{text}  // {comment}" if comment else text, parameter.name)]
     if parameter.widget.kind == "direction" and isinstance(value, tuple):
         lines.append(towards(parameter.name, value))
     return tuple(lines), ()
@@ -173,7 +173,7 @@ def _main(text: PassText, *, is_picture: bool) -> list[str]:
     lines += [*text.statements, f"fragColor = {text.result};"]
     if text.is_bytes and not is_picture:
         lines.append("fragColor = floor(clamp(fragColor, 0.0, 1.0) * 255.0 + 0.5) / 255.0;")
-    body = made("\n".join(f"    {line}" for line in lines)).renamed(names).text
+    body = declaration_of("\n".join(f"    {line}" for line in lines)).renamed(names).text
     return ["void mainImage(out vec4 fragColor, in vec2 fragCoord) {", body, "}"]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from playground.capture.shader_export.declarations import Declaration, made
+from playground.capture.shader_export.declarations import Declaration, declaration_of
 from playground.capture.shader_export.literals import literal
 from playground.capture.shader_export.passes import ShaderPass
 from playground.capture.shader_export.shadertoy import blocks
@@ -24,12 +24,12 @@ def _uniform(
 ) -> tuple[tuple[Declaration, ...], tuple[str, ...]]:
     if parameter.widget.kind == "direction" and isinstance(value, tuple):
         text = f"const {parameter.type} {parameter.name} = {literal(parameter.type, value)};"
-        return (made(text, parameter.name), towards(parameter.name, value)), ()
+        return (declaration_of(text, parameter.name), towards(parameter.name, value)), ()
     text = f"uniform {parameter.type} {parameter.name} = {literal(parameter.type, value)};"
     lines = pass_.step.kernel.source.lines
     index = next(i for i, n in enumerate(lines) if (n.file, n.number) == (parameter.file, parameter.line))
     note = note_at(lines, index).text.strip()
-    return (made(f"{text}  //! {note}" if note else text, parameter.name),), ()
+    return (declaration_of(f"{text}  //! {note}" if note else text, parameter.name),), ()
 
 
 def _no_file(pass_: ShaderPass, parameter: Parameter, value: Value) -> str:

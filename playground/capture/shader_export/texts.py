@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from playground.capture.extensions import COLOUR
-from playground.capture.shader_export.declarations import Declaration, declarations_of, made
+from playground.capture.shader_export.declarations import Declaration, declaration_of, declarations_of
 from playground.capture.shader_export.literals import number, vector
 from playground.capture.shader_export.passes import ExportPlan, ShaderPass, Wire
 from playground.engine.camera import unit_vector
@@ -29,8 +29,8 @@ _DECODE_TEXT = (
     f"vec3 {DECODE}(vec3 c) {{"
     " return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }"
 )
-ENCODING = made(_ENCODE_TEXT, ENCODE)
-DECODING = made(_DECODE_TEXT, DECODE)
+ENCODING = declaration_of(_ENCODE_TEXT, ENCODE)
+DECODING = declaration_of(_DECODE_TEXT, DECODE)
 
 
 @dataclass(frozen=True)
@@ -215,11 +215,11 @@ def with_size_of(text: PassText, word: str, size: str) -> PassText:
 
 def variable_of(kind: str, name: str) -> Declaration:
     """Return a global variable, which a pass sets before its function reads it."""
-    return made(f"{kind} {name} = {kind}(0);", name)  # without the 0 a driver warns
+    return declaration_of(f"{kind} {name} = {kind}(0);", name)  # without the 0 a driver warns
 
 
 def _constant(kind: str, name: str, value: str, comment: str = "") -> Declaration:
-    return made(f"const {kind} {name} = {value};" + (f"  // {comment}" if comment else ""), name)
+    return declaration_of(f"const {kind} {name} = {value};" + (f"  // {comment}" if comment else ""), name)
 
 
 def _given(leaving: ExportPlan, argument: ShaderPass, host: Host) -> tuple[list[Declaration], list[str]]:
@@ -317,13 +317,13 @@ def _previous(kernel: Kernel, output: Output, wire: Wire, host: Host) -> Declara
     name, kind = previous_name(kernel, output), output.glsl
     head = f"{kind} {name}(ivec2 texel) {{"
     if not wire.name:
-        return made(f"{head} return {kind}(0.0); }}  // there is no step before", name)
+        return declaration_of(f"{head} return {kind}(0.0); }}  // there is no step before", name)
     swizzle = {1: ".r", 2: ".rg", 4: ""}[output.components]
     texel = "clamp(texel, ivec2(0), size - 1)"
     fetch = f"texelFetch({output.name}_before, {texel}, 0){swizzle}"
     if wire.first:
         fetch = f"{host.frame} == 0 ? texelFetch({output.name}_at_first, {texel}, 0){swizzle} : {fetch}"
-    return made(f"{head} return {fetch}; }}", name)
+    return declaration_of(f"{head} return {fetch}; }}", name)
 
 
 def _call(kernel: Kernel, output: Output, texel: str) -> tuple[list[str], str]:

@@ -18,7 +18,7 @@ import { createTextures } from "./textures.js";
  *  draws with the same choices these are written into a program (chosen.js).
  *  @typedef {{bytes?: number, without?: string[], often?: number}} Options */
 
-/** What lives in the context, and is made anew when it was lost.
+/** What lives in the context, and is made again when it was lost.
  *  @typedef {object} Parts
  *  @property {import("./context.js").Context} context
  *  @property {import("./textures.js").Textures} textures
