@@ -230,3 +230,16 @@ def _array_bytes(value: object) -> int:
     if isinstance(value, tuple | list):
         return sum(map(_array_bytes, value))
     return sum([_array_bytes(getattr(value, f.name)) for f in fields(value)]) if is_dataclass(value) else 0
+
+
+class PickledByFields:
+    """Base of a dataclass whose pickle holds its fields alone: cached properties are computed again.
+
+    The pickle of a whole ``__dict__`` raises ``RuntimeError`` where a cached property is added to it
+    meanwhile: a sketch is sent to a process by one thread while another draws it.
+    """
+
+    __slots__ = ()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {f.name: getattr(self, f.name) for f in fields(self)}  # type: ignore[arg-type]

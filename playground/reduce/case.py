@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
+from playground.memo import PickledByFields
 from playground.reduce.variant import record_text
 from playground.sketch.map_sketch import USE
 from playground.sketch.model import Camera, Value
@@ -27,7 +28,7 @@ _REPEATS = re.compile(r"^\s*#pragma\s+(?:draw\b|kernel\b.*\brepeat\s*=)", re.MUL
 
 
 @dataclass(frozen=True, kw_only=True)
-class Pass:
+class Pass(PickledByFields):
     """One pass, with the whole text of what fills it."""
 
     name: str
@@ -62,7 +63,7 @@ class Pass:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Case:
+class Case(PickledByFields):
     """Something that may fail."""
 
     passes: tuple[Pass, ...]

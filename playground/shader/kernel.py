@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from playground.errors import Diagnostic, ShaderError, SketchError, nearest
+from playground.memo import PickledByFields
 from playground.shader import expressions
 from playground.shader.expressions import CLOCKS, COUNTERS, ExpressionError
 from playground.shader.parameter import AS_IT_IS, Parameter, Sampling
@@ -383,7 +384,7 @@ _ACCEPTS = "the sizes that it takes, as `2**n + 1`, `2**n or 2**n + 1` or `n up 
 
 
 @dataclass(frozen=True)
-class Kernel:
+class Kernel(PickledByFields):
     """One GLSL file that a pass can run; the base of all kinds."""
 
     name: str  # "generation/diamond_square"
@@ -857,7 +858,7 @@ class PassSpec:
 
 
 @dataclass(frozen=True)
-class Graph:
+class Graph(PickledByFields):
     """A technique of several passes; a sketch is one too."""
 
     name: str

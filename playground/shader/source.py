@@ -34,7 +34,7 @@ from playground.allowed_files import (
 )
 from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError, nearest
 from playground.files import NotRegularError, irregularity, read_regular
-from playground.memo import TEXTS
+from playground.memo import TEXTS, PickledByFields
 from playground.paths import GLSL, shown
 from playground.shader.libraries import how_to_name, libraries, library_around
 
@@ -147,7 +147,7 @@ class Line:
 
 
 @dataclass(frozen=True)
-class SourceText:
+class SourceText(PickledByFields):
     """A GLSL file with its includes in place."""
 
     path: str  # absolute path of the outermost file
@@ -158,15 +158,6 @@ class SourceText:
     def __hash__(self) -> int:
         # A string caches its hash; a thousand lines would be hashed each time.
         return hash(self.code)
-
-    def __getstate__(self) -> dict[str, object]:
-        # What is computed from the lines is not sent to a child process.
-        return {
-            "path": self.path,
-            "lines": self.lines,
-            "files": self.files,
-            "includes": self.includes,
-        }
 
     def with_codes(self, codes: Sequence[str]) -> SourceText:
         """Return the text with other code in its lines, one for each; itself where all is the same."""

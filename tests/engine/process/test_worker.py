@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import pytest
 
@@ -102,6 +103,53 @@ def test_neither_end_holds_what_is_no_longer_used(ends, folder):
         ends.send(TrySketch(sketch))
         distinct = len({id(kernel) for kernel in sent_alone(sketch.graph)})
         assert len(ends.encoder._known) == len(ends.decoder._known) == distinct
+
+
+class Meanwhile(str):
+    """A text whose pickling lets another thread run: ``other`` is what that does."""
+
+    other: Callable[[], object] = staticmethod(lambda: None)
+
+    def __reduce__(self):
+        self.other()
+        return str, (str(self),)
+
+
+def cached(value: object) -> list[str]:
+    """Return the names of a value's cached properties."""
+    attributes = {name: a for kind in type(value).__mro__ for name, a in vars(kind).items()}
+    return [name for name, attribute in attributes.items() if isinstance(attribute, cached_property)]
+
+
+@pytest.mark.parametrize("kind", ["graph", "kernel", "text"])
+def test_what_is_sent_may_be_drawn_by_another_thread_meanwhile(ends, folder, kind):
+    sketch, said = load(folder), Meanwhile("said")
+    kernel = kernels(sketch)["height"]
+    if kind == "text":
+        changed = replace(kernel, source=replace(kernel.source, files=(said,)))
+    else:
+        changed = replace(kernel, title=said if kind == "kernel" else kernel.title)
+    specs = tuple(
+        replace(spec, technique=changed, file=said if kind == "graph" else spec.file)
+        if spec.name == "height"
+        else spec
+        for spec in sketch.graph.passes
+    )
+    sent = replace(sketch, graph=replace(sketch.graph, passes=specs))
+    value = {"graph": sent.graph, "kernel": changed, "text": changed.source}[kind]
+    assert not {*cached(value)} & {*vars(value)}
+    said.other = lambda: [getattr(value, name) for name in cached(value)]
+    received = ends.send(TrySketch(sent))
+    assert {*cached(value)} <= {*vars(value)}, "they were computed while it was sent"
+    assert received == TrySketch(sent)
+
+
+def test_what_was_computed_of_a_sketch_is_not_sent(ends, folder):
+    sketch = load(folder)
+    values = [sketch.graph, *(value for k in sent_alone(sketch.graph) for value in (k, k.source))]
+    plain = Encoder().encode(sketch)
+    assert [getattr(value, name) for value in values for name in cached(value)]
+    assert len(Encoder().encode(sketch)) == len(plain)
 
 
 @pytest.mark.parametrize("data", [b"", b"one", bytes(100_000)])
