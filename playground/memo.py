@@ -27,6 +27,7 @@ K = TypeVar("K", bound=Hashable)
 V = TypeVar("V")
 
 _memos: weakref.WeakSet[Memo[Any, Any]] = weakref.WeakSet()
+_memos_lock = RLock()
 _missing: Any = object()
 
 
@@ -73,7 +74,8 @@ class Memo(Generic[K, V]):
         self._pinned = pinned
         self._entries: OrderedDict[Any, _Entry] = OrderedDict()  # the least recently used first
         self._lock = RLock()
-        _memos.add(self)
+        with _memos_lock:
+            _memos.add(self)
 
     def __len__(self) -> int:
         return len(self._entries)
@@ -82,7 +84,8 @@ class Memo(Generic[K, V]):
         return key in self._entries
 
     def __iter__(self) -> Iterator[K]:
-        return iter(list(self._entries))
+        with self._lock:  # to list the keys calls their ``__hash__``, which lets other threads run
+            return iter(list(self._entries))
 
     def values(self) -> list[V]:
         """Return every value, the least recently used first."""
@@ -204,7 +207,9 @@ INTERFACE: Memo[Any, Any] = Memo("interface", 2048)
 
 def report() -> list[Usage]:
     """Return what every memo holds, by name."""
-    return sorted([Usage(m.name, len(m), m.weight, m.bound, m.unit) for m in _memos])
+    with _memos_lock:
+        memos = list(_memos)
+    return sorted([Usage(m.name, len(m), m.weight, m.bound, m.unit) for m in memos])
 
 
 def clear() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import threading
 import weakref
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -118,6 +119,50 @@ def test_threads_share_a_memo():
     with ThreadPoolExecutor(4) as pool:
         assert list(pool.map(ask, range(1, 5))) == [2000] * 4
     assert len(kept) <= 50 and kept.weight == len(kept)
+
+
+def test_keys_are_listed_while_another_thread_adds_one():
+    kept, threads = Memo("test", 8), list[threading.Thread]()
+
+    class Key:
+        """Its hash lets another thread run."""
+
+        def __hash__(self) -> int:
+            if adds:
+                threads.append(threading.Thread(target=kept.put, args=(adds.pop(), 0)))
+                threads[-1].start()
+                threads[-1].join(0.1)
+            return 1
+
+    adds: list[str] = []
+    keys = [Key(), Key()]
+    for key in keys:
+        kept.put(key, 0)
+    adds.append("another")
+    assert list(kept) == keys
+    for thread in threads:
+        thread.join()
+    assert list(kept) == [*keys, "another"]
+
+
+def test_memos_are_reported_while_another_thread_makes_one():
+    made: list[Memo[int, int]] = []
+
+    def make() -> None:
+        made.append(Memo("another", 1))
+
+    class Slow(Memo[int, int]):
+        """Its length lets another thread run."""
+
+        def __len__(self) -> int:
+            if not made:
+                thread = threading.Thread(target=make)
+                thread.start()
+                thread.join()
+            return 0
+
+    slow = Slow("slow", 1)
+    assert slow.name in {usage.name for usage in memo.report()} and made
 
 
 def test_the_report_names_every_memo_and_clear_empties_them():
