@@ -44,6 +44,7 @@ _QUEUED = "context_gc"  # moderngl's mode in which dropped objects stay in ``Con
 _opened: weakref.WeakKeyDictionary[moderngl.Context, tuple[weakref.finalize[..., Any], _Made]] = (
     weakref.WeakKeyDictionary()
 )
+_lock = threading.RLock()  # of ``_opened``: every thread may have contexts
 _dropped: deque[_Made] = deque()  # contexts to destroy, each in its own thread
 
 
@@ -99,7 +100,9 @@ def open_context(*, software: bool = False, device: int | None = None) -> modern
     ``software`` asks for the software renderer (Mesa llvmpipe); ``device`` picks the
     EGL device by its number. Raises ``ContextError`` with the known advice for the failure.
     """
-    if sum(made.is_ours for _, made in _opened.values()) >= _MAX_UNCOLLECTED:
+    with _lock:
+        uncollected = sum(made.is_ours for _, made in _opened.values())
+    if uncollected >= _MAX_UNCOLLECTED:
         gc.collect()  # a dropped engine is a cycle, whose size in the driver Python does not know
     if software:
         return _open_software(device)
@@ -224,17 +227,21 @@ def _destroy_when_dropped(ctx: moderngl.Context) -> None:
     made = _Made(threading.current_thread(), ctx.mglo, _current_handle())
     finalizer = weakref.finalize(ctx, _drop, made)
     finalizer.atexit = False
-    _opened[ctx] = finalizer, made
+    with _lock:
+        _opened[ctx] = finalizer, made
 
 
 def open_contexts() -> set[moderngl.Context]:
     """Return the contexts of ``open_context`` that were neither released nor collected."""
-    return set(_opened)
+    with _lock:
+        return set(_opened)
 
 
 def release_context(ctx: moderngl.Context) -> None:
     """Destroy a context; one of ``open_context`` that is only released still counts as dropped."""
-    if opened := _opened.pop(ctx, None):
+    with _lock:
+        opened = _opened.pop(ctx, None)
+    if opened is not None:
         finalizer, made = opened
         finalizer.detach()
         made.unbind()
