@@ -76,7 +76,7 @@ class Midi:
         self._ended.set()
         if self._thread.is_alive():
             self._thread.join(2)
-        for port in self._ports.values():
+        for port in list(self._ports.values()):  # the thread may be opening another
             port.close()
         self._ports = {}
 

@@ -58,7 +58,7 @@ class Review:
 
     def summary(self) -> list[str]:
         """Return what was accepted and not undone."""
-        done = self.session.changes.values()
+        done = list(self.session.changes.values())  # a request may still be answered
         written = [line for change in done if change.written for line in change.sentences]
         return written or ["nothing was accepted"]
 

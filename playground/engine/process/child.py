@@ -128,6 +128,8 @@ class ChildProcess:
         self._not_a_frame = ""  # what it sent instead of a message
         self._output = tempfile.TemporaryFile()
         self._read = 0  # bytes of that
+        # Name by name: another thread may delete a variable meanwhile.
+        own = {name: value for name in os.environ if (value := os.environ.get(name)) is not None}
         pipe = os.pipe() if ends_with_parent and sys.platform == "linux" else ()
         try:
             # -P: what lies in the user's folder is no module of ours, even under the same name.
@@ -136,7 +138,7 @@ class ChildProcess:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=self._output,
-                env={**os.environ, "PYTHONPATH": _module_path(), **environment},
+                env={**own, "PYTHONPATH": _module_path(), **environment},
                 cwd=folder,
                 pass_fds=pipe[:1],
                 start_new_session=True,
