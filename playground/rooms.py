@@ -6,6 +6,7 @@ Nothing else names such a room: without its folder, its tests and its line here,
     options     ``live_options`` reads the options that it adds to ``playground live``; ``LIVE_EXAMPLES``
     addition    ``open_addition(host)`` returns what it adds to a window; ``KEYS``, its keys;
                 ``check_request(request)`` refuses a request before a window opens
+    table       ``DIALECTS`` reads shaders of other tools (``playground/shader/dialect.py``)
     site        ``PAGES``: the pages that it adds to the documentation, by path; ``HOMES``: files of the
                 checkout that are pages there
 """
@@ -17,6 +18,7 @@ from types import ModuleType
 
 ROOMS: dict[str, tuple[str, ...]] = {
     "course": ("commands", "options", "addition", "site"),
+    "dialects": ("table",),
     "flight": ("commands",),
     "lsp": ("commands",),
 }

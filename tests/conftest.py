@@ -14,6 +14,7 @@ import pytest
 
 from playground.engine.context import open_context, open_contexts, release_context
 from playground.engine.engine import Engine
+from playground.rooms import ROOMS
 
 from .spread import Spread
 
@@ -65,6 +66,13 @@ def pytest_configure(config: pytest.Config) -> None:
     if every_case and config.option.markexpr == "not slow":
         config.option.markexpr = ""
     config.pluginmanager.register(Spread(config.getoption("--seed"), every_case, config.args))
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip what needs a room that is not there."""
+    for marker in item.iter_markers("room"):
+        if marker.args[0] not in ROOMS:
+            pytest.skip(f"needs playground/{marker.args[0]}")
 
 
 @pytest.hookimpl(trylast=True)

@@ -9,19 +9,19 @@ from typing import Any
 import pytest
 
 from playground.paths import SKETCHES
+from playground.rooms import ROOMS
 from playground.sketch.find import shipped_sketches
 
 FEW_SKETCHES = (
     "contours_map",  # a map
     "delaunay",  # a mesh of its own
     "diamond_square",  # sizes that fit a rule, steps
-    "flood",  # a state, and texts written again
-    "from_elsewhere",  # passes of other tools
     "geomipmap",  # levels of detail
     "jacksboro",  # a land that was measured
     "life",  # feedback
     "splat",  # images
     "sun_flight",  # keyframes
+    *(() if "dialects" not in ROOMS else ("flood", "from_elsewhere")),  # passes of other tools, a state
 )
 GIVEN = ("set", "inputs", "params", "presets")  # tables whose keys are names, not words of the format
 

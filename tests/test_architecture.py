@@ -43,6 +43,7 @@ LAYERS = (
     ("notebook",),
     ("web",),
     ("api",),
+    ("dialects",),
     ("engine",),
     ("sketch",),
     ("shader",),
@@ -234,7 +235,7 @@ import sys
 import playground.live.app
 """
 PRINTED = """
-readers = "playground.shader.dialects."
+readers = "playground.dialects"
 print(",".join(name for name in sys.modules if name in rare or name.startswith(readers)))
 """
 OF_MISTAKES = ["playground.shader.driver_log"]

@@ -15,7 +15,8 @@ from playground.rooms import ROOMS
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "playground"
-COMMANDS = {"course": {"lesson"}, "flight": {"fly"}, "lsp": {"lsp"}}
+COMMANDS = {"course": {"lesson"}, "dialects": set[str](), "flight": {"fly"}, "lsp": {"lsp"}}
+SKETCHES = {"dialects": ("channels", "flood", "from_elsewhere")}  # they use shaders of other tools
 ROW = re.compile(r"^│ (\w+) {2,}", re.MULTILINE)
 NAMES = list(ROOMS)
 CORE_TESTS = (
@@ -24,6 +25,7 @@ CORE_TESTS = (
     "tests/data/test_resample.py",
     "tests/live/test_escape_layers.py",  # a panel of a window, without a screen
     "tests/live/test_keys.py",
+    "tests/workbench/test_pasted.py",
 )
 
 
@@ -53,7 +55,7 @@ def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture
 def without(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
-    """Give a checkout without a room, its tests and its line."""
+    """Give a checkout without a room, its tests, its sketches and its line."""
     room = request.param
     shutil.copytree(
         PACKAGE, tmp_path / "playground", ignore=shutil.ignore_patterns("node_modules", "__pycache__", room)
@@ -61,8 +63,10 @@ def without(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     shutil.copytree(
         ROOT / "tests", tmp_path / "tests", ignore=shutil.ignore_patterns("__pycache__", "screenshots", room)
     )
-    for name in ("glsl", "docs", "pyproject.toml"):
+    for name in ("docs", "pyproject.toml"):
         (tmp_path / name).symlink_to(ROOT / name)
+    its = [name for sketch in SKETCHES.get(room, ()) for name in (sketch, f"{sketch}.toml")]
+    shutil.copytree(ROOT / "glsl", tmp_path / "glsl", ignore=shutil.ignore_patterns(*its))
     registry = tmp_path / "playground" / "rooms.py"
     text, count = re.subn(rf'^    "{room}": .*\n', "", registry.read_text("utf-8"), flags=re.MULTILINE)
     assert count == 1
@@ -88,3 +92,22 @@ def test_everything_else_works_without_a_room(without):
     assert picture.returncode == 0 and (without / "p.png").is_file(), picture.stderr
     core = run(without, "-m", "pytest", "-q", "-p", "no:cacheprovider", *CORE_TESTS)
     assert core.returncode == 0, core.stdout
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("without", ["dialects"], indirect=True)
+def test_without_dialects_another_tool_s_text_has_nothing_to_run(without):
+    texts = {
+        "toy.frag": "void mainImage(out vec4 c, in vec2 p) { c = vec4(1.0); }\n",
+        "isf.fs": '/*{"ISFVSN": "2"}*/\nvoid main() { gl_FragColor = vec4(1.0); }\n',
+        "none.frag": "float twice(float x) { return 2.0 * x; }\n",
+    }
+    for name, text in texts.items():
+        (without / name).write_text(text, encoding="utf-8")
+        done = run(without, "-m", "playground", "render", name, "--size", "8x8", "-o", "p.png")
+        assert done.returncode == 2, done.stderr
+        assert "nothing to run: no main, mainImage or #pragma kernel" in done.stderr
+    plain = "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(1.0); }\n"
+    (without / "plain.frag").write_text(plain, encoding="utf-8")
+    done = run(without, "-m", "playground", "render", "plain.frag", "--size", "8x8", "-o", "p.png")
+    assert done.returncode == 0, done.stderr

@@ -49,7 +49,7 @@ def check(
 ) -> None:
     """Check shaders and sketches."""
     from playground.engine.sandbox import LIMIT_SECONDS, Sandbox
-    from playground.shader.dialects import check_name
+    from playground.shader.dialect import check_name
     from playground.verify.check import check_file, find_files
 
     renderer: Renderer = ctx.obj.or_else(software, device)

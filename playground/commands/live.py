@@ -99,7 +99,7 @@ def live(
     osc_to: Annotated[str, value("--osc-to HOST:PORT", "Send each new value there by OSC.")] = "",
 ) -> None:
     """Open a sketch in a window."""
-    from playground.shader.dialects import check_name
+    from playground.shader.dialect import check_name
 
     renderer: Renderer = ctx.obj.or_else(software)
     values = read_values(settings)

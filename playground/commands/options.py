@@ -68,9 +68,9 @@ def complete_driver(incomplete: str) -> list[str]:
 
 def complete_dialect(incomplete: str) -> list[str]:
     """Return the dialects that complete a word."""
-    from playground.shader.dialects import names
+    from playground.shader.dialect import dialects
 
-    return [name for name in names() if name.startswith(incomplete)]
+    return [name for name in dialects().names if name.startswith(incomplete)]
 
 
 def complete_setting(ctx: typer.Context, incomplete: str) -> list[str]:

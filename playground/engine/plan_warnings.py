@@ -14,6 +14,7 @@ from playground.errors import DataError, Diagnostic
 from playground.memo import PLANS
 from playground.paths import GLSL, shown
 from playground.shader import expressions
+from playground.shader.dialect import dialects
 from playground.shader.expressions import ExpressionError, Number
 from playground.sketch.assign import effective_values
 from playground.sketch.flat import Flat, Ref, Source
@@ -91,9 +92,7 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
     assumptions = _assumptions(plan)
     for step in _fed_from_outside(plan.nodes):
         if isinstance(step.kernel, ForeignShader):
-            from playground.shader.dialects.foreign import unfed_warnings
-
-            for warning in unfed_warnings(step.kernel, _wired(plan, step)):
+            for warning in dialects().unfed_warnings(step.kernel, _wired(plan, step)):
                 diagnostics.setdefault(f"{step.kernel.path} {warning.message}", warning)
         if isinstance(step.kernel, CpuSource):
             spec = plan.flat.user(step.path)
@@ -197,11 +196,10 @@ def _readers(plan: Plan, source: Step) -> str:
 
 def _wired(plan: Plan, step: Step) -> set[str]:
     """Return the inputs that something feeds besides the stand-ins that another tool's shader comes with."""
-    from playground.shader.dialects.foreign import STAND_INS, stand_in_paths
 
     def is_stand_in(name: str, source: Source) -> bool:
-        if not isinstance(source, Ref) or source.path not in stand_in_paths(step.path, name):
+        if not isinstance(source, Ref) or source.path not in dialects().stand_in_paths(step.path, name):
             return False
-        return plan.flat.specs[source.path].use in STAND_INS.values()
+        return plan.flat.specs[source.path].use in dialects().stand_ins()
 
     return {name for name, source in step.inputs if source is not None and not is_stand_in(name, source)}

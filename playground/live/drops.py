@@ -15,7 +15,7 @@ from playground.allowed_files import SHADERS, VECTORS, is_elevation
 from playground.errors import PlaygroundError
 from playground.live.theme import Theme
 from playground.live.widgets import IMAGES
-from playground.shader.dialects import is_export
+from playground.shader.dialect import dialects
 from playground.sketch.find import find, is_pack, unpacked_beside
 from playground.sketch.model import Parameter, Sketch, Value
 from playground.workbench.channel_list import MEDIA, Taker, in_words, takers
@@ -40,11 +40,9 @@ def opened_from(sketch: Path) -> tuple[Path, str]:
 def _is_sketch(path: Path) -> bool:
     """Return whether a file or a folder opens as a sketch."""
     if path.is_dir():
-        from playground.shader.dialects.shadertoy import image_of
-
-        return (path / "sketch.toml").is_file() or image_of(path) is not None
+        return (path / "sketch.toml").is_file() or dialects().image_of(path) is not None
     with suppress(PlaygroundError):
-        return path.suffix == ".toml" or path.suffix in SHADERS or is_export(path)
+        return path.suffix == ".toml" or path.suffix in SHADERS or dialects().is_export(path)
     return False
 
 

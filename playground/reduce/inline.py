@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 
@@ -13,7 +12,7 @@ from playground.errors import SketchError
 from playground.paths import shown
 from playground.reduce.case import Case, Pass
 from playground.reduce.tokens import tidy
-from playground.shader.dialects.isf import read_header
+from playground.shader.dialect import dialects
 from playground.shader.header import note_at
 from playground.shader.reserved_names import MATCHES, WIRED
 from playground.shader.source import SourceText, read_source_and_origin
@@ -75,12 +74,11 @@ def _plain(step: Step, plan: Plan) -> Case:
     foreign = kernel if isinstance(kernel, ForeignShader) else None
     name = "shader" if isinstance(kernel, PlainFragment) else "compute"
     vertex = foreign.vertex_source if foreign else None
-    is_isf = foreign is not None and foreign.dialect == "isf"
     pass_ = Pass(
         name=name,
         text=_words(_whole_source(kernel, plan), as_written=foreign is not None),
         suffix=".frag" if suffix in _OF_SHADERS else suffix,
-        head=f"/*{json.dumps(read_header(kernel.source).table)}*/\n" if is_isf else "",
+        head=dialects().head(foreign) if foreign else "",
         beside=((Path(vertex.path).suffix, _words(vertex, as_written=True)),) if vertex else (),
     )
     named = [(p.default, step.values[p.name]) for p in kernel.file_parameters]

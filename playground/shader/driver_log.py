@@ -41,6 +41,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from playground.paths import GLSL, SKETCHES, shown
+from playground.shader.dialect import dialects
 from playground.shader.kernel import ForeignShader, Kernel, PlainFragment, PlainShader
 from playground.shader.own_shaders import own_part
 from playground.shader.reserved_names import GIVEN, GIVEN_INSTEAD, GLSL_WORDS, PLAIN_UNIFORMS
@@ -348,14 +349,13 @@ def _places(source: SourceText) -> dict[str, set[tuple[str, int]]]:
 
 def _given_elsewhere(name: str, kernel: Kernel) -> str:
     """Say so where other shaders are given a name, and what is called otherwise here."""
-    from playground.shader.dialects import isf, main
-
-    kinds = {**isf.NAMES, **main.NAMES}
+    kinds = dialects().given()
     if isinstance(kernel, ForeignShader):
         names = kernel.tool_names
     else:
         names = tuple(_MEANINGS.items()) if _is_own(kernel) else ()
-    if isinstance(kernel, PlainFragment) and not isinstance(kernel, ForeignShader) and name in _PLAIN:
+    is_plain = isinstance(kernel, PlainFragment) and not isinstance(kernel, ForeignShader)
+    if is_plain and name in _PLAIN & kinds.keys():
         return WHEREABOUTS["undeclared"].format(name, kinds[name][0])
     if name in dict(names) or (_is_own(kernel) and name in GIVEN_INSTEAD):
         return ""

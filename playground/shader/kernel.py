@@ -769,7 +769,7 @@ class VertexShader:
 class ForeignShader(PlainFragment):
     """A fragment shader of another tool."""
 
-    dialect: str = ""  # the name of a row of shader/dialects
+    dialect: str = ""  # its name, as ``--dialect`` takes it
     prelude: tuple[str, ...] = ()  # lines that the driver gets before the file's
     epilogue: str = ""  # the file of shader/shaders that follows the file's lines
     helpers: tuple[str, ...] = ()  # files of shader/shaders between the prelude and its lines
@@ -890,7 +890,7 @@ class Graph(PickledByFields):
 
     @property
     def dialect(self) -> str:
-        """Of another tool's shader the name of a row of shader/dialects, of a TOML none."""
+        """Of another tool's shader the dialect's name, of a TOML none."""
         if self.path.endswith(".toml"):
             return ""
         last = self.kernels[-1][1]

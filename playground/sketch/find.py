@@ -33,7 +33,7 @@ from playground.errors import DataError, SketchError, counted, nearest
 from playground.files import irregularity, open_regular
 from playground.json_text import read_json
 from playground.paths import GLSL, SKETCHES, cache_folder
-from playground.shader.dialects import EXPORT, is_export
+from playground.shader.dialect import dialects
 
 ENDING = ".zip"
 MANIFEST = "pack.json"
@@ -312,17 +312,15 @@ def find(name: str | Path) -> Path:
     if is_folder and is_file(path / "sketch.toml"):
         return path / "sketch.toml"
     if is_folder:
-        from playground.shader.dialects.shadertoy import image_of
-
-        if (image := image_of(path)) is not None:
+        if (image := dialects().image_of(path)) is not None:
             return image
     if is_file(path):
         if is_pack(path):
             return unpacked(path)
         if path.suffix not in TEXTS and not is_elevation(path):
-            if is_export(path):
+            if dialects().is_export(path):
                 return path
-            if path.suffix == EXPORT:
+            if path.suffix in dialects().endings:
                 message = "a sketch is a .toml, and a .json a Shadertoy export; this holds no renderpass"
                 raise SketchError(message, file=path)
             message = f"a sketch is a .toml, a shader ends in {', '.join(SHADERS)}"

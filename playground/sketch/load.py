@@ -24,7 +24,7 @@ from playground.allowed_files import (
 )
 from playground.errors import SketchError
 from playground.paths import DEFAULT_SKETCH, GLSL, PLAIN_SKETCH, SKETCHES, shown
-from playground.shader.dialects import EXPORT, check_name
+from playground.shader.dialect import check_name, dialects
 from playground.sketch.assign import effective_values, shown_parameters
 from playground.sketch.find import find
 from playground.sketch.flatten import flatten
@@ -107,7 +107,7 @@ def load_with(techniques: Techniques, name: str | Path = "", text: str | None = 
     path = find(name or DEFAULT_SKETCH).resolve()
     path = technique_beside(path) or path
     try:
-        if path.suffix in (*SHADERS, EXPORT):
+        if path.suffix in SHADERS or (path.suffix != ".toml" and path.suffix in dialects().endings):
             return _shader_alone(path, techniques)
         if techniques.dialect:
             raise SketchError("--dialect is for a shader file", file=path)

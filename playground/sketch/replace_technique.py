@@ -17,7 +17,7 @@ from typing import Any, cast
 from playground.allowed_files import TECHNIQUES, looking_once
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
 from playground.paths import GLSL
-from playground.shader.dialects import read_foreign
+from playground.shader.dialect import dialects
 from playground.shader.header import parse_kernel
 from playground.shader.kernel import with_inner
 from playground.shader.parameter import coerce
@@ -72,10 +72,10 @@ def _read_again(graph: Graph, texts: Mapping[str, str], folder: Path) -> Graph:
     """Return another tool's shader by its texts."""
     path = Path(graph.path)
     root = GLSL if path.is_relative_to(GLSL) else folder
-    foreign_technique = read_foreign(path, graph.name, root, Techniques().read, graph.dialect, instead=texts)
-    if foreign_technique is None:
+    technique = dialects().read(path, graph.name, root, Techniques().read, graph.dialect, instead=texts)
+    if technique is None:
         raise DataError("no shader is left of this text", file=path)
-    return foreign_technique
+    return technique
 
 
 def _parsed_again(kernel: Kernel, texts: Mapping[str, str], folder: Path) -> Kernel:

@@ -22,7 +22,7 @@ from playground.allowed_files import (
 from playground.errors import PlaygroundError, ShaderError, SketchError, nearest
 from playground.files import irregularity
 from playground.paths import GLSL, shown
-from playground.shader.dialects import EXPORT, OWN, is_export, read_foreign
+from playground.shader.dialect import OWN, dialects
 from playground.shader.header import parsed_kernel, replaced
 from playground.shader.kernel import Variant
 from playground.shader.source import EncodingError
@@ -151,7 +151,7 @@ class Techniques:
             and path.suffix != ".comp"
             and dialect != OWN
         ):
-            technique = read_foreign(path, name_of(path), folder, self.read, dialect)
+            technique = dialects().read(path, name_of(path), folder, self.read, dialect)
             if technique is not None:
                 for _, own in technique.kernels:
                     _check_files(own, folder)
@@ -260,13 +260,16 @@ def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
     own = use.startswith("./")
     limit = root if own else GLSL
     base = (folder if own else GLSL) / (use[2:] if own else use)
-    candidates = [
-        base.parent / f"{base.name}{suffix}" for suffix in (*TECHNIQUES, *((EXPORT,) if own else ()))
-    ]
+    others = dialects().endings if own else ()
+    candidates = [base.parent / f"{base.name}{suffix}" for suffix in (*TECHNIQUES, *others)]
     if not base.name.strip(".") or not all(is_inside(path, (limit,)) for path in candidates):
         where = f"the sketch’s own folder{how_to_open(real(base), limit, marks=False)}" if own else "glsl/"
         raise SketchError(f"use = '{use}' lies outside {where}")
-    present = [path for path in candidates if is_file(path) and (path.suffix != EXPORT or is_export(path))]
+    present = [
+        path
+        for path in candidates
+        if is_file(path) and (path.suffix not in others or dialects().is_export(path))
+    ]
     if present and is_variant(present[0]):
         raise SketchError(f"use = '{use}' is a fast variant; use = '{use.removesuffix('.fast')}' runs it")
     if len(present) > 1:

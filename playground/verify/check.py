@@ -35,8 +35,7 @@ from playground.errors import (
 )
 from playground.files import irregularity
 from playground.paths import GLSL, SKETCHES, shown
-from playground.shader.dialects import EXPORT, is_export
-from playground.shader.dialects.shadertoy import is_image, is_of_folder
+from playground.shader.dialect import dialects
 from playground.shader.source import read_text
 from playground.shader.wrap import COMPUTE, FRAGMENT
 from playground.sketch.assign import values_of
@@ -122,7 +121,7 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
                 for file in _inside(sketch.parent):
                     files.setdefault(file.resolve(), sketch.parent.resolve())
                 continue
-            if path.suffix not in TEXTS and not is_export(path) and not is_elevation(path):
+            if path.suffix not in TEXTS and not dialects().is_export(path) and not is_elevation(path):
                 expected = ", ".join((*TEXTS, ENDING, "an elevation file"))
                 raise DataError(f"cannot be checked; expected a folder or {expected}", file=shown(path))
             files.setdefault(path.resolve(), root_of(path.resolve()))
@@ -324,16 +323,16 @@ def _inside(folder: Path) -> Iterator[Path]:
             if not (path / "pyvenv.cfg").exists() and not path.is_symlink():
                 yield from _inside(path)
         elif path.suffix in TEXTS and (path.suffix != ".toml" or _is_ours(path)):
-            if is_image(path) or not is_of_folder(path):  # the Image is checked with all of its passes
+            if not dialects().is_inside(path):  # the Image is checked with all of its passes
                 yield path
-        elif path.suffix == EXPORT and _holds_passes(path):
+        elif path.suffix in dialects().endings and _holds_passes(path):
             yield path
 
 
 def _holds_passes(path: Path) -> bool:
     """Return whether a JSON is an export; one that cannot be read is somebody else's."""
     with suppress(SketchError):
-        return is_export(path)
+        return dialects().is_export(path)
     return False
 
 

@@ -17,6 +17,7 @@ from functools import cache
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.memo import GRAPHS
 from playground.paths import GLSL, shown
+from playground.shader.dialect import dialects
 from playground.sketch.assign import find_targets
 from playground.sketch.find import shipped_names
 from playground.sketch.flat import Ref, Source, leaves_of
@@ -284,8 +285,7 @@ def _size(
 
     A sound has no size: its texels are as many as those of a made-up one ``before``.
     """
-    from playground.shader.dialects.foreign import SIZES, SIZES_OF_SHAPES, STAND_IN_SIZE
-
+    sizes = dialects().sizes()
     kernel = technique if isinstance(technique, Kernel) else None
     if kernel is not None and kernel.registry in _OWN_SIZE:
         return None
@@ -295,11 +295,11 @@ def _size(
     if files and isinstance(kernel, TexelKernel):
         wide, high = (f"{name}.{files[0].name}.size.{axis}" for axis in "xy")
         return (wide, f"6 * {wide}") if use in _CUBES else (wide, high)
-    if use in SIZES:
-        return SIZES[use]
-    if before is not None and before.use not in SIZES and before.size and not _reads_file(before):
+    if use in sizes:
+        return sizes[use]
+    if before is not None and before.use not in sizes and before.size and not _reads_file(before):
         return before.size  # as an ISF filter has it, whose image is as large as its picture
-    return SIZES_OF_SHAPES.get(shape, STAND_IN_SIZE)
+    return dialects().size_of_shape(shape)
 
 
 def _names(technique: Technique) -> Iterator[str]:

@@ -17,14 +17,11 @@ from playground.allowed_files import TEXTS
 from playground.errors import DataError, SketchError
 from playground.files import partial_file, read_regular
 from playground.paths import state_folder
-from playground.shader.dialects import OWN, dialect_of, names
+from playground.shader.dialect import dialects
 
 MAX_PASTED_BYTES = 4 * 2**20
 """Bytes that a text may have."""
 
-_ENDINGS = {OWN: ".glsl", "isf": ".fs", "export": ".json"}
-_OTHERS = ".frag"
-_TAKEN = (*TEXTS, ".json")
 _UNTITLED = "pasted"
 _COMMENT = re.compile(r"\s*(?://+|/\*+)[ \t*=-]*(?:[\w.-]+\.\w+ --[ \t]*)?([^\n*]*)")
 _OF_EXPORT = re.compile(r'"info"\s*:\s*\{[^{}]*?"name"\s*:\s*"([^"\\]*)"', re.DOTALL)
@@ -52,12 +49,12 @@ def keep_text(text: str, folder: Path) -> Path:
         raise DataError(
             f"the text is larger than {MAX_PASTED_BYTES // 2**20} MiB; a shader's text was expected"
         )
-    dialect = dialect_of(text)
-    if dialect is None:
+    dialect = dialects().name_of(text)
+    if not dialect:
         raise SketchError("nothing to run: no main, mainImage or #pragma kernel in the text")
-    if dialect.name not in names():
+    if dialect not in dialects().names:
         raise SketchError("the text is Shadertoy's sound, VR or cube map alone, which is not drawn")
-    ending = ".comp" if _COMPUTE.match(text) else _ENDINGS.get(dialect.name, _OTHERS)
+    ending = ".comp" if _COMPUTE.match(text) else dialects().ending(dialect)
     name = _named(text)
     with suppress(OSError):
         return _kept(data, folder, name, ending)
@@ -73,7 +70,7 @@ def _kept(data: bytes, folder: Path, name: str, ending: str) -> Path:
     """Write the data under the first name that is free, or find it under one before."""
     for stem in _stems(name):
         path = folder / f"{stem}{ending}"
-        if any(os.path.lexists(folder / f"{stem}{other}") for other in _TAKEN):
+        if any(os.path.lexists(folder / f"{stem}{other}") for other in (*TEXTS, *dialects().endings)):
             if path.is_file() and path.stat().st_size == len(data) and read_regular(path) == data:
                 return path
             continue

@@ -109,6 +109,7 @@ def test_both_are_one_mistake(words: list[str], capsys: pytest.CaptureFixture[st
     assert capsys.readouterr() == ("", "error: --verbose and --quiet exclude each other; choose one\n")
 
 
+@pytest.mark.room("dialects")
 def test_root_opens_a_folder_for_one_command_only(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ):

@@ -253,6 +253,7 @@ def test_export_to_stdout_writes_exactly_the_file_bytes(form: str, capfdbinary: 
     assert err.startswith(b"standard output: ")
 
 
+@pytest.mark.room("dialects")
 def test_a_shader_comes_in_by_a_pipe_and_leaves_by_one(
     monkeypatch: pytest.MonkeyPatch, capfdbinary: pytest.CaptureFixture[bytes]
 ):

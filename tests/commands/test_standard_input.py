@@ -34,6 +34,7 @@ def given(monkeypatch: pytest.MonkeyPatch, data: bytes, *, terminal: bool = Fals
     monkeypatch.setattr("sys.stdin", Input(data, terminal=terminal))
 
 
+@pytest.mark.room("dialects")
 def test_a_text_is_rendered_and_kept(
     here: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -72,6 +73,7 @@ def test_what_is_no_shader_is_one_sentence(
     assert part in said and said.count("\n") == 1 and list(here.iterdir()) == []
 
 
+@pytest.mark.room("dialects")
 def test_a_terminal_is_no_text_but_the_window_has_the_clipboard(
     here: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

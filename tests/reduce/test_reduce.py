@@ -533,6 +533,7 @@ def test_inlined_shipped_sketch_has_same_passes(name, tmp_path):
 
 
 @pytest.mark.parametrize("name", NOT_INLINED)
+@pytest.mark.room("dialects")
 def test_what_cannot_be_inlined_is_one_sentence(name):
     with pytest.raises(SketchError, match=NOT_INLINED[name]):
         inline_sketch(load(name), frame=(64, 36))

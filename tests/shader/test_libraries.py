@@ -18,6 +18,8 @@ from playground.sketch.find import read_pack
 from playground.sketch.load import load
 from playground.sketch.replace_technique import with_texts
 
+pytestmark = pytest.mark.room("dialects")
+
 TOP = """#include "stones/colour/red.glsl"
 uniform vec2 u_resolution;
 void main() { gl_FragColor = vec4(red(gl_FragCoord.x / u_resolution.x), 0.0, 0.0, 1.0); }

@@ -159,6 +159,7 @@ def test_driver_warning_is_reported_at_kernel_line(ctx: moderngl.Context, tmp_pa
     assert ctx.error == "GL_NO_ERROR"
 
 
+@pytest.mark.room("dialects")
 def test_a_driver_s_warning_of_no_value_is_none_where_it_is_zero(
     ctx: moderngl.Context, tmp_path: Path
 ) -> None:
@@ -193,6 +194,7 @@ AROUND = """void mainImage(out vec4 c, in vec2 p) {{
 """
 
 
+@pytest.mark.room("dialects")
 def test_a_name_is_one_error_and_other_mistakes_stay(ctx: moderngl.Context, tmp_path: Path) -> None:
     if "llvmpipe" not in ctx.info["GL_RENDERER"]:
         pytest.skip("each driver finds other mistakes")
@@ -201,6 +203,7 @@ def test_a_name_is_one_error_and_other_mistakes_stay(ctx: moderngl.Context, tmp_
     assert "did you mean `iChannel0`?" in result[0][2]
 
 
+@pytest.mark.room("dialects")
 def test_the_forms_of_a_function_are_the_few_nearest(ctx: moderngl.Context, tmp_path: Path) -> None:
     if "llvmpipe" not in ctx.info["GL_RENDERER"]:
         pytest.skip("each driver lists them otherwise")
@@ -226,6 +229,7 @@ LOGS = {
 
 
 @pytest.mark.parametrize("name", LOGS)
+@pytest.mark.room("dialects")
 def test_other_drivers_errors_are_folded_too(tmp_path: Path, name: str) -> None:
     text = "void mainImage(out vec4 c, in vec2 p) {\n    c = texture(iChanel0, p);\n    c += iChanel0;\n}\n"
     wrapped = wrap(foreign(tmp_path, text), FRAGMENT, 450)
@@ -278,6 +282,7 @@ SUGGESTED = {
 
 
 @pytest.mark.parametrize("text", SUGGESTED, ids=lambda text: text[0])
+@pytest.mark.room("dialects")
 def test_a_suggestion_is_a_name_of_the_shader_s_tool(
     ctx: moderngl.Context, tmp_path: Path, text: tuple[str, str]
 ) -> None:

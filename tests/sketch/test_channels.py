@@ -16,6 +16,8 @@ from playground.sketch.model import Sketch
 from playground.workbench.channels import channels, source_of, sources, with_source
 from tests.data.films import own_film
 
+pytestmark = pytest.mark.room("dialects")
+
 TWO = """void mainImage(out vec4 c, in vec2 p) {
     c = texelFetch(iChannel0, ivec2(0), 0) + texelFetch(iChannel1, ivec2(0), 0);
 }

@@ -54,6 +54,7 @@ def test_what_is_neither_says_what_is(tmp_path):
         find(tmp_path / "a.pdf")
 
 
+@pytest.mark.room("dialects")
 def test_a_dialect_is_for_shaders(dem):
     with pytest.raises(SketchError, match="--dialect is for a shader file"):
         load(dem, dialect="isf")

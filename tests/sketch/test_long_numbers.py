@@ -10,6 +10,8 @@ from playground.errors import PlaygroundError
 
 from ..loading import load
 
+pytestmark = pytest.mark.room("dialects")
+
 LONG = "9" * 4_400
 HEX = "0x" + "F" * 5_000
 TOY = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, 0.0, 1.0); }"

@@ -14,6 +14,8 @@ from playground.sketch.model import Sketch
 from playground.sketch.save import save
 from playground.workbench.channels import channels, with_source
 
+pytestmark = pytest.mark.room("dialects")
+
 TWO = """void mainImage(out vec4 c, in vec2 p) {
     c = texelFetch(iChannel0, ivec2(0), 0) + texelFetch(iChannel1, ivec2(0), 0);
 }

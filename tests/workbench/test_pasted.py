@@ -44,6 +44,7 @@ SOUND = "vec2 mainSound(int sample, float time) { return vec2(0.0); }\n"
         (f"\ufeff// Waves\r\n{MAIN}", "waves.frag"),
     ],
 )
+@pytest.mark.room("dialects")
 def test_pasted_text_gets_dialect_extension_and_title_name(tmp_path: Path, text: str, name: str) -> None:
     path = keep_text(text, tmp_path)
     assert path == tmp_path / name
@@ -51,6 +52,7 @@ def test_pasted_text_gets_dialect_extension_and_title_name(tmp_path: Path, text:
     assert [file.name for file in tmp_path.iterdir()] == [name]
 
 
+@pytest.mark.room("dialects")
 def test_nothing_is_overwritten_and_the_same_text_is_kept_once(tmp_path: Path) -> None:
     first, second = keep_text(MAIN, tmp_path), keep_text(SHADERTOY, tmp_path)
     assert (first.name, second.name) == ("pasted_1.frag", "pasted_2.frag")
@@ -95,6 +97,7 @@ def test_where_the_folder_is_read_only_the_user_s_own_takes_it(
     assert path.parent.name == "pasted" and path.is_relative_to(tmp_path / "state")
 
 
+@pytest.mark.room("dialects")
 def test_where_the_folder_is_gone_the_user_s_own_takes_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

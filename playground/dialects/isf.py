@@ -17,13 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from playground.allowed_files import leads_outside
-from playground.errors import Diagnostic, ShaderError, nearest
-from playground.json_text import long_number
-from playground.paths import shown
-from playground.shader import expressions
-from playground.shader.declarations import is_declared, uniforms
-from playground.shader.dialects.es import Rewritten, rewritten
-from playground.shader.dialects.foreign import (
+from playground.dialects.es import Rewritten, rewritten
+from playground.dialects.foreign import (
     STAND_INS,
     VIEW,
     Files,
@@ -33,6 +28,11 @@ from playground.shader.dialects.foreign import (
     ShaderChannel,
     stand_in,
 )
+from playground.errors import Diagnostic, ShaderError, nearest
+from playground.json_text import long_number
+from playground.paths import shown
+from playground.shader import expressions
+from playground.shader.declarations import is_declared, uniforms
 from playground.shader.expressions import MAX_LETTERS, ExpressionError
 from playground.shader.header import with_axes
 from playground.shader.parameter import Parameter, Sampling, spell

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from playground.dialects import shadertoy
+from playground.dialects.es import rewritten
+from playground.dialects.foreign import Shader, ShaderChannel, graph_of_shaders
 from playground.errors import ShaderError
 from playground.paths import GLSL
-from playground.shader.dialects import shadertoy
-from playground.shader.dialects.es import rewritten
-from playground.shader.dialects.foreign import Shader, ShaderChannel, graph_of_shaders
 from playground.shader.source import read_source_and_origin
 from playground.sketch.techniques import Techniques
 from playground.sketch.wiring import check_graph

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from playground.shader.dialects.shadertoy import sampler_types
+from playground.dialects.shadertoy import sampler_types
 
 DECLARED = """
 vec3 direction(vec2 p) { return vec3(p, 1.0); }

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from playground.shader.dialects import dialect_of
+from playground.dialects.table import dialect_of
 from playground.sketch.load import load
 from playground.sketch.model import kernels_of
 

@@ -12,10 +12,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from playground.allowed_files import is_file, is_inside, leads_outside
+from playground.dialects.es import Rewritten, version_of
 from playground.errors import Diagnostic, ShaderError, SketchError, nearest
 from playground.paths import GLSL, PART_OF_FILE, shown
 from playground.shader.declarations import Declared, is_declared, takes, uniforms, vertex_outputs
-from playground.shader.dialects.es import Rewritten, version_of
+from playground.shader.dialect import Read
 from playground.shader.header import read_uniforms, title_of
 from playground.shader.kernel import (
     SHAPES,
@@ -492,9 +493,6 @@ class Files:
 # there are more. Before it come the passes that feed its channels, each named like its channel, so that
 # what a user wires to the channel takes its place. Where a shader reads what it or a later one writes,
 # that is what was written in the frame before, and the whole of ``view`` is a loop over the frames.
-
-Read = Callable[[str, Path, Path], Technique]
-"""Return the technique that ``use`` names: see ``Techniques.read``."""
 
 VIEW = "view"
 _BEFORE = "before_"  # begins the input that has a target's content of the frame before

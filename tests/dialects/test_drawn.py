@@ -9,6 +9,7 @@ import pytest
 
 from playground.capture.large import strips
 from playground.data.image_files import write_png
+from playground.dialects.foreign import unfed_warnings
 from playground.engine.engine import Engine
 from playground.engine.plan import PlanRequest
 from playground.engine.plan_warnings import source_warnings
@@ -16,7 +17,6 @@ from playground.engine.planner import make_plan
 from playground.engine.sandbox import Sandbox
 from playground.errors import ParameterError, PlaygroundError, ShaderError, SketchError
 from playground.reduce.inline import inline_sketch
-from playground.shader.dialects.foreign import unfed_warnings
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.load import load
 from playground.sketch.model import ForeignShader, kernels_of

@@ -17,7 +17,7 @@ from playground.sketch.model import ForeignShader, kernels_of
 from playground.sketch.replace_technique import with_texts
 from playground.verify.warnings import warnings_of_kernel
 from tests.dialect_texts import with_mistake
-from tests.engine.test_dialects import DEPRECATED
+from tests.dialects.test_drawn import DEPRECATED
 from tests.main_dialect_texts import MAIN_TEXTS, STATEFUL
 
 from ..loading import load

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from playground.shader.dialects.es import rewritten, version_of
+from playground.dialects.es import rewritten, version_of
 from playground.shader.source import read_source_and_origin
 
 

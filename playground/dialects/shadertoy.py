@@ -27,13 +27,9 @@ from pathlib import Path
 from typing import Any
 
 from playground.allowed_files import SHADERS, how_to_open, is_inside, leads_outside, names_below
-from playground.errors import ShaderError, SketchError, nearest
-from playground.json_text import read_json
-from playground.paths import shown
-from playground.shader.declarations import Declarations, is_declared
-from playground.shader.dialects import foreign
-from playground.shader.dialects.es import rewritten
-from playground.shader.dialects.foreign import (
+from playground.dialects import foreign
+from playground.dialects.es import rewritten
+from playground.dialects.foreign import (
     SAMPLING,
     VIEW,
     Files,
@@ -44,6 +40,10 @@ from playground.shader.dialects.foreign import (
     picture_parameter,
     stand_in,
 )
+from playground.errors import ShaderError, SketchError, nearest
+from playground.json_text import read_json
+from playground.paths import shown
+from playground.shader.declarations import Declarations, is_declared
 from playground.shader.header import title_of
 from playground.shader.parameter import Sampling, spell
 from playground.shader.preprocessor import WEBGL_2, Token, live_code, live_source, readings

@@ -11,7 +11,7 @@ from playground.engine.engine import Engine
 from playground.errors import PlaygroundError, ShaderError
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.model import ForeignShader
-from tests.engine.test_dialects import DEPRECATED, colours
+from tests.dialects.test_drawn import DEPRECATED, colours
 from tests.isf_texts import STATEFUL, TEXTS, VERTEX, with_mistake
 
 from ..loading import load

@@ -14,10 +14,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from playground.dialects import shadertoy
+from playground.dialects.es import Rewritten, rewritten, version_of
+from playground.dialects.foreign import VIEW, Files, Made, Names, Rules, Shader, ShaderChannel
 from playground.shader.declarations import uniforms, vertex_outputs
-from playground.shader.dialects import shadertoy
-from playground.shader.dialects.es import Rewritten, rewritten, version_of
-from playground.shader.dialects.foreign import VIEW, Files, Made, Names, Rules, Shader, ShaderChannel
 from playground.shader.parameter import Sampling
 from playground.shader.preprocessor import WEBGL, Conditions, live_source, macros_of
 from playground.shader.reserved_names import DEPTH, PLAIN_UNIFORMS, SIZES, VALUE

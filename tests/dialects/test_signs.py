@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from playground.dialects.table import dialect_of
 from playground.shader.declarations import is_declared, uniforms, vertex_outputs
-from playground.shader.dialects import dialect_of
 from playground.sketch.load import load
 from playground.sketch.model import PlainFragment
 

@@ -1,0 +1,1 @@
+"""Read shaders of other tools, unchanged, as sketches: Shadertoy, ISF, glslViewer and their like."""
