@@ -6,7 +6,7 @@
 //   source   Rong and Tan 2006, "Jump flooding in GPU with applications to Voronoi diagram and
 //            distance transform"; its rounds are those of glslViewer: one that stays, then
 //            jumps of m/2 down to 1, for m the next power of two of the longer side
-//   tested   tests/engine/test_viewer_passes.py, against SciPy's distance transform
+//   tested   tests/dialects/test_viewer_passes.py, against SciPy's distance transform
 //
 // Its error: a seed may be hidden by others on the way to a texel. Rong and Tan found fewer than
 // 1 % of the texels wrong, and then by the distance to a seed nearly as near.

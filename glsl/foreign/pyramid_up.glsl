@@ -5,7 +5,7 @@
 //   units    none
 //   source   Farbman, Fattal and Lischinski 2011, "Convolution pyramids", section 5 (h1, h2 and g
 //            of the filters for boundary interpolation); divided by alpha, as glslViewer does
-//   tested   tests/engine/test_viewer_passes.py, against NumPy
+//   tested   tests/dialects/test_viewer_passes.py, against NumPy
 #pragma kernel(output = "frame:rgba32f")
 
 uniform sampler2D level;    //! input

@@ -15,6 +15,8 @@ from ..loading import load
 from ..sketch_texts import passes
 from .test_shader_export import FRAME, HEAD, ROUNDING, apart, refusal
 
+pytestmark = pytest.mark.room("dialects")
+
 TOY = """// toy.frag -- a Shadertoy text.
 uniform float amount; // a parameter
 #define TURN(a) mat2(cos(a), sin(a), -sin(a), cos(a))

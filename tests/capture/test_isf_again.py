@@ -12,6 +12,8 @@ from playground.engine.engine import Engine
 
 from ..loading import load
 
+pytestmark = pytest.mark.room("dialects")
+
 KERNEL = """#pragma kernel(output = "height:r32f")
 uniform int mode = 9;                 //! menu("soft", "hard", "none") values(-3, 9, 40)
 uniform vec2 place = vec2(0.0, 3.0);  //! point(-1, 1, 2, 4)

@@ -153,6 +153,7 @@ def test_one_texture_is_a_picture(
 
 @pytest.mark.parametrize("ending", ["fs", "json"])
 @pytest.mark.parametrize("name", ["chain", "alone", "lives", "water"])
+@pytest.mark.room("dialects")
 def test_several_passes_are_read_again_and_drawn_the_same(
     folder: Path, any_engine: Engine, ending: str, name: str
 ) -> None:
@@ -163,6 +164,7 @@ def test_several_passes_are_read_again_and_drawn_the_same(
 
 
 @pytest.mark.parametrize("ending", ["frag", "glsl"])
+@pytest.mark.room("dialects")
 def test_a_text_of_one_pass_is_read_again_and_drawn_the_same(
     folder: Path, any_engine: Engine, ending: str
 ) -> None:
@@ -284,6 +286,7 @@ LOOPS = {
 
 @pytest.mark.parametrize("ending", ["fs", "json"])
 @pytest.mark.parametrize("name", ["grow", "spread"])
+@pytest.mark.room("dialects")
 def test_what_runs_once_a_frame_goes_on_from_its_own_buffer(
     folder: Path, any_engine: Engine, ending: str, name: str
 ) -> None:
@@ -322,6 +325,7 @@ vec4 kernel(ivec2 texel) { return vec4(at(height, texel), wired_extra ? at(extra
 
 
 @pytest.mark.parametrize("ending", ["fs", "json"])
+@pytest.mark.room("dialects")
 def test_an_unwired_input_may_be_handed_to_a_function(folder: Path, any_engine: Engine, ending: str) -> None:
     (folder / "asked.glsl").write_text(ASKED)
     (folder / "a.toml").write_text(HEAD + passes(height="./land") + '[view]\nuse = "./asked"\n')

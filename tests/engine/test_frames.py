@@ -138,11 +138,13 @@ def drawing(folder):
     return looped(folder, "draw", "frame", "iChannel0")
 
 
+@pytest.mark.room("dialects")
 def test_foreign_shader_reads_zeros_before_first_frame(any_engine, drawing):
     result = any_engine.read(drawing, "view.loop", size=(5, 4))
     np.testing.assert_array_equal(np.round(255 * result), np.broadcast_to([0, 1, 50, 255], (4, 5, 4)))
 
 
+@pytest.mark.room("dialects")
 def test_mouse_applies_from_its_frame_and_keeps_earlier_frames(any_engine, drawing):
     any_engine.read(drawing, "view.loop", size=(4, 4), time=4 / 60)
     any_engine.runner.drag = (2.0, 0.0, 0.0, 0.0)
@@ -153,6 +155,7 @@ def test_mouse_applies_from_its_frame_and_keeps_earlier_frames(any_engine, drawi
     np.testing.assert_array_equal(np.round(255 * result[0, 0]), [6, 8, 47, 255])
 
 
+@pytest.mark.room("dialects")
 def test_window_inputs_changing_per_frame_are_frame_uniforms(any_engine, drawing):
     any_engine.draw(drawing, size=(4, 4))
     runner, step = any_engine.runner, any_engine.record.plan.step("view.loop.view")

@@ -18,6 +18,8 @@ from tests.cube_maps import directions, face_and_place
 
 from ..loading import load
 
+pytestmark = pytest.mark.room("dialects")
+
 SIDE = 4
 SAMPLER = {
     "cube": ("samplerCube", (SIDE, 6 * SIDE)),

@@ -93,6 +93,7 @@ def test_the_sandbox_reports_all(tmp_path: Path) -> None:
         ("\u2013", "U+2013, EN DASH"),
     ],
 )
+@pytest.mark.room("dialects")
 def test_a_character_that_glsl_has_not_is_named_as_it_is(any_engine, folder, character, words):
     body = f"    // \u00fc?\n    float a = 2.0{character} 1.0;\n c = vec4(a);"
     text = f"void mainImage(out vec4 c, in vec2 p) {{\n{body} }}\n"
@@ -103,6 +104,7 @@ def test_a_character_that_glsl_has_not_is_named_as_it_is(any_engine, folder, cha
     assert words in first.message and "'?'" not in first.message
 
 
+@pytest.mark.room("dialects")
 def test_a_question_mark_of_the_author_s_own_stays_one(any_engine, folder):
     text = "void mainImage(out vec4 c, in vec2 p) {\n    float a = ? 1.0;  // \u00fc\n c = vec4(a); }\n"
     with pytest.raises(ShaderError) as caught:

@@ -13,6 +13,8 @@ from playground.shader.wrap import FRAGMENT, wrap
 from playground.shader.zero_values import with_zeros
 from playground.sketch.load import load
 
+pytestmark = pytest.mark.room("dialects")
+
 SIZE = (32, 18)
 IN_MAIN = (
     "{}\nvoid mainImage(out vec4 c, in vec2 p) {{« c = vec4(0);» vec2 s = p / iResolution.xy;{}\n{} }}\n"

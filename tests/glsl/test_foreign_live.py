@@ -74,6 +74,7 @@ def test_a_key_is_down_pressed_once_and_toggled():
     assert keyboard.now.down == (), "no column"
 
 
+@pytest.mark.room("dialects")
 def test_the_texture_is_shadertoy_s(any_engine, sketch):
     assert any_engine.read(sketch, "a").shape == (3, 256)
     assert (any_engine.read(sketch, "a") == 0).all(), "a shot has no keys"
@@ -85,6 +86,7 @@ def test_the_texture_is_shadertoy_s(any_engine, sketch):
     np.testing.assert_array_equal(any_engine.render(sketch, size=(2, 2)).array[0, 0], [255, 0, 255, 255])
 
 
+@pytest.mark.room("dialects")
 def test_a_picture_s_hash_goes_by_its_keys(any_engine, sketch):
     hashes = []
     for codes in ([], [A], [A]):
@@ -94,6 +96,7 @@ def test_a_picture_s_hash_goes_by_its_keys(any_engine, sketch):
     assert len({*hashes}) == 3, "none; pressed; held"
 
 
+@pytest.mark.room("dialects")
 def test_its_pass_runs_only_when_a_key_changes(any_engine, sketch):
     keyboard = any_engine.runner.inputs.keyboard
     for codes in ([], [A], [A], [A], [A, LEFT], [A, LEFT]):
@@ -166,6 +169,7 @@ def inputs(any_engine):
     result.close()
 
 
+@pytest.mark.room("dialects")
 def test_a_microphone_s_tone_stands_in_its_texture(any_engine, inputs, tmp_path):
     sounds = FakeSounds(0.02 * np.sin(2 * np.pi * 120 / 2048 * np.arange(60_000)))
     inputs.makers["microphone"] = lambda number: microphone(number, lambda: sounds)
@@ -197,6 +201,7 @@ def test_a_device_is_closed_when_no_picture_asks_for_it(inputs):
     assert sounds.closed
 
 
+@pytest.mark.room("dialects")
 def test_a_camera_s_pictures_are_shown(any_engine, inputs, tmp_path):
     """A camera of FFmpeg's own making: bars, which it draws at 30 pictures a second."""
     made = "smptebars=size=320x240:rate=200"
@@ -212,6 +217,7 @@ def test_a_camera_s_pictures_are_shown(any_engine, inputs, tmp_path):
 
 
 @pytest.mark.parametrize("source", ["microphone", "camera"])
+@pytest.mark.room("dialects")
 def test_without_a_window_nothing_is_opened_and_it_is_said_once(any_engine, tmp_path, source):
     opened, reported = [], []
     any_engine.runner.inputs.makers[source] = opened.append
@@ -227,6 +233,7 @@ def test_without_a_window_nothing_is_opened_and_it_is_said_once(any_engine, tmp_
     ]
 
 
+@pytest.mark.room("dialects")
 def test_a_device_that_is_not_there_is_said_with_its_channel(any_engine, inputs, tmp_path):
     reported = []
     any_engine.warnings.report = reported.append
@@ -269,6 +276,7 @@ def exported(code: str) -> str:
         ("export.json", exported(DOWN.format("texelFetch(iChannel0, ivec2(65, 2), 0).x"))),
     ],
 )
+@pytest.mark.room("dialects")
 def test_a_shadertoy_that_reads_the_keyboard_gets_it(any_engine, tmp_path, name, text):
     (tmp_path / name).write_text(text)
     sketch, keyboard = load(tmp_path / name), any_engine.runner.inputs.keyboard

@@ -21,6 +21,8 @@ from tests.data.films import RATE, colour, own_film, sound, uneven_film
 
 from ..loading import load
 
+pytestmark = pytest.mark.room("dialects")
+
 SKETCH = """format = 1
 size = 8
 [[pass]]

@@ -17,6 +17,8 @@ from playground.sketch.replace_technique import choices, with_technique, with_te
 from ..loading import load
 from ..sketch_texts import map_of, passes
 
+pytestmark = pytest.mark.room("dialects")
+
 # Differences between neighbours are far below 1/255, and below a half float's steps as well.
 FINE = """// Heights as fine as floats.
 uniform float rise; // 0..1

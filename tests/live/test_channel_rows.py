@@ -15,6 +15,8 @@ from playground.workbench.problems import Warnings
 
 from .desk import Bare
 
+pytestmark = pytest.mark.room("dialects")
+
 SHADER = """void mainImage(out vec4 c, in vec2 p) {
     c = texelFetch(iChannel0, ivec2(0), 0) + texelFetch(iChannel3, ivec2(0), 0);
 }

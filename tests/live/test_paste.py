@@ -57,6 +57,7 @@ def level(bare: Bare) -> object:
     return dict(bare.session.sketch.overrides).get("height.level")
 
 
+@pytest.mark.room("dialects")
 def test_a_text_on_the_clipboard_opens_as_a_new_file(pasting: Bare, folder: Path) -> None:
     paste(pasting, SHADER)
     assert pasting.session.path == folder / "half_red.frag" and pasting.session.error is None
@@ -67,6 +68,7 @@ def test_a_text_on_the_clipboard_opens_as_a_new_file(pasting: Bare, folder: Path
     assert f"pasted as half_red.frag in {folder}" in said(pasting)
 
 
+@pytest.mark.room("dialects")
 def test_the_sketch_before_comes_back_with_its_edits(pasting: Bare, folder: Path) -> None:
     pasting.session.drafts.set("height.level", 0.25)
     pasting.run_frames(2)
@@ -84,6 +86,7 @@ def test_the_sketch_before_comes_back_with_its_edits(pasting: Bare, folder: Path
     assert pasting.session.path == folder / "half_red.frag"
 
 
+@pytest.mark.room("dialects")
 def test_a_text_with_a_mistake_is_kept_and_the_picture_stays(pasting: Bare, folder: Path) -> None:
     paste(pasting, BROKEN)
     assert "not_declared" in str(pasting.session.error)
@@ -112,6 +115,7 @@ def test_a_text_pasted_into_a_field_stays_there(pasting: Bare, folder: Path) -> 
     assert not (folder / "half_red.frag").exists()
 
 
+@pytest.mark.room("dialects")
 def test_the_same_text_twice_is_one_file(any_engine: Engine, pasting: Bare, folder: Path) -> None:
     paste(pasting, SHADER)
     paste(pasting, SHADER)

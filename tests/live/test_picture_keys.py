@@ -61,6 +61,7 @@ def test_codes_are_javascript_s():
     assert all(0 < code < 256 for code in CODES.values())
 
 
+@pytest.mark.room("dialects")
 def test_a_key_that_is_no_shortcut_reaches_the_picture_at_once(bare, keys):
     hold(_K.left_arrow, True)
     hold(_K.m, True)
@@ -73,6 +74,7 @@ def test_a_key_that_is_no_shortcut_reaches_the_picture_at_once(bare, keys):
     assert down(bare) == ()
 
 
+@pytest.mark.room("dialects")
 def test_clicked_picture_takes_all_keys_until_esc(bare, keys):
     imgui.get_io().add_mouse_pos_event(1000, 400)
     keys.frames()

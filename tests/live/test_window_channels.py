@@ -15,7 +15,7 @@ from playground.workbench.channels import channels
 
 from .screen import ON_LINUX, Program, Screen
 
-pytestmark = [*ON_LINUX, pytest.mark.slow]
+pytestmark = [*ON_LINUX, pytest.mark.slow, pytest.mark.room("dialects")]
 
 SCREEN = 900, 640  # [pixels]
 SHADER = """void mainImage(out vec4 c, in vec2 p) {

@@ -12,7 +12,7 @@ import pytest
 
 from .screen import ON_LINUX, ROOT, Program, Screen, script
 
-pytestmark = [*ON_LINUX, pytest.mark.slow]
+pytestmark = [*ON_LINUX, pytest.mark.slow, pytest.mark.room("dialects")]
 
 SCREEN = 900, 600  # [pixels]
 FILES = {"first.frag": "void main() { gl_FragColor = vec4(0.0, 0.5, 0.0, 1.0); }\n"}

@@ -175,6 +175,7 @@ def test_an_edited_text_is_that_of_every_pass_that_reads_it(node: Node, tmp_path
         assert any("MY_EDIT" in kernel.source.names for kernel in kernels.values())
 
 
+@pytest.mark.room("dialects")
 def test_text_read_by_no_sketch_file_is_reported_aside(node: Node, tmp_path: Path):
     page = page_of("flood")
     rewritten = next(file for file in page["shared"]["files"] if ":" in file)

@@ -96,6 +96,7 @@ def check_stages(node: Node, page: dict[str, Any], plan: Plan) -> None:
     assert node.run(STAGES, page["shared"], asked) == expected
 
 
+@pytest.mark.room("dialects")
 @pytest.mark.parametrize("name", [*dialect_texts.TEXTS, *isf_texts.TEXTS])
 def test_a_page_makes_the_stages_of_other_tools_shaders(node: Node, tmp_path: Path, name: str):
     folder = tmp_path / "here"

@@ -36,9 +36,10 @@ EVERYDAY = {
     "export cube",
 }
 
-pytestmark = pytest.mark.filterwarnings(
-    f"ignore::{PlaygroundWarning.__module__}.{PlaygroundWarning.__name__}"
-)
+pytestmark = [
+    pytest.mark.filterwarnings(f"ignore::{PlaygroundWarning.__module__}.{PlaygroundWarning.__name__}"),
+    pytest.mark.room("dialects"),
+]
 
 
 def every_text() -> Iterator[tuple[str, dict[str, str], str]]:

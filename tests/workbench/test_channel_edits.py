@@ -19,6 +19,8 @@ from playground.workbench.session import Session
 
 from ..loading import load
 
+pytestmark = pytest.mark.room("dialects")
+
 FIRST = """// First channel
 uniform float gain = 1.0; //! slider(0, 2)
 void mainImage(out vec4 c, in vec2 p) {

@@ -268,6 +268,7 @@ def test_compared_pictures_have_the_same_pixels(slow: Slow):
     compare.release()
 
 
+@pytest.mark.room("dialects")
 def test_shader_sees_mouse_at_same_place_in_smaller_picture(slow: Slow, tmp_path: Path):
     (tmp_path / "pointer.glsl").write_text(POINTER, encoding="utf-8")
     slow.session.open(tmp_path / "pointer.glsl")
