@@ -76,7 +76,7 @@ def _kernel_code(kernel: Kernel, code: str, inputs: Iterable[str]) -> tuple[str 
 
 def _without_own(code: str, name: str) -> str:
     """Blank the functions and structs of a text that have a variable of a name: there it is no texture."""
-    own = re.compile(rf"\b(?:bool|int|uint|float|[biu]?vec[234]|mat\w+)\s+{name}\b")
+    own = re.compile(rf"\b(?!(?:return|else|case)\b)[A-Za-z_]\w*\s+{name}\b")
     text = code
     for match in _BLOCK.finditer(code):
         end = _end_of_body(code, match.end())

@@ -224,6 +224,19 @@ def test_live_objects_do_not_grow_with_the_tiles(any_engine: Engine, alive: Coun
     assert alive == before
 
 
+def test_variables_of_other_functions_may_have_an_input_s_name(any_engine: Engine, tmp_path: Path):
+    """Of types that GLSL has, and of structs: there the name is no input."""
+    above = (
+        "struct Shown { vec4 colour; };\n"
+        "vec4 of_struct(Shown shown) { return shown.colour; }\n"
+        "vec4 of_vector(vec4 given) { vec4 shown = given; return shown; }\n"
+    )
+    body = "return of_struct(Shown(of_vector(texelFetch(shown, texel, 0))));"
+    sketch = two_passes(tmp_path, body, above)
+    parts = together(any_engine, sketch, (64, 64), (32, 32))
+    np.testing.assert_array_equal(parts, any_engine.render(sketch, size=(64, 64)).array)
+
+
 @pytest.mark.parametrize(
     ("body", "above", "message"),
     [
@@ -231,6 +244,12 @@ def test_live_objects_do_not_grow_with_the_tiles(any_engine: Engine, alive: Coun
         ("return textureLod(shown, vec2(0.5), 0.0);", "", "it reads 'shown' elsewhere"),
         ("texel += 1; return texelFetch(shown, texel, 0);", "", "it changes its 'texel'"),
         ("return of(texel);", "vec4 of(ivec2 texel) { return texelFetch(shown, texel, 0); }", "elsewhere"),
+        (
+            "return shown_of(texel);",
+            "vec4 shown_of(ivec2 texel) { if (texel.x < 0) return vec4(0.0); else\n"
+            "return texelFetch(shown, texel, 0); }",
+            "elsewhere",
+        ),
     ],
 )
 def test_what_reads_its_neighbours_is_refused(any_engine: Engine, tmp_path: Path, body, above, message):
