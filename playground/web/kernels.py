@@ -53,9 +53,9 @@ class Kernels:
 
     def _written(self, kernel: Kernel) -> dict[str, Any]:
         data: dict[str, Any] = {
-            "name": _name(kernel),
+            "name": name_of(kernel),
             "kind": kernel.kind,
-            "file": self.texts.add(kernel.source, self.folder, _name(kernel)),
+            "file": self.texts.add(kernel.source, self.folder, name_of(kernel)),
             "title": kernel.title,
             "outputs": [{"name": output.name, "format": output.format} for output in kernel.outputs],
             "inputs": [
@@ -94,7 +94,7 @@ class Kernels:
         stages = {}
         for name, recipe in recipes.items():
             own = kernel.vertex_source if name == "vertex" and isinstance(kernel, ForeignShader) else None
-            file = self.texts.add(own, self.folder, f"{_name(kernel)} vertex") if own else ""
+            file = self.texts.add(own, self.folder, f"{name_of(kernel)} vertex") if own else ""
             stages[name] = stage_data(recipe, file)
         return stages
 
@@ -106,7 +106,7 @@ def sampling_data(sampling: Sampling) -> dict[str, Any]:
     return always | {name: value for name, value in whole.items() if value}
 
 
-def _name(kernel: Kernel) -> str:
+def name_of(kernel: Kernel) -> str:
     """Return a kernel's name, of one that was opened by its path the file's."""
     return Path(kernel.name).name if Path(kernel.name).is_absolute() else kernel.name
 
@@ -140,20 +140,20 @@ def _used(kernel: Kernel) -> list[str]:
 def _refuse(kernel: Kernel) -> None:
     """Raise ``SketchError`` for a kernel that WebGL2 cannot run."""
     if isinstance(kernel, ComputeVariant | PlainCompute):
-        raise kernel.error(f"{_name(kernel)} is a compute shader, which no web page can run")
+        raise kernel.error(f"{name_of(kernel)} is a compute shader, which no web page can run")
     if isinstance(kernel, CpuSource):
         return
     if name := lacking(kernel.source.code):
-        raise kernel.error(f"{_name(kernel)} names {name}, which the GLSL of web pages has not")
+        raise kernel.error(f"{name_of(kernel)} names {name}, which the GLSL of web pages has not")
     if isinstance(kernel, Draw) and kernel.over:
-        raise kernel.error(f"{_name(kernel)} draws over the pixels of another draw, which no web page does")
+        raise kernel.error(f"{name_of(kernel)} draws over the pixels of another draw, which no web page does")
     floats = any(split_format(output.format)[1] == "f4" for output in kernel.outputs)
     if isinstance(kernel, Draw) and kernel.blend != "none" and floats:
-        raise kernel.error(f"{_name(kernel)} blends 32-bit floats, which many browsers cannot; 16f can")
+        raise kernel.error(f"{name_of(kernel)} blends 32-bit floats, which many browsers cannot; 16f can")
     names = [declared.name for declared in kernel.inputs]
     names += [parameter.name for parameter in kernel.file_parameters]
     names += [o.name for o in kernel.outputs if kernel.reads(previous_name(kernel, o))]
     if len(names) > UNITS:
         raise kernel.error(
-            f"{_name(kernel)} reads {len(names)} textures; a web page has {UNITS} at a time for certain"
+            f"{name_of(kernel)} reads {len(names)} textures; a web page has {UNITS} at a time for certain"
         )

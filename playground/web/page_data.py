@@ -7,7 +7,8 @@ from typing import Any
 
 from playground.engine.engine import Engine
 from playground.sketch.files import has_arrays
-from playground.sketch.model import DEFAULT_PICTURE, Sketch
+from playground.sketch.model import DEFAULT_PICTURE, Sketch, kernels_of
+from playground.web.kernels import name_of
 from playground.web.packed import pack_data
 from playground.web.plan import FORMAT, sketch_data
 from playground.web.shared import SharedData
@@ -46,5 +47,8 @@ def page_data(
         for sketch, sketch_entry in zip(sketches, written, strict=True):
             if has_arrays(sketch):  # no file says them, so there is nothing to download
                 continue
+            # What fast variants replace in a page as well: an edited file that they share is edited in all.
+            for _, kernel in kernels_of(sketch.graph):
+                shared.texts.add(kernel.source, sketch.folder, name_of(kernel))
             sketch_entry["pack"] = pack_data(sketch, shared.texts.names, shared.blobs)
     return {"format": FORMAT, "sketches": written, "shared": shared.data()}

@@ -150,9 +150,12 @@ def test_what_keyframes_steer_is_in_a_shot(node: Node, tmp_path: Path):
 
 
 def library_files(name: str) -> list[str]:
-    """Return a few texts that a sketch's passes read: kernels, and the one that most of them include."""
-    kernels = [kernel for _, kernel in kernels_of(load(name).graph)]
-    read = [file for kernel in kernels for file in kernel.files]
+    """Return a few texts that a sketch's passes read: kernels, and the one that most of them include.
+
+    Those that fast variants alone read are left out: no file of the sketch names them.
+    """
+    sources = [kernel.source for _, kernel in kernels_of(load(name).graph)]
+    read = [file for source in sources for file in {source.path, *(to for *_, to in source.includes)}]
     texts = {f"{GLSL}/{file}": file for file in page_of(name)["shared"]["files"] if ":" not in file}
     there = [texts[file] for file in read if file in texts and file.endswith((".glsl", ".frag"))]
     files = sorted(set(there))
@@ -173,6 +176,12 @@ def test_an_edited_text_is_that_of_every_pass_that_reads_it(node: Node, tmp_path
             file
         )
         assert any("MY_EDIT" in kernel.source.names for kernel in kernels.values())
+
+
+def test_text_of_fast_variants_alone_is_reported_aside(node: Node, tmp_path: Path):
+    page, file = page_of("jacksboro"), "terrain/blocks.glsl"
+    _, aside = version(node, tmp_path, page, texts={file: f"{page['shared']['files'][file]}\n"})
+    assert aside == [file]
 
 
 @pytest.mark.room("dialects")
