@@ -336,6 +336,7 @@ class _Slot(threading.Thread):
             self._task, task.slot = task, self
         self._working.set()
         process.send(data)
+        process.encoder.sent()
         while (message := process.receive()).kind != "answer":
             if message.kind == "progress":
                 process.clock.begin(message.value)

@@ -120,15 +120,20 @@ class Encoder:
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[str, Kernel]] = {}  # by identity: held, so that it stays its own
+        self._encoded = self._known  # of the last message, which may not have been sent
         self._names = itertools.count()
 
     def encode(self, message: object) -> bytes:
-        """Return a message as bytes."""
+        """Return a message as bytes; call ``sent`` once the other end has got them."""
         stream = io.BytesIO()
         pickler = _Pickler(stream, self._known, self._names)
         pickler.dump(message)
-        self._known = pickler.used
+        self._encoded = pickler.used
         return pickle.dumps(pickler.news, pickle.HIGHEST_PROTOCOL) + stream.getvalue()
+
+    def sent(self) -> None:
+        """Note that the last message was sent: its kernels are known at the other end."""
+        self._known = self._encoded
 
 
 class Decoder:

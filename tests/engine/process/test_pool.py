@@ -18,6 +18,8 @@ from playground.engine.process.child import Outcome
 from playground.engine.process.pool import OPEN, Limits, Pool, Task
 from playground.engine.process.worker import Cancelled, UnexpectedError, summary_of
 from playground.errors import ContextError, SandboxCrash, ShaderError
+from playground.sketch.load import load
+from playground.sketch.model import kernels_of
 
 Soon = Callable[[Callable[[], object]], bool]
 Alive = Callable[[int], bool]
@@ -214,6 +216,27 @@ def test_a_request_is_cancelled_and_the_next_is_not(pool: Pool, soon: Soon):
     stubborn.cancel(0.1)
     assert isinstance(stubborn.result().error, Cancelled)
     assert value(pool, "number") != pid, "it was killed"
+
+
+class CancelsItself:
+    """A part of a request that is cancelled while it is encoded."""
+
+    task: Task | None = None
+
+    def __reduce__(self) -> tuple[type[str], tuple[()]]:
+        while self.task is None:
+            time.sleep(0.001)
+        self.task.cancel()
+        return str, ()
+
+
+def test_kernels_of_request_cancelled_unsent_come_with_the_next(pool: Pool):
+    _, kernel = next(iter(kernels_of(load("l_dot_n").graph)))
+    assert value(pool, "echo", 1) == 1
+    part = CancelsItself()
+    part.task = pool.submit(("echo", [kernel, part]))
+    assert isinstance(part.task.result().error, Cancelled)
+    assert value(pool, "echo", kernel) == kernel
 
 
 @pytest.mark.parametrize("ready", [False, True])

@@ -48,6 +48,7 @@ class Ends:
     def send(self, message: object) -> object:
         data = self.encoder.encode(message)
         self.bytes = len(data)
+        self.encoder.sent()
         return self.decoder.decode(data)
 
 
@@ -94,6 +95,14 @@ def test_only_what_changed_is_sent(ends, folder):
     assert ends.bytes < whole / 4
     assert {path for path in after if after[path] is not before[path]} == {"height", "again"}
     assert after["height"] is after["again"], "one object stays one"
+
+
+def test_what_was_encoded_and_not_sent_is_sent_by_the_next(ends, folder):
+    request = TrySketch(load(folder))
+    ends.encoder.encode(request)  # cancelled before it was sent
+    assert ends.send(request) == request
+    ends.encoder.encode(TryLibrary("a", "b"))
+    assert ends.send(request) == request
 
 
 def test_neither_end_holds_what_is_no_longer_used(ends, folder):
