@@ -26,12 +26,6 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.api import headless as headless
     from playground.api import parameters as parameters
     from playground.api import render as render
-    from playground.capture.export import export as export
-    from playground.capture.large import write_large as write_large
-    from playground.capture.sequence import render_sequence as render_sequence
-    from playground.capture.sheet import render_sweep as render_sweep
-    from playground.capture.sweep_data import sweep as sweep
-    from playground.capture.video import render_video as render_video
     from playground.engine.engine import Engine as Engine
     from playground.engine.frame import Frame as Frame
     from playground.errors import ContextError as ContextError
@@ -45,8 +39,14 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.errors import SandboxTimeout as SandboxTimeout
     from playground.errors import ShaderError as ShaderError
     from playground.errors import SketchError as SketchError
-    from playground.notebook.show import compare as compare
-    from playground.notebook.show import widget as widget
+    from playground.publish.export import export as export
+    from playground.publish.large import write_large as write_large
+    from playground.publish.notebook.show import compare as compare
+    from playground.publish.notebook.show import widget as widget
+    from playground.publish.sequence import render_sequence as render_sequence
+    from playground.publish.sheet import render_sweep as render_sweep
+    from playground.publish.sweep_data import sweep as sweep
+    from playground.publish.video import render_video as render_video
     from playground.shader.parameter import Parameter as Parameter
     from playground.sketch.find import shipped_sketches as shipped_sketches
     from playground.sketch.load import load as load
@@ -57,17 +57,17 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
 
 _NAMES = {
     "playground.api": "headless render parameters",
-    "playground.capture.export": "export",
-    "playground.capture.large": "write_large",
-    "playground.capture.sequence": "render_sequence",
-    "playground.capture.sheet": "render_sweep",
-    "playground.capture.sweep_data": "sweep",
-    "playground.capture.video": "render_video",
+    "playground.publish.export": "export",
+    "playground.publish.large": "write_large",
+    "playground.publish.sequence": "render_sequence",
+    "playground.publish.sheet": "render_sweep",
+    "playground.publish.sweep_data": "sweep",
+    "playground.publish.video": "render_video",
     "playground.engine.engine": "Engine",
     "playground.engine.frame": "Frame",
     "playground.errors": "ContextError DataError ParameterError PlainFormWarning PlaygroundError "
     "PlaygroundWarning SandboxCrash SandboxError SandboxTimeout ShaderError SketchError",
-    "playground.notebook.show": "compare widget",
+    "playground.publish.notebook.show": "compare widget",
     "playground.sketch.find": "shipped_sketches",
     "playground.sketch.load": "load",
     "playground.sketch.model": "Camera Shot Sketch",

@@ -38,10 +38,10 @@ ROOT = Path(__file__).resolve().parent.parent
 SUBJECTS = {
     "planner": ["playground/engine/planner.py", "playground/engine/sizes.py", "playground/engine/plan.py"],
     "staleness": ["playground/engine/cache_keys.py", "playground/engine/cache.py"],
-    "drafts": ["playground/workbench/drafts.py", "playground/workbench/edits.py"],
+    "drafts": ["playground/studio/edits/drafts.py", "playground/studio/edits/edits.py"],
     "header": ["playground/shader/header.py", "playground/shader/kernel.py"],
     "save": ["playground/sketch/save.py", "playground/sketch/assign.py"],
-    "judge": ["playground/shots/judge.py", "playground/shots/compare.py"],
+    "judge": ["playground/verify/shots/judge.py", "playground/verify/shots/compare.py"],
     "elevation": ["playground/data/elevation.py", "playground/data/grid.py"],
 }
 """What is broken, each as often as another: the modules that hold the most of its decisions."""

@@ -51,14 +51,17 @@ def test_the_wheel_carries_every_file_of_the_library(wheel: Path):
     for path in glsl:
         assert f"playground/{path.relative_to(ROOT).as_posix()}" in inside
     assert "playground/py.typed" in inside
-    page = [p for p in (ROOT / "playground/shots/page").iterdir() if p.is_file()]
+    page = [p for p in (ROOT / "playground/verify/shots/page").iterdir() if p.is_file()]
     assert {"report.html", "report.css", "viewer.js"} <= {path.name for path in page}
     for path in page:
-        assert f"playground/shots/page/{path.name}" in inside
+        assert f"playground/verify/shots/page/{path.name}" in inside
     shaders = list((ROOT / "playground/shader/shaders").iterdir())
     assert shaders and inside >= {f"playground/shader/shaders/{path.name}" for path in shaders}
-    web = {name for name in inside if name.startswith("playground/web/") and not name.endswith(".py")}
-    bundles = {f"playground/web/bundle/{path.name}" for path in (ROOT / "playground/web/bundle").glob("*")}
+    web = {name for name in inside if name.startswith("playground/publish/web/") and not name.endswith(".py")}
+    bundles = {
+        f"playground/publish/web/bundle/{path.name}"
+        for path in (ROOT / "playground/publish/web/bundle").glob("*")
+    }
     assert bundles and web == bundles
     tables = list((ROOT / "playground/sketch").glob("*.toml"))
     assert tables and inside >= {f"playground/sketch/{path.name}" for path in tables}

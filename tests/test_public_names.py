@@ -66,7 +66,7 @@ OPENS = ("headless", "Engine.release", "Engine.driver", "ContextError", "widget"
 
 # Imported here: what is imported first while another is in its place would keep that.
 HOMES = [
-    importlib.import_module(f"playground.{home}") for home in ("api", "capture.export", "capture.series")
+    importlib.import_module(f"playground.{home}") for home in ("api", "publish.export", "publish.series")
 ]
 
 

@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 from playground.allowed_files import ELEVATIONS, VECTORS
-from playground.capture.atomic_group import refuse_foreign_files
 from playground.data.content_hash import content_hash, content_key
 from playground.data.elevation import read_elevation
 from playground.data.image_files import picture_size, read_image, read_png
@@ -20,12 +19,13 @@ from playground.data.models import read_model
 from playground.data.vectors import read_vectors
 from playground.errors import PlaygroundError
 from playground.flight.record import read_record
+from playground.publish.atomic_group import refuse_foreign_files
 from playground.shader.source import read_source, read_text
-from playground.shots.results import digests_of, read_result
 from playground.sketch.files import find_file
 from playground.sketch.find import find
 from playground.sketch.load import load
-from playground.workbench.text_file import OpenText
+from playground.studio.code.text_file import OpenText
+from playground.verify.shots.results import digests_of, read_result
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system's folders hold files alone")
 

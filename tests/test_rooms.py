@@ -23,9 +23,9 @@ CORE_TESTS = (
     "tests/sketch/test_load.py",
     "tests/shader/test_outline.py",
     "tests/data/test_resample.py",
-    "tests/live/test_escape_layers.py",  # a panel of a window, without a screen
-    "tests/live/test_keys.py",
-    "tests/workbench/test_pasted.py",
+    "tests/studio/live/test_escape_layers.py",  # a panel of a window, without a screen
+    "tests/studio/live/test_keys.py",
+    "tests/studio/workbench/test_pasted.py",
 )
 
 

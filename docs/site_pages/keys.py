@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from playground.live.keymap import GESTURES
-from playground.live.keys import KEYS
+from playground.studio.input.keymap import GESTURES
+from playground.studio.input.keys import KEYS
 
 from .markdown import code, escaped, table
 

@@ -16,9 +16,9 @@ from playground.shader.parameter import read_whole
 from playground.terminal import note, print_json, print_table, progress
 
 if TYPE_CHECKING:
-    from playground.bench.against import Change
-    from playground.bench.results import Results
-    from playground.bench.rows import Row
+    from playground.verify.bench.against import Change
+    from playground.verify.bench.results import Results
+    from playground.verify.bench.rows import Row
 
 HELP = help_text(
     "Time techniques, frames, starts and saves next to what else does the same.\n\n"
@@ -69,11 +69,11 @@ def bench(
     device: options.Device = None,
 ) -> None:
     """Time techniques, frames, starts and saves next to what else does the same."""
-    from playground.bench.against import changes
-    from playground.bench.results import read, write
-    from playground.bench.room import Options
-    from playground.bench.rows import chosen
-    from playground.bench.suite import planned, run
+    from playground.verify.bench.against import changes
+    from playground.verify.bench.results import read, write
+    from playground.verify.bench.room import Options
+    from playground.verify.bench.rows import chosen
+    from playground.verify.bench.suite import planned, run
 
     rows = chosen(names or ())
     if listed:
@@ -85,7 +85,7 @@ def bench(
         raise ParameterError("--fail compares with earlier results: name them by --against FILE")
     earlier = [read(path) for path in against or ()]
     if page is not None:
-        from playground.bench.page import check_plots
+        from playground.verify.bench.page import check_plots
 
         check_plots()
     renderer: Renderer = ctx.obj.or_else(software, device)
@@ -98,13 +98,13 @@ def bench(
     if output is not None:
         write(results, output)
     if page is not None:
-        from playground.bench.page import write_page
+        from playground.verify.bench.page import write_page
 
         write_page(results, earlier, page, clock)
     before = max(earlier, key=lambda each: each.date, default=None)
     compared = changes(results, before, clock) if before is not None else []
     if as_json:
-        from playground.bench.results import as_json as whole
+        from playground.verify.bench.results import as_json as whole
 
         print_json({**whole(results), "changes": [_change_json(change) for change in compared]})
     else:
@@ -127,9 +127,9 @@ def _listed(row: Row) -> tuple[str, ...]:
 
 
 def _print(results: Results, compared: Sequence[Change], sides: Sequence[int], clock: str) -> None:
-    from playground.bench.against import MIN_RATIO
-    from playground.bench.growth import growth
-    from playground.bench.table import HEADINGS, rows_of
+    from playground.verify.bench.against import MIN_RATIO
+    from playground.verify.bench.growth import growth
+    from playground.verify.bench.table import HEADINGS, rows_of
 
     has = results.machine
     note(f"{has['renderer']}, {has['processors']} processors, load {has['load']:g}; {clock} time, medians")

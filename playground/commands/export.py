@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from playground.capture.extensions import DEFAULT_GRID, ENDINGS, KINDS, PIPED
 from playground.commands import options
 from playground.commands.arguments import (
     Moment,
@@ -34,10 +33,11 @@ from playground.errors import (
     ShaderError,
     SketchError,
 )
+from playground.publish.extensions import DEFAULT_GRID, ENDINGS, KINDS, PIPED
 from playground.terminal import busy, complain, note
 
 if TYPE_CHECKING:
-    from playground.capture.export_options import Form
+    from playground.publish.export_options import Form
 
 
 HELP = help_text(
@@ -72,7 +72,7 @@ HELP = help_text(
 
 def _complete_language(incomplete: str) -> list[str]:
     """Return the codes of a page's languages that complete a word."""
-    from playground.web.page import LANGUAGES
+    from playground.publish.web.page import LANGUAGES
 
     return [code for code in LANGUAGES if code.startswith(incomplete)]
 
@@ -158,7 +158,7 @@ def export(
     device: options.Device = None,
 ) -> None:
     """Write the terrain or a texture to files, and print the files' paths."""
-    from playground.capture.export_options import Form
+    from playground.publish.export_options import Form
     from playground.sketch.load import load
 
     form = Form(
@@ -193,8 +193,8 @@ def _write_piped(
     moment: Moment, names: list[str], ending: str, form: Form, driver: str, renderer: Renderer
 ) -> None:
     """Write one file to standard output, by way of a folder that is removed."""
-    from playground.capture.export import prepare, run
-    from playground.capture.export_options import check
+    from playground.publish.export import prepare, run
+    from playground.publish.export_options import check
 
     if len(names) > 1:
         raise ParameterError("--to - writes one file to standard output; leave the other --to out")
@@ -216,9 +216,9 @@ def _write_piped(
 
 
 def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: Renderer) -> None:
-    from playground.capture.export import ExportJob, prepare, run
-    from playground.capture.export_options import check
     from playground.files import new_name
+    from playground.publish.export import ExportJob, prepare, run
+    from playground.publish.export_options import check
 
     sketch = moment.sketch
     with ExitStack() as stack:
@@ -276,7 +276,7 @@ def _read_format(text: str) -> str:
 
 
 def _refuse_twins(paths: list[Path]) -> None:
-    from playground.capture.export_options import sidecar_paths
+    from playground.publish.export_options import sidecar_paths
 
     taken: set[Path] = set()
     for path in paths:

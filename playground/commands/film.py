@@ -16,7 +16,7 @@ from playground.sketch.model import DEFAULT_PICTURE
 from playground.terminal import note, progress
 
 if TYPE_CHECKING:
-    from playground.capture.series import Series, Sink
+    from playground.publish.series import Series, Sink
 
 _FRAMES = re.compile(r"(\d{1,7})(?:\.\.(\d{1,7}))?")
 
@@ -73,7 +73,7 @@ class SeriesJob:
 
     def make(self) -> None:
         """Make a video, numbered pictures or a sheet, and print the paths of what was written."""
-        from playground.capture.series import write_series
+        from playground.publish.series import write_series
 
         series, options = self._series(), self.options
         verb = "sweeping" if options.sweeps else "drawing" if options.frames else "filming"
@@ -89,8 +89,8 @@ class SeriesJob:
 
     def _series(self) -> Series:
         """Return what is drawn; raise ``ParameterError`` for what cannot be."""
-        from playground.capture.series import FPS, SWEEP_FPS, SWEEP_SIZE, Series
-        from playground.capture.sweep import DEFAULT_STEPS
+        from playground.publish.series import FPS, SWEEP_FPS, SWEEP_SIZE, Series
+        from playground.publish.sweep import DEFAULT_STEPS
 
         options, moment = self.options, self.moment
         if options.sweeps:
@@ -113,9 +113,9 @@ class SeriesJob:
     @contextmanager
     def _sink(self, series: Series) -> Iterator[Sink]:
         """Return what the series is written into; refuse what could not be written."""
-        from playground.capture.sequence import NumberedFiles, check_pattern
-        from playground.capture.sheet import Sheet
-        from playground.capture.video import QUALITY, VideoFile
+        from playground.publish.sequence import NumberedFiles, check_pattern
+        from playground.publish.sheet import Sheet
+        from playground.publish.video import QUALITY, VideoFile
 
         options, name = self.options, self.moment.sketch.name
         if options.video:
@@ -162,7 +162,7 @@ def _pattern(output: str, name: str) -> str:
 @contextmanager
 def _noting_stop() -> Iterator[None]:
     """Note what is left of a video that was interrupted."""
-    from playground.capture.video import Stopped
+    from playground.publish.video import Stopped
 
     try:
         yield

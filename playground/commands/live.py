@@ -143,7 +143,7 @@ def command() -> Callable[..., None]:
 
 
 def _clipboard() -> str:
-    from playground.live.clipboard import clipboard_text
+    from playground.studio.clipboard import clipboard_text
 
     return clipboard_text()
 
@@ -192,16 +192,16 @@ def open_window(
     remotes: dict[str, Any] | None = None,
     **options: Any,
 ) -> None:
-    """Open a window and stay until it is closed; ``options`` are those of ``playground.live.app.run``."""
+    """Open a window and stay until it is closed; ``options`` are those of ``playground.studio.app.run``."""
     from playground.engine.disk_cache import limit_in
 
     limit = (
         0 if no_cache else limit_in()
     )  # a wrong value in the environment is an error before a window opens
     from playground.engine.sandbox import Sandbox
-    from playground.remote.remotes import RemoteOptions, Remotes
     from playground.sketch.find import find, is_pack
     from playground.sketch.load import load
+    from playground.studio.remote.remotes import RemoteOptions, Remotes
 
     if sketch and not is_pack(Path(sketch)):
         find(sketch)  # says so before anything is started, where there is none
@@ -212,7 +212,7 @@ def open_window(
         for sentence in opened.sentences:
             say(sentence)  # where it is reached was asked for
         sandbox.start()  # it is warm by the time that the window, whose parts take long to read, is there
-        from playground.live.app import run
+        from playground.studio.app import run
 
         options |= {"cache_limit": limit, "report": complain, "sandbox": sandbox, "remotes": opened}
         status = run(sketch, size=size, software=renderer.software, values=values, **options)

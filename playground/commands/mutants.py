@@ -20,9 +20,9 @@ from playground.paths import PLAIN_SKETCH, shown
 from playground.terminal import note, painted, print_json, print_table, progress
 
 if TYPE_CHECKING:
-    from playground.shots.mutants.repeatability import Redrawn
-    from playground.shots.mutants.suite import MutantResult
-    from playground.shots.suite import RenderedShot
+    from playground.verify.shots.mutants.repeatability import Redrawn
+    from playground.verify.shots.mutants.suite import MutantResult
+    from playground.verify.shots.suite import RenderedShot
 
 HELP = help_text(
     "Break a sketch in every known way, and see whether the comparison of its pictures tells.\n\n"
@@ -65,9 +65,9 @@ def mutants(
     device: options.Device = None,
 ) -> None:
     """Break a sketch in every known way, and see whether the comparison of its pictures tells."""
-    from playground.shots.mutants.repeatability import redraw
-    from playground.shots.mutants.suite import MutantRunner, named, shot_of
     from playground.sketch.load import load
+    from playground.verify.shots.mutants.repeatability import redraw
+    from playground.verify.shots.mutants.suite import MutantRunner, named, shot_of
 
     count = read_option("--again", again, within(0, 10**6), "a whole number, as 20") or 0
     chosen = named(only or ())
@@ -106,8 +106,8 @@ def mutants(
 
 
 def _print(results: Sequence[MutantResult]) -> None:
-    from playground.shots.mutants.suite import kill_rate, survivors
-    from playground.shots.mutants.tiers import TIERS
+    from playground.verify.shots.mutants.suite import kill_rate, survivors
+    from playground.verify.shots.mutants.tiers import TIERS
 
     rows = [_row(result) for result in results if result.applies and not result.unseen]
     headings: tuple[str, ...] = ("mutant", *_NUMBERS, *TIERS, "broken")
@@ -162,8 +162,8 @@ def _print_again(redrawn: Sequence[Redrawn]) -> None:
 def _as_json(
     sketch: str, renderer: str, results: Sequence[MutantResult], redrawn: Sequence[Redrawn]
 ) -> dict[str, object]:
-    from playground.shots.mutants.suite import kill_rate, survivors
-    from playground.shots.mutants.tiers import TIERS
+    from playground.verify.shots.mutants.suite import kill_rate, survivors
+    from playground.verify.shots.mutants.tiers import TIERS
 
     tiers = {}
     for number, tier in enumerate(TIERS):
@@ -183,7 +183,7 @@ def _as_json(
 def _write(folder: Path, expected: Mapping[str, RenderedShot], results: Sequence[MutantResult]) -> None:
     """Write each mutant's picture and its difference ×16, and the unbroken shots."""
     from playground.data.image_files import write_png
-    from playground.shots.compare import difference_picture
+    from playground.verify.shots.compare import difference_picture
 
     for name, picture in expected.items():
         write_png(folder / f"unbroken.{name}.png", picture.array)

@@ -35,7 +35,7 @@ def pack(
     ] = "",
 ) -> None:
     """Pack a sketch into one zip."""
-    from playground.capture import pack as packing
+    from playground.publish import pack as packing
     from playground.shader.libraries import how_to_name, libraries_of
     from playground.sketch.find import ENDING, read_pack, summary
     from playground.sketch.load import load
@@ -57,8 +57,8 @@ def pack(
 
 def _references(sketch: Sketch) -> Iterator[tuple[Path, str]]:
     """Yield the sketch's reference pictures, and where they go in its folder."""
-    from playground.shots.plugin_constants import SCREENSHOTS
-    from playground.shots.references import home_of
+    from playground.verify.shots.plugin_constants import SCREENSHOTS
+    from playground.verify.shots.references import home_of
 
     try:
         home = home_of(sketch)

@@ -35,8 +35,8 @@ from playground.paths import quoted
 from playground.terminal import console_for, has_bars, note
 
 if TYPE_CHECKING:
-    from playground.reduce.initial_case import Question
-    from playground.reduce.search import Search, State
+    from playground.verify.reduce.initial_case import Question
+    from playground.verify.reduce.search import Search, State
 
 HELP = help_text(
     "Shrink a sketch that fails to the smallest that still fails in the same way.\n\n"
@@ -120,7 +120,7 @@ def reduce(
     device: options.Device = None,
 ) -> None:
     """Shrink a sketch that fails to the smallest that still fails."""
-    from playground.reduce.initial_case import Criterion, Question
+    from playground.verify.reduce.initial_case import Criterion, Question
 
     apart = read_option("--tolerance", tolerance, within(0.0, 1e9), "a number, 0 or more, as 0.01")
     most = read_option("--tries", tries, within(0, 10**9), "a whole number; 0 for no end")
@@ -218,9 +218,9 @@ def _environment(settings: list[str] | None) -> dict[str, str]:
 
 def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: bool) -> None:
     """Shrink the sketch, and write what is left of it into the folder."""
-    from playground.reduce.initial_case import CandidateBench
-    from playground.reduce.output import Account, claim, plain_texts, write_folder
-    from playground.reduce.search import Search
+    from playground.verify.reduce.initial_case import CandidateBench
+    from playground.verify.reduce.output import Account, claim, plain_texts, write_folder
+    from playground.verify.reduce.search import Search
 
     claim(folder)
     with CandidateBench(question) as bench, _shown() as show:

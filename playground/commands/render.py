@@ -211,7 +211,7 @@ def write_output(moment: Moment, output: Output, renderer: Renderer) -> None:
 
 def _note_hidden_defaults(sketch: Sketch) -> None:
     """Note which defaults of the sketch's own kernels have no effect, because its own files override them."""
-    from playground.verify.warnings import shadowed_by_files
+    from playground.engine.sketch_warnings import shadowed_by_files
 
     hidden = shadowed_by_files(sketch)
     for warning in hidden[:_MAX_LISTED]:
@@ -223,7 +223,7 @@ def _note_hidden_defaults(sketch: Sketch) -> None:
 
 def _draw(engine: Engine, output: Output, moment: Moment, target: Path) -> None:
     """Draw the picture, or read the texture, and write it: in parts where it is too large for one frame."""
-    from playground.capture.large import is_large
+    from playground.publish.large import is_large
 
     if not output.texture and is_large(engine, moment.sketch, output.size):
         if output.profile:
@@ -272,7 +272,7 @@ def _note_not_finite(engine: Engine) -> None:
 
 
 def _draw_large(engine: Engine, moment: Moment, size: tuple[int, int], target: Path) -> None:
-    from playground.capture.large import count_parts, encode_strips, strips, write_large
+    from playground.publish.large import count_parts, encode_strips, strips, write_large
 
     parts = count_parts(moment.sketch, size)
     with progress(f"rendering {moment.sketch.name} in parts", parts) as done:

@@ -77,7 +77,7 @@ def _rows(sketch: Sketch) -> list[dict[str, Any]]:
     """Describe each shot, as JSON takes it."""
     from playground.errors import DataError
     from playground.paths import shown
-    from playground.shots.references import accepted, home_of
+    from playground.verify.shots.references import accepted, home_of
 
     try:
         home = home_of(sketch) / sketch.name

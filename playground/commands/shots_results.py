@@ -51,8 +51,8 @@ def report(
     ] = None,
 ) -> None:
     """Make one HTML file of the results of screenshot tests."""
-    from playground.shots.report import write_report
-    from playground.shots.results import FOLDER
+    from playground.verify.shots.report import write_report
+    from playground.verify.shots.results import FOLDER
 
     print(write_report(folder or Path(FOLDER), output))
 
@@ -70,9 +70,9 @@ def accept(
     also: Annotated[bool, flag("--also", "Keep the references that are there; add this one.")] = False,
 ) -> None:
     """Make references of pictures that were drawn."""
-    from playground.shots.accept import accept as accept_one
-    from playground.shots.accept import choose
-    from playground.shots.results import NEVER_ACCEPTED, read_results
+    from playground.verify.shots.accept import accept as accept_one
+    from playground.verify.shots.accept import choose
+    from playground.verify.shots.results import NEVER_ACCEPTED, read_results
 
     folder, patterns = _folder_and_shots(shots or [])
     if everything == bool(patterns):
@@ -106,8 +106,8 @@ def review(
     """Look at results in the browser, and accept pictures there."""
     import webbrowser
 
-    from playground.shots.results import FOLDER
-    from playground.shots.review import Review
+    from playground.verify.shots.results import FOLDER
+    from playground.verify.shots.review import Review
 
     number = read_option("--port", port, within(0, 65535), "a port, 0 to 65535; 0 takes a free one") or 0
     with Review(folder or Path(FOLDER), number) as server:
@@ -125,7 +125,7 @@ def review(
 
 def _folder_and_shots(names: list[str]) -> tuple[Path, list[str]]:
     """Split the folder, which may come first, from the shots."""
-    from playground.shots.results import FOLDER
+    from playground.verify.shots.results import FOLDER
 
     # A folder that is there, unless a result has that very name.
     if names and Path(names[0]).is_dir() and not (Path(FOLDER) / f"{names[0]}.json").is_file():

@@ -14,10 +14,10 @@ from playground.course.library import SOURCE, lesson_file
 from playground.course.talk.stage import Presenting, Stage
 from playground.course.window.progress import open_progress, progress_file
 from playground.course.window.reader import Reader
-from playground.live.host import Host
-from playground.live.key import Key
-from playground.workbench.addition import Addition, Layer
-from playground.workbench.bench import Workbench
+from playground.studio.addition import Addition, Layer
+from playground.studio.bench import Workbench
+from playground.studio.host import Host
+from playground.studio.input.key import Key
 
 if TYPE_CHECKING:
     from playground.course.window.panel import LessonPanel

@@ -8,8 +8,8 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.errors import PlaygroundError, counted
 from playground.flight.flight import Flight
-from playground.live.draw import plate
-from playground.live.theme import ALARM, DIM, INK, WARM, Rgb, Theme, packed
+from playground.studio.draw import plate
+from playground.studio.theme import ALARM, DIM, INK, WARM, Rgb, Theme, packed
 
 _MARGIN, _PADDING = 14.0, 8.0
 _ERRORS = 6  # lines of what is wrong that are shown

@@ -15,9 +15,9 @@ from playground.engine.sandbox import TrySketch
 from playground.errors import PlaygroundError
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
-from playground.workbench.dependencies import watched
-from playground.workbench.reload_stages import Sandbox, explained, refusal
-from playground.workbench.watcher import Watcher
+from playground.studio.reload.dependencies import watched
+from playground.studio.reload.reload_stages import Sandbox, explained, refusal
+from playground.studio.reload.watcher import Watcher
 
 
 class SaveFollower:

@@ -29,13 +29,13 @@ from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
 from playground.flight.instruments import Instruments
 from playground.flight.record import Header, Moment, Record, Recorder
 from playground.flight.reload import SaveFollower
-from playground.live.keys import pressed_sign
-from playground.live.status import add_line, status_file
-from playground.live.text_field import ctrl_held, letters
-from playground.live.window import Window, wake
 from playground.sketch.model import Sketch
-from playground.workbench.interface import remembered_size
-from playground.workbench.last_frame import Painter
+from playground.studio.input.keys import pressed_sign
+from playground.studio.input.text_field import ctrl_held, letters
+from playground.studio.interface import remembered_size
+from playground.studio.picture.last_frame import Painter
+from playground.studio.status import add_line, status_file
+from playground.studio.window import Window, wake
 
 MAKING = 0.005  # [s] of each picture for parts
 OPENING = 0.05  # [s] between pictures before the first step

@@ -1,1 +1,4 @@
-"""Is it still right: ``playground check``, and the fast variants against their canonical forms."""
+"""Verification: is it still right (check, shots, mutants), what breaks it (reduce), how fast is it (bench).
+
+Needs the core. To delete it: this folder, tests/verify and its line in rooms.py.
+"""

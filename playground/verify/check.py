@@ -25,6 +25,7 @@ from playground.engine.plan import PlanRequest, located_at
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import make_plan
 from playground.engine.sandbox import Request, Sandbox, SandboxReport, TryLibrary, TrySketch
+from playground.engine.sketch_warnings import kernel_warnings, shadowed_by_files, warnings_of_kernel
 from playground.errors import (
     DataError,
     Diagnostic,
@@ -71,7 +72,6 @@ from playground.sketch.variants import (
 from playground.sketch.warnings import warnings_of_sketch
 from playground.sketch.wiring import deciding_inputs, form_of, missing_input
 from playground.verify.standalone import standalone_sketch, with_pictures
-from playground.verify.warnings import kernel_warnings, shadowed_by_files, warnings_of_kernel
 
 BOTH = (FRAGMENT, COMPUTE)
 _FRAME = (64, 36)  # pixels

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from playground import cli
-from playground.capture.extensions import ENDINGS
 from playground.commands.export import HELP
+from playground.publish.extensions import ENDINGS
 
 from ..elevations import write_geotiff
 from ..sketch_texts import map_of, passes

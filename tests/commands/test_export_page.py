@@ -14,7 +14,7 @@ import pytest
 
 from playground import cli
 
-from ..web.unpressed import parts_of
+from ..publish.web.unpressed import parts_of
 
 HEIGHT = """// rise.glsl -- A slope that rises to the north.
 #pragma kernel(output = "height:r32f")
@@ -64,7 +64,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (made / name).write_text(text)
     (tmp_path / "all.comp").write_text(COMPUTE)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("playground.capture.web_page.read_bundle", lambda name: f"/* {name} */")
+    monkeypatch.setattr("playground.publish.web_page.read_bundle", lambda name: f"/* {name} */")
     return tmp_path
 
 
@@ -203,7 +203,7 @@ def test_what_the_page_does_otherwise_is_said(capfd: pytest.CaptureFixture[str])
 def test_a_page_that_would_be_too_large_is_refused(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], folder: Path
 ):
-    monkeypatch.setattr("playground.capture.web_page.MAX_PAGE_BYTES", 2**10)
+    monkeypatch.setattr("playground.publish.web_page.MAX_PAGE_BYTES", 2**10)
     assert cli.main(["export", "delaunay_flips", "--to", "a.html"]) == 2
     assert "a smaller terrain, image or film would do" in capfd.readouterr().err
     assert not (folder / "a.html").exists()
@@ -214,7 +214,7 @@ def test_an_older_page_stays_when_another_cannot_be_written(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ):
     (folder / "a.html").write_text("as it was")
-    monkeypatch.setattr("playground.capture.web_page.encoded_poster", _refuse)
+    monkeypatch.setattr("playground.publish.web_page.encoded_poster", _refuse)
     assert cli.main(["export", "rise", "--to", "a.html"]) == 2
     assert (folder / "a.html").read_text() == "as it was"
     assert len(list(folder.iterdir())) == 3

@@ -53,7 +53,7 @@ def run(capsys: pytest.CaptureFixture[str], *words: str) -> list[str]:
 @pytest.mark.slow
 def test_a_video(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("av")
-    from playground.capture.video import count_pictures
+    from playground.publish.video import count_pictures
 
     assert run(capsys, "--video", "a.mp4", "--size", "64x36", "--fps", "20") == ["a.mp4"]
     assert count_pictures(folder / "a.mp4") == (10, Fraction(20)), "to the last keyframe"
@@ -166,7 +166,7 @@ def test_ctrl_c_leaves_a_shorter_video(folder: Path, film: subprocess.Popen[str]
     pytest.importorskip("av")
     import time
 
-    from playground.capture.video import count_pictures
+    from playground.publish.video import count_pictures
 
     end = time.monotonic() + 120
     # The first bytes are in the file once some pictures are encoded; then it is well under way.

@@ -14,8 +14,8 @@ from playground.course.scenes import Sketches
 from playground.course.translate import translated, write_hashes
 from playground.engine.engine import Engine
 
-from ..live.conftest import screen as screen
-from ..web.conftest import node as node
+from ..publish.web.conftest import node as node
+from ..studio.live.conftest import screen as screen
 from .lesson_desk import OWN, Harness, shelved
 
 FRONT = """+++

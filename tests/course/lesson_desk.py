@@ -14,14 +14,14 @@ from playground.course.scenes import Sketches
 from playground.course.translate import write_hashes
 from playground.course.window.reader import Reader
 from playground.engine.engine import Engine
-from playground.live.code_window import draw_code
-from playground.live.host import Host
-from playground.live.inspect.timeline import height_of_timeline
 from playground.paths import GLSL
-from playground.workbench.autosave import Autosave, memory_of
+from playground.studio.code.panel import draw_code
+from playground.studio.edits.autosave import Autosave, memory_of
+from playground.studio.host import Host
+from playground.studio.keyframes.timeline import height_of_timeline
 
-from ..live.desk import Bare
 from ..sketch_texts import map_of_height
+from ..studio.live.desk import Bare
 
 FILE = (GLSL / "generation/diamond_square/raw.glsl").resolve()
 """The shader that the lesson quotes and breaks."""

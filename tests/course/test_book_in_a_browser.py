@@ -12,7 +12,7 @@ from playground.course.book.live import LiveBook
 from playground.course.measuring import Number
 from playground.course.read import read_lessons
 
-from ..report.browser import MISSING, Browser
+from ..verify.report.browser import MISSING, Browser
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]
 
@@ -224,7 +224,7 @@ def test_the_contents_at_the_side_say_where_one_is(page):
 AXE = Path(build.__file__).resolve().parents[2] / "web/node_modules/axe-core/axe.min.js"
 
 
-@pytest.mark.skipif(not AXE.is_file(), reason="npm ci in playground/web installs axe-core")
+@pytest.mark.skipif(not AXE.is_file(), reason="npm ci in playground/publish/web installs axe-core")
 def test_book_pages_have_no_serious_accessibility_fault(page, book):
     """Of axe-core's rules, in the light and in the dark; the search is open on one."""
     result = []

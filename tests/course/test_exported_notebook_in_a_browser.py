@@ -15,9 +15,9 @@ from nbconvert.exporters import HTMLExporter
 
 from playground.course.read import read_lesson
 from playground.course.scenes import with_value
-from playground.notebook.export import TerrainHTMLExporter
+from playground.publish.notebook.export import TerrainHTMLExporter
 
-from ..report.browser import MISSING, Browser
+from ..verify.report.browser import MISSING, Browser
 from .test_live_book_in_a_browser import LLVMPIPE, RIGHT, Recorder, drawn, picture
 from .test_notebook_export import STATES
 

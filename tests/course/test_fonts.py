@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from playground.course.typeset import written
-from playground.live.theme import Theme
+from playground.studio.theme import Theme
 
-from ..live.test_fonts import constants, missing
-from ..live.test_fonts import theme as theme
+from ..studio.live.test_fonts import constants, missing
+from ..studio.live.test_fonts import theme as theme
 
 COURSE = Path(__file__).resolve().parents[2] / "playground" / "course"
 TEXTS = COURSE / "texts"

@@ -15,7 +15,7 @@ from playground.course.read import read_lesson
 from playground.course.typeset import INSTEAD
 from playground.course.window.figure_view import edits_of, map_of, steps_of
 from playground.course.window.formulas import set_formula
-from playground.workbench.edits import Draft
+from playground.studio.edits.edits import Draft
 
 from ..loading import load
 

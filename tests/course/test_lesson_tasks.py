@@ -17,9 +17,9 @@ from playground.course.window.progress import (
     read_progress,
     write_progress,
 )
-from playground.live.host import Host
 from playground.paths import GLSL
 from playground.shader.source import read_text
+from playground.studio.host import Host
 
 FILE = "generation/diamond_square/raw.glsl"
 RAW = read_text(GLSL / FILE)

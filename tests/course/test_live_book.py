@@ -26,11 +26,11 @@ from playground.course.figure_renders import pictures_in
 from playground.course.language import labels
 from playground.course.read import read_lesson
 from playground.course.scenes import spelled_value
+from playground.publish.web.blobs import packed_json
+from playground.publish.web.plan import sketch_data
+from playground.publish.web.shared import SharedData
+from playground.publish.web.shown import row as row_data
 from playground.sketch.assign import shown_parameters
-from playground.web.blobs import packed_json
-from playground.web.plan import sketch_data
-from playground.web.shared import SharedData
-from playground.web.shown import row as row_data
 
 from ..loading import load
 from ..sketch_texts import map_of, passes

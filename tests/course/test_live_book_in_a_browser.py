@@ -26,7 +26,7 @@ from playground.course.tasks.work import EXERCISES
 from playground.course.translate import translated, write_hashes
 from playground.engine.engine import Engine
 
-from ..report.browser import MISSING, Browser
+from ..verify.report.browser import MISSING, Browser
 from .conftest import BODY, FRENCH, FRONT, SKETCHES
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]

@@ -31,9 +31,9 @@ from playground.course.notebook.controls import controls_of, scene_at
 from playground.course.notebook.lesson import NotebookLesson
 from playground.course.read import read_lesson
 from playground.errors import SketchError
-from playground.notebook.engine_thread import release_engine
+from playground.publish.notebook.engine_thread import release_engine
 
-from ..web.node import RUNTIME
+from ..publish.web.node import RUNTIME
 from .conftest import SKETCHES
 
 NODE = shutil.which("node")

@@ -16,8 +16,8 @@ from PIL import Image
 
 from playground.course.notebook import lesson as notebook_lesson
 from playground.course.notebook.lesson import NotebookLesson
-from playground.notebook.export import LiveFigures, TerrainHTMLExporter
-from playground.notebook.saved import STATE
+from playground.publish.notebook.export import LiveFigures, TerrainHTMLExporter
+from playground.publish.notebook.saved import STATE
 
 VIEW = "application/vnd.jupyter.widget-view+json"
 STATES = "application/vnd.jupyter.widget-state+json"

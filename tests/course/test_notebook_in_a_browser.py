@@ -16,7 +16,7 @@ from playground.course.notebook import lesson as notebook_lesson
 from playground.course.notebook.lesson import NotebookLesson
 from playground.course.scenes import with_value
 
-from ..report.browser import MISSING, Browser
+from ..verify.report.browser import MISSING, Browser
 from .test_live_book_in_a_browser import LLVMPIPE, RIGHT, Recorder, drawn, picture
 
 pytestmark = [

@@ -10,7 +10,7 @@ import pytest
 
 from playground.course.window.progress import Progress, write_progress
 
-from ..live.screen import ON_LINUX, Program, Screen
+from ..studio.live.screen import ON_LINUX, Program, Screen
 from .lesson_desk import OWN, write_lessons
 
 RUN = """
@@ -18,7 +18,7 @@ import sys
 from pathlib import Path
 from playground.course import library
 library.TEXTS = Path(sys.argv[1])
-from playground.live.app import run
+from playground.studio.app import run
 sys.exit(run(sys.argv[2], size=(1000, 700), request={"welcome": True}, time_limit=300))
 """
 pytestmark = ON_LINUX

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from ..live.screen import ON_LINUX, Program, Screen
+from ..studio.live.screen import ON_LINUX, Program, Screen
 from .lesson_desk import OWN, write_lessons
 
 RUN = """
@@ -18,7 +18,7 @@ import sys
 from pathlib import Path
 from playground.course import library
 library.TEXTS = Path(sys.argv[1])
-from playground.live.app import run
+from playground.studio.app import run
 from playground.course.talk.stage import Presenting
 say = lambda text: print(text, file=sys.stderr, flush=True)
 request = {"lesson": "halving", "present": Presenting(3, say=say)}

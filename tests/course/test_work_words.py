@@ -14,7 +14,7 @@ from playground.course.model import Check
 from playground.course.tasks.judge import Wanted, compare
 from playground.course.tasks.sentences import sentence_of
 
-from ..web.node import MISSING, Node
+from ..publish.web.node import MISSING, Node
 
 pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import av
 import numpy as np
 
-from playground.capture.video import Video
+from playground.publish.video import Video
 
 RATE = 44_100
 

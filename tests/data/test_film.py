@@ -77,7 +77,7 @@ import sys, av
 from fractions import Fraction
 from pathlib import Path
 import numpy as np
-from playground.capture.video import Video
+from playground.publish.video import Video
 from playground.data.media import Film
 path = Path(sys.argv[1])
 with Video(path, (64, 48), Fraction(25), 9) as video:

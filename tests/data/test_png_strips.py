@@ -8,8 +8,8 @@ import numpy as np
 import PIL.Image
 import pytest
 
-from playground.capture.png_strips import PngStrips
 from playground.errors import DataError
+from playground.publish.png_strips import PngStrips
 
 
 def picture(rows: int, cols: int, channels: int) -> np.ndarray:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from playground.capture.large import strips
 from playground.engine.frame import reduced
 from playground.errors import ParameterError, SketchError
+from playground.publish.large import strips
 from playground.sketch.load import load
 
 NOISE = """#pragma kernel(output = "frame:rgba8")

@@ -7,7 +7,6 @@ import re
 import numpy as np
 import pytest
 
-from playground.capture.large import strips
 from playground.data.image_files import write_png
 from playground.dialects.foreign import unfed_warnings
 from playground.engine.engine import Engine
@@ -16,13 +15,14 @@ from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import make_plan
 from playground.engine.sandbox import Sandbox
 from playground.errors import ParameterError, PlaygroundError, ShaderError, SketchError
-from playground.reduce.inline import inline_sketch
+from playground.publish.large import strips
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.load import load
 from playground.sketch.model import ForeignShader, kernels_of
 from playground.sketch.replace_technique import with_texts
 from playground.sketch.traits import traits_of
 from playground.verify.check import check_file
+from playground.verify.reduce.inline import inline_sketch
 from tests.dialect_texts import TEXTS, with_mistake
 
 SIZE = (32, 18)

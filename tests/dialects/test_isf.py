@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from playground.capture.large import strips
 from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError, ShaderError
+from playground.publish.large import strips
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.model import ForeignShader
 from tests.dialects.test_drawn import DEPRECATED, colours

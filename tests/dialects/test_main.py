@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from playground.capture.large import strips
 from playground.engine.engine import Engine
 from playground.engine.plan import PlanRequest
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import make_plan
+from playground.engine.sketch_warnings import warnings_of_kernel
 from playground.errors import ShaderError, SketchError
-from playground.reduce.inline import inline_sketch
+from playground.publish.large import strips
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.model import ForeignShader, kernels_of
 from playground.sketch.replace_technique import with_texts
-from playground.verify.warnings import warnings_of_kernel
+from playground.verify.reduce.inline import inline_sketch
 from tests.dialect_texts import with_mistake
 from tests.dialects.test_drawn import DEPRECATED
 from tests.main_dialect_texts import MAIN_TEXTS, STATEFUL

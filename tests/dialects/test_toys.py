@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 import tifffile
 
-from playground.capture.large import strips
 from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.engine.plan import PlanRequest
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import make_plan
 from playground.errors import PlaygroundError, ShaderError
-from playground.reduce.inline import inline_sketch
+from playground.publish.large import strips
 from playground.sketch.warnings import warnings_of_sketch
-from playground.workbench.channels import with_source
+from playground.studio.channels.channels import with_source
+from playground.verify.reduce.inline import inline_sketch
 from tests.toy_texts import (
     CUBE,
     EXPORTS,

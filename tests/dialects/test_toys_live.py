@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from playground.live.drops import _is_sketch
-from playground.workbench.problems import Problems
-from playground.workbench.session import Session
+from playground.studio.input.drops import _is_sketch
+from playground.studio.problems.problems import Problems
+from playground.studio.session import Session
 from tests.dialect_texts import HERE, MISTAKE
 from tests.toy_texts import EXPORTS, FOLDERS, PLAIN, VSCODE, A, Toy, export, one
 

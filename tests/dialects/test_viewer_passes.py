@@ -11,9 +11,9 @@ from scipy.ndimage import distance_transform_edt
 from playground.engine.plan import PlanRequest
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import make_plan
+from playground.engine.sketch_warnings import warnings_of_kernel
 from playground.errors import ShaderError
 from playground.sketch.warnings import warnings_of_sketch
-from playground.verify.warnings import warnings_of_kernel
 
 from ..loading import load
 

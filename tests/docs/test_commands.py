@@ -26,8 +26,8 @@ import pytest
 from playground import cli
 
 from ..elevations import write_geotiff
-from ..live.screen import ON_LINUX, Program, Screen
-from ..report.browser import MISSING
+from ..studio.live.screen import ON_LINUX, Program, Screen
+from ..verify.report.browser import MISSING
 from .pages import PAGES, ROOT, blocks_of, files, outside_of_blocks, write_files
 
 TEXTS = ROOT / "playground" / "course" / "texts"
@@ -45,17 +45,17 @@ NOT_RUN = {
     r"\./play test( -m slow)?": "is these tests",
     r"pytest -n 2 --dist loadfile": "is these tests, in two processes",
     r"\.venv/bin/.*": "is a step of .ci/run",
-    r"playground shots review.*": "serves until it is stopped: tests/report/test_review.py",
-    r"playground shots accept .*": "needs a shot that failed: tests/report/test_accept.py",
+    r"playground shots review.*": "serves until it is stopped: tests/verify/report/test_review.py",
+    r"playground shots accept .*": "needs a shot that failed: tests/verify/report/test_accept.py",
     r"playground lsp.*": "serves until its editor ends: tests/lsp",
-    r"playground live -": "reads a pipe or the clipboard: tests/live/test_window_paste.py",
-    r"playground reduce my-land --shot morning": "needs a reference that fails: tests/reduce/test_reduce.py",
+    r"playground live -": "reads a pipe or the clipboard: tests/studio/live/test_window_paste.py",
+    r"playground reduce my-land --shot morning": "needs a reference that fails: verify/reduce/test_reduce.py",
     r"playground reduce my-land --against .*": "takes minutes: test_two_environments_that_differ does it",
     r"playground reduce my-land --command .*": "is-good is the user's: test_a_command_judges_and_the_folder",
-    r"playground shots report": "names the command; tests/report/test_report.py has results to give it",
+    r"playground shots report": "names the command; verify/report/test_report.py has results to give it",
     r"playground (render --video|check --json|reduce|pack|shots mutants)": "names it; with more it is run",
     r"\./play lesson present .* --video .*": "takes minutes; test_present_film.py has a small one",
-    r"playground bench": "takes minutes: tests/bench run small parts of it",
+    r"playground bench": "takes minutes: tests/verify/bench run small parts of it",
     r"playground lesson translated": "names the command; tests/course have a translation to give it",
     r"playground variants renew": "writes this checkout's record; that of a folder is written",
     r"playground (live|render) diamond_square-my-version\.zip.*": "saved by a browser: web/test_my_version",
@@ -329,7 +329,7 @@ def test_every_option_that_is_named_exists():
         own = {o for p in command.params for o in (*p.opts, *p.secondary_opts)}  # type: ignore[attr-defined]
         return own.union(*map(options, getattr(command, "commands", {}).values()))
 
-    plugin = (ROOT / "playground" / "shots" / "plugin.py").read_text("utf-8")
+    plugin = (ROOT / "playground" / "verify" / "shots" / "plugin.py").read_text("utf-8")
     own_tests = (ROOT / "tests" / "conftest.py").read_text("utf-8")
     existing = options(cli.command_line()) | set(re.findall(r'"(--shots-[a-z-]+)"', plugin))
     existing |= set(re.findall(r'addoption\(\s*"(--[a-z-]+)"', own_tests))
@@ -364,7 +364,7 @@ def run(folder: Path, words: list[str], *, timeout: float = 500) -> subprocess.C
 SMALL = {
     "python tests/truth": ["--size", "25"],
 }
-FRAMES = "python -m tests.benchmarks.page_frames"
+FRAMES = "python -m tests.verify.benchmarks.page_frames"
 IN_HILLS = [c for c in OTHERS if re.fullmatch(r"(python -m pytest|pytest|\./play test) hills.*", c)]
 EXPORT = "jupyter nbconvert --to terrain_html diamond_square.ipynb"
 OF_PLAY = [c for c in OTHERS if c.startswith("./play test ") and c not in IN_HILLS]

@@ -16,8 +16,8 @@ from site_pages import commands, gallery, keys, pages, python, shots, techniques
 import playground
 from playground.cli import command_line
 from playground.commands.entries import techniques as listed
-from playground.live.keys import KEYS
 from playground.paths import GLSL
+from playground.studio.input.keys import KEYS
 
 from .pages import ROOT
 

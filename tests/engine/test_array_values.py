@@ -18,9 +18,9 @@ from rasterio.crs import CRS
 
 import playground
 from playground.engine.sources import SOURCES
+from playground.publish.web.page_data import page_data
 from playground.sketch.arrays import GRIDS, PICTURES
 from playground.sketch.save import save_copy
-from playground.web.page_data import page_data
 
 # Every corner differs, and no row is another backwards.
 HEIGHTS = np.array([[0, 1, 2, 3, 4], [9, 8, 7, 5, 6], [10, 12, 11, 14, 13], [15, 18, 17, 16, 19]], np.float32)
@@ -229,7 +229,7 @@ def test_sketch_copy_saves_its_array_and_pack_is_refused(any_engine, sketch, tmp
     changed = given(sketch, HEIGHTS)
     copied = playground.load(save_copy(sketch, changed, tmp_path))
     np.testing.assert_allclose(any_engine.read(copied, "height"), SHARES, atol=1e-6)
-    from playground.capture.pack import pack
+    from playground.publish.pack import pack
 
     with pytest.raises(playground.DataError, match=r"array.*cannot be packed.*save a copy"):
         pack(changed, tmp_path / "packed.zip")

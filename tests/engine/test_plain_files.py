@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from playground.data.image_files import write_png
+from playground.engine.sketch_warnings import warnings_of_kernel
 from playground.errors import PlaygroundError, ShaderError
-from playground.verify.warnings import warnings_of_kernel
 
 from ..loading import load
 

@@ -15,8 +15,8 @@ from playground import cli
 from playground.engine import sandbox as sandbox_module
 from playground.engine.sandbox import Sandbox
 from playground.errors import PlaygroundError
+from playground.studio.problems.problems import Warnings
 from playground.verify.check import check_file
-from playground.workbench.problems import Warnings
 
 from ..loading import load
 from ..sketch_texts import map_of, passes

@@ -16,7 +16,7 @@ from playground.engine.engine import Engine
 from playground.flight.flight import CACHE_BYTES
 from playground.flight.frames import fly_again
 from playground.flight.record import read_record
-from playground.shots.compare import compare
+from playground.verify.shots.compare import compare
 
 from ..loading import load
 

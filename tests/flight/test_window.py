@@ -15,8 +15,8 @@ import pytest
 from playground.flight.craft import Controls
 from playground.flight.record import read_record
 
-from ..live.screen import LIMIT, ON_LINUX, Program, Screen
 from ..sketch_texts import passes
+from ..studio.live.screen import LIMIT, ON_LINUX, Program, Screen
 
 WIDTH, HEIGHT = 640, 360
 SKETCH = (

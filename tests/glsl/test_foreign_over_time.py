@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from playground.capture.series import Series
 from playground.data import media
 from playground.engine.disk_caching import passing
 from playground.errors import ContextError, DataError, ShaderError
 from playground.extras import install_command
+from playground.publish.series import Series
 from playground.sketch.traits import is_animated
-from tests.capture.series import pictures
 from tests.data.films import RATE, colour, own_film, sound, uneven_film
+from tests.publish.capture.series import pictures
 
 from ..loading import load
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from playground import cli
-from playground.capture.pack import pack
 from playground.errors import DataError, ParameterError, ShaderError
+from playground.publish.pack import pack
 from playground.shader import libraries as named
 from playground.sketch.find import read_pack
 from playground.sketch.load import load

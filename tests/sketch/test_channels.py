@@ -13,7 +13,7 @@ from playground.errors import PlaygroundError
 from playground.paths import GLSL
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
-from playground.workbench.channels import channels, source_of, sources, with_source
+from playground.studio.channels.channels import channels, source_of, sources, with_source
 from tests.data.films import own_film
 
 pytestmark = pytest.mark.room("dialects")

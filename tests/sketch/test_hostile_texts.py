@@ -6,11 +6,11 @@ import time
 
 import pytest
 
+from playground.engine.sketch_warnings import warnings_of_kernel
 from playground.errors import PlaygroundError
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.shader.zero_values import with_zeros
 from playground.sketch.load import load
-from playground.verify.warnings import warnings_of_kernel
 
 IMAGE = "void mainImage(out vec4 c, in vec2 p) {{ {} c = vec4(p, 0, 1); }}\n"
 

@@ -12,7 +12,7 @@ from playground.sketch.assign import values_of
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.sketch.save import save
-from playground.workbench.channels import channels, with_source
+from playground.studio.channels.channels import channels, with_source
 
 pytestmark = pytest.mark.room("dialects")
 

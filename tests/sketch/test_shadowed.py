@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from playground.engine.sketch_warnings import newly_shadowed, shadowed_by_files
 from playground.sketch.load import load
 from playground.sketch.model import Keyframe
-from playground.verify.warnings import newly_shadowed, shadowed_by_files
 
 KERNEL = """#pragma kernel(output = "height:r32f")
 uniform float rise = 2.0;  //! slider(0, 10)

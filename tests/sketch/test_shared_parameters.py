@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from playground.engine.sketch_warnings import unread
 from playground.errors import ShaderError
 from playground.shader.header import parse_kernel
 from playground.shader.source import read_source
 from playground.sketch.model import Kernel
-from playground.verify.warnings import unread
 
 PRAGMA = '#pragma kernel(output = "height:r32f")\n'
 SUN = """#ifndef SUN

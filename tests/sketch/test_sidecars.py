@@ -13,7 +13,7 @@ from playground.errors import DataError, PlaygroundError
 from playground.sketch.files import contents, find_file
 from playground.sketch.load import load
 from playground.sketch.save import save, save_copy
-from playground.workbench.dependencies import data_files
+from playground.studio.reload.dependencies import data_files
 
 KERNEL = """// k.glsl -- a picture
 #pragma kernel(output = "height:r32f")

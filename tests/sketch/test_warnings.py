@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from playground.engine.sketch_warnings import unread, unwritten
 from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import GLSL
 from playground.shader.source import read_source
 from playground.sketch.techniques import read_kernel
 from playground.sketch.warnings import unheeded, whole_divisions
-from playground.verify.warnings import unread, unwritten
 
 
 def found_in(folder: Path, declared: str, body: str = "", pragma: str = "") -> list[str]:

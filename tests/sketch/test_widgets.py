@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from playground.capture.sweep import parts_of, sweep_text
 from playground.commands.entries import Choice
 from playground.errors import ParameterError, ShaderError
-from playground.reduce.inline import inline_sketch
+from playground.publish.sweep import parts_of, sweep_text
 from playground.shader.parameter import coerce, expected, write
 from playground.sketch.load import load
 from playground.sketch.save import saved_text
-from playground.workbench.randomise import at_random, mutated
+from playground.studio.panel.randomise import at_random, mutated
+from playground.verify.reduce.inline import inline_sketch
 
 KERNEL = """#pragma kernel(output = "colour:rgba32f", repeat = "1 + (mode == 40)")
 uniform int mode = 9;       //! menu("soft", "hard", "none") values(-3, 9, 40) What it does

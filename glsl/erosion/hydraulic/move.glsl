@@ -14,7 +14,7 @@
 // are conserved to rounding. Opposite sides are summed first, so that a terrain that is turned or
 // mirrored is worn alike but for what compilers regroup. By four pipes streams still prefer axes a
 // little: on a cone of noise the mean of cos 4a of their directions is 0.17, of all along axes 1
-// (tests/benchmarks/erosion.py).
+// (tests/verify/benchmarks/erosion.py).
 #include "erosion/hydraulic/clock.glsl"
 #pragma kernel(output = "state:rgba32f")
 

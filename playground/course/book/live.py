@@ -20,13 +20,13 @@ from playground.course.scenes import spelled_at
 from playground.course.tasks.work import answer_text, path_of, starter_text, wanted_scene
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
+from playground.publish.web.blobs import packed_json
+from playground.publish.web.bundle import read_bundle
+from playground.publish.web.plan import sketch_data
+from playground.publish.web.shared import SharedData
 from playground.shader.source import read_text
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Sketch
-from playground.web.blobs import packed_json
-from playground.web.bundle import read_bundle
-from playground.web.plan import sketch_data
-from playground.web.shared import SharedData
 
 SET = ("terrain", "camera", "frame", "time", "steps")
 """What a setting has as a whole where it differs; of values, rows and texels it has those that differ."""

@@ -35,8 +35,8 @@ from playground.course.tasks.work import Work, checks_itself, scene_of, starter
 from playground.engine.frame import Frame
 from playground.errors import SketchError, nearest
 from playground.markup import Markup, joined, tag
-from playground.notebook.engine_thread import on_engine
 from playground.paths import GLSL
+from playground.publish.notebook.engine_thread import on_engine
 from playground.sketch.model import Value
 from playground.sketch.replace_technique import with_texts
 

@@ -9,7 +9,7 @@ import traitlets
 
 from playground.course.notebook.controls import Control
 from playground.errors import PlaygroundError
-from playground.notebook.widget import BROWSER, LiveWidget
+from playground.publish.notebook.widget import BROWSER, LiveWidget
 
 
 class PictureWidget(LiveWidget):

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from playground.capture.video import QUALITY, Video, check_video
 from playground.course.figure_renders import broken
 from playground.course.measuring import Number, filled, measured, named_in
 from playground.course.model import Break, Compare, Lesson, Scene, Slider
@@ -27,9 +26,10 @@ from playground.course.talk.slide import Gauge, Sizes, board_of, gauges_of, stri
 from playground.course.talk.spoken import cues_of, seconds_of, srt
 from playground.engine.engine import Engine
 from playground.files import write_file
+from playground.publish.video import QUALITY, Video, check_video
 from playground.sketch.assign import resolve
 from playground.sketch.model import Value
-from playground.workbench.framing import framed
+from playground.studio.picture.framing import framed
 
 FPS = Fraction(10)
 _VALUE = 0.5

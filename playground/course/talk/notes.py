@@ -23,7 +23,7 @@ from playground.course.talk.presenter import Presenter
 from playground.errors import DataError, ParameterError
 from playground.json_text import read_json
 from playground.local_server import CSS, HTML, JSON, SCRIPT, Answer, LocalServer, Request, as_json, refused
-from playground.remote.calls import Busy, Calls
+from playground.studio.remote.calls import Busy, Calls
 
 MAX_REQUEST_BYTES = 2**12
 """[bytes] of what a page may send."""

@@ -15,9 +15,9 @@ from playground.errors import ParameterError, PlaygroundError
 from playground.shader.parameter import is_whole, write
 from playground.sketch.assign import range_of, resolve
 from playground.sketch.model import Parameter, Value
-from playground.workbench.control.shares import share_of, with_share
-from playground.workbench.number_format import unit_of
-from playground.workbench.parameter_list import Listing
+from playground.studio.panel.number_format import unit_of
+from playground.studio.panel.parameter_list import Listing
+from playground.studio.remote.shares import share_of, with_share
 
 _PARTS = 40
 """Presses of an arrow from one end of a slider to the other."""

@@ -18,9 +18,9 @@ from playground.course.talk.presented_pictures import PresentedPictures, Row
 from playground.course.talk.presenter import Point, Presenter
 from playground.course.window.reader import Reader
 from playground.errors import PlaygroundError
-from playground.live.draw import Area
-from playground.live.text_field import letters
-from playground.workbench.bench import Workbench
+from playground.studio.bench import Workbench
+from playground.studio.draw import Area
+from playground.studio.input.text_field import letters
 
 if TYPE_CHECKING:
     import moderngl

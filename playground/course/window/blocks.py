@@ -36,14 +36,14 @@ from playground.course.window.page import Page
 from playground.course.window.reader import BOTH
 from playground.course.window.tasks import Task
 from playground.errors import ParameterError, PlaygroundError
-from playground.live import theme
-from playground.live.code_window import save
-from playground.live.draw import pushed_id, styled
-from playground.live.parameter_row import Rows
-from playground.live.sliders import slide_whole
 from playground.memo import INTERFACE
 from playground.shader.parameter import write
 from playground.sketch.assign import resolve
+from playground.studio import theme
+from playground.studio.code.panel import save
+from playground.studio.draw import pushed_id, styled
+from playground.studio.panel.parameter_row import Rows
+from playground.studio.panel.sliders import slide_whole
 
 _ON, _OFF = theme.ACCENT, theme.LINE
 

@@ -20,13 +20,13 @@ from playground.sketch.flatten import flatten
 from playground.sketch.load import load
 from playground.sketch.map_sketch import USE, Map
 from playground.sketch.model import DEFAULT_PICTURE, Sketch, Value
-from playground.workbench.clock import Clock
-from playground.workbench.edits import Edits
-from playground.workbench.history import History, changes_between
-from playground.workbench.inspect.compare import Compare, Mode, Stored
-from playground.workbench.reload_stages import ReloadStage
-from playground.workbench.resume import StoredEdits
-from playground.workbench.undo import Undo
+from playground.studio.clock import Clock
+from playground.studio.compare.compare import Compare, Mode, Stored
+from playground.studio.edits.edits import Edits
+from playground.studio.edits.history import History, changes_between
+from playground.studio.edits.resume import StoredEdits
+from playground.studio.edits.undo import Undo
+from playground.studio.reload.reload_stages import ReloadStage
 
 
 def sketch_path(scene: Scene) -> Path:

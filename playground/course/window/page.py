@@ -15,11 +15,11 @@ from playground.course.tasks.verdict import Picture
 from playground.course.typeset import FORMULA_SIZE, Extent, Layout, Placed, Run, Spacing, laid_out, written
 from playground.course.window.formulas import Formulas
 from playground.course.window.reader import Reader
-from playground.live import theme
-from playground.live.draw import button, inked, pushed_id, styled
-from playground.live.panel_memory import Memory
-from playground.live.panel_rows import explain
-from playground.live.theme import Theme
+from playground.studio import theme
+from playground.studio.draw import button, inked, pushed_id, styled
+from playground.studio.panel.memory import Memory
+from playground.studio.panel.rows import explain
+from playground.studio.theme import Theme
 
 if TYPE_CHECKING:
     import moderngl

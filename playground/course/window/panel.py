@@ -48,13 +48,13 @@ from playground.course.window.page import Prose as Texts
 from playground.course.window.progress import MAX_WIDTH, MIN_WIDTH
 from playground.course.window.reader import Reader
 from playground.errors import PlaygroundError
-from playground.live import theme
-from playground.live.draw import SIDE_PANEL, button, inked, styled, window
-from playground.live.panel_memory import Memory
-from playground.live.panel_rows import fitting
-from playground.live.theme import Theme
 from playground.sketch.find import find
-from playground.workbench.history import History
+from playground.studio import theme
+from playground.studio.draw import SIDE_PANEL, button, inked, styled, window
+from playground.studio.edits.history import History
+from playground.studio.panel.memory import Memory
+from playground.studio.panel.rows import fitting
+from playground.studio.theme import Theme
 
 
 def follow(reader: Reader, address: str) -> None:

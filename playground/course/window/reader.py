@@ -36,10 +36,10 @@ from playground.course.window.figure_view import FigureView, steps_of
 from playground.course.window.progress import Progress, progress_file, write_progress
 from playground.course.window.tasks import Tasks
 from playground.errors import PlaygroundError
-from playground.workbench.bench import Workbench
-from playground.workbench.inspect.compare import as_before
-from playground.workbench.session import Session
-from playground.workbench.text_file import unsaved
+from playground.studio.bench import Workbench
+from playground.studio.code.text_file import unsaved
+from playground.studio.compare.compare import as_before
+from playground.studio.session import Session
 
 if TYPE_CHECKING:
     from playground.course.read import Summary

@@ -1,1 +1,0 @@
-"""Draw the inspection of a picture (``workbench.inspect``): plots, pass graph, comparison, timeline."""

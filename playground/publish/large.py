@@ -1,0 +1,188 @@
+"""Draw a picture of any size part by part, and write it strip by strip.
+
+What is drawn at a time is a tile, what is held a row of tiles; ``playground.engine.window``
+says what makes the tiles one picture. Kernels and plain shaders give the same bytes however
+they are parted. A mesh is rasterised again for each tile, and the driver rounds places and
+what is interpolated between vertices to single precision, from another corner: on llvmpipe
+one pixel in a thousand differs from the picture drawn whole, and by a few levels of 255.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.engine.engine import Engine
+from playground.engine.frame import reduced
+from playground.engine.plan import Window, drawn_size
+from playground.engine.textures import read_picture
+from playground.errors import DataError, ParameterError, SketchError
+from playground.files import replacing
+from playground.publish.png_strips import PngStrips
+from playground.sketch.load import opened
+from playground.sketch.model import MAX_PICTURE_SIDE, Sketch
+
+TILE = (2048, 512)
+"""Width and height of a tile in pixels."""
+
+MAX_UNTILED_PIXELS = 2**23
+"""Pixels of a picture that is drawn whole: its samples and their depths take 12 bytes each."""
+
+
+def is_large(engine: Engine, sketch: Sketch, size: tuple[int, int]) -> bool:
+    """Return whether a picture is drawn in parts.
+
+    More than the driver's textures hold must be; more than 3840 x 2160 is, where the sketch's
+    passes allow it.
+    """
+    size = drawn_size(sketch, size, MAX_PICTURE_SIDE)
+    limits = ("GL_MAX_TEXTURE_SIZE", "GL_MAX_RENDERBUFFER_SIZE")
+    if max(size) > min(int(engine.ctx.info[name]) for name in limits):
+        return True
+    if size[0] * size[1] <= MAX_UNTILED_PIXELS:
+        return False
+    try:
+        engine.plan_for_window(sketch, tiles_of(size)[0][0])
+    except SketchError:
+        return False  # drawing it whole says what else may be wrong
+    return True
+
+
+def tiles_of(size: tuple[int, int], tile: tuple[int, int] = TILE) -> list[list[Window]]:
+    """Return a picture's tiles, row by row from the top; all but the last of each row are alike.
+
+    Raises ``ParameterError`` for odd sides: derivatives are worked out for squares of two
+    pixels, which must be those of the whole picture.
+    """
+    if min(tile) < 2 or tile[0] % 2 or tile[1] % 2:
+        raise ParameterError(f"tiles of {tile[0]} x {tile[1]} pixels: expected even numbers from 2")
+    (width, height), (wide, tall) = size, tile
+    return [
+        [Window((x, y), (min(wide, width - x), min(tall, height - y)), size) for x in range(0, width, wide)]
+        for y in reversed(range(0, height, tall))
+    ]
+
+
+def uncut(tile: tuple[int, int], times: int) -> tuple[int, int]:
+    """Return a tile, hardly smaller, that cuts no square of so many pixels which become one."""
+    unit = 2 * times
+    wide, tall = (max(side // unit, 1) * unit if times > 1 else side for side in tile)
+    return wide, tall
+
+
+def count_tiles(size: tuple[int, int], tile: tuple[int, int] = TILE) -> int:
+    """Return how many tiles a picture has."""
+    return sum(len(row) for row in tiles_of(size, tile))
+
+
+def count_parts(sketch: Sketch, size: tuple[int, int]) -> int:
+    """Return how many tiles ``strips`` draws of a picture, its supersampling counted."""
+    whole = drawn_size(sketch, size, MAX_PICTURE_SIDE)
+    return count_tiles(whole, uncut(TILE, sketch.picture.supersample))
+
+
+def strips(
+    engine: Engine,
+    sketch: Sketch | str | Path,
+    size: tuple[int, int],
+    *,
+    time: float = 0.0,
+    steps: Mapping[str, int] | None = None,
+    tile: tuple[int, int] = TILE,
+    done: Callable[[], None] = lambda: None,
+) -> Iterator[NDArray[np.uint8]]:
+    """Yield a picture's rows of tiles from the top, each (rows, width, 4), sRGB and alpha.
+
+    ``size`` and ``tile`` in pixels, ``time`` in seconds, ``steps`` as in ``Engine.render``;
+    ``done`` is called after each tile. Raises ``SketchError`` at a pass that cannot be drawn
+    in parts, before anything of it is drawn.
+    """
+    opened_sketch = opened(sketch)
+    times = opened_sketch.picture.supersample
+    whole = drawn_size(opened_sketch, size, MAX_PICTURE_SIDE)
+    for row in tiles_of(whole, uncut(tile, times)):
+        strip = np.empty((row[0].size[1], whole[0], 4), np.uint8)
+        for window in row:
+            left = window.origin[0]
+            texture = engine.draw_window(opened_sketch, window, time=time, steps=steps)
+            strip[:, left : left + window.size[0]] = read_picture(texture)
+            engine.forget_unused()
+            done()
+        yield reduced(strip, times)
+
+
+def encode_strips(
+    handle: BinaryIO,
+    size: tuple[int, int],
+    rows: Iterable[NDArray[np.uint8]],
+    text: Mapping[str, str] | None = None,
+) -> None:
+    """Write a picture as a PNG to an open file, from what `strips` yields."""
+    writer = PngStrips(handle, size, text=text)
+    for strip in rows:
+        writer.write(strip)
+    writer.close()
+
+
+def write_large(
+    engine: Engine,
+    sketch: Sketch | str | Path,
+    path: str | Path,
+    size: tuple[int, int],
+    *,
+    time: float = 0.0,
+    steps: Mapping[str, int] | None = None,
+    tile: tuple[int, int] = TILE,
+    text: Mapping[str, str] | None = None,
+    done: Callable[[], None] = lambda: None,
+) -> Path:
+    """Write a picture of up to 65,536 pixels a side as a PNG, whole or not at all, and return its path.
+
+    ``size`` and ``tile`` in pixels; ``engine``, ``sketch``, ``time``, ``steps`` and ``done`` as for
+    ``strips``; ``text`` as for ``Frame.save``. Of the picture, what is held is
+    one strip, ``tile[1]`` rows, about five times over: 160 MiB at 16,384 pixels of width,
+    independent of the height.
+
+        with playground.headless() as engine:
+            playground.write_large(engine, "l_dot_n", "land.png", (96, 64), tile=(64, 32))
+
+    Raises ``DataError`` for a ``path`` with another ending, ``SketchError`` at a pass that cannot be drawn
+    in parts.
+    """
+    if Path(path).suffix.lower() != ".png":
+        raise DataError(
+            "a picture that is drawn in parts is written to a name ending in .png", file=str(path)
+        )
+    rows = strips(engine, sketch, size, time=time, steps=steps, tile=tile, done=done)
+    with replacing(path) as handle:
+        encode_strips(handle, size, rows, text)
+    return Path(path)
+
+
+def save_picture(
+    engine: Engine,
+    sketch: Sketch,
+    path: Path,
+    size: tuple[int, int],
+    *,
+    time: float = 0.0,
+    steps: Mapping[str, int] | None = None,
+    text: Mapping[str, str] | None = None,
+    begin: Callable[[int], None] = lambda _: None,
+    done: Callable[[], None] = lambda: None,
+) -> None:
+    """Write a picture as a PNG, whole or not at all: in parts where it is large.
+
+    ``begin`` is called with the number of parts, ``done`` after each; the rest as for ``write_large``.
+    """
+    if is_large(engine, sketch, size):
+        begin(count_parts(sketch, size))
+        write_large(engine, sketch, path, size, time=time, steps=steps, text=text, done=done)
+        return
+    begin(1)
+    engine.render(sketch, size=size, time=time, steps=steps).save(path, dict(text or {}))
+    done()

@@ -1,0 +1,159 @@
+"""Write down kernels, draws, sources and plain shaders: see ``Kernel`` in schema.js."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from playground.engine.meshes import mesh_parameters
+from playground.engine.textures import split_format
+from playground.publish.web.es_lacks import lacking
+from playground.publish.web.formulas import accepted_runs, formula
+from playground.publish.web.stages import stage_data
+from playground.publish.web.texts import Texts
+from playground.shader.expressions import counts_frames, follows_time
+from playground.shader.kernel import options_of
+from playground.shader.parameter import Sampling
+from playground.shader.wrap import FRAGMENT, previous_name, recipes_of
+from playground.sketch.model import (
+    ComputeVariant,
+    CpuSource,
+    Draw,
+    ForeignShader,
+    Kernel,
+    Parameter,
+    PlainCompute,
+    PlainShader,
+)
+from playground.sketch.wiring import initial_names
+
+UNITS = 16
+"""Textures that a fragment shader of WebGL2 may read at least, and on many devices at most."""
+
+
+class Kernels:
+    """The kernels of one sketch, each once."""
+
+    def __init__(self, texts: Texts, folder: str) -> None:
+        self.texts = texts
+        self.folder = folder
+        self.data: list[dict[str, Any]] = []
+        self._numbers: dict[int, int] = {}  # by identity
+        self._held: list[Kernel] = []
+
+    def add(self, kernel: Kernel) -> int:
+        """Return a kernel's number; raise ``SketchError`` for one that no page can run."""
+        if id(kernel) not in self._numbers:
+            _refuse(kernel)
+            self._numbers[id(kernel)] = len(self.data)
+            self._held.append(kernel)
+            self.data.append(self._written(kernel))
+        return self._numbers[id(kernel)]
+
+    def _written(self, kernel: Kernel) -> dict[str, Any]:
+        data: dict[str, Any] = {
+            "name": name_of(kernel),
+            "kind": kernel.kind,
+            "file": self.texts.add(kernel.source, self.folder, name_of(kernel)),
+            "title": kernel.title,
+            "outputs": [{"name": output.name, "format": output.format} for output in kernel.outputs],
+            "inputs": [
+                {
+                    "name": declared.name,
+                    "sampling": sampling_data(declared.sampling),
+                    "fallback": declared.fallback,
+                    "shape": declared.shape,
+                }
+                for declared in kernel.inputs
+            ],
+            "parameters": [_uniform(parameter) for parameter in kernel.parameters],
+            "repeat": formula(kernel.repeat),
+            "countsFrames": counts_frames(kernel.repeat),
+            "followsTime": follows_time(kernel.repeat),
+            "initial": initial_names(kernel),
+            "extensions": [],
+            "vertex": {},
+            "fragment": {},
+        }
+        rows = [(row, row.of(kernel)) for row in options_of(type(kernel)).values() if row.page]
+        data |= {row.page: formula(value) if row.expressions else value for row, value in rows if value != ""}
+        if kernel.accepts:
+            data["accepted"] = accepted_runs(kernel.accepts)
+        if isinstance(kernel, PlainShader):
+            data["usual"] = [list(pair) for pair in kernel.usual]
+            data["dialect"] = kernel.dialect if isinstance(kernel, ForeignShader) else ""
+        if used := _used(kernel):
+            data["used"] = used
+        if not isinstance(kernel, CpuSource):
+            data |= self._stages(kernel)
+        return data
+
+    def _stages(self, kernel: Kernel) -> dict[str, Any]:
+        _, recipes = recipes_of(kernel, FRAGMENT)
+        stages = {}
+        for name, recipe in recipes.items():
+            own = kernel.vertex_source if name == "vertex" and isinstance(kernel, ForeignShader) else None
+            file = self.texts.add(own, self.folder, f"{name_of(kernel)} vertex") if own else ""
+            stages[name] = stage_data(recipe, file)
+        return stages
+
+
+def sampling_data(sampling: Sampling) -> dict[str, Any]:
+    """Return how a texture is read, without what is as usual: see ``Sampling`` in schema.js."""
+    whole = asdict(sampling)
+    always = {name: whole.pop(name) for name in ("filter", "wrap", "mipmap")}
+    return always | {name: value for name, value in whole.items() if value}
+
+
+def name_of(kernel: Kernel) -> str:
+    """Return a kernel's name, of one that was opened by its path the file's."""
+    return Path(kernel.name).name if Path(kernel.name).is_absolute() else kernel.name
+
+
+def _uniform(parameter: Parameter) -> dict[str, Any]:
+    data: dict[str, Any] = {
+        "name": parameter.name,
+        "type": parameter.type,
+        "widget": parameter.widget.kind,
+    }
+    if parameter.widget.values:
+        data["values"] = list(parameter.widget.values)
+    if parameter.widget.kind == "file":
+        data["sampling"] = sampling_data(parameter.sampling)
+    return data
+
+
+def _used(kernel: Kernel) -> list[str]:
+    """Return the names that a kernel's textures depend on though its text may not name them twice."""
+    used = set(kernel.names_in_options)
+    match kernel:
+        case Draw():
+            used |= set(mesh_parameters(kernel.mesh))
+        case CpuSource():
+            used |= {parameter.name for parameter in kernel.parameters}
+        case ForeignShader():  # what its tool declares is not in its text
+            used |= {p.name for p in kernel.parameters if kernel.reads(p.name)}
+    return sorted(used)
+
+
+def _refuse(kernel: Kernel) -> None:
+    """Raise ``SketchError`` for a kernel that WebGL2 cannot run."""
+    if isinstance(kernel, ComputeVariant | PlainCompute):
+        raise kernel.error(f"{name_of(kernel)} is a compute shader, which no web page can run")
+    if isinstance(kernel, CpuSource):
+        return
+    if name := lacking(kernel.source.code):
+        raise kernel.error(f"{name_of(kernel)} names {name}, which the GLSL of web pages has not")
+    if isinstance(kernel, Draw) and kernel.over:
+        raise kernel.error(f"{name_of(kernel)} draws over the pixels of another draw, which no web page does")
+    floats = any(split_format(output.format)[1] == "f4" for output in kernel.outputs)
+    if isinstance(kernel, Draw) and kernel.blend != "none" and floats:
+        raise kernel.error(f"{name_of(kernel)} blends 32-bit floats, which many browsers cannot; 16f can")
+    names = [declared.name for declared in kernel.inputs]
+    names += [parameter.name for parameter in kernel.file_parameters]
+    names += [o.name for o in kernel.outputs if kernel.reads(previous_name(kernel, o))]
+    if len(names) > UNITS:
+        raise kernel.error(
+            f"{name_of(kernel)} reads {len(names)} textures; a web page has {UNITS} at a time for certain"
+        )

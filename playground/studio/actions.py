@@ -1,0 +1,243 @@
+"""What a button or a key does to the sketch's values and files: presets, resets, saving, opening."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from playground.errors import PlaygroundError, counted
+from playground.files import read_regular
+from playground.paths import GLSL, shown
+from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
+from playground.sketch.model import Camera, Value
+from playground.sketch.save import save, save_copy, save_preset, saved_text
+from playground.studio.channels.channels import source_of
+from playground.studio.edits.edits import Draft
+from playground.studio.edits.history import History, Key
+from playground.studio.edits.undo import Undo
+from playground.studio.notices import Notices
+from playground.studio.save.pasted import keep_text
+from playground.studio.save.sketch_file import SketchFile
+from playground.studio.save.sketch_of_shader import is_shader, save_as_sketch
+from playground.studio.session import Session
+
+
+@dataclass
+class Commands:
+    """Those of one session; copies go into ``folder``."""
+
+    session: Session
+    notices: Notices
+    undo: Undo
+    file: SketchFile
+    folder: Path
+    opens: Callable[[Path], None] | None = None  # opens a sketch with its remembered edits
+    _visited: list[Path] = field(default_factory=list)  # the sketches that were opened, in order
+    _at: int = 0  # which of them is open now
+    _missed: str = ""  # the end of a message about what is saved: what is not in it
+
+    def open(self, path: Path) -> bool:
+        """Open another sketch, with a history of its own; the one that is shown is read again.
+
+        Returns False, with a notice, where that cannot be.
+        """
+        before = self.session.path
+        if not self._open(path):
+            return False
+        if self.session.path != before:
+            self._visits(before, self.session.path)
+        return True
+
+    def _visits(self, before: Path, path: Path) -> None:
+        self._visited = [*(self._visited or [before])[: self._at + 1], path]
+        self._at = len(self._visited) - 1
+
+    def visit(self, by: int) -> None:
+        """Open the sketch again that was open before this one (-1), or after it (1), with its edits."""
+        if 0 <= self._at + by < len(self._visited):
+            if self._open(self._visited[self._at + by]):
+                self._at += by
+        else:
+            self.notices.say(f"no other sketch was opened {'before' if by < 0 else 'after'} this one")
+
+    def _open(self, path: Path) -> bool:
+        try:
+            (self.opens or self.session.open)(path)
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+            return False
+        if self.session.drafts.opening:
+            self.undo.begin(History())
+        return True
+
+    def paste(self, text: str) -> None:
+        """Open a shader's text as a new sketch: a new file in the folder, which a notice names."""
+        try:
+            path = keep_text(text, self.folder)
+        except PlaygroundError as error:
+            self.notices.say(f"the clipboard: {error}")
+            return
+        if self.open(path):
+            self.notices.say(f"pasted as {path.name} in {path.parent}; Backspace goes back")
+
+    # ── many values at once ──────────────────────────────────────────────────
+
+    def set_all(self, name: str, values: dict[str, Value]) -> None:
+        """Set many parameters as one step, and say how many; locked ones stay."""
+        draft = self.session.shown
+        if draft is None:
+            return
+        locked = len(set(values) & set(draft.edits.locked))
+        with self.undo.step(name):
+            self.session.drafts.set_all(values)
+        left = f"; {counted(locked, 'locked parameter')} left alone" if locked else ""
+        self.notices.say(f"{name}: {counted(len(values) - locked, 'parameter')}{left}")
+
+    def apply_preset(self, name: str) -> None:
+        """Set a preset's values, as one step."""
+        sketch = self.session.sketch
+        for preset in sketch.presets if sketch else ():
+            if preset.name == name:
+                self.set_all(f"Preset {name}", dict(preset.values))
+
+    def reset_values(self) -> None:
+        """Reset all that is not locked to what the file says, as one step."""
+        with self.undo.step("Reset values"):
+            self.session.reset_values()
+
+    def reset(self, name: str, paths: list[str]) -> None:
+        """Reset some parameters to the file's values, as one step; locked ones stay."""
+        draft = self.session.shown
+        if draft is not None:
+            with self.undo.step(f"Reset {name}"):
+                self.session.drafts.unset(*(path for path in paths if path not in draft.edits.locked))
+
+    # ── saving ───────────────────────────────────────────────────────────────
+
+    def save_values(self) -> None:
+        """Save values, camera and techniques into the sketch; where it is read-only, offer a copy.
+
+        A shader or an elevation file that was opened alone has none: make one next to it.
+        """
+        draft = self._ready()
+        if draft is None:
+            return
+        if is_shader(draft) and not Path(draft.file.file).is_relative_to(GLSL):
+            self.save_a_copy()
+            return
+        if draft.sketch == draft.file:
+            self.notices.say(f"nothing differs from the file{self._missed}")
+        elif self.file.write(lambda: save(draft.file, draft.sketch)):
+            self.undo.history.saved(_values_in_file(draft))
+            self.notices.say(f"saved {_summary(draft)} into {shown(draft.file.file)}{self._missed}")
+
+    @property
+    def copy_is(self) -> tuple[str, str]:
+        """What ``save_a_copy`` is called in a menu, and where it writes."""
+        draft = self.session.shown
+        if draft is not None and is_shader(draft):
+            shader = Path(draft.file.file).name
+            return "Save a sketch", f"A new sketch that uses {shader}, which stays as it is"
+        return "Save a copy", f"A new folder in {self.folder}"
+
+    def save_a_copy(self) -> None:
+        """Save the sketch with the user's edits as a new one in the current folder, and go on with that.
+
+        Of a shader or an elevation file that was opened alone, it is a sketch next to it that uses it.
+        """
+        draft = self._ready()
+        if draft is None:
+            return
+        saved = None
+        try:
+            if is_shader(draft):
+                saved = save_as_sketch(draft, self.folder)
+            path = Path(saved.file.file) if saved else save_copy(draft.file, draft.sketch, self.folder)
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+            return
+        self.undo.history.saved(_values_in_file(draft))
+        what = f"{path.name} in {path.parent}" if saved else f"a copy in {path.parent}"
+        self.notices.say(f"saved {what}; from here on this is the sketch{self._missed}")
+        self._visits(self.session.path, path)
+        self.session.open_copy(path, saved)
+
+    def save_as_preset(self, name: str) -> None:
+        """Save the edited values as a preset of the sketch."""
+        draft = self._ready()
+        if draft is None or not name.strip():
+            return
+        values = {path: value for path, value in draft.applied.items() if not isinstance(value, str)}
+        if not values:
+            self.notices.say("no value is edited, so the preset would be empty")
+        elif self.file.write(lambda: save_preset(draft.file, name.strip(), values)):
+            self.notices.say(f"saved {counted(len(values), 'value')} as the preset {name.strip()}")
+
+    def copy_toml(self, copy: Callable[[str], None]) -> None:
+        """Copy the sketch's text as it would be saved; ``copy`` puts a text on the clipboard."""
+        draft = self._ready()
+        if draft is None:
+            return
+        if is_shader(draft):
+            self.notices.say(f"{Path(draft.file.file).name} is no TOML; Save makes a sketch of it")
+            return
+        file = Path(draft.file.file)
+        try:
+            text = saved_text(read_regular(file).decode("utf-8-sig"), draft.file, draft.sketch)
+        except (OSError, UnicodeDecodeError) as error:
+            self.notices.say(f"{shown(draft.file.file)} cannot be read: {error}")
+            return
+        copy(text)
+        self.notices.say("copied the sketch as TOML")
+
+    def _ready(self) -> Draft | None:
+        """Return what is to be saved, its numbers as the file will have them; None, and a notice, if none."""
+        drafts = self.session.drafts
+        if drafts.shown is None:
+            self.notices.say("there is no sketch to save yet")
+            return None
+        written = self.undo.painting.settle()
+        self._missed = "" if written else "; what was painted last could not be written, and is not in it"
+        drafts.shorten_values()
+        if drafts.shown.edits.camera is not None:
+            drafts.set_camera(rounded(drafts.shown.edits.camera))
+        self.undo.record(held=True)  # as part of the step that changed them
+        return drafts.shown
+
+
+def rounded(camera: Camera) -> Camera:
+    """Return a camera of as many digits as a person would write: hundredths of degrees, centimetres."""
+    return Camera(
+        round(camera.azimuth, 2),
+        round(camera.elevation, 2),
+        round(camera.distance, 2),
+        None if camera.target is None else tuple(round(n, 2) for n in camera.target),  # type: ignore[arg-type]
+        round(camera.field_of_view, 2),
+    )
+
+
+def _values_in_file(draft: Draft) -> dict[Key, object]:
+    """Return what the file sets for everything that is edited."""
+    values = values_of(draft.base)
+    result: dict[Key, object] = {}
+    for path in draft.applied:
+        if path in TERRAIN_KEYS:
+            result["value", path] = getattr(draft.base, path)
+        else:
+            result["value", path] = values[resolve(draft.base.graph, path)[0].path]
+    for name, _ in draft.edits.techniques:
+        spec = draft.file.graph.find(name)
+        result["technique", name] = spec.use if spec else None
+    for channel, _ in draft.edits.channels:
+        result["channel", channel] = source_of(draft.file, channel)
+    result["camera", ""] = draft.file.camera
+    return {key: value for key, value in result.items() if value is not None}
+
+
+def _summary(draft: Draft) -> str:
+    parts = [counted(len(draft.applied), "value")] if draft.applied else []
+    parts += [counted(len(draft.edits.techniques), "technique")] if draft.edits.techniques else []
+    parts += [counted(len(draft.edits.channels), "channel")] if draft.edits.channels else []
+    parts += ["the camera"] if draft.edits.camera is not None else []
+    return " and ".join([", ".join(parts[:-1]), parts[-1]] if parts[1:] else parts)

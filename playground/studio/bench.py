@@ -1,0 +1,61 @@
+"""The parts of a live session, put together: each takes the parts that it uses."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from playground.studio.actions import Commands
+from playground.studio.addition import Addition
+from playground.studio.capture.captures import Captures
+from playground.studio.code.editors import Opener
+from playground.studio.code.open_files import OpenFiles
+from playground.studio.edits.undo import Undo
+from playground.studio.inspect.toggles import Inspection
+from playground.studio.interface import Interface, InterfaceSize, WindowControls
+from playground.studio.keyframes.keyframe_edits import KeyframeEdits
+from playground.studio.notices import Notices
+from playground.studio.paint.painting import Painting
+from playground.studio.problems.problems import Problems
+from playground.studio.remote.controllers import Controllers
+from playground.studio.save.sketch_file import SketchFile
+from playground.studio.session import Session
+
+
+class Workbench:
+    """One session, and what works on it."""
+
+    def __init__(
+        self,
+        session: Session,
+        window: WindowControls,
+        *,
+        folder: Path | None = None,
+        now: Callable[[], float] = time.perf_counter,
+        opener: Opener | None = None,
+        size: InterfaceSize | None = None,
+        wake: Callable[[], None] | None = None,
+    ) -> None:
+        folder = folder or Path.cwd()  # where pictures, masks and copies go
+        self.session = session
+        self.window = window
+        self.notices = Notices(now)
+        self.problems = Problems()
+        self.inspection = Inspection(session)
+        self.painting = Painting(session, folder, wake=wake)
+        self.file = SketchFile(session, self.notices)
+        self.undo = Undo(session, self.notices, self.painting, self.file)
+        self.commands = Commands(session, self.notices, self.undo, self.file, folder)
+        self.keyframes = KeyframeEdits(session, self.notices, self.undo, self.file)
+        settle = self.painting.settle
+        self.captures = Captures(session=session, notices=self.notices, folder=folder, settle=settle)
+        self.files = OpenFiles(self.notices, opener or Opener())
+        self.interface = Interface(size=size or InterfaceSize())
+        self.additions: list[Addition] = []  # of the rooms that can be removed
+        self.controllers = Controllers(session, self.notices)
+
+    def take_notes(self) -> None:
+        """Show what the session and the editors report, and remove notices that are over."""
+        self.painting.follow()
+        self.notices.take(self.session.notes, self.files.opener.notes)

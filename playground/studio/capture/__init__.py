@@ -1,0 +1,1 @@
+"""Capture pictures and films from the window."""

@@ -1,0 +1,1 @@
+"""What feeds the channels of another tool's shader."""

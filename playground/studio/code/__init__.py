@@ -1,0 +1,1 @@
+"""A shader's text in the window or in an editor."""

@@ -1,0 +1,1 @@
+"""What each pass costs, and why it ran."""

@@ -1,0 +1,127 @@
+"""What the pictures cost: milliseconds of each pass over time, texels, triangles, compiling.
+
+Folded at first. While it is folded or off the screen nothing is timed and nothing recorded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from imgui_bundle import ImVec2, imgui, implot
+
+from playground.sketch.model import Sketch
+from playground.sketch.variants import any_variants
+from playground.studio import theme
+from playground.studio.cost.frame_costs import Record
+from playground.studio.draw import header, table
+from playground.studio.inspect import plots
+from playground.studio.inspect.toggles import Inspection
+from playground.studio.panel.rows import fitting
+from playground.studio.session import Session
+from playground.studio.theme import Theme
+
+_MAX_ROWS = 6  # passes with a line of their own
+_HIGH = 110.0  # of a plot
+_TABLE = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
+
+
+def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: Theme) -> None:
+    """Draw the plots, then the table of what ran, how often and how long."""
+    engine, record = session.engine, inspection.record
+    imgui.spacing()
+    opened = header("Cost###costs", look)
+    if not opened:
+        return
+    inspection.costs_shown = True
+    imgui.text_disabled(f"by {engine.clock}")
+    imgui.set_item_tooltip(
+        "By the wall clock each pass waits for the one before, so pictures take a little longer"
+    )
+    if session.is_preview:
+        across, down = session.picture.drawn_size
+        imgui.text_disabled(f"a preview of {across} x {down} pixels")
+        imgui.set_item_tooltip("While something changes; at rest it is drawn in full")
+    if record.pictures:
+        _plots(record, look)
+    if any_variants(sketch.graph):
+        changed, plain = imgui.checkbox("Plain form", session.drafts.plain)
+        imgui.set_item_tooltip("Every technique by its plain text, no fast variant: slower, nearly the same")
+        if changed:
+            session.drafts.run_plain(plain)
+    own = {spec.name for spec in sketch.graph.passes}
+
+    def name(path: str) -> None:
+        ran = path in engine.record.ran
+        imgui.text_colored(theme.colour(theme.ACCENT if ran else theme.INK), path)
+        if why := inspection.reasons.text(path):
+            imgui.set_item_tooltip(why)
+
+    rows = [
+        (
+            partial(name, path),
+            partial(imgui.text_disabled, f"{runs} ×"),
+            partial(imgui.text, f"{session.times[path]:.2f} ms" if path in session.times else ""),
+        )
+        for path, runs in engine.runs.items()
+        if path.partition(".")[0] in own
+    ]
+    table("costs", 3, rows, _TABLE)
+    compiled = session.last_reload
+    if compiled is not None:
+        sandbox = f", {compiled.sandbox * 1e3:.0f} of them the sandbox" if compiled.sandbox else ""
+        imgui.text_disabled(f"files to picture {compiled.seconds * 1e3:.0f} ms{sandbox}")
+    _compiling(engine.runner.compile_times)
+
+
+def _plots(record: Record, look: Theme) -> None:
+    """Draw each expensive pass over the last pictures, and what was computed and drawn for them."""
+    size = ImVec2(-1, _HIGH * look.scale)
+    axes = implot.AxisFlags_.no_decorations, implot.AxisFlags_.auto_fit
+    held = len(record.whole)
+    across: np.ndarray = np.arange(record.pictures - held, record.pictures, dtype=np.float64)
+    expensive = record.most_expensive(_MAX_ROWS)
+    with plots.plot("##ms", size, implot.Flags_.no_legend.value) as drawn:
+        if drawn:
+            implot.setup_axes("", "", axes[0] | implot.AxisFlags_.auto_fit, axes[1])
+            implot.setup_axis_format(implot.ImAxis_.y1, "%g ms")
+            for number, path in enumerate(expensive):
+                implot.plot_line(path, across, np.array(record.passes[path]), plots.line(number))
+    draw, side = imgui.get_window_draw_list(), imgui.get_font_size() * 0.6
+    for number, path in enumerate(expensive):
+        spent = record.passes[path]
+        corner = imgui.get_cursor_screen_pos()
+        top = corner.y + (imgui.get_font_size() - side) / 2
+        colour = theme.packed(plots.COLOURS[number % len(plots.COLOURS)])
+        draw.add_rect_filled(ImVec2(corner.x, top), ImVec2(corner.x + side, top + side), colour, 2)
+        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 2 * side)
+        text = f"{path}  {sum(spent) / len(spent):.2f} ms, most {max(spent):.2f}"
+        imgui.text_unformatted(fitting(text, imgui.get_content_region_avail().x))
+    imgui.text_disabled(
+        f"in all {record.whole[-1]:.1f} ms; median of {held}: {np.median(record.whole):.1f} ms"
+    )
+    for name, numbers in (("texels computed", record.texels), ("triangles drawn", record.triangles)):
+        imgui.plot_lines(
+            f"##{name}",
+            np.array(numbers, np.float32),
+            overlay_text=f"{numbers[-1]:,.0f} {name}",
+            scale_min=0.0,
+            graph_size=ImVec2(-1, 2.2 * imgui.get_font_size()),
+        )
+
+
+def _compiling(times: Mapping[str, float]) -> None:
+    """Draw how long the programs took that the driver compiled, most expensive first."""
+    if not times or not imgui.tree_node_ex(f"Compiling: {sum(times.values()):.0f} ms###compiling"):
+        return
+
+    def name(path: str) -> None:
+        imgui.text_unformatted(Path(path).name)
+        imgui.set_item_tooltip(path)
+
+    ranked = sorted(times.items(), key=lambda item: -item[1])
+    rows = [(partial(name, path), partial(imgui.text, f"{ms:.1f} ms")) for path, ms in ranked]
+    table("compiled", 2, rows, _TABLE)
+    imgui.tree_pop()

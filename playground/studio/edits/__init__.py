@@ -1,0 +1,1 @@
+"""Drafts, user edits over files that change, undo, and what is remembered of a sketch."""

@@ -1,0 +1,152 @@
+"""Undo and redo on a session: steps are recorded at the end of each frame, and applied back to it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from playground.studio.edits.history import KEYFRAMES, History, State, applied, edits_of, state_of, steps_of
+from playground.studio.keyframes.time_range import stepped, toggle_loop
+from playground.studio.notices import Notices
+from playground.studio.paint.painting import Painting
+from playground.studio.reload.reload_stages import ReloadStage
+from playground.studio.save.sketch_file import SketchFile
+from playground.studio.session import Session
+
+
+@dataclass
+class Undo:
+    """The history of one session: one for each sketch that is opened in it."""
+
+    session: Session
+    notices: Notices
+    painting: Painting
+    file: SketchFile
+    _history: History = field(default_factory=History)
+    _next: tuple[Path, History] | None = None  # of a sketch that is being opened
+    held: bool = False  # a mouse button is down: what changes is one step
+
+    @property
+    def history(self) -> History:
+        """The steps of the sketch that is shown."""
+        if self._next is not None and not self.session.drafts.opening:
+            path, history = self._next
+            self._next = None
+            if path == self.session.path:  # else another was opened in its place
+                self._history = history
+        return self._history
+
+    @property
+    def opened(self) -> History:
+        """The steps of the sketch that is open; it may not be shown yet."""
+        history = self.history
+        return self._next[1] if self._next is not None else history
+
+    def begin(self, history: History) -> None:
+        """Go on with the history of the sketch that was opened last, as soon as that is shown."""
+        self._next = self.session.path, history
+
+    def record(self, *, held: bool = False) -> None:
+        """Record what has changed since the last call; ``held``: a mouse button is down."""
+        session, self.held = self.session, held
+        if session.shown is not None:
+            edits, drafts, now = session.shown.edits, session.drafts, self.notices.now()
+            steps, read = session.view.steps, drafts.read_edits
+            is_idle = drafts.stage in (ReloadStage.NONE, ReloadStage.FAILED)
+            self.history.look(edits, steps, drafts.reads, held=held, now=now, read=read, is_idle=is_idle)
+
+    @contextmanager
+    def step(self, name: str) -> Iterator[None]:
+        """Record what the block changes as one step with a name; none where it changes nothing."""
+        self.record()
+        self.history.call(name)
+        try:
+            yield
+        finally:
+            self.record()
+            self.history.call("")
+
+    def undo(self) -> None:
+        """Undo the last step; while painting, the last stroke."""
+        layer = self.painting.layer
+        if self.painting.on and (layer is None or not layer.can_undo):
+            self.notices.say("no stroke to take back; put the brush down (B) to undo values")
+        elif self.painting.on:
+            self.painting.undo()
+            self.notices.say("took the last stroke back; put the brush down (B) to undo values")
+        elif not self._go(-1):
+            self.notices.say("nothing to undo")
+
+    def redo(self) -> None:
+        """Redo the step that was undone last; while painting, the stroke."""
+        layer = self.painting.layer
+        if self.painting.on and (layer is None or not layer.can_redo):
+            self.notices.say("no stroke to paint again; put the brush down (B) to redo values")
+        elif self.painting.on:
+            self.painting.redo()
+            self.notices.say("painted the stroke again; put the brush down (B) to redo values")
+        elif not self._go(1):
+            self.notices.say("nothing to redo")
+
+    def _go(self, by: int) -> bool:
+        """Undo (-1) or redo (1) a step; return False where there is none."""
+        self.record()
+        history = self.history
+        if not (history.can_redo if by > 0 else history.can_undo):
+            return False
+        self.go_to(history.done + by)
+        return True
+
+    def go_to(self, done: int) -> None:
+        """Undo or redo until so many steps are done, or one of them is refused."""
+        self.record()
+        history = self.history
+        while history.done != done and history.go(1 if done > history.done else -1, self._apply):
+            self.settle()
+
+    def settle(self) -> None:
+        """Take in the state of the session without a step."""
+        if self.session.shown is not None:
+            self.history.settle(self.session.shown.edits, self.session.view.steps)
+
+    def _apply(self, changes: State) -> bool:
+        """Set what a step changed; return False, with a notice, where that is refused."""
+        session = self.session
+        latest = session.drafts.latest
+        if latest is None:
+            return False
+        values = applied(state_of(latest.edits, session.view.steps), changes)
+        keyframes = values.pop((KEYFRAMES, ""), None)
+        if isinstance(keyframes, tuple) and not self.file.write_keyframes(keyframes):
+            return False
+        if not session.drafts.restore(edits_of(values)):
+            return False
+        time = values.pop(("time", ""), None)
+        if isinstance(time, float):
+            session.clock.time = time
+        stops = steps_of(values)
+        for path in {*session.view.steps, *stops}:
+            session.stop_at(path, stops.get(path, -1))
+        return True
+
+    # ── time ─────────────────────────────────────────────────────────────────
+
+    def seek(self, time: float) -> None:
+        """Go to a moment [s]."""
+        clock = self.session.clock
+        before, clock.time = clock.time, max(time, 0.0)
+        if before != clock.time:
+            self.history.jump(before, clock.time, held=self.held, now=self.notices.now())
+
+    def step_time(self, frames: int) -> None:
+        """Pause, and go so many frames forward or back, in a sketch that moves."""
+        if self.session.animated:
+            self.session.clock.playing = False
+            self.seek(stepped(self.session.clock.time, frames))
+
+    def toggle_loop(self) -> None:
+        """Loop time, or no longer, in a sketch that moves."""
+        if self.session.sketch is not None and self.session.animated:
+            toggle_loop(self.session.sketch, self.session.clock)

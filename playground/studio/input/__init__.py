@@ -1,0 +1,1 @@
+"""Keys, mouse, clipboard and drops: what a hand does, and what it means."""

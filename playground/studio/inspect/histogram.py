@@ -1,0 +1,207 @@
+"""How the numbers of a texture are spread: read and counted a bounded piece a frame, so that no frame waits.
+
+A texture of up to ``MAX_TEXELS_READ`` texels is read whole; of a larger one rows are left out, evenly,
+and it reports it. The count goes twice over its numbers: once for the least, the greatest,
+the mean and what is no number, once to count them into bins between the two.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.engine.textures import read_texels
+from playground.studio.inspect.results import result_of
+from playground.studio.session import Session
+
+if TYPE_CHECKING:
+    import moderngl
+
+BINS = 128
+PIECE = 2**17
+"""Texels that a frame reads, or counts, at most; but a row at least."""
+MAX_TEXELS_READ = 2**22
+
+
+@dataclass(frozen=True)
+class ChannelHistogram:
+    """One channel's numbers; those that are not finite are only counted."""
+
+    count: int  # finite ones
+    nans: int
+    infinities: int
+    lowest: float  # NaN where none is finite
+    highest: float
+    mean: float
+    deviation: float  # of all, not of a sample
+    bins: NDArray[np.int64]  # from the histogram's low to its high
+
+
+@dataclass(frozen=True)
+class Histogram:
+    """A texture's numbers, channel by channel."""
+
+    size: tuple[int, int]
+    read: int  # texels
+    low: float  # of all channels together: where the first bin begins, where the last one ends
+    high: float
+    channels: tuple[ChannelHistogram, ...]
+
+    @property
+    def whole(self) -> bool:
+        """Whether every texel was read."""
+        return self.read == self.size[0] * self.size[1]
+
+    def between(self, channel: int, share: float) -> tuple[float, float]:
+        """Return numbers, to the width of a bin, below and above which ``share`` of a channel's lie."""
+        bins = self.channels[channel].bins
+        width = (self.high - self.low) / len(bins)
+        total = np.cumsum(bins)
+        first = int(np.searchsorted(total, share * total[-1], "right"))
+        last = int(np.searchsorted(total, (1.0 - share) * total[-1], "left"))
+        return self.low + first * width, self.low + (last + 1) * width
+
+
+def count(
+    texture: moderngl.Texture, piece: int = PIECE, most: int = MAX_TEXELS_READ
+) -> Iterator[Histogram | None]:
+    """Yield None after each piece of work, the histogram at the end.
+
+    The context is the caller's to make current for each piece; the texture must stay as it is.
+    """
+    width, height = texture.size
+    apart = max(-(-width * height // most), 1)  # rows from one that is read to the next
+    rows = max(piece // width, 1) if apart == 1 else 1
+    blocks: list[NDArray[np.float32]] = []
+    sums = [_Sums() for _ in range(texture.components)]
+    done = 0
+    for row in range(0, height, rows if apart == 1 else apart):
+        block = read_texels(texture, (0, row), (width, min(rows, height - row)))
+        block = block.reshape(-1, texture.components)
+        blocks.append(block)
+        for channel, sum_ in enumerate(sums):
+            sum_.add(block[:, channel])
+        done += len(block)
+        if done + len(block) > piece:
+            done = 0
+            yield None
+    sums_counted = [sum_ for sum_ in sums if sum_.count]
+    low = min((sum_.lowest for sum_ in sums_counted), default=0.0)
+    high = max((sum_.highest for sum_ in sums_counted), default=0.0)
+    bins = np.zeros((texture.components, BINS), np.int64)
+    done = 0
+    for block in blocks:
+        for channel in range(texture.components):
+            bins[channel] += _binned(block[:, channel], low, high)
+        done += len(block)
+        if done + len(block) > piece:
+            done = 0
+            yield None
+    read = sum(len(block) for block in blocks)
+    channels = tuple(sum_.channel(row) for sum_, row in zip(sums, bins, strict=True))
+    yield Histogram((width, height), read, low, high, channels)
+
+
+@dataclass
+class _Sums:
+    """Running statistics of a channel; means are combined as in Chan, Golub and LeVeque 1983."""
+
+    count: int = 0
+    nans: int = 0
+    infinities: int = 0
+    lowest: float = math.inf
+    highest: float = -math.inf
+    mean: float = 0.0
+    squares: float = 0.0  # of what each differs from the mean
+
+    def add(self, numbers: NDArray[np.float32]) -> None:
+        nans = np.isnan(numbers)
+        finite = np.isfinite(numbers)
+        self.nans += int(nans.sum())
+        self.infinities += int(len(numbers) - finite.sum() - nans.sum())
+        values = numbers[finite].astype(np.float64)
+        if not len(values):
+            return
+        self.lowest = min(self.lowest, float(values.min()))
+        self.highest = max(self.highest, float(values.max()))
+        mean, count = float(values.mean()), len(values)
+        apart, total = mean - self.mean, self.count + count
+        self.squares += float(((values - mean) ** 2).sum()) + apart**2 * self.count * count / total
+        self.mean += apart * count / total
+        self.count = total
+
+    def channel(self, bins: NDArray[np.int64]) -> ChannelHistogram:
+        if not self.count:
+            return ChannelHistogram(
+                0, self.nans, self.infinities, math.nan, math.nan, math.nan, math.nan, bins
+            )
+        deviation = math.sqrt(self.squares / self.count)
+        return ChannelHistogram(
+            self.count, self.nans, self.infinities, self.lowest, self.highest, self.mean, deviation, bins
+        )
+
+
+def _binned(numbers: NDArray[np.float32], low: float, high: float) -> NDArray[np.int64]:
+    values = numbers[np.isfinite(numbers)].astype(np.float64)
+    if high <= low:
+        places = np.zeros(len(values), np.int64)
+    else:
+        places = np.minimum(((values - low) * (BINS / (high - low))).astype(np.int64), BINS - 1)
+    return np.bincount(places, minlength=BINS)
+
+
+@dataclass
+class Counter:
+    """Computes a histogram of the map's texture, a piece of the work a frame."""
+
+    session: Session
+    piece: int = PIECE
+    latest: Histogram | None = None
+    _of: object = None  # what is being counted
+    _counted: object = None  # what the latest is of
+    _work: Iterator[Histogram | None] | None = field(default=None, repr=False)
+
+    @property
+    def waits(self) -> bool:
+        """Whether there is work left."""
+        return self._work is not None
+
+    @property
+    def fresh(self) -> bool:
+        """Whether the latest is of the texture that is shown now."""
+        return self.latest is not None and self._counted == self._of
+
+    def go_on(self) -> None:
+        """Count one more piece; restart where another texture, or a new version of it, is shown."""
+        result = self._shown()
+        if result is None:
+            self.stop()
+            return
+        texture, of = result
+        if of != self._of:
+            if self.latest is not None and of[:2] != self._counted_name():
+                self.latest = None
+            self._of, self._work = of, count(texture, self.piece)
+        if self._work is None:
+            return
+        with self.session.engine.borrowed():
+            done = next(self._work)
+        if done is not None:
+            self.latest, self._counted, self._work = done, of, None
+
+    def stop(self) -> None:
+        """Forget all of it."""
+        self.latest = self._of = self._counted = self._work = None
+
+    def _counted_name(self) -> tuple[object, ...]:
+        return self._counted[:2] if isinstance(self._counted, tuple) else ()
+
+    def _shown(self) -> tuple[moderngl.Texture, tuple[object, ...]] | None:
+        shown = self.session.view.map
+        result = result_of(self.session, shown.ref) if shown is not None else None
+        return (result[0], (shown.ref, *result[1])) if shown is not None and result is not None else None

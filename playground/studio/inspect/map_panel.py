@@ -1,0 +1,161 @@
+"""The panel's part about a map: its legend with units, how its numbers are spread."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from imgui_bundle import ImVec2, ImVec4, imgui, implot
+
+from playground.sketch.map_sketch import Map
+from playground.studio import theme
+from playground.studio.draw import button
+from playground.studio.inspect import plots
+from playground.studio.inspect.histogram import BINS, Histogram
+from playground.studio.inspect.legend import STEPS, ends_of, ticks
+from playground.studio.inspect.toggles import Inspection
+from playground.studio.panel.rows import fitting
+from playground.studio.picture.view import View
+from playground.studio.session import Session
+from playground.studio.theme import Theme
+
+_HIGH = 120.0
+_CHANNELS = ("red", "green", "blue", "alpha")
+_INKS = ((0.95, 0.42, 0.38), (0.45, 0.80, 0.45), (0.45, 0.62, 0.98), (0.75, 0.75, 0.75))
+_SHARE = 0.02
+
+
+def draw_spread(session: Session, inspection: Inspection, look: Theme) -> None:
+    """Draw it where a map is shown."""
+    shown = session.view.map
+    if shown is None:
+        return
+    if shown.value("channel") != 0:
+        _legend(shown, session, inspection, look)
+    if not imgui.tree_node_ex("Histogram###histogram"):
+        return
+    inspection.spread_shown = True
+    result = inspection.counter.latest
+    if result is None:
+        imgui.text_disabled("counting …")
+    else:
+        _plot(result, shown, inspection, look)
+        _table(result)
+        if not result.whole:
+            imgui.text_disabled(fitting(f"of {result.read:,} texels, whole rows of it", 300 * look.scale))
+        if not inspection.counter.fresh:
+            imgui.text_disabled("of a moment ago; counting again …")
+        _ranges(result, session.view)
+    imgui.tree_pop()
+
+
+def metres_of(session: Session) -> float | None:
+    """Return how many metres the map's number 1 is, where it shows heights; None elsewhere."""
+    shown, plan = session.view.map, session.plan
+    return plan.terrain.relief if shown and plan and shown.ref.partition(":")[2] == "height" else None
+
+
+def _legend(shown: Map, session: Session, inspection: Inspection, look: Theme) -> None:
+    """Draw the ramp's colours with round numbers under them, metres where heights are shown."""
+    ramp = shown.value("ramp")
+    colours = inspection.colours(int(ramp) if isinstance(ramp, int) else 0)
+    low, high = ends_of(shown)
+    metres = metres_of(session)
+    unit, factor = (" m", metres) if metres is not None else ("", 1.0)
+    corner, wide = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x
+    bar, line = 12 * look.scale, imgui.get_text_line_height()
+    imgui.invisible_button("##legend", ImVec2(wide, bar + line + 4 * look.scale))
+    draw = imgui.get_window_draw_list()
+    for step, colour in enumerate(colours):
+        # Each goes to the end, under the next, so that no seam is visible.
+        start, end = ImVec2(corner.x + wide * step / STEPS, corner.y), ImVec2(corner.x + wide, corner.y + bar)
+        draw.add_rect_filled(start, end, theme.packed(colour))
+    if high == low:
+        return
+    marks = ticks(low * factor, high * factor)
+    for which, mark in enumerate(marks):
+        x = corner.x + wide * (mark / factor - low) / (high - low) if factor else corner.x
+        draw.add_line(
+            ImVec2(x, corner.y + bar), ImVec2(x, corner.y + bar + 3 * look.scale), theme.packed(theme.INK)
+        )
+        text = f"{mark:g}{unit if which == len(marks) - 1 else ''}"
+        size = imgui.calc_text_size(text).x
+        left = min(max(x - size / 2, corner.x), corner.x + wide - size)
+        draw.add_text(ImVec2(left, corner.y + bar + 3 * look.scale), theme.packed(theme.DIM), text)
+    if imgui.is_item_hovered():
+        share = (imgui.get_io().mouse_pos.x - corner.x) / wide
+        number = low + share * (high - low)
+        imgui.set_tooltip(f"{number:.6g}" + (f" = {number * factor:.2f} m" if metres is not None else ""))
+
+
+def _plot(histogram: Histogram, shown: Map, inspection: Inspection, look: Theme) -> None:
+    _, logarithmic = imgui.checkbox("Logarithmic", inspection.logarithmic)
+    inspection.logarithmic = logarithmic
+    span = histogram.high - histogram.low
+    edges = histogram.low + (np.arange(BINS) + 0.5) * ((span or 1.0) / BINS)
+    tallest = max(int(channel.bins.max()) for channel in histogram.channels)
+    flags = implot.Flags_.no_legend.value | implot.Flags_.no_inputs.value
+    floor = 0.5 if logarithmic else 0.0
+    top = 1.3 * tallest if logarithmic else 1.05 * tallest
+    with plots.plot("##spread", ImVec2(-1, _HIGH * look.scale), flags) as drawn:
+        if not drawn:
+            return
+        locked = implot.AxisFlags_.lock.value
+        implot.setup_axes("", "", locked, locked | implot.AxisFlags_.no_tick_labels.value)
+        implot.setup_axis_limits(
+            implot.ImAxis_.x1, histogram.low, histogram.low + (span or 1.0), imgui.Cond_.always
+        )
+        if logarithmic:
+            implot.setup_axis_scale(implot.ImAxis_.y1, implot.Scale_.log10)
+        implot.setup_axis_limits(implot.ImAxis_.y1, floor, max(top, 1.0), imgui.Cond_.always)
+        for number, channel in enumerate(histogram.channels):
+            spec = implot.Spec()
+            alone = len(histogram.channels) == 1
+            ink = ImVec4(*(theme.INK if alone else _INKS[number]), 1.0)
+            spec.line_color, spec.fill_color, spec.fill_alpha = ink, ink, 0.25
+            heights = np.maximum(channel.bins.astype(np.float64), floor)
+            implot.plot_stairs(_CHANNELS[number], edges, heights, spec)
+            implot.plot_shaded(_CHANNELS[number], edges, heights, floor, spec)
+        implot.plot_inf_lines("range", np.array(ends_of(shown), np.float64), plots.line(0, 1.0))
+
+
+def _table(document: Histogram) -> None:
+    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
+    if not imgui.begin_table("spread", 5, flags):
+        return
+    for title in ("", "least", "greatest", "mean", "deviation"):
+        imgui.table_next_column()
+        imgui.text_disabled(title)
+    for number, channel in enumerate(document.channels):
+        imgui.table_next_row()
+        imgui.table_next_column()
+        imgui.text_colored(theme.colour(_INKS[number]), _CHANNELS[number])
+        for value in (channel.lowest, channel.highest, channel.mean, channel.deviation):
+            imgui.table_next_column()
+            imgui.text_unformatted("none" if math.isnan(value) else f"{value:.4g}")
+    imgui.end_table()
+    for number, channel in enumerate(document.channels):
+        if channel.nans or channel.infinities:
+            text = f"{_CHANNELS[number]}: {channel.nans:,} NaN, {channel.infinities:,} infinite"
+            imgui.text_colored(theme.colour(theme.ALARM), text)
+
+
+def _ranges(histogram: Histogram, view: View) -> None:
+    """Draw what sets the map's range from the numbers."""
+    channel = view.map.value("channel") if view.map is not None else 0
+    which = max(int(channel) - 1, 0) if isinstance(channel, int) else 0
+    if which >= len(histogram.channels) or not histogram.channels[which].count:
+        return
+    mine = histogram.channels[which]
+    bounds: tuple[float, float] | None = None
+    if button("All of it", "The map's range from the least to the greatest number"):
+        bounds = mine.lowest, mine.highest
+    imgui.same_line()
+    if button("All but outliers", "Without the least and the greatest 2 in 100"):
+        bounds = histogram.between(which, _SHARE)
+    imgui.same_line()
+    if button("Around the mean", 'The middle of "cool and warm" is the mean'):
+        view.set_map("middle", mine.mean)
+    if bounds is not None and bounds[0] < bounds[1]:
+        for name, value in zip(("lowest", "highest"), bounds, strict=True):
+            view.set_map(name, value)

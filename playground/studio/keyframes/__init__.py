@@ -1,0 +1,1 @@
+"""Keyframes and the bar of time."""

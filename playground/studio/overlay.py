@@ -1,0 +1,110 @@
+"""What lies over the picture: a message while there is none, and notices that fade."""
+
+from __future__ import annotations
+
+from operator import itemgetter
+
+from imgui_bundle import ImVec2, imgui
+
+from playground.studio import theme
+from playground.studio.draw import Area, plate, plate_size
+from playground.studio.notices import Notices
+from playground.studio.session import Session
+from playground.studio.theme import Theme
+
+_FADE = 1.0  # [s]
+_PADDING = 9  # [units of scale 1] around a notice's text
+PATIENCE = 0.3
+"""[s] without a new picture after which the window says what is checked."""
+
+
+def draw_waiting(text: str, area: Area) -> None:
+    """Write a message in the middle of the picture, while there is none."""
+    x, y, wide, high = area
+    size = imgui.calc_text_size(text)
+    position = ImVec2(x + (wide - size.x) / 2, y + (high - size.y) / 2)
+    imgui.get_background_draw_list().add_text(position, theme.packed(theme.DIM), text)
+
+
+def draw_checking(session: Session, look: Theme, area: Area) -> None:
+    """Show what the sandbox checks, once it has taken longer than ``PATIENCE``."""
+    checking = session.drafts.checking
+    if checking is not None and checking[1] >= PATIENCE:
+        margin = 14 * look.scale
+        _plate(checking_text(*checking), (area[0] + margin, area[1] + margin), look, ink=theme.WARM)
+
+
+def draw_behind(session: Session, look: Theme, area: Area) -> None:
+    """Show how far the frames before the wanted one, or a source, have come, after ``PATIENCE``."""
+    behind = session.catch_up.behind
+    if behind is not None and session.catch_up.seconds >= PATIENCE:
+        margin = 14 * look.scale
+        text, low = behind_text(*behind, session.catch_up.source), (area[0] + margin, area[1] + margin)
+        corner = _plate(text, low, look, ink=theme.WARM)
+        if session.catch_up.source:
+            _bar(behind[0] / behind[1], low[0], corner, look)
+
+
+def _bar(share: float, left: float, corner: ImVec2, look: Theme) -> None:
+    """Draw how much is done as a bar along the lower edge of a plate."""
+    top, paint = corner.y - 3 * look.scale, imgui.get_foreground_draw_list()
+    end = ImVec2(left + (corner.x - left) * share, corner.y)
+    paint.add_rect_filled(ImVec2(left, top), end, theme.packed(theme.WARM))
+
+
+def behind_text(done: int, total: int, source: str = "") -> str:
+    """Return "computing frame 1,200 of 36,000 …", or of a source "making height … 34 %"."""
+    if source:
+        return f"making {source} … {done * 100 // total} %"
+    return f"computing frame {done:,} of {total:,} …"
+
+
+def checking_text(subject: str, seconds: float) -> str:
+    """Return "checking terrain.glsl … 3 s"."""
+    return f"checking {subject} …" + (f" {int(seconds)} s" if seconds >= 1 else "")
+
+
+def draw_notices(notices: Notices, look: Theme, area: Area) -> None:
+    """Draw the notices in the upper right corner; each fades at its end."""
+    x, y, wide, _ = area
+    margin = 14 * look.scale
+    room = max(min(wide - 2 * margin, 560 * look.scale) - 18 * look.scale, 80.0)
+    top, gap = y + margin, 6 * look.scale
+    for notice in reversed(notices.items):
+        alpha = min(max(notice.until - notices.now(), 0.0) / _FADE, 1.0)
+        size = plate_size(notice.text, _PADDING * look.scale, room)
+        for left, bar_top, right, bar_low in _close_buttons():  # which a notice would cover for seconds
+            if left < x + wide - margin and right > x + wide - margin - size.x:
+                top = bar_low + gap if bar_top < top + size.y and bar_low > top else top
+        corner = _plate(notice.text, (x + wide - margin, top), look, alpha=alpha, wrap=room, align=(1.0, 0.0))
+        top = corner.y + gap
+
+
+def _close_buttons() -> list[tuple[float, float, float, float]]:
+    """List where the windows over the picture are closed, from the top: left, top, right, lower edge."""
+    shown = [window for window in imgui.get_current_context().windows if window.was_active]
+    bars = [window.title_bar_rect() for window in shown if window.has_close_button]
+    return sorted(((b.max.x - b.get_height(), b.min.y, b.max.x, b.max.y) for b in bars), key=itemgetter(1))
+
+
+def _plate(
+    text: str,
+    corner: tuple[float, float],
+    look: Theme,
+    *,
+    ink: theme.Rgb = theme.INK,
+    alpha: float = 1.0,
+    wrap: float = -1.0,
+    align: tuple[float, float] = (0.0, 0.0),
+) -> ImVec2:
+    return plate(
+        imgui.get_foreground_draw_list(),
+        text,
+        corner,
+        ink=theme.packed(ink, alpha),
+        ground=theme.packed(theme.GROUND, 0.92 * alpha),
+        padding=_PADDING * look.scale,
+        rounding=6 * look.scale,
+        wrap=wrap,
+        align=align,
+    )

@@ -1,0 +1,1 @@
+"""The brush: masks, heights, erosion under the mouse."""

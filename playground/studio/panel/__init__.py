@@ -1,0 +1,1 @@
+"""The panel of parameters: rows, widgets, sections, random values."""

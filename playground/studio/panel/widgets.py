@@ -1,0 +1,287 @@
+"""Draw a parameter as its annotation says, and give back what the user makes of it.
+
+One function a control, by its name in ``CONTROLS``: those of ``shader/widgets.json``. Each returns the new
+value, or None while nothing changed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from imgui_bundle import ImVec2, imgui
+
+from playground.allowed_files import ELEVATIONS
+from playground.errors import DataError
+from playground.paths import shown
+from playground.shader.colours import linear_to_srgb, srgb_to_linear
+from playground.shader.parameter import expected, is_whole, length_of, part_names, tidied, write
+from playground.sketch.files import find_file
+from playground.sketch.model import Parameter, Value
+from playground.studio import theme
+from playground.studio.draw import choose
+from playground.studio.panel import dome
+from playground.studio.panel.number_format import unit_of
+from playground.studio.panel.rows import fitting_choice
+from playground.studio.panel.sliders import draw_numbers
+
+_CLAMP = imgui.SliderFlags_.always_clamp.value
+_PAD = 84.0
+IMAGES = (".jpg", ".jpeg", ".webp", *ELEVATIONS)
+
+
+@dataclass(frozen=True)
+class WidgetSlot:
+    """Where a widget is drawn."""
+
+    label: str  # imgui's, unique in the panel
+    scale: float  # of the screen
+    folder: Path  # the sketch's own: its files are offered
+    endings: tuple[str, ...] = IMAGES  # of the files
+
+
+Draw = Callable[[Parameter, Value, WidgetSlot], "Value | None"]
+
+
+def draw_value(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
+    """Draw the widget of a parameter over the width that is left; return a new value, or None."""
+    return CONTROLS[parameter.widget.facts.control](parameter, value, slot)
+
+
+def explanation(parameter: Parameter, path: str) -> str:
+    """Return a tooltip: what a parameter is, takes, is by default, where it is declared, its path."""
+    lines = [parameter.tooltip] if parameter.tooltip else []
+    in_words = parameter.widget.choices or parameter.widget.facts.expects
+    unit = "" if in_words else unit_of(parameter)
+    default = write(parameter, parameter.default) or "none"
+    lines.append(f"Takes {expected(parameter)}{unit}; by default {default}{unit}.")
+    if parameter.step:
+        lines.append(f"In steps of {parameter.step:g}{unit}.")
+    if names := part_names(parameter):
+        if parameter.widget.facts.control == "numbers":
+            lines.append(f"Its parts: {', '.join(names)}.")
+    declared = f"uniform {parameter.type} {parameter.name}"
+    lines.append(f"{declared}, {shown(parameter.file)}:{parameter.line}" if parameter.file else declared)
+    return "\n".join([*lines, path])
+
+
+# ── numbers ──────────────────────────────────────────────────────────────────
+
+
+def _numbers(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
+    data = draw_numbers(parameter, _as_list(value), slot.label)
+    return None if data is None else _back(parameter, data)
+
+
+def _checkbox(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
+    changed, on = imgui.checkbox(slot.label, bool(value))
+    return on if changed else None
+
+
+def _button(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
+    pressed = imgui.button(f"{parameter.title}{slot.label}", ImVec2(imgui.calc_item_width(), 0))
+    return True if pressed else None
+
+
+def _menu(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
+    choices = parameter.widget.choices
+    now = int(value) if isinstance(value, int) and 0 <= value < len(choices) else 0
+    shown = fitting_choice(choices[now])
+    chosen = choose(slot.label, shown, range(len(choices)), now, name=choices.__getitem__)
+    return chosen if chosen != now else None
+
+
+# ── places and colours ───────────────────────────────────────────────────────
+
+
+def _colour(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
+    # Linear inside unless it is raw, display-encoded for the eye; alpha is not a light and stays as it is.
+    linear, raw = _as_list(value), parameter.widget.raw
+    flags = imgui.ColorEditFlags_.display_hex | imgui.ColorEditFlags_.picker_hue_wheel
+    held = [min(max(c, 0.0), 1.0) for c in linear[:3]]
+    seen = [*(held if raw else linear_to_srgb(held).tolist()), *linear[3:]]
+    if len(linear) == 4:
+        changed, edited = imgui.color_edit4(slot.label, seen, flags | imgui.ColorEditFlags_.alpha_bar)
+    else:
+        changed, edited = imgui.color_edit3(slot.label, seen, flags)
+    # Eight bits a channel, as the field shows it and a file can say it.
+    picked = [round(c * 255) / 255 for c in _as_list(edited)]
+    if not changed:
+        return None
+    return tuple(picked) if raw else (*srgb_to_linear(picked[:3]).tolist(), *picked[3:])
+
+
+def _direction(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
+    azimuth, elevation = _as_list(value)
+    origin, side, field, dragged = _pad(slot)
+    radius, draw = side / 2, imgui.get_window_draw_list()
+    middle = ImVec2(origin.x + radius, origin.y + radius)
+    draw.add_circle_filled(middle, radius - 1, theme.packed(theme.FIELD))
+    for share in (1.0, 2 / 3, 1 / 3):  # the horizon, 30 and 60 degrees
+        draw.add_circle(middle, (radius - 1) * share, theme.packed(theme.LINE), 0, slot.scale)
+    north = imgui.calc_text_size("N")
+    draw.add_text(ImVec2(middle.x - north.x / 2, origin.y + slot.scale), theme.packed(theme.DIM), "N")
+    right, up = dome.dot_of(azimuth, elevation)
+    dot = ImVec2(middle.x + right * (radius - 1), middle.y - up * (radius - 1))
+    below = elevation < 0
+    draw.add_line(middle, dot, theme.packed(theme.WARM, 0.5), slot.scale)
+    draw.add_circle_filled(dot, 5 * slot.scale, theme.packed(theme.DIM if below else theme.WARM))
+    result: Value | None = None
+    if dragged is not None:
+        across, down = dragged
+        direction_picked = dome.direction_at(2 * across - 1, 1 - 2 * down)
+        result = (round(direction_picked[0], 1), round(direction_picked[1], 1))
+    imgui.same_line()
+    imgui.begin_group()
+    _name("azimuth")
+    imgui.set_next_item_width(field)
+    turned, azimuth = imgui.drag_float(f"{slot.label}-azimuth", azimuth, 0.5, -720, 720, "%.1f°", _CLAMP)
+    imgui.set_item_tooltip("Azimuth: clockwise from north")
+    _name("elevation")
+    imgui.set_next_item_width(field)
+    raised, elevation = imgui.drag_float(f"{slot.label}-elevation", elevation, 0.25, -90, 90, "%.1f°", _CLAMP)
+    imgui.set_item_tooltip("Elevation above the horizon")
+    imgui.end_group()
+    return (tidied(azimuth), tidied(elevation)) if turned or raised else result
+
+
+def _name(text: str) -> None:
+    """Write what a field below it is, small, close to it."""
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(0, 0))
+    imgui.push_font(None, theme.SMALL)
+    imgui.text_disabled(text)
+    imgui.pop_font()
+    imgui.pop_style_var()
+
+
+def _point(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
+    x, y = _as_list(value)
+    axes = [(low or 0.0, 1.0 if high is None else high) for low, high in map(parameter.widget.ends, range(2))]
+    (west, east), (south, north) = axes
+    across, up = (x - west) / (east - west), (y - south) / (north - south)
+    origin, side, field, dragged = _pad(slot)
+    draw = imgui.get_window_draw_list()
+    corner = ImVec2(origin.x + side, origin.y + side)
+    draw.add_rect_filled(origin, corner, theme.packed(theme.FIELD), 5 * slot.scale)
+    dot = ImVec2(origin.x + across * side, origin.y + (1 - up) * side)
+    draw.add_line(ImVec2(dot.x, origin.y), ImVec2(dot.x, corner.y), theme.packed(theme.LINE), slot.scale)
+    draw.add_line(ImVec2(origin.x, dot.y), ImVec2(corner.x, dot.y), theme.packed(theme.LINE), slot.scale)
+    draw.add_circle_filled(dot, 5 * slot.scale, theme.packed(theme.WARM))
+    result: Value | None = None
+    if dragged is not None:
+        shares = (dragged[0], 1 - dragged[1])
+        point_picked = [low + (high - low) * part for (low, high), part in zip(axes, shares, strict=True)]
+        result = (_rounded(point_picked[0], axes[0]), _rounded(point_picked[1], axes[1]))
+    imgui.same_line()
+    imgui.begin_group()
+    changed = False
+    for name, unit, number, (low, high) in (("x", "E", x, axes[0]), ("y", "N", y, axes[1])):
+        imgui.set_next_item_width(field)
+        speed, digits = (high - low) / 500, max(_places(axes[0]), _places(axes[1])) - 1
+        moved, number = imgui.drag_float(
+            f"{slot.label}-{name}", number, speed, low, high, f"%.{digits}f {unit}", _CLAMP
+        )
+        changed = changed or moved
+        x, y = (number, y) if name == "x" else (x, number)
+    imgui.end_group()
+    return (tidied(x), tidied(y)) if changed else result
+
+
+def _places(axis: tuple[float, float]) -> int:
+    """Return the places after the point that tell a ten-thousandth of a range from the next."""
+    return min(max(4 - math.floor(math.log10(axis[1] - axis[0]) + 1e-9), 1), 9)
+
+
+def _rounded(number: float, axis: tuple[float, float]) -> float:
+    """Return a number within its range in as many places as a pad can be pointed to."""
+    return min(max(round(number, _places(axis)), axis[0]), axis[1])
+
+
+def _pad(slot: WidgetSlot) -> tuple[ImVec2, float, float, tuple[float, float] | None]:
+    """Make a square to drag in.
+
+    Return its upper left corner, its side, the width that is left for fields, and while it is dragged
+    the mouse's share of it, right and down.
+    """
+    origin, wide = imgui.get_cursor_screen_pos(), imgui.calc_item_width()
+    side = min(_PAD * slot.scale, wide)
+    field = wide - side - imgui.get_style().item_spacing.x
+    imgui.invisible_button(slot.label, ImVec2(side, side))
+    if not imgui.is_item_active():
+        return origin, side, field, None
+    mouse = imgui.get_io().mouse_pos
+    across, down = (mouse.x - origin.x) / side, (mouse.y - origin.y) / side
+    return origin, side, field, (min(max(across, 0.0), 1.0), min(max(down, 0.0), 1.0))
+
+
+_PATH = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.elide_left  # its end is the name
+
+
+def _file(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None:
+    """Draw a path to type, and a list of the images and elevation files in the sketch's folder."""
+    text = str(value)
+    button = imgui.get_frame_height()
+    imgui.set_next_item_width(max(imgui.calc_item_width() - button, button))
+    changed, typed = imgui.input_text(slot.label, text, _PATH)
+    if not changed and imgui.is_item_deactivated_after_edit():
+        changed = True
+    if text and imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+        imgui.set_tooltip(_whole_path(text, parameter, slot))
+    imgui.same_line(0, 0)
+    chosen: str | None = None
+    imgui.set_next_item_width(button)
+    if imgui.begin_combo(
+        f"{slot.label}-files", "", imgui.ComboFlags_.no_preview | imgui.ComboFlags_.popup_align_left
+    ):
+        names = _files_in(slot.folder, slot.endings)
+        for name in names:
+            if imgui.selectable(name, name == text)[0]:
+                chosen = name
+        if not names:
+            none = "images or elevation files" if slot.endings == IMAGES else ", ".join(slot.endings)
+            imgui.text_disabled(f"no {none} next to the sketch")
+        imgui.end_combo()
+    if chosen is not None:
+        return chosen
+    return typed if changed and typed != text else None
+
+
+def _whole_path(text: str, parameter: Parameter, slot: WidgetSlot) -> str:
+    try:
+        return str(find_file(text, str(slot.folder), parameter.file, parameter.name))
+    except DataError as error:
+        return str(error)
+
+
+def _files_in(folder: Path, endings: tuple[str, ...]) -> list[str]:
+    inside = (p for pattern in ("*", "*/*") for p in folder.glob(pattern))
+    return sorted(p.relative_to(folder).as_posix() for p in inside if p.suffix.lower() in endings)[:200]
+
+
+# ── between imgui's lists and parameters' values ─────────────────────────────
+
+
+def _as_list(value: object) -> list[float]:
+    if isinstance(value, int | float):
+        return [float(value)]
+    return [float(v) for v in value] if isinstance(value, Sequence) and not isinstance(value, str) else [0.0]
+
+
+def _back(parameter: Parameter, numbers: Sequence[float]) -> Value:
+    values: tuple[float, ...] = tuple(round(n) if is_whole(parameter.type) else tidied(n) for n in numbers)
+    return values[0] if length_of(parameter.type) == 1 else values
+
+
+CONTROLS: dict[str, Draw] = {
+    "numbers": _numbers,
+    "direction": _direction,
+    "colour": _colour,
+    "menu": _menu,
+    "checkbox": _checkbox,
+    "button": _button,
+    "point": _point,
+    "file": _file,
+}
+"""How each control is drawn."""

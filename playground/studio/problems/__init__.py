@@ -1,0 +1,1 @@
+"""What is wrong with a sketch: errors, warnings, numbers that are not finite."""

@@ -1,0 +1,216 @@
+"""The list of errors and warnings over the lower part of the picture, and the badge that opens it."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from functools import cached_property
+
+from imgui_bundle import ImVec2, imgui
+
+from playground.errors import Diagnostic, counted
+from playground.studio import theme
+from playground.studio.code.open_files import OpenFiles, editor_name
+from playground.studio.draw import QUIET, Area, button, inked, pushed_id, styled, window, wrapped
+from playground.studio.interface import Interface
+from playground.studio.problems.error_excerpt import numbered, short_place
+from playground.studio.problems.problems import Problems, passes_of
+from playground.studio.session import Session
+from playground.studio.theme import Theme
+
+MAX_ROWS = 60
+"""Diagnostics drawn at most."""
+_MAX_HEIGHT = 0.5  # share of the picture that the list may cover
+_GROUND = (0.17, 0.075, 0.075)  # under errors
+_MILD = (0.125, 0.118, 0.095)  # under warnings alone
+_FLAGS = QUIET | imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_resize
+_FLAGS |= imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_focus_on_appearing
+_FLAGS |= imgui.WindowFlags_.no_bring_to_front_on_focus
+
+
+@dataclass(frozen=True)
+class ErrorsList:
+    """The list in one frame of a window, or the badge in its place."""
+
+    problems: Problems
+    files: OpenFiles
+    session: Session
+    interface: Interface
+
+    def draw(self, look: Theme, area: Area) -> None:
+        """Draw the list while it is open; while it is not, the badge, if there is any diagnostic."""
+        if self.problems.errors or self.problems.warnings:
+            (self._list if self.problems.open else self._badge)(look, area)
+
+    @property
+    def _ink(self) -> theme.Rgb:
+        return theme.ALARM if self.problems.errors else theme.WARM
+
+    def _window(self, name: str, area: Area, look: Theme, **sizes: ImVec2) -> AbstractContextManager[None]:
+        """Draw a window in the lower left corner of an area, in the colour of their severity."""
+        margin = 14 * look.scale
+        position = ImVec2(area[0] + margin, area[1] + area[3] - margin)
+        imgui.set_next_window_pos(position, imgui.Cond_.always, ImVec2(0, 1))
+        ground = theme.colour(_GROUND if self.problems.errors else _MILD, 0.95)
+        named = {getattr(imgui.StyleVar_, key): value for key, value in sizes.items()}
+        return window(name, _FLAGS, ground=ground, rounding=8 * look.scale, sizes=named)
+
+    def _badge(self, look: Theme, area: Area) -> None:
+        padding = ImVec2(4 * look.scale, 4 * look.scale)
+        with self._window("badge", area, look, window_padding=padding, window_min_size=ImVec2(8, 8)):
+            with inked(self._ink):
+                if imgui.small_button(f"{self.problems.headline()}##badge"):
+                    self.problems.open = True
+            imgui.set_item_tooltip("Show the list (F8)")
+
+    def _list(self, look: Theme, area: Area) -> None:
+        problems, margin = self.problems, 14 * look.scale
+        width, tallest = max(area[2] - 2 * margin, 120.0), max(area[3] * _MAX_HEIGHT, 120.0)
+        imgui.set_next_window_size_constraints(ImVec2(width, 0), ImVec2(width, tallest))
+        with styled({imgui.Col_.text_link: theme.colour(theme.DIM)}), self._window("error", area, look):
+            self._headline(look)
+            room = tallest - imgui.get_cursor_pos_y() - imgui.get_style().window_padding.y
+            imgui.set_next_window_size_constraints(ImVec2(0, 0), ImVec2(1e6, max(room, 40.0)))
+            imgui.begin_child("list", ImVec2(0, 0), imgui.ChildFlags_.auto_resize_y)
+            number = 0
+            for file, mine in problems.by_file():
+                if number < MAX_ROWS:
+                    self._file(file, mine, number, look)
+                number += len(mine)
+            if (left := len(problems.all) - MAX_ROWS) > 0:
+                imgui.text_disabled(f"and {left} more; Copy has them all")
+            problems.moved = False
+            imgui.end_child()
+
+    def _headline(self, look: Theme) -> None:
+        problems, text = self.problems, self.problems.headline()
+        if problems.errors:
+            stays = "the last good picture stays" if self.session.shown else "there is no picture yet"
+            text = f"{text}; {stays}"
+        style = imgui.get_style()
+        wide = sum(imgui.calc_text_size(b).x + 2 * style.frame_padding.x for b in ("Copy", "Fold"))
+        right = imgui.get_window_width() - style.window_padding.x - wide - style.item_spacing.x
+        with look.font(look.bold), wrapped(right - style.item_spacing.x):
+            imgui.text_colored(theme.colour(self._ink), f"{text}.")
+        imgui.same_line(right)
+        if button("Copy##errors", "All of it, to the clipboard", small=True):
+            imgui.set_clipboard_text(problems.text())
+            self.files.notices.say(f"copied {problems.headline()}")
+        imgui.same_line()
+        if button("Fold##errors", "To a badge; F8 brings it back", small=True):
+            problems.open = False
+
+    def _file(self, file: str, mine: list[Diagnostic], first: int, look: Theme) -> None:
+        """Draw a file's mistakes, under its name."""
+        if self.problems.moved and first <= self.problems.at < first + len(mine):
+            imgui.set_next_item_open(True)
+        with look.font(look.bold):
+            flags = imgui.TreeNodeFlags_.default_open | imgui.TreeNodeFlags_.span_avail_width
+            title = self._short(file) if file else "no file"
+            opened = imgui.tree_node_ex(f"{title}   {_count(mine)}###file {file}", flags)
+        if not opened:
+            return
+        shown = mine[: MAX_ROWS - first]
+        for index, (before, diagnostic) in enumerate(zip([None, *shown], shown, strict=False), first):
+            again = before is not None and before.line == diagnostic.line
+            with pushed_id(index):
+                self._diagnostic(diagnostic, index, again, look)
+        imgui.tree_pop()
+
+    def _diagnostic(self, diagnostic: Diagnostic, index: int, again: bool, look: Theme) -> None:
+        """Draw one mistake: its place, its message, the lines around it, how it came to be included.
+
+        ``again``: the one before is on the same line, so that its lines need not be shown twice.
+        """
+        problems = self.problems
+        current, heights = problems.at == index, problems.heights
+        start, size = imgui.get_cursor_screen_pos(), (index, imgui.get_content_region_avail().x)
+        above = imgui.get_window_pos().y
+        row_height = heights.get(size)
+        away = start.y > above + imgui.get_window_height() or (
+            row_height is not None and start.y + row_height < above
+        )
+        if row_height is not None and away and not problems.moved and not imgui.is_any_item_active():
+            imgui.dummy(ImVec2(1, row_height))
+            return
+        imgui.spacing()
+        top = imgui.get_cursor_screen_pos()
+        if current and problems.moved:
+            imgui.set_scroll_here_y(0.0)
+        imgui.begin_group()
+        self._links(diagnostic, look)
+        is_error = diagnostic.severity == "error"
+        _text("message", diagnostic.message, theme.INK if is_error else theme.WARM, look, wrap=True)
+        lines = [] if again else problems.lines_around(diagnostic)
+        if lines:
+            _code(diagnostic, lines, look)
+        for at, included in enumerate(() if again else reversed(diagnostic.chain)):
+            with look.font(look.code, theme.SMALL):
+                imgui.text_disabled("included from")
+                imgui.same_line(0, imgui.calc_text_size(" ").x)
+                if imgui.text_link(f"{self._short(included)}##chain {at}"):
+                    self.files.open_place(included)
+        imgui.end_group()
+        heights[size] = imgui.get_item_rect_max().y - start.y
+        if current:
+            low = ImVec2(top.x - 6 * look.scale, top.y)
+            high = ImVec2(top.x - 3 * look.scale, imgui.get_item_rect_max().y)
+            imgui.get_window_draw_list().add_rect_filled(low, high, theme.packed(theme.ACCENT))
+
+    def _links(self, diagnostic: Diagnostic, look: Theme) -> None:
+        """Draw the place, which opens the file, and the ways on from there."""
+        if not diagnostic.file:
+            return
+        with look.font(look.code), styled({imgui.Col_.text_link: theme.colour(theme.WARM)}):
+            if imgui.text_link(f"{self._short(diagnostic.location)}##place"):
+                self.files.open_problem(diagnostic)
+        if imgui.is_item_hovered():
+            imgui.set_tooltip(f"{diagnostic.location}\nOpens in {editor_name() or 'a window here'}")
+        with look.font(look.text, theme.SMALL):
+            imgui.same_line(0, 16 * look.scale)
+            if imgui.text_link("edit here##here"):
+                self.files.open_problem(diagnostic, here=True)
+            imgui.set_item_tooltip("Opens the file in a window of its own, here")
+            for name in passes_of(self.session.sketch, diagnostic)[:3]:
+                imgui.same_line(0, 12 * look.scale)
+                if imgui.text_link(f"pass {name}##pass"):
+                    self.interface.show_pass(name)
+                imgui.set_item_tooltip("Shows the pass in the panel")
+
+    def _short(self, location: str) -> str:
+        return short_place(location, self._folder)
+
+    @cached_property
+    def _folder(self) -> str:
+        return str(self.session.path.parent.resolve())
+
+
+def _count(mine: list[Diagnostic]) -> str:
+    errors = sum(d.severity == "error" for d in mine)
+    parts = [counted(errors, "error")] if errors else []
+    parts += [counted(len(mine) - errors, "warning")] if errors < len(mine) else []
+    return ", ".join(parts)
+
+
+def _code(diagnostic: Diagnostic, lines: list[tuple[int, str]], look: Theme) -> None:
+    """Draw lines of the file with their numbers, a mark under the column."""
+    with look.font(look.code):
+        room = int((imgui.get_content_region_avail().x - 4 * look.scale) / imgui.calc_text_size("M").x)
+        rows, wrong = numbered(lines, diagnostic.line, diagnostic.column, room)
+        line = imgui.get_text_line_height()
+        low = imgui.get_cursor_screen_pos()
+        low = ImVec2(low.x, low.y + wrong * line)
+        high = ImVec2(low.x + imgui.get_content_region_avail().x, low.y + line)
+        imgui.get_window_draw_list().add_rect_filled(low, high, theme.packed((1.0, 1.0, 1.0), 0.07))
+        _text("code", "\n".join(rows), theme.DIM if diagnostic.severity != "error" else theme.INK, look)
+
+
+def _text(label: str, text: str, rgb: theme.Rgb, look: Theme, *, wrap: bool = False) -> None:
+    """Draw a text that can be selected and copied."""
+    wide = imgui.get_content_region_avail().x
+    size = imgui.calc_text_size(text, False, wide - 2 * look.scale if wrap else -1.0)
+    flags = imgui.InputTextFlags_.read_only | (imgui.InputTextFlags_.word_wrap if wrap else 0)
+    colours = {imgui.Col_.frame_bg: theme.colour(theme.GROUND, 0.0), imgui.Col_.text: theme.colour(rgb)}
+    var = imgui.StyleVar_
+    with styled(colours, {var.frame_padding: ImVec2(0, 0), var.scrollbar_size: 4 * look.scale}):
+        imgui.input_text_multiline(f"##{label}", text, ImVec2(wide, size.y + 2), flags)

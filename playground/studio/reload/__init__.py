@@ -1,0 +1,1 @@
+"""Watch the files of a sketch and follow them."""

@@ -1,0 +1,1 @@
+"""Drive a session from outside: HTTP, OSC, MIDI."""

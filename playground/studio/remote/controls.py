@@ -1,0 +1,237 @@
+"""Do to a session what a remote asks: set values, time and presets, undo, take the picture.
+
+Values are checked as ``--set`` checks them, with the same sentences. What is set is collected, the
+last of each parameter, and done at once by ``flush``: a stream of values costs a frame no more
+than one of each. The window's history takes it in as it takes in what the panel sets, so each
+change can be undone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path, PureWindowsPath
+from typing import Any
+
+from playground.engine.frame import Frame
+from playground.errors import ContextError, ParameterError, PlaygroundError, SketchError, nearest
+from playground.shader.parameter import spell
+from playground.sketch.assign import check_value, find_targets, value_of, values_of
+from playground.sketch.model import Sketch, Value
+from playground.studio.bench import Workbench
+from playground.studio.edits.edits import Draft, leaves
+from playground.studio.remote.described import parameters_of, state_of
+
+MAX_REMOTE_SIDE = 4096
+"""Pixels that a side of a picture for a remote may have."""
+FASTEST = 100.0
+"""Seconds of the sketch in a second that a remote may ask for, forward or back."""
+_LATEST = 1e9  # [s] that time may be set to
+
+
+class Behind(SketchError):
+    """The window computes the frames before its picture: to draw that at once would hold it up."""
+
+
+class Controls:
+    """What a remote may do to one session."""
+
+    def __init__(self, bench: Workbench) -> None:
+        self.bench = bench
+        self.session = bench.session
+        self._waiting: dict[str, Value] = {}  # checked, and not done yet
+        self._acts: dict[str, Callable[[Any], None]] = {
+            "set": self.set,
+            "reset": self.reset,
+            "time": self.seek,
+            "playing": self.play,
+            "speed": self.speed,
+            "preset": self.preset,
+            "undo": lambda _: self.undo(),
+            "redo": lambda _: self.redo(),
+        }
+
+    @property
+    def names(self) -> list[str]:
+        """What ``do`` takes."""
+        return list(self._acts)
+
+    def do(self, wishes: Mapping[str, Any]) -> None:
+        """Do what is asked by name: ``{"set": {"light.sun": [135, 25]}, "playing": false}``.
+
+        In the order of ``names``; what comes before one that is refused has been done. Raises
+        ``ParameterError`` for an unknown name, and as the single ones do.
+        """
+        for name in wishes:
+            if name not in self._acts:
+                raise ParameterError(f"no remote command '{name}'{nearest(name, self._acts)}")
+        for name, act in self._acts.items():
+            if name in wishes:
+                act(wishes[name])
+
+    # ── values ───────────────────────────────────────────────────────────────
+
+    def set(self, values: object) -> None:
+        """Set parameters by path, all or none; raise ``ParameterError`` as ``--set`` does.
+
+        Also for one that is locked in the window, and for a file outside the sketch's folder.
+        """
+        draft = self._shown()
+        if not isinstance(values, Mapping):
+            raise ParameterError(f"set = {spell(values)}: expected values by path, as light.sun: [135, 25]")
+        values_checked = {path: _checked(draft, path, value) for path, value in values.items()}
+        for path, value in self.session.without_buttons(values_checked).items():
+            self._waiting.pop(path, None)  # what is set last comes last, and wins
+            self._waiting[path] = value
+
+    def value(self, path: str) -> Value:
+        """Return what a parameter is set to, or will be by ``flush``; raise ``ParameterError``."""
+        if path in self._waiting:
+            return self._waiting[path]
+        sketch = self._shown().sketch
+        return value_of(sketch, path, values_of(sketch))
+
+    def flush(self) -> None:
+        """Do what was set."""
+        waiting, self._waiting = self._waiting, {}
+        if waiting:
+            self.session.drafts.set_all(waiting)
+
+    def reset(self, paths: object) -> None:
+        """Reset parameters to the file's values: one path, or a list of them."""
+        draft = self._shown()
+        paths_reset = [paths] if isinstance(paths, str) else paths
+        if not isinstance(paths_reset, list | tuple):
+            raise ParameterError(f"reset = {spell(paths)}: expected a parameter's path, or a list of them")
+        for path in paths_reset:
+            check_free(draft, existing(draft.sketch, str(path)))
+        self.flush()
+        self.session.drafts.unset(*map(str, paths_reset))
+
+    def preset(self, name: object) -> None:
+        """Set a preset's values as one step; raise ``ParameterError`` where there is none of that name."""
+        sketch = self._shown().sketch
+        names = [preset.name for preset in sketch.presets]
+        if name not in names:
+            near = nearest(str(name), names) or "; this sketch has none"
+            raise ParameterError(f"no preset {spell(name)}{near}")
+        self.flush()
+        self.bench.commands.apply_preset(str(name))
+
+    def undo(self) -> None:
+        """Undo the last step of the window's history."""
+        self.flush()
+        self.bench.undo.undo()
+
+    def redo(self) -> None:
+        """Redo the step that was undone last."""
+        self.flush()
+        self.bench.undo.redo()
+
+    # ── time ─────────────────────────────────────────────────────────────────
+
+    def seek(self, seconds: object) -> None:
+        """Go to a moment [s], 0 or later."""
+        self.bench.undo.seek(number_of("time", seconds, 0.0, _LATEST))
+
+    def play(self, playing: object) -> None:
+        """Let time run, or pause it."""
+        if not isinstance(playing, bool):
+            raise ParameterError(f"playing = {spell(playing)}: expected true or false")
+        self.session.clock.playing = playing
+
+    def speed(self, speed: object) -> None:
+        """Set how many seconds of the sketch pass in a second."""
+        self.session.clock.speed = number_of("speed", speed, -FASTEST, FASTEST)
+
+    # ── what there is ────────────────────────────────────────────────────────
+
+    def parameters(self) -> list[dict[str, Any]]:
+        """Return every parameter with its value, range, unit and group."""
+        self.flush()
+        return parameters_of(self.session)
+
+    def state(self) -> dict[str, Any]:
+        """Return what is shown, its time, its presets and its errors."""
+        self.flush()
+        self.bench.undo.record(held=self.bench.undo.held)
+        return state_of(self.bench)
+
+    def picture(self, size: tuple[int, int] | None = None) -> Frame:
+        """Return the picture: the window's own, or drawn at another size [pixels].
+
+        Raises ``SketchError`` before the first, ``ParameterError`` for a size that is too large, and
+        ``Behind`` while frames before it are computed: ask again.
+        """
+        self.flush()
+        session, sketch = self.session, self.session.sketch
+        if session.catch_up.behind is not None:
+            done, total = session.catch_up.behind
+            source = session.catch_up.source
+            what = (
+                f"makes {source}, {done:,} of {total:,}"
+                if source
+                else f"computes frame {done:,} of {total:,}"
+            )
+            raise Behind(f"there is no picture yet: the window {what}")
+        if size is None or sketch is None:
+            frame = session.read()
+            if frame is None:
+                raise SketchError("there is no picture yet")
+            return frame
+        if not all(1 <= side <= MAX_REMOTE_SIDE for side in size):
+            raise ParameterError(
+                f"size = {size[0]}x{size[1]}: expected width and height, 1 to {MAX_REMOTE_SIDE} pixels"
+            )
+        if session.awaits_data:
+            raise SketchError("a file that the sketch reads has changed and is being checked")
+        view, now = session.view, session.clock.time
+        try:
+            return session.engine.render(
+                view.map.of(sketch) if view.map is not None else sketch,
+                size=size,
+                time=now,
+                steps=view.stops(sketch, now),
+                interpolated=view.interpolated,
+            )
+        except PlaygroundError:
+            raise
+        except Exception as error:  # a driver raises what it likes
+            raise ContextError(f"the picture cannot be drawn at {size[0]}x{size[1]}: {error}") from error
+
+    def _shown(self) -> Draft:
+        draft = self.session.shown
+        if draft is None:
+            raise SketchError(f"{self.session.path.name} is not shown yet")
+        return draft
+
+
+def existing(sketch: Sketch, path: str) -> str:
+    """Return a parameter's path; raise ``ParameterError`` that names the nearest where there is none."""
+    if not find_targets(sketch.graph, path):
+        check_value(sketch, path, 0)  # one of the terrain's own, or an error
+    return path
+
+
+def check_free(draft: Draft, path: str) -> None:
+    """Raise ``ParameterError`` for a parameter that is locked in the window."""
+    locked = draft.edits.locked
+    if locked and (path in locked or any(leaves(draft.base, path) & leaves(draft.base, p) for p in locked)):
+        raise ParameterError(f"{path} is locked in the window, so only its own row there sets it")
+
+
+def number_of(name: str, value: object, low: float, high: float) -> float:
+    """Return a number between two bounds; raise ``ParameterError``."""
+    if not isinstance(value, int | float) or isinstance(value, bool) or not low <= value <= high:
+        raise ParameterError(f"{name} = {spell(value)}: expected a number from {low:g} to {high:g}")
+    return float(value)
+
+
+def _checked(draft: Draft, path: str, raw: object) -> Value:
+    value = check_value(draft.base, path, raw)
+    check_free(draft, path)
+    targets = find_targets(draft.base.graph, path)
+    if targets and targets[0].parameter.widget.kind == "file":
+        text = str(value)
+        if Path(text).is_absolute() or PureWindowsPath(text).drive or ".." in PureWindowsPath(text).parts:
+            raise ParameterError(f"{path} = {spell(text)}: expected a file of the sketch's own folder")
+    return value

@@ -1,0 +1,283 @@
+"""A GLFW window with an OpenGL context and Dear ImGui in it: the one place that knows of screens.
+
+``imgui_bundle`` is imported before ``glfw``, so that both use one GLFW library.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, cast
+
+import imgui_bundle
+from imgui_bundle import imgui
+
+# isort: split
+import glfw
+
+from playground.engine.context import abandon, adopt_context
+from playground.engine.driver_advice import advice
+from playground.errors import ContextError
+from playground.studio.input import releases
+from playground.studio.input.double_click import Clicks
+from playground.studio.theme import Theme
+
+if TYPE_CHECKING:
+    import moderngl
+
+_VERSIONS = ((4, 3), (4, 1), (3, 3))
+_HINTS = {
+    glfw.OPENGL_PROFILE: glfw.OPENGL_CORE_PROFILE,
+    glfw.OPENGL_FORWARD_COMPAT: True,
+    glfw.SCALE_TO_MONITOR: True,
+    glfw.DEPTH_BITS: 0,
+    glfw.STENCIL_BITS: 0,
+    glfw.CONTEXT_ROBUSTNESS: glfw.LOSE_CONTEXT_ON_RESET,
+}
+_MIN_SIZE = (480, 320)
+_SIGNS = {"+": "+", "=": "+", "-": "-"}  # what a key's own name asks for; + is over = on many keyboards
+_SIGN_KEYS = (glfw.KEY_EQUAL, glfw.KEY_MINUS, glfw.KEY_RIGHT_BRACKET, glfw.KEY_SLASH, glfw.KEY_BACKSLASH)
+_ATTEMPTS, _BETWEEN = 20, 0.5  # a driver that was reset may take some seconds to come back [s]
+
+
+class Window:
+    """An open window. Use it with ``with``, or call ``close()``."""
+
+    def __init__(self, title: str, size: tuple[int, int]) -> None:
+        glfw.ERROR_REPORTING = "ignore"  # errors are read below, and reported in a message
+        if not glfw.init():
+            raise _refused("glfw.init failed")
+        self._title = title
+        self._clicks = Clicks()
+        self._screen_size = (0, 0)
+        self._screen: moderngl.Framebuffer | None = None
+        self.zoom = 1.0  # of text and margins, over the screen's own scale
+        try:
+            self._open(size)
+            self.theme = self._start_imgui()
+        except BaseException:
+            glfw.terminate()
+            raise
+
+    def __enter__(self) -> Window:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    @property
+    def handle(self) -> Any:
+        """GLFW's own window."""
+        return self._handle
+
+    @property
+    def open(self) -> bool:
+        """Whether it has not been closed."""
+        return not glfw.window_should_close(self._handle)
+
+    @property
+    def lost(self) -> bool:
+        """Whether the driver was reset, and the context lost with it; False where it does not report that."""
+        return self._reset_status is not None and self._reset_status() != 0
+
+    @property
+    def pixels(self) -> tuple[int, int]:
+        """Width and height of what is drawn [pixels]; (0, 0) while it is minimised."""
+        width, height = glfw.get_framebuffer_size(self._handle)
+        return (0, 0) if glfw.get_window_attrib(self._handle, glfw.ICONIFIED) else (width, height)
+
+    @property
+    def density(self) -> float:
+        """Pixels in one of the window's own units: 2 on a Retina screen, 1 on Windows and X11."""
+        wide, _ = glfw.get_window_size(self._handle)
+        return float(self.pixels[0] / wide) if wide and self.pixels[0] else 1.0
+
+    @property
+    def scale(self) -> float:
+        """How much larger text and margins are drawn, in the window's own units."""
+        return float(max(glfw.get_window_content_scale(self._handle)[0] / self.density, 0.5))
+
+    @property
+    def screen(self) -> moderngl.Framebuffer:
+        """The window's own framebuffer, at its present size."""
+        if self._screen is None or self._screen_size != self.pixels:
+            glfw.make_context_current(self._handle)
+            self.ctx.detect_framebuffer(0).use()
+            self._screen, self._screen_size = self.ctx.detect_framebuffer(0), self.pixels
+        return self._screen
+
+    @property
+    def sign_held(self) -> str:
+        """What a key that is held down types, "+" or "-", wherever this keyboard has it; else nothing."""
+        for code in _SIGN_KEYS:
+            if glfw.get_key(self._handle, code) == glfw.PRESS:
+                name = glfw.get_key_name(code, 0) or ""
+                if name in _SIGNS:
+                    return _SIGNS[name]
+        return ""
+
+    def set_title(self, title: str) -> None:
+        """Set its title."""
+        if title != self._title:
+            self._title = title
+            glfw.set_window_title(self._handle, title)
+
+    def ask_to_close(self) -> None:
+        """Close it at the end of this frame."""
+        glfw.set_window_should_close(self._handle, True)
+
+    def cancel_close(self) -> None:
+        """Cancel a request to close it."""
+        glfw.set_window_should_close(self._handle, False)
+
+    def wait(self, seconds: float) -> None:
+        """Sleep until an event or a call of ``wake``, at most ``seconds``; then handle the events."""
+        self._clicks.before_poll()
+        if seconds <= 0:
+            glfw.poll_events()
+        else:
+            glfw.wait_events_timeout(seconds)
+        self._clicks.after_poll()
+        releases.after_events()
+
+    def begin(self) -> None:
+        """Begin a frame of the interface."""
+        self.theme.rescale(self.scale * self.zoom)
+        imgui.backends.opengl3_new_frame()
+        imgui.backends.glfw_new_frame()
+        io, longest = imgui.get_io(), self._clicks.double_click_time()
+        io.mouse_double_click_time, io.mouse_single_click_delay = longest, longest + 0.25
+        imgui.new_frame()
+        if imgui.is_mouse_clicked(0):
+            self._clicks.handled()
+
+    def end(self) -> None:
+        """Draw the interface over what is on the screen, and show it."""
+        imgui.render()
+        self.screen.use()
+        imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
+        glfw.swap_buffers(self._handle)
+
+    def close(self) -> None:
+        """Close the window and end GLFW."""
+        imgui.backends.opengl3_shutdown()
+        imgui.backends.glfw_shutdown()
+        imgui.destroy_context()
+        self.ctx.release()
+        glfw.destroy_window(self._handle)
+        glfw.terminate()
+
+    def reopen(self) -> None:
+        """Put a window with a new context in its place, after the old one was lost.
+
+        All that was made in the old context is gone; what the interface shows stays as it is.
+        Raises ``ContextError`` where the driver gives no context any more.
+        """
+        position, size = glfw.get_window_pos(self._handle), glfw.get_window_size(self._handle)
+        imgui.backends.opengl3_shutdown()
+        imgui.backends.glfw_shutdown()
+        abandon(self.ctx)
+        glfw.destroy_window(self._handle)
+        for attempt in range(_ATTEMPTS):
+            try:
+                self._open(size)
+                break
+            except ContextError:
+                if attempt == _ATTEMPTS - 1:
+                    raise
+                time.sleep(_BETWEEN)
+        glfw.set_window_pos(self._handle, *position)
+        self._start_backends()
+
+    def _open(self, size: tuple[int, int]) -> None:
+        self._handle = _create(self._title, size)
+        glfw.make_context_current(self._handle)
+        glfw.swap_interval(1)
+        glfw.set_window_size_limits(self._handle, *_MIN_SIZE, glfw.DONT_CARE, glfw.DONT_CARE)
+        self.ctx: moderngl.Context = _adopt()
+        self._reset_status = _reset_status(self._handle)
+        self._screen_size, self._screen = (0, 0), None
+
+    def _start_backends(self) -> None:
+        address = ctypes.cast(self._handle, ctypes.c_void_p).value
+        assert address is not None
+        pressed: Any = self._press
+        glfw.set_mouse_button_callback(self._handle, pressed)  # imgui's own callback hands on to it
+        imgui.backends.glfw_init_for_opengl(address, True)
+        imgui.backends.opengl3_init("#version 330 core")
+
+    def _press(self, handle: Any, button: int, action: int, _: int) -> None:
+        if action == glfw.RELEASE:
+            releases.before_release(glfw.get_cursor_pos(handle))
+        elif button == glfw.MOUSE_BUTTON_LEFT:
+            self._clicks.press()
+
+    def _start_imgui(self) -> Theme:
+        imgui.create_context()
+        io = imgui.get_io()
+        io.set_ini_filename("")  # nothing is left in the current folder
+        io.config_windows_move_from_title_bar_only = True
+        self._start_backends()
+        return Theme(Path(imgui_bundle.__file__).parent / "assets" / "fonts")
+
+
+def wake() -> None:
+    """Wake a window that waits; may be called from any thread."""
+    glfw.post_empty_event()
+
+
+def _create(title: str, size: tuple[int, int]) -> Any:
+    complaints = []
+    for major, minor in _VERSIONS:
+        glfw.default_window_hints()
+        glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, major)
+        glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, minor)
+        for hint, value in _HINTS.items():
+            glfw.window_hint(hint, value)
+        for hint in (glfw.WAYLAND_APP_ID, glfw.X11_CLASS_NAME):
+            glfw.window_hint_string(hint, "terrain-shader-playground")
+        handle = glfw.create_window(*size, title, None, None)
+        if handle:
+            return handle
+        complaints.append(_complaint() or f"no window with OpenGL {major}.{minor}")
+    raise ContextError(advice(complaints[0], sys.platform, os.environ))
+
+
+def _reset_status(handle: Any) -> Callable[[], int] | None:
+    """Return OpenGL's function that reports a reset, where the context was made to report one."""
+    if glfw.get_window_attrib(handle, glfw.CONTEXT_ROBUSTNESS) != glfw.LOSE_CONTEXT_ON_RESET:
+        return None
+    for name in ("glGetGraphicsResetStatus", "glGetGraphicsResetStatusKHR", "glGetGraphicsResetStatusARB"):
+        address = _address_of(name)
+        if address:
+            return ctypes.CFUNCTYPE(ctypes.c_uint)(address)
+    return None
+
+
+def _adopt() -> moderngl.Context:
+    try:
+        return adopt_context(_address_of)
+    except Exception as error:  # moderngl raises bare Exception and ValueError
+        raise ContextError(advice(str(error), sys.platform, os.environ)) from None
+
+
+def _address_of(name: str) -> int | None:
+    return cast("int | None", glfw.get_proc_address(name))  # a c_void_p comes back as a number
+
+
+def _refused(otherwise: str) -> ContextError:
+    return ContextError(advice(_complaint() or otherwise, sys.platform, os.environ))
+
+
+def _complaint() -> str:
+    """Return what GLFW last complained of."""
+    code, text = glfw.get_error()
+    message = text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text or "")
+    return f"{message} (GLFW error {code:#x})" if code else ""

@@ -1,0 +1,320 @@
+"""Check shots for pytest in one process: render, compare, write references if wanted, explain.
+
+Nothing passes in silence. A picture that is missing, broken or not the one expected fails the
+test and is shown; one that gives no picture fails in its own word, ``crash``, ``hang`` or
+``error``; without the expected renderer a test fails where ``CI`` is set and is skipped, with
+the reason, elsewhere. Each check leaves a record in the results folder.
+"""
+
+from __future__ import annotations
+
+import os
+import shlex
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NoReturn, TypeVar
+
+import pytest
+
+from playground.engine.context import ContextInfo
+from playground.engine.plain_forms import PlainForms, silent
+from playground.errors import (
+    ContextError,
+    DataError,
+    OpenGLFault,
+    PlaygroundError,
+    SandboxCrash,
+    SandboxTimeout,
+)
+from playground.paths import shown
+from playground.verify.shots import soft_failures
+from playground.verify.shots.claims import Claim, Claims, keeping, writing
+from playground.verify.shots.fallbacks import PIXELS, Fallback, fallback_for, fallbacks_of, read_fallbacks
+from playground.verify.shots.plugin_constants import (
+    REFERENCE_RENDERER,
+    SUMMARY_LINE,
+    UNCHANGED,
+    UNCOMPARED,
+    UPDATE_FAILED,
+)
+from playground.verify.shots.recording import Recorder, typed
+from playground.verify.shots.references import accepted, reference_path, write_reference
+from playground.verify.shots.renderer_process import RendererProcess
+from playground.verify.shots.results import NEVER_ACCEPTED
+from playground.verify.shots.suite import Outcome, RenderedShot, ShotCase, check
+
+Result = TypeVar("Result")
+
+_ENDS = {SandboxCrash: "crash", SandboxTimeout: "hang", OpenGLFault: "gl-error"}
+"""The words for what gives no picture; anything else that a sentence explains is an "error"."""
+
+
+def word_of(error: PlaygroundError) -> str:
+    """Return the word for what gave no picture: "crash", "hang", "gl-error" or "error"."""
+    return next((word for kind, word in _ENDS.items() if isinstance(error, kind)), "error")
+
+
+@dataclass(frozen=True)
+class _Raised:
+    """What was raised in a test instead of an image."""
+
+    error: PlaygroundError
+    word: str
+    sentence: str
+    case: ShotCase
+
+
+_RAISED: pytest.StashKey[_Raised] = pytest.StashKey()
+_CHECKER: pytest.StashKey[Checker] = pytest.StashKey()
+
+
+def checker_of(config: pytest.Config) -> Checker:
+    """Return what checks shots in this process; its child process starts with the first of them."""
+    if _CHECKER not in config.stash:
+        checker = config.stash[_CHECKER] = Checker(config)
+        config.add_cleanup(checker.close)  # also after Ctrl-C
+        config.pluginmanager.register(checker)
+        config.pluginmanager.register(soft_failures)
+    return config.stash[_CHECKER]
+
+
+class Checker:
+    """Checks shots for the tests of one process; its child process draws them."""
+
+    def __init__(self, config: pytest.Config) -> None:
+        self.expected: str = config.getoption("--shots-renderer")
+        self.any_renderer: bool = config.getoption("--shots-any-renderer")
+        self.updating: bool = config.getoption("--shots-update") or config.getoption(UPDATE_FAILED)
+        self.fallbacks = read_fallbacks(config.getini("shots_fallbacks"))
+        self.plain: bool = config.getoption("--shots-plain")
+        software = ContextInfo(0, self.expected, "", "", 0).software
+        others = self.any_renderer or self.fallbacks
+        renderer = "any" if not software else "either" if others else "software"
+        self.renderer_process = RendererProcess(config.getoption("--shots-timeout"), renderer)
+        self.recorder = Recorder(config)
+        # Those alone are written that failed in the run before.
+        self._failed = self.recorder.failed() if config.getoption(UPDATE_FAILED) else None
+        self.claims = Claims(self.recorder.run)
+        self._plain_forms: PlainForms | None = None
+        self._written: set[Path] = set()
+
+    def close(self) -> None:
+        """End the child process."""
+        self.renderer_process.close()
+
+    def shot(self, node: pytest.Item, case: ShotCase) -> None:
+        """Draw a shot and hold it to its reference."""
+        start = time.perf_counter()
+        case = replace(case, sketch=case.sketch.plainly(self.plain))
+        renderer = self.renderer(node, case)
+        self._say_plain_forms(node, case, renderer)
+        rendered = _result_or_error(lambda: self.renderer_process.render(case))
+        self.show_what_was_printed(node)
+        if isinstance(rendered, PlaygroundError):
+            self._without_picture(node, case, rendered, start)
+        if failure := self.failure(node, case, rendered, renderer, start):
+            pytest.fail(failure, pytrace=False)
+
+    def failure(
+        self, node: pytest.Item, case: ShotCase, frame: RenderedShot, renderer: ContextInfo, start: float
+    ) -> str:
+        """Return why a picture fails; "" where a reference matches, or ``--shots-update`` writes one.
+
+        ``start`` is when drawing began, of `time.perf_counter`.
+        """
+        outcome = _result_or_error(lambda: self._compare(node, case, frame, renderer))
+        if isinstance(outcome, PlaygroundError):
+            return self.record_missing(node, case, outcome, start)
+        command = self.accepting(node, outcome)
+        stands_in = self._stands_in(outcome)
+        unrecorded = self.recorder.record(node, outcome, time.perf_counter() - start, command, stands_in)
+        if outcome.ok and outcome.tolerance and not (outcome.tolerated or self.updating):
+            line = f"{case}: the tolerance is not needed: the picture passes without it"
+            node.user_properties.append((SUMMARY_LINE, line))
+        return "" if outcome.ok else _joined(self._explained(node, outcome), unrecorded)
+
+    def claim(self, node: pytest.Item, case: ShotCase, renderer: ContextInfo, own: bool) -> str:
+        """Return why a test may not check a picture under its name, which another test has; else ""."""
+        return self._refusal(Claim(case.shot.name, node.nodeid, own), case, renderer)
+
+    def _refusal(self, claim: Claim, case: ShotCase, renderer: ContextInfo) -> str:
+        references = reference_path(case.sketch, case.shot.name, renderer.slug).parent
+        return self.claims.refusal(claim, references, self.recorder.place(case))
+
+    def renderer(self, node: pytest.Item, case: ShotCase) -> ContextInfo:
+        """Return what draws in the child process, if it is expected; else skip the test, or fail it."""
+        start = time.perf_counter()
+        result = _result_or_error(lambda: self.renderer_process.renderer)
+        if isinstance(result, ContextError):
+            self._without(node, case, str(result))
+        if isinstance(result, PlaygroundError):
+            self.show_what_was_printed(node)
+            self._without_picture(node, case, result, start)
+        return self.expect(node, case, result)
+
+    def expect(self, node: pytest.Item, case: ShotCase, renderer: ContextInfo) -> ContextInfo:
+        """Return a renderer whose pictures may be compared; else skip the test, or fail it."""
+        may = self.any_renderer or fallbacks_of(self.fallbacks, renderer.slug)
+        if renderer.slug != self.expected and not may:
+            self._without(node, case, f"OpenGL gave {renderer.renderer}")
+        return renderer
+
+    def _say_plain_forms(self, node: pytest.Item, case: ShotCase, renderer: ContextInfo) -> None:
+        """Report, once in this process, which fast variants do not run."""
+        if self._plain_forms is None:
+            self._plain_forms = PlainForms(silent, compute=renderer.compute, draws=renderer.software)
+        self._plain_forms.notice = lambda sentence: node.user_properties.append((SUMMARY_LINE, sentence))
+        self._plain_forms.report(case.sketch)
+
+    def show_what_was_printed(self, node: pytest.Item) -> None:
+        """Add what the child printed to the test's report, where pytest shows it if the test fails."""
+        printed = self.renderer_process.printed()
+        if printed.strip():
+            node.add_report_section("call", "of the process that draws", printed)
+
+    def accepting(self, node: pytest.Item, outcome: Outcome) -> str:
+        """Return the command that would accept the picture; "" where none would."""
+        if outcome.ok or self.plain or outcome.word in NEVER_ACCEPTED:
+            return ""
+        options = ["--shots-update"]
+        if self.expected != REFERENCE_RENDERER:
+            options.append(f"--shots-renderer={self.expected}")
+        named = fallbacks_of(self.fallbacks, outcome.renderer.slug)
+        if outcome.renderer.slug != self.expected and self.any_renderer and not named:
+            options.append("--shots-any-renderer")
+        return f"pytest {' '.join(options)} {shlex.quote(typed(node))}"
+
+    # ── in words ─────────────────────────────────────────────────────────────
+
+    def fail(self, node: pytest.Item, case: ShotCase, message: str) -> NoReturn:
+        """Fail a test in which no picture was compared, with a record that reports it."""
+        unrecorded = self.recorder.record_none(node, case, "error", message, 0.0)
+        pytest.fail(_joined(message, unrecorded), pytrace=False)
+
+    def raised(self, node: pytest.Item, case: ShotCase, error: PlaygroundError) -> PlaygroundError:
+        """Return what a test is to raise for a mistake, with its word; it is recorded if the test fails."""
+        word, sentence = word_of(error), str(error)
+        raised = error if word == "error" else type(error)(f"{word}: {sentence}")
+        node.stash[_RAISED] = _Raised(raised, word, sentence, case)
+        return raised.with_traceback(None)
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> None:
+        """Write the record of a test that failed for what `raised` gave it."""
+        raised = item.stash.get(_RAISED, None)
+        if raised and call.when == "call" and call.excinfo and call.excinfo.value is raised.error:
+            self.recorder.forget_earlier(item, raised.case)
+            self.recorder.record_none(item, raised.case, raised.word, raised.sentence, call.duration)
+
+    def _without(self, node: pytest.Item, case: ShotCase, text: str) -> NoReturn:
+        message = f"the expected renderer is missing: shots are compared on {self.expected}; {text}"
+        if os.environ.get("CI", "").lower() not in ("", "0", "false"):
+            self.fail(node, case, f"{message} (a failure, for CI is set)")
+        node.user_properties.append((UNCOMPARED, message))
+        pytest.skip(message)
+
+    def _without_picture(
+        self, node: pytest.Item, case: ShotCase, error: PlaygroundError, start: float
+    ) -> NoReturn:
+        """Fail the test for a shot of which there is no picture, or that cannot be compared."""
+        pytest.fail(self.record_missing(node, case, error, start), pytrace=False)
+
+    def record_missing(self, node: pytest.Item, case: ShotCase, error: PlaygroundError, start: float) -> str:
+        """Record a shot of which there is no picture, or that cannot be compared, and say why."""
+        word = word_of(error)
+        unrecorded = self.recorder.record_none(node, case, word, str(error), time.perf_counter() - start)
+        message = f"{case}: {error}" if word == "error" else f"{case}: {word}: {error}"
+        return _joined(message, unrecorded)
+
+    def _compare(
+        self, node: pytest.Item, case: ShotCase, frame: RenderedShot, renderer: ContextInfo
+    ) -> Outcome:
+        """Compare a frame with its references, which are written first if that is wanted and needed."""
+        fallback = self._fallback(case, renderer)
+        reference_renderer = self.expected if self.any_renderer else renderer.slug
+        if fallback:
+            reference_renderer = fallback.references
+        strictly = fallback is not None and fallback.strictness == PIXELS
+        outcome = check(case, frame, renderer, reference_renderer, by_pixels=strictly)
+        if outcome.ok and self.updating:
+            refusal = self._refusal(keeping(case.shot.name, node.nodeid), case, renderer)
+            if refusal and not check(case, frame, renderer).ok:  # it was written meanwhile
+                raise DataError(refusal, file=outcome.own_path)
+            node.user_properties.append((UNCHANGED, str(case)))
+        elif self._may_write(outcome):
+            self._write(node, outcome)
+            return check(case, frame, renderer)  # what was written is what will be read
+        return outcome
+
+    def _may_write(self, outcome: Outcome) -> bool:
+        """Whether a reference is to be made of a picture that does not pass."""
+        if not self.updating or outcome.word in NEVER_ACCEPTED:
+            return False
+        return self._failed is None or self.recorder.name_of(outcome.case) in self._failed
+
+    def _fallback(self, case: ShotCase, renderer: ContextInfo) -> Fallback | None:
+        """Return the line of the table by which a picture is compared; None for one's own references."""
+        if accepted(case.sketch, case.shot.name, renderer.slug):
+            return None
+        return fallback_for(
+            self.fallbacks,
+            renderer.slug,
+            lambda references: bool(accepted(case.sketch, case.shot.name, references)),
+        )
+
+    def _stands_in(self, outcome: Outcome) -> str:
+        """Return whose references stood in for those of the renderer that drew, and by what; "" for none."""
+        own = reference_path(outcome.case.sketch, outcome.case.shot.name, outcome.renderer.slug).parent
+        if outcome.reference is None or outcome.reference.path.parent == own:
+            return ""
+        fallback = self._fallback(outcome.case, outcome.renderer)
+        why = f"as shots_fallbacks has it ({fallback})" if fallback else "as --shots-any-renderer allows"
+        how = "pixel by pixel" if fallback and fallback.strictness == PIXELS else "by structure only"
+        references = outcome.reference.path.parent.name
+        return f"drawn by {outcome.renderer.slug}, compared {how} with {references}'s references, {why}"
+
+    def _write(self, node: pytest.Item, outcome: Outcome) -> None:
+        case, pixels = outcome.case, outcome.frame.array
+        path = outcome.own_path
+        if refusal := self._refusal(writing(case.shot.name, node.nodeid, pixels), case, outcome.renderer):
+            raise DataError(refusal, file=path)
+        if path in self._written:
+            return
+        fingerprint = outcome.fingerprint
+        written, removed = write_reference(
+            case.sketch, case.shot.name, outcome.renderer, pixels, fingerprint.drawn, fingerprint.fonts
+        )
+        self._written.add(written)
+        node.user_properties.append((SUMMARY_LINE, f"wrote {shown(written)}  ({outcome.sentence})"))
+        for other in removed:
+            line = f"removed {shown(other)}  (it let the picture before this one pass)"
+            node.user_properties.append((SUMMARY_LINE, line))
+
+    def _explained(self, node: pytest.Item, outcome: Outcome) -> str:
+        lines = [f"{outcome.case}: {outcome.sentence}"]
+        if self.updating and outcome.word in NEVER_ACCEPTED:
+            lines.append("    not written: a broken picture is never a reference")
+        elif self.updating:
+            lines.append("    not written: it had not failed before")
+        lines.append(f"    reference   {shown(outcome.path)}")
+        lines += [f"                {line}" for line in outcome.differences]
+        lines += [f"    {word:<11} {path}" for word, path in self.recorder.pictures(outcome.case)]
+        command = self.accepting(node, outcome)
+        if command:
+            lines.append(f"    accept it   {command}")
+        return "\n".join(lines)
+
+
+def _result_or_error(function: Callable[[], Result]) -> Result | PlaygroundError:
+    """Return the error that a function raises: a test that failed while it is handled would show it twice."""
+    try:
+        return function()
+    except PlaygroundError as error:
+        return error
+
+
+def _joined(message: str, unrecorded: str) -> str:
+    """Return why a test fails; ``unrecorded`` says why its result could not be recorded, if it could not."""
+    return f"{message}\n    {unrecorded}" if unrecorded else message

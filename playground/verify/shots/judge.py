@@ -1,0 +1,342 @@
+"""Decide whether a picture passes: by the strictest comparison that its references allow.
+
+    tier               allowed
+    same build         a difference of 1 in any channel, alpha included
+    another build      a difference of 3; at most 0.5 % of the pixels above 1, and nowhere crowded
+    another renderer   the perceived difference (FLIP) under two bounds: structural defects alone
+                       show by it, and the outcome says so
+
+`playground.verify.shots.fingerprint` says what a build is. What was drawn, and the playground's own
+version, never make a comparison less strict. Where one reference was drawn by this very build,
+the others do not loosen it: they count where the picture is theirs to within one level, since
+someone accepted that picture, and for nothing else.
+
+Some pictures fail before anything is compared, each in its own word: an OpenGL error, a number
+that is not finite in a texture that went into it, a picture of one colour.
+
+A shot may declare a tolerance: a picture that differs from its renderer's reference passes by
+it, under the bounds of `playground.verify.shots.tolerated`. What a mask hides is not compared.
+
+It reads no files and draws nothing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.sketch.model import Tolerance
+from playground.verify.shots.compare import TOLERANCE, Comparison, compare, worst_window
+from playground.verify.shots.fingerprint import Fingerprint
+from playground.verify.shots.flip import TILE, flip
+from playground.verify.shots.masking import Mask, hidden, shown_alone
+from playground.verify.shots.references import Reference
+from playground.verify.shots.tolerated import tolerated
+
+WORDS = (
+    "same",  # it passes; all others fail
+    "differs",
+    "crowded",  # few pixels differ, but close together
+    "size",
+    "blank",  # of one colour
+    "nan",  # a number that is not finite in a texture that went into it
+    "gl-error",
+    "missing",  # there is no reference
+    "unreadable",  # there is a reference that cannot be read
+    "structure",  # another renderer's picture is further off than renderers are
+)
+
+SAME_BUILD, OTHER_BUILD, OTHER_RENDERER = "same build", "another build", "another renderer"
+
+OTHER_TOLERANCE = 3
+"""[levels of 255] What another build may differ by.
+
+Mesa 22.3.6 and 25.0.7 were 1 apart at most in 219 of the 220 shipped shots, and 3 at one pixel
+of the last. A change of processor can be more: without AVX, shadows and reflections fell the
+other way at single pixels, by up to 20. Such a picture is accepted as a further one,
+``<shot>.2.png``.
+"""
+
+OTHER_SHARE = 0.005
+"""Share of the pixels that may differ by more than `TOLERANCE` from another build's."""
+
+WINDOW = 32
+"""[pixels] Side of the window in which pixels that differ may not crowd."""
+
+CROWD = 51
+"""[pixels] of a window that may differ by more than `TOLERANCE`: one in twenty, ten times the share.
+
+Between builds there were 6 at most, roundings that lie along an edge. A square of 8 × 8 pixels that
+is a little off is more, and is no rounding.
+"""
+
+
+STRUCTURE_ONLY = "The reference is another renderer's, so this finds structural defects only"
+
+FLIP_MEAN = 0.05
+"""Mean FLIP that another renderer's picture may have; renderers were up to 0.035 apart."""
+
+FLIP_TILE = 0.2
+"""Mean FLIP that its worst 32 × 32 pixels may have; renderers were up to 0.10 apart."""
+
+
+@dataclass(frozen=True, slots=True)
+class Crowd:
+    """The window in which the most pixels differ."""
+
+    count: int  # pixels
+    place: tuple[int, int]  # [pixels] x and y of its top left corner, from the picture's
+    size: tuple[int, int]  # [pixels] width and height; less than `WINDOW` in a small picture
+
+
+@dataclass(frozen=True, slots=True)
+class Perceived:
+    """How different another renderer's picture looks, by FLIP: 0 alike, 1 as different as can be."""
+
+    mean: float  # over the picture
+    tile: float  # over its worst 32 × 32 pixels
+    place: tuple[int, int]  # [pixels] x and y of their top left corner
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Rule:
+    """What a shot says of its comparison."""
+
+    tolerance: Tolerance | None = None
+    mask: Mask | None = None  # of the picture's size
+    allow_blank: bool = False
+
+    @property
+    def hidden(self) -> int:
+        """How many pixels are masked."""
+        return 0 if self.mask is None else int(np.count_nonzero(self.mask))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Judgement:
+    """Whether a picture passes, and why."""
+
+    word: str  # of `WORDS`
+    comparison: Comparison  # with the nearest reference
+    sentence: str  # what there is to say, beginning with the word
+    tier: str = ""  # how strictly it was compared; "": it was not
+    fingerprint: Fingerprint = field(default_factory=Fingerprint)  # the picture's
+    differences: tuple[str, ...] = ()  # how its origin differs from the reference's, as text
+    crowd: Crowd | None = None  # of another build's picture, where pixels differ
+    perceived: Perceived | None = None  # of another renderer's
+    tolerance: Tolerance | None = None  # that the shot declares
+    tolerated: bool = False  # whether it passes by that, and would not without
+
+    @property
+    def ok(self) -> bool:
+        """Whether the picture passes."""
+        return self.word == "same"
+
+
+def judge(
+    actual: NDArray[np.uint8],
+    fingerprint: Fingerprint,
+    references: Sequence[Reference],
+    others: Sequence[Reference] = (),
+    *,
+    not_finite: str = "",
+    gl_error: str = "",
+    rule: Rule | None = None,
+) -> tuple[Judgement, Reference | None]:
+    """Judge a picture, uint8 (height, width, 4), by its renderer's references.
+
+    Where there are none it is judged by ``others``, those of another renderer. ``not_finite`` and
+    ``gl_error`` say what is wrong with it, and fail it. Returns with the judgement the
+    reference that it is by: one that matches, else the nearest; None where there is none. Raises
+    ``DataError`` for an array of another dtype or shape.
+    """
+    rule = rule or Rule()
+    judgement, reference = _nearest(actual, fingerprint, references, others, rule)
+    judgement = replace(judgement, tolerance=rule.tolerance, sentence=_with_rule(judgement, rule))
+    wrong = ""
+    if gl_error:
+        wrong = f"gl-error: drawing it left the OpenGL error {gl_error}, so it is not to be trusted"
+    elif not_finite:
+        wrong = f"nan: {not_finite}"
+    if wrong:
+        word = wrong.partition(":")[0]
+        return replace(judgement, word=word, sentence=wrong, tier=""), reference
+    return judgement, reference
+
+
+def _with_rule(judgement: Judgement, rule: Rule) -> str:
+    """Return a judgement's sentence, with what is masked, and whether a tolerance was needed."""
+    sentence = judgement.sentence
+    if judgement.ok and rule.tolerance and judgement.tier in (SAME_BUILD, OTHER_BUILD):
+        if judgement.tolerated:
+            sentence = re.sub("^(differs|crowded)", "same, by the tolerance", sentence)
+        else:
+            sentence += "; the tolerance is not needed"
+    if rule.hidden:
+        width, height = judgement.comparison.size
+        sentence += f"; {rule.hidden} pixels ({100 * rule.hidden / (width * height):.3g} %) are masked"
+    return sentence
+
+
+def unreadable(actual: NDArray[np.uint8], fingerprint: Fingerprint, reason: str) -> Judgement:
+    """Return the judgement where a reference is there that cannot be read."""
+    return Judgement(
+        word="unreadable",
+        comparison=compare(actual, None),
+        sentence=f"unreadable: {reason}",
+        fingerprint=fingerprint,
+    )
+
+
+def most_crowded(over: NDArray[np.bool_], side: int = WINDOW) -> Crowd:
+    """Return the window of ``side`` × ``side`` pixels, at any place, in which the most of a mask are set."""
+    count, corner, size = worst_window(over, side)
+    return Crowd(round(count), corner, size)
+
+
+def _nearest(
+    actual: NDArray[np.uint8],
+    fingerprint: Fingerprint,
+    references: Sequence[Reference],
+    others: Sequence[Reference],
+    rule: Rule,
+) -> tuple[Judgement, Reference | None]:
+    alone = compare(shown_alone(actual, rule.mask), None, allow_blank=rule.allow_blank, hidden=rule.hidden)
+    if rule.mask is not None and alone.verdict == "blank":
+        return Judgement(
+            word="blank",
+            comparison=alone,
+            sentence=f"{alone}, except masked areas",
+            fingerprint=fingerprint,
+        ), next(iter((*references, *others)), None)
+    if not references and others:
+        perceived = [(_judged_by_eye(actual, fingerprint, other, rule), other) for other in others]
+        return min(perceived, key=lambda pair: _distance(pair[0]))
+    if not references:
+        return Judgement(
+            word=alone.verdict, comparison=alone, sentence=str(alone), fingerprint=fingerprint
+        ), None
+    own = [fingerprint.same_build(reference.fingerprint) for reference in references]
+    judged = []
+    for reference, same in zip(references, own, strict=True):
+        strict = same or any(own)
+        judgement = _judged(actual, fingerprint, reference, same, strict, rule)
+        judged.append((_with_tolerance(judgement, actual, reference, rule), reference))
+    return min(judged, key=lambda pair: _distance(pair[0]))
+
+
+def _distance(judgement: Judgement) -> tuple[bool, bool, float, int, int]:
+    comparison = judgement.comparison
+    by_eye = judgement.perceived.mean if judgement.perceived else 0.0
+    return not judgement.ok, comparison.verdict == "size", by_eye, comparison.over, comparison.most
+
+
+def _with_tolerance(
+    judgement: Judgement, actual: NDArray[np.uint8], reference: Reference, rule: Rule
+) -> Judgement:
+    """Return a judgement by the tolerance that a shot declares, where the usual one lets it fail."""
+    if rule.tolerance is None or judgement.word not in ("differs", "crowded"):
+        return judgement
+    visible = hidden(actual, reference.pixels, rule.mask)
+    bounds = (FLIP_MEAN, FLIP_TILE)
+    result = tolerated(visible, reference.pixels, rule.tolerance, bounds, rule.hidden)
+    if not result.why_not:
+        passed = replace(judgement.comparison, verdict="same")
+        return replace(judgement, word="same", comparison=passed, tolerated=True)
+    if result.crowded:
+        sentence = judgement.sentence.replace("differs", "crowded", 1)
+        return replace(judgement, word="crowded", sentence=f"{sentence}; {result.why_not}")
+    return replace(judgement, sentence=f"{judgement.sentence}; {result.why_not}")
+
+
+def _judged(
+    actual: NDArray[np.uint8],
+    fingerprint: Fingerprint,
+    reference: Reference,
+    same: bool,
+    strict: bool,
+    rule: Rule,
+) -> Judgement:
+    """Judge by one reference of the same renderer; ``strict`` allows one level even of another build."""
+    judgement = _by_pixels(actual, fingerprint, reference, SAME_BUILD if same else OTHER_BUILD, rule)
+    comparison = judgement.comparison
+    if strict or comparison.verdict in _FINAL:
+        return judgement
+    most = f"differs: max difference {comparison.most} of 255"
+    if comparison.most > OTHER_TOLERANCE:
+        return replace(judgement, sentence=f"{judgement.sentence}; of another build, {OTHER_TOLERANCE} may")
+    crowd = most_crowded(_over(hidden(actual, reference.pixels, rule.mask), reference.pixels))
+    judgement = replace(judgement, crowd=crowd)
+    share = comparison.share
+    counted = f"{comparison.over} pixels ({100 * share:.3g} %) over {TOLERANCE}"
+    if share > OTHER_SHARE:
+        return replace(
+            judgement, sentence=f"{most}, {counted}; of another build, {100 * OTHER_SHARE:g} % may be"
+        )
+    location = f"at x = {crowd.place[0]}, y = {crowd.place[1]}"
+    window = (
+        f"{crowd.count} of them in the {crowd.size[0]} × {crowd.size[1]} pixels {location} from the top left"
+    )
+    if crowd.count > CROWD:
+        return replace(
+            judgement, word="crowded", sentence=f"crowded: {counted}, {window}; at most {CROWD} may be"
+        )
+    passed = replace(comparison, verdict="same")
+    sentence = (
+        f"same, as another build's: max difference {comparison.most} of 255, {counted}, at most {window}"
+    )
+    return replace(judgement, word="same", comparison=passed, sentence=sentence)
+
+
+def _judged_by_eye(
+    actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference, rule: Rule
+) -> Judgement:
+    """Judge by a reference of another renderer."""
+    judgement = _by_pixels(actual, fingerprint, reference, OTHER_RENDERER, rule)
+    comparison = judgement.comparison
+    if comparison.verdict in _FINAL:
+        return judgement
+    difference = flip(hidden(actual, reference.pixels, rule.mask), reference.pixels)
+    tile, corner = difference.worst_tile()
+    perceived = Perceived(difference.mean, tile, corner)
+    measured = (
+        f"FLIP {perceived.mean:.3f} on average, {tile:.3f} in the {TILE} × {TILE} pixels at x = {corner[0]}, "
+    )
+    measured += f"y = {corner[1]} from the top left"
+    if perceived.mean > FLIP_MEAN or tile > FLIP_TILE:
+        bounds = f"at most {FLIP_MEAN:g} and {FLIP_TILE:g} may be between renderers"
+        sentence = f"structure: {measured}; {bounds}"
+        return replace(judgement, word="structure", sentence=sentence, perceived=perceived)
+    passed = replace(comparison, verdict="same")
+    sentence = f"same in structure: {measured}. {STRUCTURE_ONLY}"
+    return replace(judgement, word="same", comparison=passed, sentence=sentence, perceived=perceived)
+
+
+_FINAL = ("blank", "size", "same")  # verdicts on the pixels that no tier changes
+
+
+def _by_pixels(
+    actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference, tier: str, rule: Rule
+) -> Judgement:
+    """Return the judgement by `TOLERANCE` alone."""
+    visible = hidden(actual, reference.pixels, rule.mask)
+    blank = rule.allow_blank or rule.mask is not None  # then it has been looked at
+    comparison = compare(visible, reference.pixels, TOLERANCE, allow_blank=blank, hidden=rule.hidden)
+    return Judgement(
+        word=comparison.verdict,
+        comparison=comparison,
+        sentence=str(comparison),
+        tier="" if comparison.verdict in ("blank", "size") else tier,
+        fingerprint=fingerprint,
+        differences=fingerprint.differences(reference.fingerprint),
+    )
+
+
+def _over(actual: NDArray[np.uint8], expected: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    difference = np.maximum(actual, expected) - np.minimum(actual, expected)
+    # The four channels of a pixel as one number: many times faster than any() along an axis of four.
+    return np.asarray((difference > TOLERANCE).view(np.uint32)[..., 0] != 0)

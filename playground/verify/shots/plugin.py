@@ -1,0 +1,321 @@
+"""Screenshot tests in pytest: options, which sketches are collected, the ``shot`` fixture.
+
+    pytest hills.toml                # one test for each shot of a sketch
+
+    [tool.pytest.ini_options]
+    shots = ["sketches/*.toml"]      # these sketches belong to the tests
+
+    def test_evening(shot):          # a picture of any origin
+        shot.check(shot.render("hills.toml", time=20.0), "evening")
+
+The package's entry point has this module's name, so that `pytest_plugins` and ``-p`` may name
+it too. It is loaded with every pytest of an environment that has the package, so it imports
+next to nothing, and does nothing until there is a shot: `collect`, `checking` and `fixture`
+come in then.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections import Counter
+from collections.abc import Generator, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from playground.verify.shots import unused_references as used
+from playground.verify.shots.plugin_constants import (
+    CHECKED,
+    FIXTURE,
+    REFERENCE_RENDERER,
+    REPORT,
+    SHOT,
+    STOOD_IN,
+    SUMMARY_LINE,
+    UNCHANGED,
+    UNCOMPARED,
+    UNRECORDED,
+    UPDATE_FAILED,
+)
+
+if TYPE_CHECKING:
+    from playground.verify.shots.fixture import ShotFixture
+
+_LISTED: pytest.StashKey[frozenset[Path]] = pytest.StashKey()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the options."""
+    group = parser.getgroup("shots", "screenshot tests of shaders")
+    group.addoption(
+        "--shots-update",
+        action="store_true",
+        help="write the references that are missing or do not match, and say which",
+    )
+    # An option of its own, for what follows --shots-update is no value of it, but a path.
+    group.addoption(
+        "--shots-update=failed",
+        dest=UPDATE_FAILED,
+        action="store_true",
+        help="write only the references of those that failed when they were last run, and say which",
+    )
+    group.addoption(
+        "--shots-output",
+        metavar="DIR",
+        type=Path,
+        default=REPORT,
+        help=f"where results go: a record of each shot, pictures of those that fail, the report "
+        f"(default: {REPORT}, which git ignores)",
+    )
+    group.addoption(
+        "--shots-report",
+        action="store_true",
+        help="write the report index.html also when nothing failed",
+    )
+    group.addoption(
+        "--shots-renderer",
+        metavar="NAME",
+        default=REFERENCE_RENDERER,
+        help="the renderer that is expected to draw, as the folders of references are named: llvmpipe "
+        "(the default), nvidia-h200, …; without it shots fail if CI is set and are skipped elsewhere",
+    )
+    group.addoption(
+        "--shots-any-renderer",
+        action="store_true",
+        help="where the expected renderer is missing, compare what another draws with its references: "
+        "catches structural defects only",
+    )
+    group.addoption(
+        "--shots-plain",
+        action="store_true",
+        help="draw every technique in its plain form, no fast variant; references are compared, not written",
+    )
+    group.addoption(
+        "--shots-timeout",
+        metavar="SECONDS",
+        type=_seconds,
+        default=120.0,
+        help="how long a shot may take to draw before it counts as hung (default: 120)",
+    )
+    group.addoption(
+        "--shots-pictures-url",
+        metavar="URL",
+        default="",
+        help="where the folder of results will be found in the web: a step summary of GitHub shows "
+        "the pictures of failed shots from there (default: SHOTS_PICTURES_URL of the environment)",
+    )
+    parser.addini(
+        "shots_fallbacks",
+        "whose references stand in for which renderer's, where that has none of its own: "
+        "'apple-* = llvmpipe', and ', pixels' for a comparison by pixels instead of by structure",
+        type="linelist",
+        default=[],
+    )
+    parser.addini(
+        "shots",
+        "sketches whose shots are tests, by paths and patterns from this file's folder",
+        type="linelist",
+        default=[],
+    )
+
+
+def _seconds(text: str) -> float:
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = math.nan
+    if not 0.0 < seconds < 1e6:  # what a timer takes
+        raise argparse.ArgumentTypeError(f"{text!r}: expected seconds, more than 0")
+    return seconds
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Register the marker, and add the sketches of the configuration to what is tested."""
+    updates = config.getoption("--shots-update"), config.getoption(UPDATE_FAILED)
+    if config.getoption("--shots-plain") and any(updates):
+        raise pytest.UsageError("--shots-plain compares with references; --shots-update would write others")
+    if all(updates):
+        raise pytest.UsageError("--shots-update writes all that fail, --shots-update=failed fewer: give one")
+    if config.getini("shots_fallbacks"):
+        from playground.verify.shots.fallbacks import read_fallbacks
+
+        try:
+            read_fallbacks(config.getini("shots_fallbacks"))
+        except ValueError as error:
+            raise pytest.UsageError(f"shots_fallbacks: {error}") from None
+    config.addinivalue_line("markers", "shots: compares a picture with its reference")
+    config.pluginmanager.register(Results(config), "shots-results")
+    if config.args_source is config.ArgsSource.ARGS or not config.getini("shots"):
+        return
+    listed = _listed(config)
+    if config.args_source is config.ArgsSource.TESTPATHS:
+        there = [config.invocation_params.dir / arg for arg in config.args]
+        more = [path for path in sorted(listed) if not any(path.is_relative_to(folder) for folder in there)]
+        config.args += [str(path) for path in more]
+
+
+def _listed(config: pytest.Config) -> frozenset[Path]:
+    """Return the sketches that the configuration names."""
+    if _LISTED not in config.stash:
+        base = config.inipath.parent if config.inipath else config.rootpath
+        items: set[Path] = set()
+        for pattern in config.getini("shots"):
+            items.update(_matches(base, pattern))
+        config.stash[_LISTED] = frozenset(items)
+    return config.stash[_LISTED]
+
+
+def _matches(base: Path, pattern: str) -> Iterator[Path]:
+    whole = Path(pattern)
+    if whole.is_absolute():
+        base, pattern = Path(whole.anchor), str(whole.relative_to(whole.anchor))
+    try:
+        paths = list(base.glob(pattern))
+    except (ValueError, NotImplementedError, IndexError) as error:
+        raise pytest.UsageError(f"shots: {pattern!r} is no pattern of files ({error})") from None
+    files = [path / "sketch.toml" if path.is_dir() else path for path in paths]
+    files = [path for path in files if path.suffix == ".toml" and path.is_file()]
+    if not files:
+        raise pytest.UsageError(
+            f"shots: no sketch (a .toml, or a folder with sketch.toml) matches {pattern!r} in {base}"
+        )
+    yield from files
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    """Collect a sketch that the command line or the configuration names."""
+    if file_path.suffix != ".toml":
+        return None
+    config, session = parent.config, parent.session
+    named = session.isinitpath(file_path)
+    if file_path.name == "sketch.toml" and config.args_source is config.ArgsSource.ARGS:
+        named = named or session.isinitpath(file_path.parent)
+    if not named and not (config.getini("shots") and file_path in _listed(config)):
+        return None
+    from playground.verify.shots.collect import SketchFile
+
+    return SketchFile.from_parent(parent, path=file_path)
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Count the tests of a file."""
+    used.count(item)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark the tests in Python that compare pictures, for ``-m shots``."""
+    for item in items:
+        if FIXTURE in getattr(item, "fixturenames", ()):
+            item.add_marker("shots")
+    used.count_tests(config, items)
+
+
+@pytest.fixture
+def shot(request: pytest.FixtureRequest) -> Iterator[ShotFixture]:
+    """Draw sketches in a process of their own, and compare pictures with their references.
+
+    ``shot.render("hills.toml")`` gives a frame; ``shot.check(frame, "evening")`` fails the
+    test, when that ends, unless it is the reference in ``screenshots/<test file>/<renderer>/evening.png``
+    in the test file's folder.
+    """
+    from playground.verify.shots.fixture import ShotFixture
+
+    fixture = ShotFixture(request.node)
+    yield fixture
+    fixture.finish()
+
+
+class Results:
+    """Gathers what tests report, here or in workers of xdist; judges, writes and prints it at the end."""
+
+    def __init__(self, config: pytest.Config) -> None:
+        self.config = config
+        self.lines: list[str] = []
+        self.left = 0  # references that --shots-update left alone
+        self.stood_in: Counter[str] = Counter()  # shots compared with another renderer's references, by how
+        self.uncompared: Counter[str] = Counter()  # shots that were skipped, by why
+        self.unrecorded: dict[str, None] = {}  # why results could not be recorded
+        self.properties_of_shots: list[
+            dict[str, str]
+        ] = []  # what each checked shot tells of itself: see `properties`
+        self.checked = self.failed = False  # whether a shot was checked, and whether one failed
+        self.uses = used.Uses(config.rootpath, config.getoption("--shots-renderer"))
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Record a finished test, which may come from another process."""
+        if report.when == "teardown":
+            self.uses.add_used(report)
+        if report.when != "call":
+            return
+        self.uses.add(report)
+        for name, value in report.user_properties:
+            if name == SUMMARY_LINE:
+                self.lines.append(str(value))
+            self.left += name == UNCHANGED
+            if name == STOOD_IN:
+                self.stood_in[str(value)] += 1
+            if name == UNCOMPARED:
+                self.uncompared[str(value)] += 1
+            if name == UNRECORDED:
+                self.unrecorded[str(value)] = None
+            self.checked = self.checked or name in (CHECKED, UNCOMPARED)
+            self.failed = self.failed or (name == CHECKED and value != "same")
+            if name == SHOT:
+                self.properties_of_shots.append({})
+            if name == SHOT or name.startswith(f"{SHOT}."):
+                self.properties_of_shots[-1][name] = str(value)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, object, object]:
+        """When all tests have run, report the references that none of them uses, as failed tests."""
+        result = yield
+        if not hasattr(self.config, "workerinput"):
+            for node, message in self.uses.stale().items():
+                from playground.verify.shots.recording import record_stale
+
+                path = self.config.rootpath / node.partition("::")[0]
+                properties = record_stale(self.config, path, message)
+                location = (node.partition("::")[0], None, "references")
+                report = pytest.TestReport(
+                    node, location, {"shots": 1}, "failed", message, "call", user_properties=properties
+                )
+                session.testscollected += 1  # or pytest's progress goes beyond 100 %
+                self.config.hook.pytest_runtest_logreport(report=report)
+        return result
+
+    def pytest_sessionfinish(self) -> None:
+        """Write the report, where there is something to look at or it is wanted."""
+        if not self.checked or hasattr(self.config, "workerinput"):
+            return
+        if self.left:
+            self.lines.append(f"left {self.left} as they were, for they match")
+        self.lines += [f"{count} {how}" for how, count in self.stood_in.items()]
+        for why, count in self.uncompared.items():
+            shots = "1 shot was" if count == 1 else f"{count} shots were"
+            self.lines.append(f"{shots} not compared: {why}")
+        if self.config.getoption(UPDATE_FAILED) and not any(line.startswith("wrote") for line in self.lines):
+            self.lines.append("--shots-update=failed wrote nothing: no shot failed that had failed before")
+        self.lines += self.unrecorded
+        if self.unrecorded:
+            return
+        from playground.verify.shots.recording import finish
+        from playground.verify.shots.step_summary import summarise
+
+        folder = self.config.invocation_params.dir / self.config.getoption("--shots-output")
+        if message := summarise(
+            self.properties_of_shots, folder, self.config.getoption("--shots-pictures-url")
+        ):
+            self.lines.append(message)
+        self.lines += finish(
+            self.config, self.uses.complete(), self.failed or self.config.getoption("--shots-report")
+        )
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        """Print what was written, what was left alone, and where the results are."""
+        if self.lines:
+            terminalreporter.section("shots")
+            for line in self.lines:
+                terminalreporter.line(line)

@@ -1,0 +1,23 @@
+"""The terminal reports each error once, while it lasts."""
+
+from __future__ import annotations
+
+from playground.errors import Diagnostic
+from playground.studio.problems.terminal_errors import TerminalErrors
+
+ONE, OTHER = Diagnostic("no name 'p'", "terrain.glsl", 3), Diagnostic("a ; is missing", "wave.glsl", 7)
+
+
+def test_each_error_is_reported_once_and_again_after_fix() -> None:
+    printed: list[str] = []
+    terminal = TerminalErrors(printed.append)
+    for errors in ([ONE], [ONE], [ONE, OTHER], [OTHER], [], [ONE], [ONE]):
+        terminal.take(errors)
+    assert printed == [str(ONE), str(OTHER), str(ONE)]
+
+
+def test_a_terminal_that_is_gone_stops_nothing() -> None:
+    def gone(_: str) -> None:
+        raise BrokenPipeError
+
+    TerminalErrors(gone).take([ONE])

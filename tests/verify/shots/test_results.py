@@ -1,0 +1,213 @@
+"""The records of checked shots: every one comes back as it was, and anything else is refused in words."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.data.image_files import read_png
+from playground.errors import DataError
+from playground.verify.shots.results import (
+    PICTURES,
+    Record,
+    flat,
+    from_json,
+    read_result,
+    read_results,
+    record_of,
+    result_path,
+    to_json,
+    write_result,
+)
+
+FULL = record_of(
+    dict(
+        sketch="hills & dales",
+        shot="dawn",
+        word="differs",
+        sentence="max difference 12 of 255, at x = 3, y = 1 from the top left",
+        renderer="llvmpipe",
+        tier="same build",
+        tolerance="noise, 8 of 255 at 100 % of the pixels (grain)",
+        tolerated="needed",
+        masked=("4 × 2 pixels at x = 0, y = 0",),
+        tone="reinhard",
+        reference="screenshots/hills/llvmpipe/dawn.png",
+        stands_in="drawn by apple-m1, compared by structure only with llvmpipe's references",
+        catches="anything over one level",
+        numbers={"max difference [levels]": 12, "over [%]": 0.25},
+        size=(6, 4),
+        expected_size=(6, 4),
+        place=(3, 1),
+        texts={"renderer": "llvmpipe (LLVM 15.0.6)", "sketch": "hills – Hügel"},
+        expected_texts={"renderer": "llvmpipe (LLVM 14.0.0)"},
+        fingerprint=("LLVM 15.0.6 drew it now, LLVM 14.0.0 the reference",),
+        root="/a/terrain",
+        home="screenshots",
+        compared="dawn.2.png",
+        references={"dawn.png": "ab" * 32, "dawn.2.png": "cd" * 32},
+        error="<script>alert(1)</script>\n\x1b[31mred",
+        node="tests/test_shots.py::test_shot[hills/dawn]",
+        command="pytest --shots-update 'tests/test_shots.py::test_shot[hills/dawn]'",
+        seconds=0.25,
+        when=1.75e9,
+        run="abc",
+    )
+)
+PIXELS = np.arange(4 * 6 * 4, dtype=np.uint8).reshape(4, 6, 4)
+
+
+def test_every_field_of_the_example_says_something() -> None:
+    """So that a field that is lost on the way cannot go unseen."""
+    alone = {"pictures", "digest", "folder"}  # what write_result fills in; tested by itself
+    assert not [name for name, value in flat(FULL).items() if not value and name not in alone]
+
+
+OTHER = replace(FULL, folder="hills & dales-1a2b3c4d")
+
+
+@pytest.mark.parametrize(
+    "record",
+    [FULL, OTHER, Record(sketch="a", shot="b", word="same", sentence="every pixel")],
+    ids=["full", "in a folder of its own", "bare"],
+)
+def test_a_record_comes_back_as_it_was(record: Record) -> None:
+    text = to_json(record)
+    assert from_json(text) == record
+    assert json.loads(text)["format"] == 2
+
+
+def test_a_result_is_there_with_its_pictures_and_again_without(tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    pictures = {word: PIXELS + np.uint8(number) for number, word in enumerate(PICTURES)}
+    written = write_result(folder, FULL, pictures)
+    assert read_results(folder) == [written]
+    assert written.actual.pictures == {word: f"hills & dales/dawn.{word}.png" for word in PICTURES}
+    assert (
+        written.actual.digest
+        == hashlib.sha256((folder / written.actual.pictures["actual"]).read_bytes()).hexdigest()
+    )
+    for word, pixels in pictures.items():
+        read, texts = read_png(folder / written.actual.pictures[word])
+        np.testing.assert_array_equal(read, pixels)
+        assert texts == (FULL.actual.texts if word == "actual" else {})
+    passed = write_result(folder, replace(FULL, word="same"), {})
+    assert passed.actual.pictures == {} and passed.actual.digest == ""
+    assert [p.name for p in (folder / FULL.sketch).iterdir()] == ["dawn.json"]
+
+
+def test_new_results_folder_is_git_ignored_existing_one_is_not(tmp_path: Path) -> None:
+    write_result(tmp_path / "new", FULL, {})
+    assert "*" in (tmp_path / "new/.gitignore").read_text().splitlines()
+    (tmp_path / "mine").mkdir()
+    write_result(tmp_path / "mine", FULL, {})
+    assert [p.name for p in (tmp_path / "mine").iterdir()] == [FULL.sketch]
+
+
+def test_results_come_by_sketch_and_shot(tmp_path: Path) -> None:
+    for name in ("b/z", "b/a", "a/m"):
+        sketch, shot = name.split("/")
+        write_result(tmp_path, Record(sketch=sketch, shot=shot, word="same", sentence="every pixel"), {})
+    assert [record.name for record in read_results(tmp_path)] == ["a/m", "b/a", "b/z"]
+
+
+def test_two_sketches_of_one_name_stand_side_by_side(tmp_path: Path) -> None:
+    written = [write_result(tmp_path, record, {"actual": PIXELS}) for record in (FULL, OTHER)]
+    assert read_results(tmp_path) == written
+    assert [record.name for record in written] == ["hills & dales/dawn", "hills & dales-1a2b3c4d/dawn"]
+    assert len({record.actual.pictures["actual"] for record in written}) == 2
+
+
+def test_a_stamp_distinguishes_one_result_from_the_next() -> None:
+    assert FULL.stamp == replace(FULL).stamp != record_of(flat(FULL) | {"when": FULL.run.when + 1}).stamp
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"format": 1}, "another format; this version reads format 2"),
+        ({"sketch": ".."}, "'sketch' in a record is the name of a sketch; found \"..\""),
+        ({"sketch": "a/b"}, "'sketch' in a record"),
+        ({"shot": "a.b"}, "'shot' in a record"),
+        ({"folder": ".."}, "'folder' in a record is the name of a folder; found \"..\""),
+        ({"folder": "a/b"}, "'folder' in a record"),
+        ({"shot": "..\\x"}, "'shot' in a record"),
+        ({"word": 3}, "'word' in a record is a text; found 3"),
+        ({"numbers": {"a": "1"}}, "'numbers' in a record is an object of numbers"),
+        ({"numbers": {"a": True}}, "'numbers' in a record is an object of numbers"),
+        ({"size": [0, 4]}, "'size' in a record is two numbers of pixels; found [0, 4]"),
+        ({"place": [1]}, "'place' in a record is x and y of a pixel"),
+        ({"fingerprint": "x"}, "'fingerprint' in a record is a list of texts"),
+        ({"pictures": {"actual": "../../secret.png"}}, "picture 'actual' in a record is hills & dales/dawn."),
+        ({"pictures": {"other": "x.png"}}, "'pictures' in a record"),
+        ({"colour": "red"}, "a record has no 'colour'"),
+        ({"seconds": float("nan")}, "no JSON"),
+        ({"sentence": None}, "'sentence' in a record is a text; found null"),
+    ],
+)
+def test_what_is_no_record_is_refused_by_name(change: dict[str, object], message: str) -> None:
+    data = json.loads(to_json(FULL)) | change
+    with pytest.raises(DataError) as caught:
+        from_json(json.dumps(data), "out/hills/dawn.json")
+    assert message in str(caught.value)
+    assert str(caught.value).startswith("out/hills/dawn.json: ")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "no JSON"),
+        ("[]", "expected an object"),
+        ("{}", "expected an object with a 'format'"),
+        ("[" * 100_000, "nested deeper than 64"),
+        ('{"format": 1, "sketch": ' + "[" * 900 + "]" * 900 + "}", "nested deeper than 64"),
+    ],
+)
+def test_what_is_no_json_is_refused(text: str, message: str) -> None:
+    with pytest.raises(DataError, match=message):
+        from_json(text)
+
+
+def test_a_record_without_a_word_is_refused() -> None:
+    data = json.loads(to_json(FULL))
+    del data["word"]
+    with pytest.raises(DataError, match="without its 'word'"):
+        from_json(json.dumps(data))
+
+
+def test_a_record_in_the_place_of_another_is_refused(tmp_path: Path) -> None:
+    written = write_result(tmp_path, FULL, {})
+    path = result_path(tmp_path, written)
+    path.rename(path.with_name("dusk.json"))
+    with pytest.raises(DataError, match="the record of hills & dales/dawn lies where another belongs"):
+        read_result(path.with_name("dusk.json"))
+
+
+def test_an_empty_or_missing_folder_is_reported(tmp_path: Path) -> None:
+    with pytest.raises(DataError, match="no record of a shot is in it"):
+        read_results(tmp_path)
+    with pytest.raises(DataError, match="there is no such folder"):
+        read_results(tmp_path / "nowhere")
+
+
+@pytest.mark.parametrize(
+    ("sketch", "shot"), [("..", "a"), ("a/b", "a"), ("a", "../b"), ("a", "b.2"), ("", "a")]
+)
+def test_names_that_lead_elsewhere_are_not_written(tmp_path: Path, sketch: str, shot: str) -> None:
+    with pytest.raises(DataError, match="cannot be a"):
+        write_result(tmp_path / "out", Record(sketch=sketch, shot=shot, word="same", sentence=""), {})
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_record_that_cannot_be_written_leaves_none_half_done(tmp_path: Path) -> None:
+    """The old record goes before the pictures change: no record ever speaks of another run's pictures."""
+    write_result(tmp_path, FULL, {"actual": PIXELS})
+    with pytest.raises(DataError, match="uint8 array"):
+        write_result(tmp_path, FULL, {"actual": PIXELS.astype(np.float32)})  # type: ignore[dict-item]
+    assert not list(tmp_path.glob("*/*.json"))
+    assert not list(tmp_path.glob("*/.*.part"))
