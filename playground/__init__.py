@@ -18,6 +18,7 @@ nothing: each name below is imported when it is first used.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from playground._version import __version__
@@ -74,7 +75,10 @@ _NAMES = {
     "playground.shader.parameter": "Parameter",
     "playground.sketch.techniques": "shipped_techniques",
 }
-_HOMES = {name: home for home, names in _NAMES.items() for name in names.split()}
+_HERE = {path.stem for path in Path(__file__).parent.iterdir()}  # a room may have been removed (rooms.py)
+_HOMES = {
+    name: home for home, names in _NAMES.items() if home.split(".")[1] in _HERE for name in names.split()
+}
 
 __all__ = [*_HOMES, "__version__"]
 

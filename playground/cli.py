@@ -11,7 +11,6 @@ What is heavy (NumPy, OpenGL, tables) is imported by the command that needs it.
 
 from __future__ import annotations
 
-import os
 import sys
 import warnings
 from collections.abc import Iterator, Sequence
@@ -25,30 +24,13 @@ import typer
 from playground import rooms
 from playground._version import __version__
 from playground.allowed_files import exists
-from playground.commands import (
-    bench,
-    cache,
-    check,
-    doctor,
-    export,
-    library,
-    listing,
-    live,
-    new,
-    options,
-    pack,
-    reduce,
-    render,
-    shots,
-    variants,
-)
-from playground.commands.arguments import Renderer, help_text, moment_of
+from playground.commands import cache, doctor, library, listing, new, options
+from playground.commands.arguments import Renderer, help_text
 from playground.commands.common_options import prepared, with_root
 from playground.commands.import_name import check_package
 from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarning, nearest
 from playground.paths import program, quoted
 from playground.signals import ended_by_signals
-from playground.sketch.model import DEFAULT_PICTURE
 from playground.streams import flush_or_discard, open_streams
 from playground.terminal import complain, note, with_loudness
 
@@ -159,19 +141,15 @@ def _global(
 ) -> None:
     ctx.obj = Renderer(software, device)
     if ctx.invoked_subcommand is None:
-        _open_default(ctx.obj)
+        _open_default(ctx)
 
 
-def _open_default(renderer: Renderer) -> None:
-    from playground.doctor import where_to_show
-    from playground.paths import DEFAULT_SKETCH
-    from playground.sketch.load import load
-
-    if where_to_show(os.environ, sys.platform):
-        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, request={"welcome": True})
-        return
-    note(f"no display here, so a picture is rendered instead; {program()} --help lists the commands")
-    render.write_output(moment_of(load()), render.Output(), renderer)
+def _open_default(ctx: typer.Context) -> None:
+    """Run what the first room offers that can run here; without such a room, print the help."""
+    for module in rooms.modules("commands"):
+        if hasattr(module, "open_default") and module.open_default(ctx.obj):
+            return
+    print(ctx.get_help())
 
 
 def _usage_message(error: Exception) -> str:
@@ -198,20 +176,12 @@ def _no_command(name: str, ctx: Any) -> str:
     return f"no command '{name}'{hint}"
 
 
-app.command("live", cls=live.LiveCommand, help=live.HELP)(live.command())
-app.command("render", help=render.HELP)(render.render)
-app.command("export", help=export.HELP)(export.export)
-app.command("check", help=check.HELP)(check.check)
-app.command("reduce", help=reduce.HELP)(reduce.reduce)
-app.command("bench", help=bench.HELP)(bench.bench)
-app.command("list", help=listing.HELP)(listing.list_)
-app.command("doctor", help=doctor.HELP)(doctor.doctor)
-app.command("pack", help=pack.HELP)(pack.pack)
-app.command("new", help=new.HELP)(new.new)
-app.add_typer(shots.app)
 for _room in rooms.modules("commands"):
     _room.add_to(app)
-for _group in (cache.app, variants.app, library.app):
+app.command("list", help=listing.HELP)(listing.list_)
+app.command("doctor", help=doctor.HELP)(doctor.doctor)
+app.command("new", help=new.HELP)(new.new)
+for _group in (cache.app, library.app):
     app.add_typer(_group)
 
 

@@ -34,6 +34,9 @@ CHECKOUT: Path | None = (
 """The repository's root where the package runs from one (so that its own shots are found), else None."""
 
 
+SCREENSHOTS = "screenshots"
+"""The folder of references, beside what they are references of."""
+
 NAME = "terrain-shader-playground"
 
 

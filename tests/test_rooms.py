@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -15,26 +16,47 @@ from playground.rooms import ROOMS
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "playground"
-COMMANDS = {"course": {"lesson"}, "dialects": set[str](), "flight": {"fly"}, "lsp": {"lsp"}}
+COMMANDS = {
+    "studio": {"live"},
+    "publish": {"render", "export", "pack"},
+    "verify": {"check", "reduce", "bench", "shots", "variants"},
+    "course": {"lesson"},
+    "dialects": set[str](),
+    "flight": {"fly"},
+    "lsp": {"lsp"},
+}
 SKETCHES = {"dialects": ("channels", "flood", "from_elsewhere")}  # they use shaders of other tools
 ROW = re.compile(r"^│ (\w+) {2,}", re.MULTILINE)
 NAMES = list(ROOMS)
 CORE_TESTS = (
-    "tests/sketch/test_load.py",
-    "tests/shader/test_outline.py",
-    "tests/data/test_resample.py",
-    "tests/studio/live/test_escape_layers.py",  # a panel of a window, without a screen
-    "tests/studio/live/test_keys.py",
-    "tests/studio/workbench/test_pasted.py",
+    "sketch/test_load.py",
+    "sketch/test_pasted.py",
+    "shader/test_outline.py",
+    "data/test_resample.py",
 )
+ROOM_TESTS = {
+    "studio": ("live/test_escape_layers.py", "live/test_keys.py"),  # a panel of a window, without a screen
+    "publish": ("capture/test_pack.py",),
+    "verify": ("shots/test_judge.py",),
+}
+
+
+def removed_with(room: str) -> set[str]:
+    """Return a room and all that need it, however far."""
+    gone = {room}
+    while more := {name for name, each in ROOMS.items() if gone & {*each.needs}} - gone:
+        gone |= more
+    return gone
 
 
 @pytest.mark.parametrize("room", NAMES)
-def test_nothing_outside_of_a_room_names_it(room):
+def test_only_rooms_that_need_a_room_name_it(room):
     naming = [
-        path.relative_to(PACKAGE).as_posix()
+        name
         for path in PACKAGE.rglob("*.py")
-        if path.relative_to(PACKAGE).parts[0] not in (room, "web")
+        if (name := path.relative_to(PACKAGE).as_posix()) not in ("__init__.py", "rooms.py")
+        and (home := name.partition("/")[0]) != room
+        and not (home in ROOMS and room in ROOMS[home].needs)
         and re.search(rf"playground[./]{room}\b|from playground import .*\b{room}\b", path.read_text("utf-8"))
     ]
     assert not naming, "the registry has its name, and nothing its modules"
@@ -46,8 +68,8 @@ def commands(folder: Path) -> set[str]:
     return set(ROW.findall(done.stdout))
 
 
-def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    environment = {**os.environ, "PYTHONPATH": str(folder), "COLUMNS": "80", "NO_COLOR": "1"}
+def run(folder: Path, *arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "PYTHONPATH": str(folder), "COLUMNS": "80", "NO_COLOR": "1", **variables}
     return subprocess.run(
         [sys.executable, *arguments], cwd=folder, env=environment, capture_output=True, text=True
     )
@@ -55,43 +77,91 @@ def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture
 def without(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
-    """Give a checkout without a room, its tests, its sketches and its line."""
-    room = request.param
-    shutil.copytree(
-        PACKAGE, tmp_path / "playground", ignore=shutil.ignore_patterns("node_modules", "__pycache__", room)
-    )
-    shutil.copytree(
-        ROOT / "tests", tmp_path / "tests", ignore=shutil.ignore_patterns("__pycache__", "screenshots", room)
-    )
-    for name in ("docs", "pyproject.toml"):
-        (tmp_path / name).symlink_to(ROOT / name)
-    its = [name for sketch in SKETCHES.get(room, ()) for name in (sketch, f"{sketch}.toml")]
+    """Give a checkout without a room and those that need it, their tests, sketches and lines."""
+    gone = removed_with(request.param)
+
+    def ignored(root: Path) -> Callable[[str, list[str]], set[str]]:
+        junk = shutil.ignore_patterns("node_modules", "__pycache__", "screenshots")
+        return lambda folder, names: {*junk(folder, names), *(gone if Path(folder) == root else ())}
+
+    shutil.copytree(PACKAGE, tmp_path / "playground", ignore=ignored(PACKAGE))
+    shutil.copytree(ROOT / "tests", tmp_path / "tests", ignore=ignored(ROOT / "tests"))
+    (tmp_path / "docs").symlink_to(ROOT / "docs")
+    settings = (ROOT / "pyproject.toml").read_text("utf-8")
+    if "verify" in gone:  # its plugin
+        settings = settings.replace('"-p", "playground.verify.shots.plugin", ', "")
+        settings = re.sub(r'^(shots = |"playground\.verify\.).*\n', "", settings, flags=re.MULTILINE)
+    (tmp_path / "pyproject.toml").write_text(settings, "utf-8")
+    its = [name for room in gone for sketch in SKETCHES.get(room, ()) for name in (sketch, f"{sketch}.toml")]
     shutil.copytree(ROOT / "glsl", tmp_path / "glsl", ignore=shutil.ignore_patterns(*its))
     registry = tmp_path / "playground" / "rooms.py"
-    text, count = re.subn(rf'^    "{room}": .*\n', "", registry.read_text("utf-8"), flags=re.MULTILINE)
-    assert count == 1
+    text, count = re.subn(
+        rf'^    "({"|".join(gone)})": .*\n', "", registry.read_text("utf-8"), flags=re.MULTILINE
+    )
+    assert count == len(gone)
     registry.write_text(text, encoding="utf-8")
     return tmp_path
 
 
 @pytest.mark.slow
+@pytest.mark.always
 @pytest.mark.parametrize("without", NAMES, indirect=True)
 def test_everything_else_works_without_a_room(without):
-    (room,) = {*NAMES} - {p.name for p in (without / "playground").iterdir()}
-    assert commands(without) == commands(ROOT) - COMMANDS[room]
+    gone = {*NAMES} - {p.name for p in (without / "playground").iterdir()}
+    assert commands(without) == commands(ROOT) - {name for room in gone for name in COMMANDS[room]}
     modules = [
         ".".join(path.relative_to(without).with_suffix("").parts)
         for path in sorted((without / "playground").rglob("*.py"))
         if "templates" not in path.parts and path.stem not in ("__main__", "conftest")
     ]
     code = "import importlib, sys\nfor name in sys.argv[1:]: importlib.import_module(name)\n"
-    done = run(without, "-c", code + "import playground; print(playground.__file__)", *modules)
+    code += "import playground; from playground import *; print(playground.__file__)"
+    done = run(without, "-c", code, *modules)
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip() == str(without / "playground" / "__init__.py")
-    picture = run(without, "-m", "playground", "render", "l_dot_n", "--size", "32x18", "-o", "p.png")
-    assert picture.returncode == 0 and (without / "p.png").is_file(), picture.stderr
-    core = run(without, "-m", "pytest", "-q", "-p", "no:cacheprovider", *CORE_TESTS)
-    assert core.returncode == 0, core.stdout
+    picture = (
+        "import playground\nwith playground.headless(software=True) as engine:\n"
+        "    engine.render(playground.load('l_dot_n'), size=(32, 18)).save('p.png')\n"
+    )
+    done = run(without, "-c", picture)
+    assert done.returncode == 0 and (without / "p.png").is_file(), done.stderr
+    tests = [f"tests/{name}" for name in CORE_TESTS]
+    tests += [
+        f"tests/{room}/{name}" for room, names in ROOM_TESTS.items() if room not in gone for name in names
+    ]
+    # What is installed names the plugin of shots, which the room verify takes along.
+    done = run(
+        without, "-m", "pytest", "-q", "-p", "no:cacheprovider", *tests, PYTEST_DISABLE_PLUGIN_AUTOLOAD="1"
+    )
+    assert done.returncode == 0, done.stdout
+    if "studio" not in gone and shutil.which("Xvfb"):
+        assert '"error": ""' in opened(without)
+
+
+WINDOW = """
+import sys
+from playground.studio.app import run
+sys.exit(run("l_dot_n", size=(480, 320), time_limit=8))
+"""
+
+
+def opened(folder: Path) -> str:
+    """Open a window for some seconds; return the status that it wrote."""
+    read, write = os.pipe()
+    with subprocess.Popen(
+        ["Xvfb", "-displayfd", str(write), "-screen", "0", "640x480x24", "-nolisten", "tcp"],
+        pass_fds=[write], stderr=subprocess.DEVNULL,
+    ) as server:  # fmt: skip
+        os.close(write)
+        with os.fdopen(read) as answer:
+            display = f":{answer.readline().strip()}"
+        status = folder / "status.jsonl"
+        done = run(
+            folder, "-c", WINDOW, DISPLAY=display, PLAYGROUND_STATUS=str(status), XDG_STATE_HOME=str(folder)
+        )
+        server.terminate()
+    assert done.returncode == 0, done.stderr
+    return status.read_text("utf-8")
 
 
 @pytest.mark.slow

@@ -21,7 +21,7 @@ def kept(sketch: str, command: str, clipboard: Callable[[], str] | None = None) 
     """
     if sketch != NAME:
         return sketch
-    from playground.studio.save.pasted import keep_text
+    from playground.sketch.pasted import keep_text
 
     name = "standard input"
     if not sys.stdin.isatty():
@@ -47,7 +47,7 @@ def kept_path(path: Path, command: str) -> Path:
 
 
 def _read() -> str:
-    from playground.studio.save.pasted import MAX_PASTED_BYTES
+    from playground.sketch.pasted import MAX_PASTED_BYTES
 
     data = sys.stdin.buffer.read(MAX_PASTED_BYTES + 1)
     if len(data) > MAX_PASTED_BYTES:

@@ -19,10 +19,10 @@ from playground.commands.arguments import (
     either,
     help_text,
 )
-from playground.commands.live import check_display, open_window
 from playground.commands.options import flag, positional, value
 from playground.course.options import Language, complete_language, complete_lesson, read_language
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, counted, nearest
+from playground.studio.commands import check_display, open_window
 from playground.terminal import complain, note, painted, print_json, print_rows, print_table, progress
 
 if TYPE_CHECKING:

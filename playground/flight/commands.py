@@ -19,9 +19,9 @@ from playground.commands.arguments import (
     with_whole_paths,
     within,
 )
-from playground.commands.live import check_display
 from playground.commands.options import complete_sketch, positional, value
 from playground.sketch.model import DEFAULT_PICTURE
+from playground.studio.commands import check_display
 from playground.terminal import busy, progress
 
 if TYPE_CHECKING:

@@ -17,7 +17,9 @@ import zipfile
 import zlib
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
 
+from playground import paths
 from playground._version import __version__
 from playground.allowed_files import (
     ELEVATIONS,
@@ -32,8 +34,11 @@ from playground.allowed_files import (
 from playground.errors import DataError, SketchError, counted, nearest
 from playground.files import irregularity, open_regular
 from playground.json_text import read_json
-from playground.paths import GLSL, SKETCHES, cache_folder
+from playground.paths import GLSL, SCREENSHOTS, SKETCHES, cache_folder, shown
 from playground.shader.dialect import dialects
+
+if TYPE_CHECKING:
+    from playground.sketch.model import Sketch
 
 ENDING = ".zip"
 MANIFEST = "pack.json"
@@ -364,3 +369,16 @@ def shipped_names() -> list[str]:
 def is_part(name: str) -> bool:
     """Return whether a name in ``glsl/`` is a part of a technique: it lies in a folder named after one."""
     return any(is_file(GLSL / folder.with_suffix(".toml")) for folder in Path(name).parents if folder.name)
+
+
+def home_of(sketch: Sketch) -> Path:
+    """Return the ``screenshots`` folder that a sketch's references are in, which may not exist yet.
+
+    Raises ``DataError`` for a shipped sketch of an installed package, which has none.
+    """
+    if not Path(sketch.file).is_relative_to(paths.SKETCHES):
+        return Path(sketch.folder) / SCREENSHOTS
+    if paths.CHECKOUT is None:
+        message = f"the references of '{sketch.name}' are in the repository; an installed package has none"
+        raise DataError(message, file=shown(sketch.file))
+    return paths.CHECKOUT / SCREENSHOTS

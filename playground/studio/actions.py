@@ -11,13 +11,13 @@ from playground.files import read_regular
 from playground.paths import GLSL, shown
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.model import Camera, Value
+from playground.sketch.pasted import keep_text
 from playground.sketch.save import save, save_copy, save_preset, saved_text
 from playground.studio.channels.channels import source_of
 from playground.studio.edits.edits import Draft
 from playground.studio.edits.history import History, Key
 from playground.studio.edits.undo import Undo
 from playground.studio.notices import Notices
-from playground.studio.save.pasted import keep_text
 from playground.studio.save.sketch_file import SketchFile
 from playground.studio.save.sketch_of_shader import is_shader, save_as_sketch
 from playground.studio.session import Session

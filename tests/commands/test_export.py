@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from playground import cli
-from playground.commands.export import HELP
+from playground.publish.commands.export import HELP
 from playground.publish.extensions import ENDINGS
 
 from ..elevations import write_geotiff

@@ -17,12 +17,13 @@ from playground import paths
 from playground.data.image_files import read_texts
 from playground.errors import DataError, PlaygroundError, counted, nearest
 from playground.paths import shown
+from playground.sketch.find import home_of
 from playground.sketch.load import load_with
 from playground.sketch.model import Graph, Shot, Sketch
 from playground.sketch.techniques import Techniques
 from playground.verify.shots.checking import checker_of
 from playground.verify.shots.recording import references_name
-from playground.verify.shots.references import FOLDER, home_of, stale_references
+from playground.verify.shots.references import FOLDER, stale_references
 from playground.verify.shots.suite import ShotCase
 
 _TECHNIQUES: pytest.StashKey[Techniques] = pytest.StashKey()

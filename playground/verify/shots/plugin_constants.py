@@ -5,9 +5,6 @@ A test tells the summary of its run by user properties, which come along from wo
 
 from __future__ import annotations
 
-SCREENSHOTS = "screenshots"
-"""The folder of references, in the folder of a sketch or a test file."""
-
 REPORT = "shots-report"
 """Where results go unless another folder is named: in the folder the tests were started in."""
 

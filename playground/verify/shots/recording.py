@@ -14,12 +14,13 @@ import pytest
 from numpy.typing import NDArray
 
 from playground.errors import DataError
-from playground.paths import program, shown
+from playground.paths import SCREENSHOTS, program, shown
+from playground.sketch.find import home_of
 from playground.verify.shots.claims import forget_claims
 from playground.verify.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, STRUCTURE_ONLY
-from playground.verify.shots.plugin_constants import CHECKED, SCREENSHOTS, STOOD_IN, UNRECORDED
+from playground.verify.shots.plugin_constants import CHECKED, STOOD_IN, UNRECORDED
 from playground.verify.shots.properties import properties_of
-from playground.verify.shots.references import accepted, home_of, reference_texts
+from playground.verify.shots.references import accepted, reference_texts
 from playground.verify.shots.report import NAME, write_report
 from playground.verify.shots.result_paths import clean, drop, file_of, place_of, records_in
 from playground.verify.shots.results import (

@@ -21,11 +21,11 @@ from numpy.typing import NDArray
 from playground import paths
 from playground.data.image_files import read_png, write_png
 from playground.engine.context import ContextInfo
-from playground.errors import DataError
 from playground.files import make_folder
+from playground.paths import SCREENSHOTS
+from playground.sketch.find import home_of
 from playground.sketch.model import Sketch
 from playground.verify.shots.fingerprint import Fingerprint, fingerprint_of, read_fingerprint
-from playground.verify.shots.plugin_constants import SCREENSHOTS
 
 FOLDER = SCREENSHOTS
 
@@ -44,19 +44,6 @@ class Reference:
     def fingerprint(self) -> Fingerprint:
         """What it comes from, as far as the file says."""
         return read_fingerprint(self.text)
-
-
-def home_of(sketch: Sketch) -> Path:
-    """Return the ``screenshots`` folder that a sketch's references are in, which may not exist yet.
-
-    Raises ``DataError`` for a shipped sketch of an installed package, which has none.
-    """
-    if not Path(sketch.file).is_relative_to(paths.SKETCHES):
-        return Path(sketch.folder) / FOLDER
-    if paths.CHECKOUT is None:
-        message = f"the references of '{sketch.name}' are in the repository; an installed package has none"
-        raise DataError(message, file=paths.shown(sketch.file))
-    return paths.CHECKOUT / FOLDER
 
 
 def reference_path(sketch: Sketch, shot: str, renderer: str) -> Path:

@@ -18,7 +18,8 @@ from pathlib import Path
 
 import pytest
 
-from playground.verify.shots.plugin_constants import FIXTURE, SCREENSHOTS, TESTS, UNCHECKED, USED
+from playground.paths import SCREENSHOTS
+from playground.verify.shots.plugin_constants import FIXTURE, TESTS, UNCHECKED, USED
 
 _COUNTS: pytest.StashKey[Counter[Path]] = pytest.StashKey()
 

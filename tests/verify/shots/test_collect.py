@@ -168,7 +168,13 @@ print(sorted(slow & new), sorted(name for name in new if name.startswith("playgr
 
 def test_being_installed_costs_next_to_nothing() -> None:
     done = subprocess.run([sys.executable, "-c", FRESH], cwd=ROOT, capture_output=True, text=True, check=True)
-    small = ["playground", "playground._version", "playground.verify", "playground.verify.shots"]
+    small = [
+        "playground",
+        "playground._version",
+        "playground.paths",
+        "playground.verify",
+        "playground.verify.shots",
+    ]
     small += [
         f"playground.verify.shots.{name}" for name in ("plugin", "plugin_constants", "unused_references")
     ]

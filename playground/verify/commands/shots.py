@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any
 
-from playground.commands import mutants, options, shots_results
+from playground.commands import options
 from playground.commands.arguments import command_group, help_text
 from playground.commands.options import complete_sketch, positional
 from playground.terminal import print_json, print_table
+from playground.verify.commands import mutants, shots_results
 
 if TYPE_CHECKING:
     from playground.sketch.model import Sketch
@@ -77,7 +78,8 @@ def _rows(sketch: Sketch) -> list[dict[str, Any]]:
     """Describe each shot, as JSON takes it."""
     from playground.errors import DataError
     from playground.paths import shown
-    from playground.verify.shots.references import accepted, home_of
+    from playground.sketch.find import home_of
+    from playground.verify.shots.references import accepted
 
     try:
         home = home_of(sketch) / sketch.name

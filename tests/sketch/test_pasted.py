@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from playground.errors import PlaygroundError
-from playground.studio.save.pasted import keep_text
+from playground.sketch.pasted import keep_text
 
 SHADERTOY = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy, 0.0, 1.0); }\n"
 MAIN = "void main() { gl_FragColor = vec4(1.0); }\n"

@@ -57,8 +57,8 @@ def pack(
 
 def _references(sketch: Sketch) -> Iterator[tuple[Path, str]]:
     """Yield the sketch's reference pictures, and where they go in its folder."""
-    from playground.verify.shots.plugin_constants import SCREENSHOTS
-    from playground.verify.shots.references import home_of
+    from playground.paths import SCREENSHOTS
+    from playground.sketch.find import home_of
 
     try:
         home = home_of(sketch)

@@ -26,6 +26,8 @@ from playground.commands.arguments import (
 from playground.commands.options import flag, value
 from playground.commands.standard_input import kept
 from playground.errors import ContextError, ParameterError, PlaygroundError
+from playground.paths import DEFAULT_SKETCH
+from playground.sketch.model import DEFAULT_PICTURE
 from playground.terminal import complain, say
 
 REMOTE_PORT = 8765
@@ -218,3 +220,18 @@ def open_window(
         status = run(sketch, size=size, software=renderer.software, values=values, **options)
     if status:
         raise typer.Exit(status)
+
+
+def open_default(renderer: Renderer) -> bool:
+    """Open the default sketch in a window, where there is a display; return whether there is."""
+    from playground.doctor import where_to_show
+
+    if not where_to_show(os.environ, sys.platform):
+        return False
+    open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, request={"welcome": True})
+    return True
+
+
+def add_to(app: typer.Typer) -> None:
+    """Add the room's command to a command line."""
+    app.command("live", cls=LiveCommand, help=HELP)(command())

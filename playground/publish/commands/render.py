@@ -27,13 +27,13 @@ from playground.commands.arguments import (
     refuse,
     within,
 )
-from playground.commands.film import SeriesJob, SeriesOptions, read_fps, read_frames
 from playground.commands.options import flag, value
 from playground.commands.standard_input import kept
 from playground.commands.standard_output import check_standard_output
 from playground.data.image_files import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.errors import DataError, ParameterError, counted
 from playground.paths import program
+from playground.publish.commands.film import SeriesJob, SeriesOptions, read_fps, read_frames
 from playground.sketch.model import DEFAULT_PICTURE, MAX_PICTURE_SIDE, MAX_SUPERSAMPLE
 from playground.terminal import busy, console_for, note, progress
 
