@@ -44,17 +44,16 @@ OBJECTS = (
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
-        "--once-below",
-        metavar="FOLDER",
-        action="append",
-        default=[],
-        help="below this folder run each test with its first parameters only; may be given several times",
-    )
-    parser.addoption(
         "--seed",
         metavar="HASH",
         default="",
         help="sample the cases of tests that have many by this seed; the commit's hash by default",
+    )
+    parser.addoption(
+        "--half",
+        type=int,
+        choices=(1, 2),
+        help="run one half of the test functions, chosen by the seed: for two Pythons that share a run",
     )
     parser.addoption(
         "--all", action="store_true", help="run every case of every test, slow ones too unless -m is given"
@@ -65,7 +64,8 @@ def pytest_configure(config: pytest.Config) -> None:
     every_case = config.getoption("--all")
     if every_case and config.option.markexpr == "not slow":
         config.option.markexpr = ""
-    config.pluginmanager.register(Spread(config.getoption("--seed"), every_case, config.args))
+    half = config.getoption("--half")
+    config.pluginmanager.register(Spread(config.getoption("--seed"), every_case, config.args, half=half))
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
@@ -73,22 +73,6 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
     for marker in item.iter_markers("room"):
         if marker.args[0] not in ROOMS:
             pytest.skip(f"needs playground/{marker.args[0]}")
-
-
-@pytest.hookimpl(trylast=True)
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out what ``--once-below`` leaves out, of those that markers have left."""
-    folders = [(ROOT / name).resolve() for name in config.getoption("--once-below")]
-    met: set[str] = set()
-    run, again = [], []
-    for item in items:
-        test = item.nodeid.partition("[")[0]
-        once = any(item.path.is_relative_to(folder) for folder in folders)
-        (again if once and test in met else run).append(item)
-        met.add(test)
-    if again:
-        config.hook.pytest_deselected(items=again)
-        items[:] = run
 
 
 @pytest.hookimpl(wrapper=True)

@@ -37,22 +37,42 @@ def git(*arguments: str) -> str:
 class Spread:
     """Divides the cases of each test between the everyday run, the slow run and other commits' runs."""
 
-    def __init__(self, seed: str = "", every_case: bool = False, arguments: Iterable[str] = ()) -> None:
-        """Sample by a seed, or else by the commit; ``arguments`` are those of the command line."""
+    def __init__(
+        self,
+        seed: str = "",
+        every_case: bool = False,
+        arguments: Iterable[str] = (),
+        *,
+        half: int | None = None,
+    ) -> None:
+        """Sample by a seed, or else by the commit; ``arguments`` are those of the command line.
+
+        With a ``half``, 1 or 2, the functions of the other half are left out; another seed halves otherwise.
+        """
         self.seed = seed or git("rev-parse", "--short=12", "HEAD") or "none"
         commits = "" if seed else git("rev-list", "--count", "HEAD")
         self.every_case = every_case or (commits != "" and int(commits) % FULL_INTERVAL == 0)
+        self.half = half
         self.named = tuple(name.replace("\\", "/").rpartition("/")[2] for name in arguments if "[" in name)
 
     def pytest_report_header(self) -> str:
         """Print the seed, and how to repeat the run."""
+        half = f", half {self.half} of the functions" if self.half else ""
         if self.every_case:
-            return f"cases: all, of seed {self.seed}; --seed {self.seed} samples them"
-        return f"cases: sampled, seed {self.seed}; --seed {self.seed} repeats this run, --all runs every case"
+            return f"cases: all{half}, of seed {self.seed}; --seed {self.seed} samples them"
+        seed = f"seed {self.seed}; --seed {self.seed} repeats this run, --all runs every case"
+        return f"cases: sampled{half}, {seed}"
 
     def part(self, item: pytest.Item) -> int:
         """Return the part of its test's cases that a case belongs to."""
         return sha256(f"{self.seed} {item.nodeid}".encode()).digest()[0] % PARTS
+
+    def is_of_other_half(self, item: pytest.Item) -> bool:
+        """Return whether a case's function is in the half that does not run."""
+        if self.half is None:
+            return False
+        function = item.nodeid.partition("[")[0]
+        return sha256(f"{self.seed} {function}".encode()).digest()[1] % 2 != self.half - 1
 
     def is_left_out(self, item: pytest.Item, part: int) -> bool:
         """Return whether a case is in another part than the slow run's, and may be left out."""
@@ -71,7 +91,7 @@ class Spread:
             if item.path.is_relative_to(TESTS):
                 is_slow = item.get_closest_marker("slow") is not None
                 functions[item.nodeid.partition("[")[0], is_slow].append(item)
-        left_out: set[pytest.Item] = set()
+        left_out = {item for item in items if self.is_of_other_half(item)}
         for (_, is_slow), cases in functions.items():
             if len(cases) <= MAX_UNSAMPLED:
                 continue

@@ -36,7 +36,7 @@ CORE_TESTS = (
 )
 ROOM_TESTS = {
     "studio": ("live/test_escape_layers.py", "live/test_keys.py"),  # a panel of a window, without a screen
-    "publish": ("capture/test_pack.py",),
+    "publish": ("capture/test_mesh.py",),
     "verify": ("shots/test_judge.py",),
 }
 
@@ -86,7 +86,8 @@ def without(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
 
     shutil.copytree(PACKAGE, tmp_path / "playground", ignore=ignored(PACKAGE))
     shutil.copytree(ROOT / "tests", tmp_path / "tests", ignore=ignored(ROOT / "tests"))
-    (tmp_path / "docs").symlink_to(ROOT / "docs")
+    for name in ("docs", "screenshots"):
+        (tmp_path / name).symlink_to(ROOT / name)
     settings = (ROOT / "pyproject.toml").read_text("utf-8")
     if "verify" in gone:  # its plugin
         settings = settings.replace('"-p", "playground.verify.shots.plugin", ', "")

@@ -78,6 +78,25 @@ def test_all_always_and_named_cases_run():
     assert left_out in runs(MANY, Spread("1", arguments=[f"tests/test_a.py::test[{left_out}]"]), "slow")[1]
 
 
+def test_two_halves_are_the_whole_and_a_function_is_in_one():
+    cases = [
+        Case(nodeid=f"tests/test_{file}.py::test[{case}]", path=TESTS / f"test_{file}.py", marks=[])
+        for file in range(200)
+        for case in UNSAMPLED_CASES
+    ]
+    halves = []
+    for half in (1, 2):
+        items = list(cases)
+        hook = SimpleNamespace(pytest_deselected=lambda items: None)
+        Spread("1", half=half).pytest_collection_modifyitems(SimpleNamespace(hook=hook), items)  # type: ignore[arg-type]
+        halves.append({case.nodeid for case in items})
+    assert not halves[0] & halves[1] and halves[0] | halves[1] == {case.nodeid for case in cases}
+    functions = {name.partition("[")[0] for name in halves[0]}
+    assert 60 < len(functions) < 140  # of 200, at random: five standard deviations are 35
+    assert len(halves[0]) == len(functions) * len(UNSAMPLED_CASES)
+    assert "half 2 of the functions" in Spread("1", half=2).pytest_report_header()
+
+
 def test_the_commit_is_the_seed_and_each_tenth_is_full(monkeypatch: pytest.MonkeyPatch):
     answers = {"rev-parse": "abcdef", "rev-list": str(FULL_INTERVAL * 7)}
     monkeypatch.setattr(spread, "git", lambda command, *_: answers[command])
