@@ -1,4 +1,5 @@
 """Files in and out: elevations, vectors, models, pictures, films, sounds, live inputs.
 
-None of it knows of OpenGL, of sketches, nor of colour encodings (`playground.shader.parameter`).
+It knows nothing of OpenGL, sketches or colour encodings (``playground.shader.parameter``). Needs nothing but the
+base modules. Part of the core, so it stays.
 """

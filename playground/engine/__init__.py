@@ -1,4 +1,5 @@
-"""From a sketch to textures: plan, run, cache, sandbox.
+"""From a sketch to textures: plan, run, cache; a sandbox and worker processes for what may hang or crash.
 
-Knows no technique by name: the terrain lives in ``glsl/``.
+The core's only room with OpenGL. It knows no technique by name: the terrain lies in ``glsl/``.
+Needs ``sketch``, ``shader``, ``data``. Part of the core: every other room stands on it, so it stays.
 """
