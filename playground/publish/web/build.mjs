@@ -1,6 +1,6 @@
 // build.mjs -- bundles the runtime: each entry becomes one minified file in bundle/, which is committed.
 //
-//   node build.mjs               makes bundle/
+//   node build.mjs               makes bundle/, and the page of the studio's remote (../../studio/remote/page/)
 //   node build.mjs FILE OUT      bundles any module as one classic script, for tests
 //
 // The first line of a bundle holds a hash of everything that it may be made of, so that a bundle that is
@@ -68,10 +68,12 @@ const [file, out] = process.argv.slice(2);
 if (file && out) {
   writeFileSync(out, await bundled(file, "iife", { minify: true }));
 } else {
-  rmSync(join(HERE, "bundle"), { recursive: true, force: true });
-  mkdirSync(join(HERE, "bundle"));
+  const bundle = join(HERE, "bundle"), remote = join(HERE, "../../studio/remote/page");
+  rmSync(bundle, { recursive: true, force: true });
+  mkdirSync(bundle);
   for (const [name, kind] of Object.entries(ENTRIES)) {
     const text = await smallest(join(HERE, "runtime", name), kind);
-    writeFileSync(join(HERE, "bundle", name), `/* sources ${hashOfSources()} */\n${text}`);
+    const folder = name.startsWith("remote.") ? remote : bundle;
+    writeFileSync(join(folder, name), `/* sources ${hashOfSources()} */\n${text}`);
   }
 }

@@ -35,7 +35,6 @@ from playground.engine.frame import Frame
 from playground.errors import DataError, ParameterError, PlaygroundError
 from playground.json_text import read_json
 from playground.local_server import BACKLOG, HEADERS, MAX_SILENCE, Guard, Unauthenticated
-from playground.publish.web.bundle import read_bundle
 from playground.studio.remote.calls import Busy, Calls
 from playground.studio.remote.controls import MAX_REMOTE_SIDE, Behind, Controls
 
@@ -186,8 +185,7 @@ class Server:
     async def _page(self, request: web.Request) -> web.Response:
         name = request.match_info["file"]
         kind = _BUNDLES.get(name, "text/html")
-        page = files("playground.studio.remote").joinpath("page", "remote.html")
-        text = read_bundle(name) if name else page.read_text("utf-8")
+        text = files("playground.studio.remote").joinpath("page", name or "remote.html").read_text("utf-8")
         return web.Response(text=text, content_type=kind, charset="utf-8")
 
     async def _state(self, _: web.Request) -> web.Response:

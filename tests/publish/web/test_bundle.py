@@ -22,13 +22,18 @@ def entries() -> set[str]:
     return set(re.findall(r'"([\w.]+)":', match[1]))
 
 
+def bundles() -> dict[str, Path]:
+    remote = WEB.parents[1] / "studio" / "remote" / "page"
+    return {path.name: path for path in [*bundle.BUNDLES.glob("*"), *remote.glob("remote.[jc]s*")]}
+
+
 def test_every_entry_is_bundled_and_nothing_else():
-    assert {path.name for path in bundle.BUNDLES.glob("*")} == entries()
+    assert bundles().keys() == entries()
 
 
 def test_every_bundle_is_made_of_the_sources_as_they_are():
-    for name in entries():
-        assert bundle.sources_in(bundle.read_bundle(name)) == bundle.hash_of_sources(), (
+    for name, path in bundles().items():
+        assert bundle.sources_in(path.read_text("utf-8")) == bundle.hash_of_sources(), (
             f"{name}: run 'npm ci' and 'npm run build' in playground/publish/web"
         )
 
