@@ -29,8 +29,8 @@ class Room(NamedTuple):
 
 
 ROOMS: dict[str, Room] = {
-    "studio": Room(("commands",), needs=("publish",)),
-    "publish": Room(("commands",)),
+    "studio": Room(("commands",)),
+    "publish": Room(("commands", "addition")),
     "verify": Room(("commands",), needs=("studio", "publish")),
     "course": Room(("commands", "options", "addition", "site"), needs=("studio", "publish")),
     "dialects": Room(("table",)),

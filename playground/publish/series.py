@@ -27,10 +27,10 @@ from playground.engine.engine import Engine
 from playground.errors import ParameterError
 from playground.publish.sweep import DEFAULT_STEPS, MAX_PICTURES, Swept, columns_of, combinations, read_sweep
 from playground.sketch.load import opened
+from playground.sketch.model import FPS as FPS
 from playground.sketch.model import Sketch
 from playground.sketch.traits import traits_of
 
-FPS = 30
 SWEEP_FPS = 4
 """Pictures a second of a sweep."""
 DEFAULT_SIZE = (1280, 720)

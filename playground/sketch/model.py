@@ -112,6 +112,9 @@ MAX_PICTURE_SIDE = 65_536
 DEFAULT_PICTURE = (1280, 720)
 """Size in pixels of a picture unless another is given."""
 
+FPS = 30
+"""Pictures a second of a film unless another rate is given."""
+
 MAX_SUPERSAMPLE = 8
 """Times that a picture may be drawn as wide and as high as it is wanted."""
 

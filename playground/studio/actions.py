@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.errors import PlaygroundError, counted
-from playground.files import read_regular
+from playground.files import new_name, read_regular
 from playground.paths import GLSL, shown
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.model import Camera, Value
@@ -32,6 +33,7 @@ class Commands:
     undo: Undo
     file: SketchFile
     folder: Path
+    saved_picture: Path | None = None  # the last one
     opens: Callable[[Path], None] | None = None  # opens a sketch with its remembered edits
     _visited: list[Path] = field(default_factory=list)  # the sketches that were opened, in order
     _at: int = 0  # which of them is open now
@@ -190,6 +192,23 @@ class Commands:
             return
         copy(text)
         self.notices.say("copied the sketch as TOML")
+
+    def save_picture(self) -> None:
+        """Save the picture as a PNG that is new in the folder, and say where."""
+        frame = self.session.read()
+        if frame is None:
+            self.notices.say("there is no picture to save yet")
+            return
+        stem = re.sub(r"[^\w.-]+", "-", frame.sketch).strip("-.") or "picture"
+        try:
+            with new_name(self.folder / f"{stem}.png") as path:
+                frame.save(path, {"sketch": frame.sketch, "time": f"{frame.time:g}"})
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+            return
+        self.saved_picture = path
+        width, height = frame.size
+        self.notices.say(f"saved {shown(path)}, {width} x {height} pixels, in {self.folder}")
 
     def _ready(self) -> Draft | None:
         """Return what is to be saved, its numbers as the file will have them; None, and a notice, if none."""

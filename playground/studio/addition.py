@@ -51,6 +51,10 @@ class Addition:
         """Return what is open that Esc closes, topmost first; all of it lies below the window's own."""
         return ()
 
+    def popups(self) -> Iterable[Layer]:
+        """Return the open windows of its own, topmost first: Esc closes them before the window's panels."""
+        return ()
+
     def status(self) -> Mapping[str, object]:
         """Return fields of the status, as JSON has them."""
         return {}
@@ -76,6 +80,9 @@ class Addition:
     def draw_panel(self) -> float:
         """Draw a panel at the window's left side; return the width it takes, in the window's units."""
         return 0.0
+
+    def draw_over(self) -> None:
+        """Draw windows of its own, over the picture."""
 
     def update(self, *, idle: bool) -> None:
         """Update after a frame; ``idle``: there is time to compute."""

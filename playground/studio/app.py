@@ -31,7 +31,6 @@ from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, ComputeVariant, CpuSource, Kernel, PlainCompute, Value
 from playground.studio.addition import Addition, FullScreen
 from playground.studio.bench import Workbench
-from playground.studio.capture.panel import draw_capture
 from playground.studio.code.editors import Opener
 from playground.studio.code.panel import draw_code
 from playground.studio.code.text_file import unsaved
@@ -147,7 +146,6 @@ def run(
         stack.callback(live.release)
         for addition in live.additions:
             stack.callback(addition.close)
-        stack.callback(live.bench.captures.close)
         stack.callback(live.finish_painting, report)
         stack.callback(autosave.close)
         stack.callback(live.caching.close)
@@ -314,7 +312,7 @@ class Live:
             return min(self.caching.patience, QUIET / 2)
         if self.autosave.waits:
             return QUIET / 2
-        if self.bench.captures.working is not None or self.bench.notices.items:
+        if self.bench.notices.items:
             return 0.1
         if imgui.get_io().want_text_input:
             return 0.1
@@ -440,8 +438,8 @@ class Live:
         draw("the notices", lambda: draw_notices(bench.notices, look, area), None)
         draw("what was dropped", lambda: self.drops.draw(look), None)
         draw("the key map", lambda: draw_keymap(bench.interface, look), None)
-        bench.captures.poll()
-        draw("the capture's window", lambda: draw_capture(bench.captures, look), None)
+        for addition in self.additions:
+            draw(addition.name, addition.draw_over, None)
 
     def _show(self, picture: moderngl.Texture | None, area: tuple[int, int, int, int]) -> None:
         """Put the picture on the screen, under all that was drawn."""

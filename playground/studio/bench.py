@@ -8,7 +8,6 @@ from pathlib import Path
 
 from playground.studio.actions import Commands
 from playground.studio.addition import Addition
-from playground.studio.capture.captures import Captures
 from playground.studio.code.editors import Opener
 from playground.studio.code.open_files import OpenFiles
 from playground.studio.edits.undo import Undo
@@ -48,8 +47,6 @@ class Workbench:
         self.undo = Undo(session, self.notices, self.painting, self.file)
         self.commands = Commands(session, self.notices, self.undo, self.file, folder)
         self.keyframes = KeyframeEdits(session, self.notices, self.undo, self.file)
-        settle = self.painting.settle
-        self.captures = Captures(session=session, notices=self.notices, folder=folder, settle=settle)
         self.files = OpenFiles(self.notices, opener or Opener())
         self.interface = Interface(size=size or InterfaceSize())
         self.additions: list[Addition] = []  # of the rooms that can be removed

@@ -31,8 +31,8 @@ def _open(bench: Workbench) -> Iterator[Layer]:
         yield "popup", lambda: _close_popup(bench)
     if bench.interface.keymap_shown:
         yield "keys", bench.interface.toggle_keymap
-    if bench.captures.shown:
-        yield "capture", bench.captures.toggle
+    for addition in bench.additions:
+        yield from addition.popups()
     for editing in reversed(bench.files.editing):
         yield f"editor {editing.text.path.name}", partial(ask_to_close, editing, bench.files)
     if inspection.graph.on:

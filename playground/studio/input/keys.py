@@ -50,8 +50,7 @@ KEYS: tuple[Key, ...] = (
         Key(_K.none, str(n), _TOOLS, partial(_take, tool=tool), letter=str(n), brush=True)
         for n, tool in enumerate(TOOLS, 1)
     ),
-    Key(_K.s, "S", "save a PNG", lambda b: b.captures.save_picture(), brief="save"),
-    Key(_K.c, "C", "capture: large pictures, films, sheets", lambda b: b.captures.toggle()),
+    Key(_K.s, "S", "save a PNG", lambda b: b.commands.save_picture(), brief="save"),
     Key(_K.tab, "Tab", "hide the panel", lambda b: b.interface.toggle_panel(), brief="hide"),
     *(key for module in rooms.modules("addition") for key in module.KEYS),
     Key(_K.none, "/", "search the parameters", lambda b: b.interface.search(), letter="/"),

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from playground.publish.series import FPS
-from playground.sketch.model import Sketch
+from playground.sketch.model import FPS, Sketch
 from playground.studio.clock import Clock
 
 DEFAULT_DURATION = 10.0

@@ -66,7 +66,6 @@ def _buttons(memory: Memory, bench: Workbench, look: Theme) -> None:
         imgui.StyleVar_.frame_padding: ImVec2(padding.x - closer, padding.y),
         imgui.StyleVar_.item_spacing: ImVec2(spacing.x - closer, spacing.y),
     }
-    folder = bench.captures.folder
     with styled(sizes=sizes):
         _undo(memory, bench.undo, look)
         imgui.same_line()
@@ -80,11 +79,8 @@ def _buttons(memory: Memory, bench: Workbench, look: Theme) -> None:
         imgui.same_line()
         _saves(memory, bench.commands)
         imgui.same_line()
-        if button("PNG", f"Save the picture as a new file in {folder} (S)"):
-            bench.captures.save_picture()
-        imgui.same_line()
-        if button("Capture", "Large pictures, numbered ones, films, sheets of a sweep (C)"):
-            bench.captures.shown = True
+        if button("PNG", f"Save the picture as a new file in {bench.commands.folder} (S)"):
+            bench.commands.save_picture()
         imgui.same_line()
         if button("Graph", "The passes as a graph, or no longer (G)"):
             bench.inspection.graph.toggle()

@@ -45,6 +45,7 @@ class Bare:
         self._watched: list[tuple[object, str, object]] = []
         for owner, name in (
             (imgui, "button"),
+            (imgui, "small_button"),
             (imgui, "menu_item_simple"),
             (imgui, "selectable"),
             (imgui, "checkbox"),

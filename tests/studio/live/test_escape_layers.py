@@ -47,16 +47,17 @@ def bare(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) ->
 
 
 class Guest(Addition):
-    """What a room adds: one layer, which is open."""
+    """What a room adds: a window of its own and a layer, which are open."""
 
     def __init__(self) -> None:
-        self.is_open = True
-
-    def toggle(self) -> None:
-        self.is_open = not self.is_open
+        self.open = {"dialog", "guest"}
 
     def layers(self) -> list[Layer]:
-        return [("guest", self.toggle)] if self.is_open else []
+        return [("guest", lambda: self.open.remove("guest"))] if "guest" in self.open else []
+
+    def popups(self) -> list[Layer]:
+        name = "dialog"
+        return [(name, lambda: self.open.remove(name))] if name in self.open else []
 
 
 def escape(bare: Bare) -> None:
@@ -75,9 +76,9 @@ def test_one_layer_at_a_time_and_then_none(bare: Bare, tmp_path: Path) -> None:
     bench.inspection.inspector.toggle()
     bench.inspection.graph.toggle()
     bench.files.open(tmp_path / "terrain.glsl", here=True)
-    bench.captures.shown = bench.interface.keymap_shown = True
+    bench.interface.toggle_keymap()
     bare.run_frames(3)
-    names = ["keys", "capture", "editor terrain.glsl", "graph", "inspector", "A/B", "full screen", "guest"]
+    names = ["keys", "dialog", "editor terrain.glsl", "graph", "inspector", "A/B", "full screen", "guest"]
     for n in range(len(names)):
         assert open_layers(bench) == names[n:]
         escape(bare)
@@ -164,13 +165,13 @@ def test_keys_typed_before_field_gets_focus_go_to_field(bare: Bare) -> None:
 
 def test_letters_typed_right_behind_the_search_are_no_shortcuts(bare: Bare) -> None:
     io = imgui.get_io()
-    shown, saved = bare.session.view.map, bare.bench.captures.saved
+    shown, saved = bare.session.view.map, bare.bench.commands.saved_picture
     for letter, key in (("/", imgui.Key.slash), ("m", imgui.Key.m), ("s", imgui.Key.s), ("a", imgui.Key.a)):
         io.add_key_event(key, True)
         io.add_input_character(ord(letter))
         bare.run_frames()
         io.add_key_event(key, False)
     bare.run_frames(4)
-    assert bare.session.view.map is shown and bare.bench.captures.saved is saved
+    assert bare.session.view.map is shown and bare.bench.commands.saved_picture is saved
     assert not bare.bench.inspection.compare.on
     assert bare.panel.memory.filter.search == "msa"

@@ -223,7 +223,21 @@ def test_ctrl_s_saves(bare: Bare, folder: Path) -> None:
     bare.run_frames(2)
     bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
     assert "set = { level = 0.25 }" in (folder / "sketch.toml").read_text(encoding="utf-8")
-    assert bare.bench.captures.saved is None, "and no picture"
+    assert bare.bench.commands.saved_picture is None, "and no picture"
+
+
+def test_pictures_never_replace_one_another(bare: Bare, folder: Path) -> None:
+    names = []
+    for _ in range(3):
+        bare.key(imgui.Key.s)
+        names.append(bare.bench.commands.saved_picture.name)  # type: ignore[union-attr]
+    stem = bare.session.sketch.name  # type: ignore[union-attr]
+    assert names == [f"{stem}.png", f"{stem}-2.png", f"{stem}-3.png"]
+    assert sorted(p.name for p in folder.glob("*.png")) == sorted(names)
+    bare.bench.commands.folder = folder / "none"
+    bare.key(imgui.Key.s)
+    assert "nothing can be written here" in bare.bench.notices.items[-1].text
+    assert bare.bench.commands.saved_picture.name == names[-1]  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize(("size", "scale"), [((1280, 720), 1.0), ((800, 600), 1.0), ((2560, 1440), 2.0)])

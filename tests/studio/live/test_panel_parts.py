@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 from playground.engine.camera import look
-from playground.engine.frame import Frame
-from playground.errors import DataError
 from playground.shader.parameter import Widget
 from playground.shader.widgets import WIDGETS
 from playground.sketch.model import Camera, Parameter
@@ -18,7 +16,6 @@ from playground.studio.panel.number_format import decimals, format_of, snapped
 from playground.studio.panel.widgets import CONTROLS
 from playground.studio.picture.camera_drag import Gesture, steered
 from playground.studio.problems.error_excerpt import numbered, short_place
-from playground.studio.save.snapshot import save_new
 
 
 def test_every_widget_of_an_annotation_has_a_control():
@@ -124,15 +121,3 @@ def test_the_eye_never_goes_over_the_top() -> None:
 def test_a_mouse_that_only_passes_does_nothing() -> None:
     assert not Gesture(480, across=10, down=3).acts
     assert steered(CAMERA, EYE, Gesture(480, across=10)) == CAMERA
-
-
-def test_pictures_never_replace_one_another(tmp_path: Path) -> None:
-    frame = Frame(np.zeros((4, 6, 4), np.uint8), "my sketch/x")
-    names = [save_new(frame, tmp_path, frame.sketch).name for _ in range(3)]
-    assert names == ["my-sketch-x.png", "my-sketch-x-2.png", "my-sketch-x-3.png"]
-    assert sorted(p.name for p in tmp_path.iterdir()) == sorted(names)
-
-
-def test_a_missing_folder_is_reported(tmp_path: Path) -> None:
-    with pytest.raises(DataError, match="nothing can be written here"):
-        save_new(Frame(np.zeros((4, 6, 4), np.uint8)), tmp_path / "none", "a")

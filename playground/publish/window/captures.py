@@ -22,7 +22,6 @@ from playground.publish.series import SWEEP_SIZE, Series
 from playground.publish.video import QUALITY, check_video
 from playground.sketch.model import MAX_PICTURE_SIDE, MAX_SIDE, Sketch
 from playground.studio.notices import Notices
-from playground.studio.save.snapshot import save_new
 from playground.studio.session import Session
 
 MULTIPLES = (1, 2, 4, 8)
@@ -43,9 +42,9 @@ class CaptureSettings:
     sweeps: list[str] = field(default_factory=lambda: ["", ""])
 
 
-@dataclass(kw_only=True)
+@dataclass
 class Captures:
-    """The captures of one session: PNGs at once, anything larger in another process."""
+    """The captures of one session, each made in another process."""
 
     session: Session
     notices: Notices
@@ -54,27 +53,12 @@ class Captures:
     capture_settings: CaptureSettings = field(default_factory=CaptureSettings)
     shown: bool = False  # the capture's window is open
     working: JobProcess | None = None
-    saved: Path | None = None  # the last picture
     made: Path | None = None  # the file or folder that was captured last
     failed: str = ""  # why the last one was not made
 
     def toggle(self) -> None:
         """Show the capture's window, or no longer."""
         self.shown = not self.shown
-
-    def save_picture(self) -> None:
-        """Save the picture as a PNG that is new in the folder, and say where."""
-        frame = self.session.read()
-        if frame is None:
-            self.notices.say("there is no picture to save yet")
-            return
-        try:
-            self.saved = save_new(frame, self.folder, frame.sketch)
-        except PlaygroundError as error:
-            self.notices.say(str(error))
-            return
-        width, height = frame.size
-        self.notices.say(f"saved {shown(self.saved)}, {width} x {height} pixels, in {self.folder}")
 
     def start(self) -> None:
         """Begin what is wished for; what cannot be done becomes a notice."""
@@ -109,7 +93,7 @@ class Captures:
             self.failed = finished.error
             self.notices.say(finished.error)
         else:
-            self.made = self.saved = finished.path
+            self.made = finished.path
             width, height = job.size
             what = "pictures of " if job.kind in (PICTURES, SHEET) else ""
             text = f"saved {shown(finished.path)}, {what}{width} x {height} pixels, in {took:.1f} s"

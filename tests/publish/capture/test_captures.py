@@ -11,23 +11,28 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from imgui_bundle import imgui
 
 from playground.api import headless
 from playground.data.image_files import read_png
 from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
 from playground.extras import install_command
+from playground.publish.addition import open_addition
 from playground.publish.job import FILM, PICTURE, PICTURES, SHEET, do
 from playground.publish.sweep import parts_of, sweep_text
+from playground.publish.window import captures as capturing
+from playground.publish.window.captures import Captures, CaptureSettings
 from playground.sketch.assign import resolve
-from playground.studio.bench import Workbench
-from playground.studio.capture import captures as capturing
-from playground.studio.capture.captures import Captures, CaptureSettings
-from playground.studio.interface import WindowControls
+from playground.studio.edits.autosave import Autosave, memory_of
+from playground.studio.edits.memory import Remembered
+from playground.studio.host import Host
+from playground.studio.input.escape_layers import open_layers
+from playground.studio.notices import Notices
 from playground.studio.session import Session
 
 from ...sketch_texts import map_of_height
-from .desk import Bare
+from ...studio.live.desk import Bare
 
 TERRAIN = """// terrain.glsl -- a slope that goes up
 #pragma kernel(output = "height:r32f")
@@ -52,91 +57,91 @@ SIZE = (40, 30)
 
 
 @pytest.fixture
-def bench(any_engine: Engine, tmp_path: Path) -> Iterator[Workbench]:
+def captures(any_engine: Engine, tmp_path: Path) -> Iterator[Captures]:
     (tmp_path / "terrain.glsl").write_text(
         TERRAIN.replace("fract(time)", "fract(0.25 * time)"), encoding="utf-8"
     )
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     (tmp_path / "out").mkdir()
     session = Session(any_engine, tmp_path)
-    made = Workbench(session, WindowControls(lambda: None), folder=tmp_path / "out")
     session.frame(SIZE)
     assert session.error is None
+    made = Captures(session, Notices(), tmp_path / "out", lambda: True)
     yield made
-    made.captures.close()
+    made.close()
     session.release()
 
 
-def wishing(bench: Workbench, capture_settings: CaptureSettings) -> Captures:
+def wishing(captures: Captures, capture_settings: CaptureSettings) -> Captures:
     """Return the captures with a wish."""
-    bench.captures.capture_settings = capture_settings
-    return bench.captures
+    captures.capture_settings = capture_settings
+    return captures
 
 
-def wait(bench: Workbench) -> None:
+def wait(captures: Captures) -> None:
     """Wait until the capture has ended; the window goes on meanwhile."""
     end = time.monotonic() + LIMIT
-    while bench.captures.working is not None:
+    while captures.working is not None:
         assert time.monotonic() < end
-        bench.session.frame(SIZE)
-        bench.captures.poll()
+        captures.session.frame(SIZE)
+        captures.poll()
         time.sleep(0.01)
 
 
-def notices_of(bench: Workbench) -> str:
-    return "\n".join(notice.text for notice in bench.notices.items)
+def notices_of(captures: Captures) -> str:
+    return "\n".join(notice.text for notice in captures.notices.items)
 
 
 @pytest.mark.slow
-def test_capture_matches_window_with_all_manual_settings(bench: Workbench) -> None:
-    bench.session.drafts.set("height.level", 0.2)
-    bench.session.clock.time = 1.5
-    bench.session.frame(SIZE)
-    frame = bench.session.read()
+def test_capture_matches_window_with_all_manual_settings(captures: Captures) -> None:
+    captures.session.drafts.set("height.level", 0.2)
+    captures.session.clock.time = 1.5
+    captures.session.frame(SIZE)
+    frame = captures.session.read()
     assert frame is not None
-    bench.captures.start()
-    working = bench.captures.working
-    wait(bench)
-    made = bench.captures.made
+    captures.start()
+    working = captures.working
+    wait(captures)
+    made = captures.made
     assert working is not None and working.progress == (1, 1)
-    assert made == bench.captures.folder / f"{made.name}" and bench.captures.saved == made, notices_of(bench)
+    assert made == captures.folder / f"{made.name}", notices_of(captures)
     pixels, _ = read_png(made)
     assert np.array_equal(pixels, frame.array)
-    assert f"saved {made}, 40 x 30 pixels" in notices_of(bench)
-    here = bench.session.engine.render(bench.captures.job().sketch, size=SIZE, time=1.5)
+    assert f"saved {made}, 40 x 30 pixels" in notices_of(captures)
+    here = captures.session.engine.render(captures.job().sketch, size=SIZE, time=1.5)
     assert np.array_equal(pixels, here.array), "its process gives the bytes of this one"
-    bench.captures.capture_settings.multiple = 4
-    larger = do(bench.captures.job(), bench.session.engine, lambda *_: None, lambda _: None)
+    captures.capture_settings.multiple = 4
+    larger = do(captures.job(), captures.session.engine, lambda *_: None, lambda _: None)
     assert larger != made and read_png(larger)[0].shape == (120, 160, 4)
 
 
 @pytest.mark.slow
-def test_stopped_capture_leaves_no_file_and_window_may_close(bench: Workbench) -> None:
-    bench.captures.capture_settings = CaptureSettings(PICTURE, multiple=0, size=(6000, 6000))
-    bench.captures.start()
-    assert bench.captures.working is not None
-    bench.captures.working.stop()
-    wait(bench)
-    assert "the capture was stopped" in notices_of(bench) and list(bench.captures.folder.iterdir()) == []
-    bench.captures.start()
-    bench.captures.close()
-    assert bench.captures.working is None and list(bench.captures.folder.iterdir()) == []
+def test_stopped_capture_leaves_no_file_and_window_may_close(captures: Captures) -> None:
+    captures.capture_settings = CaptureSettings(PICTURE, multiple=0, size=(6000, 6000))
+    captures.start()
+    assert captures.working is not None
+    captures.working.stop()
+    wait(captures)
+    assert "the capture was stopped" in notices_of(captures) and list(captures.folder.iterdir()) == []
+    captures.start()
+    captures.close()
+    assert captures.working is None and list(captures.folder.iterdir()) == []
 
 
-def test_a_process_that_dies_is_reported(bench: Workbench) -> None:
-    bench.captures.capture_settings = CaptureSettings(PICTURE, multiple=0, size=(6000, 6000))
-    bench.captures.start()
-    assert bench.captures.working is not None
-    task = bench.captures.working._task
+def test_a_process_that_dies_is_reported(captures: Captures) -> None:
+    captures.capture_settings = CaptureSettings(PICTURE, multiple=0, size=(6000, 6000))
+    captures.start()
+    assert captures.working is not None
+    task = captures.working._task
     while not task.begun:
         time.sleep(0.005)
     assert task.slot is not None and task.slot.process is not None
     os.kill(task.slot.process.pid, signal.SIGTERM)
-    wait(bench)
-    assert bench.captures.failed.startswith("the capture "), bench.captures.failed
+    wait(captures)
+    assert captures.failed.startswith("the capture "), captures.failed
 
 
-def test_numbered_pictures_a_film_and_a_sheet(bench: Workbench) -> None:
+def test_numbered_pictures_a_film_and_a_sheet(captures: Captures) -> None:
     """In this process, by the job that the other one does."""
     progress: list[tuple[int, int]] = []
     capture_settings = CaptureSettings(PICTURES, seconds=0.2, fps=10, start=1.0)
@@ -144,13 +149,13 @@ def test_numbered_pictures_a_film_and_a_sheet(bench: Workbench) -> None:
 
         def made(wish: CaptureSettings) -> Path:
             progress.clear()
-            job = wishing(bench, wish).job()
+            job = wishing(captures, wish).job()
             return do(job, engine, lambda done, of: progress.append((done, of)), lambda _: None)
 
         folder = made(capture_settings)
         assert [path.name for path in sorted(folder.iterdir())] == ["00000.png", "00001.png"]
         assert progress == [(0, 2), (1, 2), (2, 2)]
-        job = wishing(bench, capture_settings).job()
+        job = wishing(captures, capture_settings).job()
         for number in range(2):
             expected = engine.render(job.sketch, size=SIZE, time=1.0 + number / 10).array
             assert np.array_equal(read_png(folder / f"{number:05d}.png")[0], expected)
@@ -160,11 +165,11 @@ def test_numbered_pictures_a_film_and_a_sheet(bench: Workbench) -> None:
         pytest.importorskip("av")
         film = made(CaptureSettings(FILM, seconds=0.0, fps=10, ending=".gif"))
         assert film.suffix == ".gif" and progress[-1] == (5, 5), "to the last keyframe"
-    assert not list(bench.captures.folder.rglob("*.part"))
+    assert not list(captures.folder.rglob("*.part"))
 
 
 def test_an_invalid_capture_is_reported_before_anything_begins(
-    bench: Workbench, monkeypatch: pytest.MonkeyPatch
+    captures: Captures, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for capture_settings, sentence in (
         (CaptureSettings(SHEET), "choose a parameter to sweep"),
@@ -173,53 +178,54 @@ def test_an_invalid_capture_is_reported_before_anything_begins(
         (CaptureSettings(FILM, ending=".gif", fps=30), "A GIF cannot|a GIF cannot"),
     ):
         with pytest.raises(PlaygroundError, match=sentence):
-            wishing(bench, capture_settings).job()
-        bench.captures.capture_settings = capture_settings
-        bench.captures.start()
-        assert bench.captures.working is None and bench.captures.failed
-        assert bench.captures.failed in notices_of(bench)
+            wishing(captures, capture_settings).job()
+        captures.capture_settings = capture_settings
+        captures.start()
+        assert captures.working is None and captures.failed
+        assert captures.failed in notices_of(captures)
 
 
 def test_without_pyav_one_sentence_with_the_command(
-    bench: Workbench, monkeypatch: pytest.MonkeyPatch
+    captures: Captures, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(__import__("sys").modules, "av", None)
     monkeypatch.setenv("PATH", "")
-    job = wishing(bench, CaptureSettings(FILM, seconds=0.2, fps=10)).job()
+    job = wishing(captures, CaptureSettings(FILM, seconds=0.2, fps=10)).job()
     with pytest.raises(PlaygroundError, match=re.escape(install_command("video"))):
-        do(job, bench.session.engine, lambda *_: None, lambda _: None)
-    assert list(bench.captures.folder.iterdir()) == []
+        do(job, captures.session.engine, lambda *_: None, lambda _: None)
+    assert list(captures.folder.iterdir()) == []
 
 
-def test_sizes_and_lengths(bench: Workbench) -> None:
-    assert wishing(bench, CaptureSettings(PICTURE, multiple=8)).size() == (320, 240)
-    assert wishing(bench, CaptureSettings(FILM, multiple=0, size=(33, 21))).size() == (34, 22)
-    assert wishing(bench, CaptureSettings(SHEET)).size() == (320, 240)
+def test_sizes_and_lengths(captures: Captures) -> None:
+    assert wishing(captures, CaptureSettings(PICTURE, multiple=8)).size() == (320, 240)
+    assert wishing(captures, CaptureSettings(FILM, multiple=0, size=(33, 21))).size() == (34, 22)
+    assert wishing(captures, CaptureSettings(SHEET)).size() == (320, 240)
     assert (
-        wishing(bench, CaptureSettings(FILM, seconds=2.0, fps=30)).summary()
+        wishing(captures, CaptureSettings(FILM, seconds=2.0, fps=30)).summary()
         == "60 pictures of 40 x 30 pixels"
     )
-    assert wishing(bench, CaptureSettings(FILM, fps=10)).summary() == "5 pictures of 40 x 30 pixels"
-    assert "expected" in wishing(bench, CaptureSettings(PICTURE, multiple=0, size=(0, 1))).summary()
+    assert wishing(captures, CaptureSettings(FILM, fps=10)).summary() == "5 pictures of 40 x 30 pixels"
+    assert "expected" in wishing(captures, CaptureSettings(PICTURE, multiple=0, size=(0, 1))).summary()
     with pytest.raises(ParameterError):
-        wishing(bench, CaptureSettings(FILM, multiple=0, size=(20000, 100))).size()
+        wishing(captures, CaptureSettings(FILM, multiple=0, size=(20000, 100))).size()
 
 
-def test_the_map_is_captured_where_it_is_shown(bench: Workbench) -> None:
-    bench.session.show("height:height")
-    bench.session.frame(SIZE)
-    assert bench.session.view.map is not None
-    assert wishing(bench, CaptureSettings()).job().sketch == bench.session.view.map.of(bench.session.sketch)  # type: ignore[arg-type]
+def test_the_map_is_captured_where_it_is_shown(captures: Captures) -> None:
+    captures.session.show("height:height")
+    captures.session.frame(SIZE)
+    view = captures.session.view
+    assert view.map is not None
+    assert wishing(captures, CaptureSettings()).job().sketch == view.map.of(captures.session.sketch)  # type: ignore[arg-type]
 
 
-def test_a_chosen_parameter_is_swept_over_its_range(bench: Workbench) -> None:
-    graph = bench.session.sketch.graph  # type: ignore[union-attr]
+def test_a_chosen_parameter_is_swept_over_its_range(captures: Captures) -> None:
+    graph = captures.session.sketch.graph  # type: ignore[union-attr]
     level, kind, tint = (resolve(graph, f"height.{n}")[0].parameter for n in ("level", "kind", "tint"))
     assert sweep_text("height.level", level) == "height.level=0..1,9"
     assert sweep_text("height.kind", kind) == "height.kind=one,two"
     assert parts_of(tint) == ("r", "g", "b") and parts_of(level) == ("",)
     for text in (sweep_text("height.kind", kind), sweep_text("height.tint", tint, "g")):
-        assert wishing(bench, CaptureSettings(SHEET, sweeps=[text, ""])).job().sweeps == (text,)
+        assert wishing(captures, CaptureSettings(SHEET, sweeps=[text, ""])).job().sweeps == (text,)
 
 
 def test_the_folder_is_shown_or_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -238,38 +244,49 @@ def test_the_folder_is_shown_or_named(tmp_path: Path, monkeypatch: pytest.Monkey
     assert str(tmp_path) in capturing.open_folder(file)
 
 
-def test_a_job_takes_a_new_name_every_time(bench: Workbench) -> None:
-    job = wishing(bench, CaptureSettings()).job()
-    engine = bench.session.engine
+def test_a_job_takes_a_new_name_every_time(captures: Captures) -> None:
+    job = wishing(captures, CaptureSettings()).job()
+    engine = captures.session.engine
     names = [do(job, engine, lambda *_: None, lambda _: None).name for _ in range(3)]
     stem = job.sketch.name
     assert names == [f"{stem}.png", f"{stem}-2.png", f"{stem}-3.png"]
 
 
+def test_capture_waits_for_painted_files_and_none_starts_without(captures: Captures, tmp_path: Path) -> None:
+    settled = [True, False]
+    waited = Captures(captures.session, Notices(), tmp_path / "none", settled.pop)
+    waited.capture_settings = CaptureSettings(SHEET)
+    waited.start()
+    assert waited.failed == "no capture was made, for what was painted last could not be written"
+    waited.start()
+    assert waited.failed.startswith("choose a parameter to sweep") and not settled
+    assert [notice.text for notice in waited.notices.items][-1] == waited.failed and waited.working is None
+
+
 def test_the_window_is_there_for_c_and_goes_with_esc(
     any_engine: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from imgui_bundle import imgui
-
-    from playground.studio.capture.panel import draw_capture
-
     (tmp_path / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     bare = Bare(any_engine, tmp_path / "sketch.toml")
-    started: list[CaptureSettings] = []
-    monkeypatch.setattr(Captures, "start", lambda self: started.append(self.capture_settings))
+    memory, remembered = memory_of(bare.session.path), Remembered()
+    autosave = Autosave(bare.session, memory, remembered)
+    capture = open_addition(Host(bare.bench, autosave, lambda: None, lambda: None, lambda: bare.theme))
+    captures = capture.captures
+    assert captures.settle == bare.bench.painting.settle
+    bare.bench.additions = [capture]
     draw = bare.draw
 
     def both() -> None:
         draw()
-        draw_capture(bare.bench.captures, bare.theme)
+        capture.draw_over()
 
     monkeypatch.setattr(bare, "draw", both)
     try:
         bare.key(imgui.Key.c)
         bare.run_frames(3)
-        assert bare.bench.captures.shown
-        capture_settings = bare.bench.captures.capture_settings
+        assert captures.shown and open_layers(bare.bench) == ["capture"]
+        capture_settings = captures.capture_settings
         for name, kind in (("Film", FILM), ("Numbered pictures", PICTURES), ("Sheet of a sweep", SHEET)):
             bare.click("##kind")
             bare.click(name)
@@ -278,6 +295,9 @@ def test_the_window_is_there_for_c_and_goes_with_esc(
         bare.click("height.level")
         assert capture_settings.sweeps[0] == "height.level=0..1,9"
         bare.key(imgui.Key.escape)
-        assert not bare.bench.captures.shown and not bare.quits
+        assert not captures.shown and not bare.quits
+        bare.click("Capture")
+        assert captures.shown
     finally:
+        autosave.close()
         bare.close()

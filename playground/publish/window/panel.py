@@ -9,8 +9,8 @@ from playground.paths import shown
 from playground.publish.job import FILM, KINDS, PICTURE, PICTURES, SHEET, JobProcess
 from playground.publish.sweep import parts_of, sweep_text
 from playground.publish.video import QUALITIES
+from playground.publish.window.captures import MULTIPLES, Captures, CaptureSettings, open_folder
 from playground.studio import theme
-from playground.studio.capture.captures import MULTIPLES, Captures, CaptureSettings, open_folder
 from playground.studio.draw import POPUP_COLOUR, QUIET, button, choose, disabled, styled, wrapped
 from playground.studio.edits.edits import Draft
 from playground.studio.panel.parameter_list import Listing

@@ -1,0 +1,1 @@
+"""Capture pictures and films from a window of the studio."""

@@ -1,1 +1,0 @@
-"""Capture pictures and films from the window."""
