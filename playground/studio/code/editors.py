@@ -2,13 +2,14 @@
 
 In this order: ``$PLAYGROUND_EDITOR``, ``$VISUAL``, ``$EDITOR``, then the known editors that
 are installed. ``builtin`` names the editor in the window itself, which is also what is left
-where there is no other. What runs is a list of words: no shell reads a file's name, not even
-one that these words start (`playground.studio.code.shell_quoting`).
+where there is no other. What runs is a list of words: a command that would have a shell read
+the file's name is refused.
 """
 
 from __future__ import annotations
 
 import os
+import re
 import shlex
 import shutil
 import subprocess
@@ -18,13 +19,15 @@ import threading
 from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
-
-from playground.studio.code.shell_quoting import MARK, with_file
 
 VARIABLES = ("PLAYGROUND_EDITOR", "VISUAL", "EDITOR")
 BUILT_IN = "builtin"
+MARK = "{file}"
 _TAIL_BYTES = 4000  # last bytes of a failing editor's messages that are read
+_SHELLS = frozenset(("sh", "bash", "dash", "ash", "zsh", "ksh", "mksh"))
+_SCRIPT = re.compile(r"-[a-z]*c")  # the options -c and -lc of a shell, which a script follows
 
 _COLON = ("{file}:{line}:{column}",)
 _PLUS = ("+{line}", "{file}")
@@ -88,7 +91,7 @@ class Editor:
     def command(self, file: Path, line: int = 0, column: int = 0) -> list[str]:
         """Return the words that open a file at a line and a column, both from 1; 0 where unknown.
 
-        Raises ``ValueError`` where its words cannot take a file's name safely.
+        Raises ``ValueError`` where a shell would read the file's name.
         """
         words, template = list(self.words), PLACES.get(self.name, ("{file}",))
         if any(MARK in word for word in words):
@@ -97,7 +100,8 @@ class Editor:
             words.append("-n")  # or it waits until the file is closed
         row, place_in_row = str(max(line, 1)), str(max(column, 1))
         words += [word.replace("{line}", row).replace("{column}", place_in_row) for word in template]
-        return [*self.terminal, *with_file(words, str(file.absolute()), _stem)]
+        _check_marks(words)
+        return [*self.terminal, *(word.replace(MARK, str(file.absolute())) for word in words)]
 
 
 def find_editor(
@@ -180,6 +184,15 @@ def _stem(program: str) -> str:
     name = program.replace("\\", "/").rpartition("/")[2].lower()
     stem, dot, ending = name.rpartition(".")
     return stem if dot and ending in ("exe", "cmd", "bat", "com") else name
+
+
+def _check_marks(words: list[str]) -> None:
+    """Raise ``ValueError`` for a file's name inside a script, where a shell would read it."""
+    is_shell = any(_stem(word) in _SHELLS for word in words)
+    for option, word in pairwise(words):
+        has_blanks = any(letter.isspace() for letter in word.strip())
+        if MARK in word and (has_blanks or (is_shell and _SCRIPT.fullmatch(option))):
+            raise ValueError(f"a shell would read the file's name in '{word}'; make {MARK} a word of its own")
 
 
 class Opener:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, imgui
@@ -14,7 +15,7 @@ from playground.paths import without_part
 from playground.studio import theme
 from playground.studio.code.indentation import closing_indent, new_line, step_of
 from playground.studio.code.open_files import OpenFiles
-from playground.studio.code.text_file import Editing, unsaved
+from playground.studio.code.text_file import Editing, OpenText, unsaved
 from playground.studio.draw import QUIET, Area, button, buttons, styled
 from playground.studio.input.text_field import ctrl_held
 from playground.studio.notices import Notices
@@ -27,9 +28,8 @@ _CLASH = "Saved by others meanwhile"
 _CLOSING = "Close without saving?"
 _LEAVING = "Quit without saving?"
 _CLASH_ANSWERS = (
-    ("Merge both", "Takes in the lines that others changed, where yours are others"),
-    ("Take theirs", "Reads the file again; what was typed here can be brought back by Undo"),
-    ("Save mine", "Overwrites what others saved"),
+    ("Take theirs", "Reads the file again; Undo brings back what was typed here"),
+    ("Save mine", "Overwrites what others saved; Undo brings that back"),
     ("Go on typing", ""),
 )
 _ENTER = (imgui.Key.enter, imgui.Key.keypad_enter)
@@ -289,16 +289,14 @@ def _ask(editing: Editing, view: _View, notices: Notices) -> bool:
     if view.clash:
         answer = _question(_CLASH, view.clash, _CLASH_ANSWERS)
         try:
-            if answer == "Merge both":
-                _merge(editing, view, notices)
-            elif answer == "Take theirs":
+            if answer == "Take theirs":
                 _reload(editing, view)
+            elif answer == "Save mine":
+                _save_over(editing, view, notices)
             elif answer:
                 view.clash = ""
         except PlaygroundError as error:
             notices.say(str(error))
-        if answer == "Save mine":
-            save(editing, notices, over=True)
     if view.closing:
         answers = [("Save and close", ""), ("Close", ""), ("Stay", "")]
         answer = _question(_CLOSING, f"{editing.text.path.name} has changes that are not saved.", answers)
@@ -307,14 +305,13 @@ def _ask(editing: Editing, view: _View, notices: Notices) -> bool:
     return True
 
 
-def _merge(editing: Editing, view: _View, notices: Notices) -> None:
-    merged = editing.text.merged(view.written())
-    if merged is None:
-        view.clash = "Both changed the same lines, or lines side by side: choose one of the two."
-        return
-    view.clash = ""
-    _replace(view, merged)
-    save(editing, notices)
+def _save_over(editing: Editing, view: _View, notices: Notices) -> None:
+    """Save over what others saved; that becomes the step of the text's history before the last."""
+    mine, view.clash = view.written(), ""
+    with suppress(PlaygroundError):  # the file may be gone
+        _replace(view, OpenText.read(editing.text.path).base)
+        _replace(view, mine)
+    save(editing, notices, over=True)
 
 
 def _reload(editing: Editing, view: _View) -> None:

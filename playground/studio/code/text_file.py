@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
-import itertools
 import os
 import shutil
 from collections.abc import Iterable
@@ -95,19 +93,6 @@ class OpenText:
         self.base, self._bytes = text, data
         return True
 
-    def merged(self, mine: str) -> str | None:
-        """Return one text with both my changes and those saved meanwhile; None where they touch.
-
-        The file counts as read: a save after this one goes over it.
-        """
-        base = self.base
-        with_theirs = OpenText.read(self.path)
-        merged = merge(base, mine, with_theirs.base)
-        if merged is not None:
-            self.base, self._bytes = with_theirs.base, with_theirs._bytes
-            self._ending, self._mark = with_theirs._ending, with_theirs._mark
-        return merged
-
     def _on_disk(self) -> bytes:
         try:
             if self.path.stat().st_size > MAX_FILE_BYTES:
@@ -152,27 +137,3 @@ def typed_in(editing: Editing) -> str | None:
     """Return the text of an open file where it has changes that are not saved; else None."""
     view = editing.view
     return view.written() if view is not None and view.changed else None
-
-
-def merge(base: str, mine: str, theirs: str) -> str | None:
-    """Merge two texts that came from a third; None where both changed the same or adjoining lines.
-
-    The three-way merge of Khanna, Kunal and Pierce (A Formal Investigation of Diff3, 2007),
-    without its conflicts: where there is one, nothing is merged.
-    """
-    lines = base.splitlines(keepends=True)
-    changes: list[tuple[int, int, list[str]]] = []
-    for text in (mine, theirs):
-        other = text.splitlines(keepends=True)
-        matcher = difflib.SequenceMatcher(None, lines, other, autojunk=False)
-        for kind, low, high, start, end in matcher.get_opcodes():
-            if kind != "equal" and (change := (low, high, other[start:end])) not in changes:
-                changes.append(change)
-    changes.sort(key=lambda change: change[:2])
-    if any(after[0] <= before[1] for before, after in itertools.pairwise(changes)):
-        return None
-    merged_lines, at = [], 0
-    for low, high, instead in changes:
-        merged_lines += [*lines[at:low], *instead]
-        at = high
-    return "".join([*merged_lines, *lines[at:]])

@@ -19,7 +19,7 @@ from playground.studio.code import open_files as sources
 from playground.studio.code import panel as code_window
 from playground.studio.code.editors import Editor
 from playground.studio.code.panel import draw_code
-from playground.studio.code.text_file import unsaved
+from playground.studio.code.text_file import typed_in, unsaved
 from playground.studio.draw import plate, plate_size
 from playground.studio.overlay import draw_notices
 from playground.studio.problems import panel as errors_list
@@ -285,7 +285,10 @@ def test_without_an_editor_it_opens_here_is_edited_and_saved(
     assert unsaved(harness.bench.files.editing), "what was saved is no longer what is seen"
 
 
-def test_a_file_that_others_saved_meanwhile_needs_an_answer(harness: Harness, folder: Path) -> None:
+@pytest.mark.parametrize("answer", ["Take theirs", "Save mine", "Go on typing"])
+def test_a_file_that_others_saved_meanwhile_needs_an_answer(
+    harness: Harness, folder: Path, answer: str
+) -> None:
     wave = folder / "wave.glsl"
     harness.bench.files.open(wave, 4, 1, here=True)
     harness.run_frames(3)
@@ -295,9 +298,14 @@ def test_a_file_that_others_saved_meanwhile_needs_an_answer(harness: Harness, fo
     harness.key(imgui.Key.mod_ctrl, imgui.Key.s)
     assert wave.read_text(encoding="utf-8") == theirs, "not overwritten"
     harness.run_frames(3)
-    harness.click("Merge both")
-    assert wave.read_text(encoding="utf-8") == theirs.replace("}", "// mine }")
-    assert not unsaved(harness.bench.files.editing)
+    mine = WAVE.replace("}", "// mine }")
+    harness.click(answer)
+    editing = harness.bench.files.editing
+    assert wave.read_text(encoding="utf-8") == (mine if answer == "Save mine" else theirs)
+    assert bool(unsaved(editing)) == (answer == "Go on typing")
+    if answer != "Go on typing":
+        harness.key(imgui.Key.mod_ctrl, imgui.Key.z)
+        assert typed_in(editing[0]) == (theirs if answer == "Save mine" else mine), "nothing is lost"
 
 
 @pytest.mark.parametrize(

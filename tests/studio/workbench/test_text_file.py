@@ -1,9 +1,8 @@
-"""A text edited in the window: saved whole, never over what others saved, merged where that is safe."""
+"""A text edited in the window: saved whole, never over what others saved."""
 
 from __future__ import annotations
 
 import os
-import random
 import stat
 import sys
 from pathlib import Path
@@ -11,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from playground.errors import DataError
-from playground.studio.code.text_file import OpenText, merge
+from playground.studio.code.text_file import OpenText
 
 TEXT = "one\ntwo\nthree\nfour\nfive\n"
 
@@ -92,31 +91,3 @@ def test_a_file_that_cannot_be_written_stays_and_says_so(file: Path, monkeypatch
     assert [path.name for path in file.parent.iterdir()] == ["terrain.glsl"]
     monkeypatch.undo()
     assert text.save("mine\n"), "the text is not lost"
-
-
-def test_changes_far_apart_merge_and_near_ones_do_not(file: Path) -> None:
-    text = OpenText.read(file)
-    mine = TEXT.replace("one", "ONE")
-    file.write_text(TEXT.replace("five", "FIVE"), encoding="utf-8")
-    merged = text.merged(mine)
-    assert merged == "ONE\ntwo\nthree\nfour\nFIVE\n"
-    assert text.save(merged), "it has seen theirs"
-    assert merge(TEXT, TEXT.replace("two", "2"), TEXT.replace("two", "II")) is None
-    assert merge(TEXT, TEXT.replace("two", "2"), TEXT.replace("three", "III")) is None, "they adjoin"
-    assert merge(TEXT, mine, mine) == mine, "the same change on both sides is one"
-    assert merge(TEXT, mine, TEXT) == mine and merge(TEXT, TEXT, mine) == mine
-
-
-def test_a_merge_of_changes_to_other_lines_is_both() -> None:
-    """Against the truth: change lines far apart, some by me and some by others."""
-    randoms = random.Random(7)
-    for _ in range(200):
-        lines = [f"line {n}" for n in range(60)]
-        mine, theirs, both = list(lines), list(lines), list(lines)
-        for n in range(0, 60, 4):
-            text = f"new {n}" * randoms.randint(0, 3)
-            whose = randoms.choice((None, mine, theirs))
-            if whose is not None:
-                whose[n] = both[n] = text
-        joined = ["\n".join(t) + "\n" for t in (lines, mine, theirs, both)]
-        assert merge(*joined[:3]) == joined[3]
