@@ -24,7 +24,7 @@ from playground.shader.source import read_source, read_text
 from playground.sketch.files import find_file
 from playground.sketch.find import find
 from playground.sketch.load import load
-from playground.studio.code.text_file import OpenText
+from playground.studio.code.open_files import OpenText
 from playground.verify.shots.results import digests_of, read_result
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system's folders hold files alone")

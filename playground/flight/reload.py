@@ -16,7 +16,7 @@ from playground.errors import PlaygroundError
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.studio.reload.dependencies import watched
-from playground.studio.reload.reload_stages import Sandbox, explained, refusal
+from playground.studio.reload.stages import Sandbox, explained, refusal
 from playground.studio.reload.watcher import Watcher
 
 

@@ -32,8 +32,8 @@ from playground.sketch.model import DEFAULT_PICTURE, ComputeVariant, CpuSource, 
 from playground.studio.addition import Addition, FullScreen
 from playground.studio.bench import Workbench
 from playground.studio.code.editors import Opener
+from playground.studio.code.open_files import unsaved
 from playground.studio.code.panel import draw_code
-from playground.studio.code.text_file import unsaved
 from playground.studio.compare.panel import below_bar, drag_line, paint_both
 from playground.studio.draw import Area, tooltip_waits
 from playground.studio.edits.autosave import QUIET, Autosave, memory_of
@@ -47,19 +47,16 @@ from playground.studio.input.mouse import PictureMouse
 from playground.studio.input.picture_keys import PictureKeys
 from playground.studio.inspect.overlays import draw_inspection
 from playground.studio.interface import WindowControls, remembered_size
-from playground.studio.keyframes.timeline import height_of_timeline
+from playground.studio.keyframes.panel import height_of_timeline
 from playground.studio.overlay import checking_text, draw_behind, draw_checking, draw_notices, draw_waiting
 from playground.studio.panel.panel import Panel
 from playground.studio.picture.disk_caching import SessionCaching
 from playground.studio.picture.last_frame import Painter
 from playground.studio.picture.part_labels import draw_part_labels
 from playground.studio.problems.non_finite import FiniteWatch
-from playground.studio.problems.non_finite_panel import draw_not_finite
-from playground.studio.problems.panel import ErrorsList
-from playground.studio.problems.problems import Warnings
-from playground.studio.problems.terminal_errors import TerminalErrors, to_log
-from playground.studio.reload.reload import Follower
-from playground.studio.reload.watcher import Watcher
+from playground.studio.problems.panel import ErrorsList, draw_not_finite
+from playground.studio.problems.problems import TerminalErrors, Warnings, to_log
+from playground.studio.reload.watcher import Follower, Watcher
 from playground.studio.remote.remotes import Remotes
 from playground.studio.session import Session
 from playground.studio.status import Status

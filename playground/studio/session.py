@@ -29,16 +29,14 @@ from playground.sketch.map_sketch import Map, refs_of
 from playground.sketch.model import Graph, Sketch, Value
 from playground.sketch.traits import has_moving_counts, is_animated, traits_of
 from playground.studio.clock import Clock
-from playground.studio.edits.checks import Checks
 from playground.studio.edits.drafts import Drafts
-from playground.studio.edits.edits import Draft
-from playground.studio.edits.resume import StoredEdits
+from playground.studio.edits.edits import Draft, StoredEdits
 from playground.studio.picture.catch_up import CatchUp
 from playground.studio.picture.maps import fitted, in_view
 from playground.studio.picture.shown_picture import ShownPicture
 from playground.studio.picture.view import View, steps_of_repeats
-from playground.studio.reload.data_files import DataFiles
-from playground.studio.reload.reload_stages import Reload, ReloadStage, Sandbox
+from playground.studio.reload.dependencies import DataFiles
+from playground.studio.reload.stages import Checks, Reload, ReloadStage, Sandbox
 
 if TYPE_CHECKING:
     import moderngl

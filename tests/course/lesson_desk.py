@@ -18,7 +18,7 @@ from playground.paths import GLSL
 from playground.studio.code.panel import draw_code
 from playground.studio.edits.autosave import Autosave, memory_of
 from playground.studio.host import Host
-from playground.studio.keyframes.timeline import height_of_timeline
+from playground.studio.keyframes.panel import height_of_timeline
 
 from ..sketch_texts import map_of_height
 from ..studio.live.desk import Bare

@@ -17,8 +17,7 @@ from playground.course.window.figure_view import edits_of, map_of, steps_of
 from playground.course.window.panel import play_on
 from playground.course.window.reader import BOTH
 from playground.sketch.find import find
-from playground.studio.edits.edits import Draft, Edits
-from playground.studio.edits.resume import StoredEdits
+from playground.studio.edits.edits import Draft, Edits, StoredEdits
 from playground.studio.picture.framing import framed
 
 from ..loading import load

@@ -21,8 +21,7 @@ from playground.paths import GLSL, shown
 from playground.shader.source import read_text
 from playground.sketch.model import kernels_of
 from playground.sketch.replace_technique import with_texts
-from playground.studio.code.open_files import OpenFiles
-from playground.studio.code.text_file import Editing, OpenText, typed_in
+from playground.studio.code.open_files import Editing, OpenFiles, OpenText, typed_in
 from playground.studio.compare.compare import as_before
 from playground.studio.notices import Notices
 from playground.studio.session import Session

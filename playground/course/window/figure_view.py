@@ -22,11 +22,10 @@ from playground.sketch.map_sketch import USE, Map
 from playground.sketch.model import DEFAULT_PICTURE, Sketch, Value
 from playground.studio.clock import Clock
 from playground.studio.compare.compare import Compare, Mode, Stored
-from playground.studio.edits.edits import Edits
+from playground.studio.edits.edits import Edits, StoredEdits
 from playground.studio.edits.history import History, changes_between
-from playground.studio.edits.resume import StoredEdits
 from playground.studio.edits.undo import Undo
-from playground.studio.reload.reload_stages import ReloadStage
+from playground.studio.reload.stages import ReloadStage
 
 
 def sketch_path(scene: Scene) -> Path:

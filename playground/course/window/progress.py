@@ -18,7 +18,7 @@ from playground.files import read_regular, write_file
 from playground.json_text import read_json
 from playground.paths import state_folder
 from playground.sketch.model import Value
-from playground.studio.edits.unread import set_aside
+from playground.studio.edits.memory import set_aside
 
 FORMAT = 1
 WIDTH = 420.0

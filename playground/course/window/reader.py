@@ -37,7 +37,7 @@ from playground.course.window.progress import Progress, progress_file, write_pro
 from playground.course.window.tasks import Tasks
 from playground.errors import PlaygroundError
 from playground.studio.bench import Workbench
-from playground.studio.code.text_file import unsaved
+from playground.studio.code.open_files import unsaved
 from playground.studio.compare.compare import as_before
 from playground.studio.session import Session
 

@@ -25,10 +25,10 @@ from playground.course.window.progress import Attempt, Progress
 from playground.errors import PlaygroundError
 from playground.sketch.assign import value_of, values_of
 from playground.sketch.model import Sketch, Value, kernels_of
-from playground.studio.code.text_file import typed_in
+from playground.studio.code.open_files import typed_in
 from playground.studio.compare.compare import as_before
 from playground.studio.notices import Notices
-from playground.studio.reload.reload_stages import ReloadStage
+from playground.studio.reload.stages import ReloadStage
 from playground.studio.session import Session
 
 _PAUSE = 0.3  # [s] between two scores at least

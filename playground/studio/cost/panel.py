@@ -15,7 +15,7 @@ from imgui_bundle import ImVec2, imgui, implot
 from playground.sketch.model import Sketch
 from playground.sketch.variants import any_variants
 from playground.studio import theme
-from playground.studio.cost.frame_costs import Record
+from playground.studio.cost.costs import Record
 from playground.studio.draw import header, table
 from playground.studio.inspect import plots
 from playground.studio.inspect.toggles import Inspection

@@ -18,8 +18,7 @@ from playground.paths import program, state_folder
 from playground.sketch.find import find
 from playground.sketch.map_sketch import Map
 from playground.studio.compare.compare import Compare
-from playground.studio.edits.edit_merge import FileValue, file_values
-from playground.studio.edits.edits import Draft
+from playground.studio.edits.edits import Draft, FileValue, file_values
 from playground.studio.edits.memory import Memory, Remembered
 from playground.studio.session import Session
 

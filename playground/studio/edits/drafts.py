@@ -3,7 +3,7 @@
 There are at most two. ``shown`` is the last one that drew well; ``coming`` is what was
 saved or chosen since: it goes through the sandbox (where there is one), is then drawn,
 and only then replaces ``shown``. If it fails, its error is reported and ``shown`` stays.
-``workbench.session`` draws them.
+``Session`` draws them.
 
 User edits change ``shown`` at once, and ``coming`` as well. A technique or a new data file that
 the user chooses has to be checked first: it joins what is coming, so that a save and several
@@ -16,7 +16,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import reduce
 from pathlib import Path
 
@@ -32,21 +32,60 @@ from playground.sketch.flatten import omitted
 from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.replace_technique import with_texts
-from playground.studio.edits.checks import Checks, DrawnState
-from playground.studio.edits.edits import Draft, Edits, reload_draft, taken
-from playground.studio.edits.history import applied, changes_between, edits_of, state_of
-from playground.studio.edits.pending import Change, Choice, choice_of
-from playground.studio.edits.resume import StoredEdits, first_draft, stored
+from playground.studio.edits.edits import Draft, Edits, StoredEdits, first_draft, reload_draft, stored, taken
+from playground.studio.edits.history import CHECKED, Key, applied, changes_between, edits_of, state_of
 from playground.studio.edits.technique_cache import TechniqueCache
 from playground.studio.picture.sun_drag import suns_of, turned
 from playground.studio.reload.dependencies import watched
-from playground.studio.reload.reload_stages import (
+from playground.studio.reload.stages import (
+    Checks,
+    DrawnState,
     ReloadStage,
     Sandbox,
     explained,
     missing_file_error,
     refusal,
 )
+
+Change = Callable[[Draft], Draft]
+"""Returns a draft with something edited; may raise ``PlaygroundError``."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One change of the user, and what of it has to be checked."""
+
+    change: Change
+    keys: frozenset[Key]  # all that it sets
+    chosen: Mapping[
+        Key, object
+    ]  # techniques, sources, files, by what they are for; None: the file's own again
+
+    @property
+    def use(self) -> str:
+        """The technique or source that is chosen; empty where it is the file's, or a data file."""
+        return next((str(use) for (kind, _), use in self.chosen.items() if kind in CHECKED and use), "")
+
+    @property
+    def label(self) -> str:
+        """What is chosen, for a message: "height: ./dunes"."""
+        named = {
+            path: value if kind in CHECKED or value is None else Path(str(value)).name
+            for (kind, path), value in self.chosen.items()
+        }
+        return ", ".join(f"{path}: {value or 'what the file says'}" for path, value in named.items())
+
+
+def choice_of(change: Change, before: Edits, after: Edits) -> Choice:
+    """Return a change with what it sets; ``chosen`` is empty where that needs no check."""
+    old, new = changes_between(before, after)
+    chosen = {
+        key: value
+        for key, value in new.items()
+        if key[0] in CHECKED or isinstance(value, str) or isinstance(old[key], str)
+    }
+    return Choice(change, frozenset(new), chosen)
+
 
 _NAMED = 2  # files that are named of those saved at once
 

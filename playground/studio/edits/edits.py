@@ -9,7 +9,7 @@ Edits survive a reload. In full, for an edited parameter:
 * it keeps its value while the files change elsewhere, and also where its declaration changes:
   another default, label, step or wider range;
 * where the sketch's own ``set`` (or the terrain's size, extent, relief or base elevation) now says
-  another value than before, the file wins (see ``edit_merge``): its value is taken, and a notice
+  another value than before, the file wins (see ``newer_value``): its value is taken, and a notice
   says so, unless it is the very value that the user had set;
 * where its range no longer holds the value, the nearest end of the range is taken, with a notice;
 * where its type is another now, or its menu has lost the choice, it goes back to the file's value,
@@ -22,20 +22,102 @@ A parameter that is not edited shows what the files say, new defaults included. 
 stays until the file moves the camera, a technique chosen by the user until the file fills that pass with
 another, and what feeds a channel until the file feeds it otherwise. A locked parameter keeps its value,
 edited or not, over any change of the files, as long as it fits at all.
+
+The same rule holds for a reload and for the edits of an earlier session, over the files as they are now:
+an edit stays, unless the files now set another value themselves. A new default alone does not win.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
 
-from playground.errors import ParameterError, PlaygroundError
+from playground.data.content_hash import content_key
+from playground.errors import DataError, ParameterError, PlaygroundError
 from playground.shader.parameter import is_whole, write
 from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve, values_of
 from playground.sketch.model import Camera, Parameter, Sketch, Value
 from playground.sketch.replace_technique import with_technique
 from playground.studio.channels.channels import channels, find_channel, in_order, with_source
-from playground.studio.edits.edit_merge import file_values, newer_value, notice
+
+# ── values in files ────────────────────────────────────────────────────────────
+
+
+@dataclass(frozen=True, slots=True)
+class FileValue:
+    """What the files say of a parameter."""
+
+    value: Value | None  # None: of the terrain, left to the heightmap
+    own: bool  # by the sketch itself; else by a default or inside a technique
+
+
+def file_values(sketch: Sketch, paths: Iterable[str]) -> dict[str, FileValue]:
+    """Return what the files say of each parameter, by its path; those that are gone are left out."""
+    paths_wanted = tuple(paths)
+    if not paths_wanted:
+        return {}
+    values_in_file, own = values_of(sketch), _set_by(sketch)
+    values_found = {}
+    for path in paths_wanted:
+        if path in TERRAIN_KEYS:
+            values_found[path] = FileValue(getattr(sketch.terrain, path), True)
+            continue
+        try:
+            leaf = resolve(sketch.graph, path)[0].path
+        except ParameterError:
+            continue
+        values_found[path] = FileValue(values_in_file[leaf], leaf in own)
+    return values_found
+
+
+def newer_value(
+    path: str, was: Mapping[str, FileValue], now: Mapping[str, FileValue], locked: Iterable[str] = ()
+) -> FileValue | None:
+    """Return what the files say where it wins over the user's edit; None where the edit stays.
+
+    ``was`` is what they set when it was edited or last shown, as ``file_values`` gives it; ``locked``
+    are the paths whose values stay over any change of the files.
+    """
+    before, after = was.get(path), now.get(path)
+    if path in locked or before is None or after is None or before.value == after.value:
+        return None
+    return after if before.own or after.own else None
+
+
+def notice(sketch: Sketch, path: str, value: Value, newer: FileValue) -> str:
+    """Return the sentence that reports an edit that gave way; "" where the files say that very value."""
+    if newer.value == value or _same_file(sketch, value, newer.value):
+        return ""
+    if newer.value is None or path in TERRAIN_KEYS:
+        return f"{path}: the file's new value is taken"
+    parameter = resolve(sketch.graph, path)[0].parameter
+    return f"{path}: the file's new value, {write(parameter, newer.value)}, is taken"
+
+
+def _same_file(sketch: Sketch, value: Value, newer: Value | None) -> bool:
+    """Return whether two paths lead to the same contents: saving copies files next to the sketch."""
+    if not (isinstance(value, str) and isinstance(newer, str)):
+        return False
+    folder = Path(sketch.folder)
+    try:
+        return content_key(folder / value) == content_key(folder / newer)
+    except DataError:
+        return False
+
+
+def _set_by(sketch: Sketch) -> set[str]:
+    """Return the paths of the parameters that the sketch's own passes set."""
+    return {
+        f"{spec.name}.{target.path}"
+        for spec in sketch.graph.passes
+        for path, _ in spec.values
+        for target in resolve(spec.technique, path)
+    }
+
+
+# ── edits and drafts ───────────────────────────────────────────────────────────
 
 
 @dataclass(frozen=True, slots=True)
@@ -328,3 +410,54 @@ def _parameter(sketch: Sketch, path: str) -> Parameter | None:
 def _shape(value: Value) -> object:
     """Return what type a value is of: a number that is whole is no real one, and a pair no triple."""
     return tuple(map(type, value)) if isinstance(value, tuple) else type(value)
+
+
+# ── edits of an earlier session ────────────────────────────────────────────────
+
+
+@dataclass(frozen=True)
+class StoredEdits:
+    """User edits, and what the files set when they were made."""
+
+    edits: Edits = field(default_factory=Edits)
+    in_file: Mapping[str, FileValue] = field(default_factory=dict)  # of each edited value, where it is known
+    camera_in_file: Camera | None = None  # of the camera, where another is set and it is known
+
+    def with_values(self, values: Mapping[str, Value]) -> StoredEdits:
+        """Return them with values that override those of the files."""
+        edits = self.edits
+        for name, value in values.items():
+            edits = edits.with_value(name, value)
+        return replace(self, edits=edits, in_file={k: v for k, v in self.in_file.items() if k not in values})
+
+
+def stored(draft: Draft) -> StoredEdits:
+    """Return a draft's edits with what its files say now."""
+    in_file = file_values(draft.base, [path for path, _ in draft.edits.values])
+    return StoredEdits(draft.edits, in_file, draft.file.camera if draft.edits.camera is not None else None)
+
+
+def first_draft(loaded: Sketch, start: StoredEdits) -> tuple[Draft, list[str]]:
+    """Return the draft to begin with, and a message for each edit that gave way to the files."""
+    edits, note = with_camera_of(start.edits, start.camera_in_file or loaded.camera, loaded.camera)
+    draft = Draft(loaded, loaded, replace(edits, techniques=(), channels=()))
+    notes = [note] if note else []
+    for name, use in edits.techniques:
+        try:
+            draft = draft.choose(name, use)
+        except PlaygroundError as error:
+            notes.append(f"{name}: {use} can no longer be used ({error.diagnostics[0].message})")
+    for channel, source in in_order(edits.channels):
+        try:
+            draft = draft.feed(channel, source)
+        except PlaygroundError as error:
+            notes.append(f"{channel}: {source} can no longer feed it ({error.diagnostics[0].message})")
+    now = file_values(draft.base, [path for path, _ in edits.values])
+    values = []
+    for path, value in edits.values:
+        newer = newer_value(path, start.in_file, now, edits.locked)
+        if newer is None:
+            values.append((path, value))
+        else:
+            notes += filter(None, [notice(draft.base, path, value, newer)])
+    return draft.with_edits(replace(draft.edits, values=tuple(values))), notes

@@ -3,6 +3,8 @@
 One file a sketch, JSON with a format number, written whole or not at all. Only the window that
 holds the lock file next to it may write, so that two windows on one sketch do not overwrite each
 other. The system releases the lock when a process ends, however it ends.
+
+A file that cannot be read is set aside before a new one takes its place.
 """
 
 from __future__ import annotations
@@ -16,14 +18,26 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import IO, Any
 
-from playground.errors import DataError
-from playground.files import read_regular, write_file
+from playground.errors import DataError, PlaygroundError
+from playground.files import new_name, read_regular, write_file
 from playground.json_text import read_json
 from playground.sketch.model import Camera, Value
-from playground.studio.edits.edit_merge import FileValue
-from playground.studio.edits.edits import Edits
-from playground.studio.edits.resume import StoredEdits
-from playground.studio.edits.unread import set_aside
+from playground.studio.edits.edits import Edits, FileValue, StoredEdits
+
+
+def set_aside(path: Path, what: str, error: Exception) -> str:
+    """Rename a file to ``NAME.unread.json``, numbered where that is taken; return a message that reports it.
+
+    ``what`` was remembered in it, as the sentence begins; ``error`` is why it cannot be read.
+    """
+    why = f" ({error})" if str(error) else ""
+    try:
+        with new_name(path.with_suffix(".unread.json")) as aside:
+            path.replace(aside)
+    except (OSError, PlaygroundError):
+        return f"{what} cannot be read and cannot be set aside: {path}{why}"
+    return f"{what} cannot be read; it is kept in {aside}{why}"
+
 
 FORMAT = 1
 _MAX_BYTES = 4 * 2**20  # [bytes] no session sets so much by the user

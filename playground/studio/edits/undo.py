@@ -7,11 +7,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from playground.studio.clock import stepped, toggle_loop
 from playground.studio.edits.history import KEYFRAMES, History, State, applied, edits_of, state_of, steps_of
-from playground.studio.keyframes.time_range import stepped, toggle_loop
 from playground.studio.notices import Notices
 from playground.studio.paint.painting import Painting
-from playground.studio.reload.reload_stages import ReloadStage
+from playground.studio.reload.stages import ReloadStage
 from playground.studio.save.sketch_file import SketchFile
 from playground.studio.session import Session
 

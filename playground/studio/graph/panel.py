@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from imgui_bundle import ImVec2, imgui
 
 from playground.studio import theme
-from playground.studio.cost.run_reasons import RunReasons
+from playground.studio.cost.costs import RunReasons
 from playground.studio.draw import QUIET, Area, styled
 from playground.studio.graph.pass_graph import Wiring, cost_of
 from playground.studio.inspect.thumbnails import Thumbnails

@@ -12,7 +12,7 @@ from playground.studio.draw import Area
 from playground.studio.graph.panel import draw_graph
 from playground.studio.inspect.inspector import Inspector
 from playground.studio.inspect.tooltip import draw_values
-from playground.studio.keyframes.timeline import draw_timeline
+from playground.studio.keyframes.panel import draw_timeline
 from playground.studio.theme import Theme
 
 if TYPE_CHECKING:

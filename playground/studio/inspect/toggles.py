@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 
 from playground.sketch.model import Sketch
 from playground.studio.compare.compare import PERIOD, Compare, Mode
-from playground.studio.cost.frame_costs import Record
-from playground.studio.cost.run_reasons import RunReasons
+from playground.studio.cost.costs import Record, RunReasons
 from playground.studio.graph.pass_graph import Wiring, wiring_of
 from playground.studio.inspect.histogram import Counter
 from playground.studio.inspect.inspector import Inspector

@@ -1,10 +1,10 @@
 """An image that is painted on, the file that it is stored in, and its strokes, which can be undone.
 
 A layer holds four weights a texel, in a PNG of 8 bits a channel, or one number: metres that are added to
-terrain, or factors; in a TIFF of 32-bit floats. What strokes do to it is in ``brush`` and ``sculpting``.
+terrain, or factors; in a TIFF of 32-bit floats. What strokes do to it is in ``brush``.
 
 The picture shows the image from memory, stroke by stroke (see ``engine.painted_images``); the file is
-written when a stroke has ended, on a thread, of a copy (see ``latest_write``). What a stroke changes is
+written when a stroke has ended, on a thread, of a copy (see ``LatestWrite``). What a stroke changes is
 remembered by tiles: a copy of each tile from before the stroke, made where the brush reaches it first, so
 that the cost of a stroke follows the brush and not the image.
 """
@@ -12,6 +12,7 @@ that the cost of a stroke follows the brush and not the image.
 from __future__ import annotations
 
 import secrets
+import threading
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -25,12 +26,71 @@ from numpy.typing import NDArray
 from playground.data.image_files import read_image, write_png
 from playground.data.resample import resample
 from playground.engine.file_sources import read_numbers, resized, weights_of, write_numbers
+from playground.errors import DataError, PlaygroundError
 from playground.files import new_name
-from playground.studio.edits.latest_write import LatestWrite
-from playground.studio.paint.brush import Dab, Part, cover
+from playground.studio.paint.brush import Dab, Part, cover, rate_of, sculpt
 from playground.studio.paint.erode_tool import ErodeTool
-from playground.studio.paint.sculpting import rate_of, sculpt
-from playground.studio.reload.data_files import hash_of
+from playground.studio.reload.dependencies import hash_of
+
+
+def _nothing() -> None:
+    pass
+
+
+class LatestWrite:
+    """Writes one file, one state after another; a state that is replaced before its turn is left out."""
+
+    def __init__(self, ended: Callable[[], None] = _nothing) -> None:
+        self.ended = ended  # called on the thread after each write, before ``wait`` returns; raises nothing
+        self.writes = 0  # that have ended, well or not
+        self.error: PlaygroundError | None = None  # of the last one
+        self._condition = threading.Condition()
+        self._next: Callable[[], None] | None = None
+        self._works = False
+
+    @property
+    def pending(self) -> bool:
+        """Whether something is being written, or waits for that."""
+        return self._works
+
+    def give(self, write: Callable[[], None]) -> None:
+        """Have a state written soon, in place of one that waits. ``write`` raises what goes wrong."""
+        with self._condition:
+            self._next = write
+            if self._works:
+                return
+            self._works = True
+        try:
+            threading.Thread(target=self._work, name="writing an image").start()
+        except RuntimeError:  # the system has no thread left, or Python is ending
+            self._work()
+
+    def wait(self) -> None:
+        """Wait until all that was given is written; raise the error of the last write."""
+        with self._condition:
+            self._condition.wait_for(lambda: not self._works)
+        if self.error is not None:
+            raise self.error
+
+    def _work(self) -> None:
+        while True:
+            with self._condition:
+                write, self._next = self._next, None
+                if write is None:
+                    self._works = False
+                    self._condition.notify_all()
+                    return
+            error: PlaygroundError | None = None
+            try:
+                write()
+            except PlaygroundError as caught:
+                error = caught
+            except Exception as caught:
+                error = DataError(f"an image could not be written: {caught}")
+            self.error = error
+            self.writes += 1
+            self.ended()
+
 
 MAX_TEXELS = 4097
 """Of an image's longer side; a larger terrain's is resampled from it."""

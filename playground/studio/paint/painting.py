@@ -26,10 +26,9 @@ from playground.sketch.assign import resolve, shown_parameters, value_of, values
 from playground.sketch.files import find_file
 from playground.sketch.flat import Ref
 from playground.sketch.model import CpuSource, Parameter, Sketch
-from playground.studio.paint.brush import TOOLS, Brush, Dab, Tool
+from playground.studio.paint.brush import TOOLS, Brush, Dab, Tool, rate_of
 from playground.studio.paint.erode_tool import ErodeTool, technique_at
 from playground.studio.paint.layer import MAX_TEXELS, NUMBERS, WEIGHTS, Layer, LayerKind
-from playground.studio.paint.sculpting import rate_of
 from playground.studio.session import Session
 
 MIN_RADIUS, DEFAULT_RADIUS, MAX_RADIUS = 0.002, 0.025, 0.25

@@ -18,7 +18,7 @@ from playground.studio.bench import Workbench
 from playground.studio.channels.channels import channels
 from playground.studio.channels.panel import ChannelRows
 from playground.studio.code.open_files import OpenFiles, editor_name
-from playground.studio.cost.run_reasons import RunReasons
+from playground.studio.cost.costs import RunReasons
 from playground.studio.draw import choose, header, inked, pushed_id
 from playground.studio.edits.edits import Draft
 from playground.studio.graph.pass_graph import cost_of

@@ -18,7 +18,7 @@ from playground.engine.engine import Engine
 from playground.engine.plan import LoopStep, Plan, every_node, walk
 from playground.shader.expressions import follows_time
 from playground.sketch.model import Draw, Sketch
-from playground.studio.cost.pass_costs import PassCosts
+from playground.studio.cost.costs import PassCosts
 
 BUDGETS = {1: 0.04, 2: 0.1, 3: 0.15, 4: 0.2}
 """[s] that a picture may take while something moves, by the parts that each side is divided by."""

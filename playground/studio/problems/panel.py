@@ -1,4 +1,7 @@
-"""The list of errors and warnings over the lower part of the picture, and the badge that opens it."""
+"""The list of errors and warnings over the lower part of the picture, the badge that opens it, its excerpts.
+
+Likewise, in the upper part, which pass made the first number that is not finite.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +11,62 @@ from functools import cached_property
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.engine.non_finite import NotFinite
 from playground.errors import Diagnostic, counted
+from playground.paths import current_folder
 from playground.studio import theme
 from playground.studio.code.open_files import OpenFiles, editor_name
-from playground.studio.draw import QUIET, Area, button, inked, pushed_id, styled, window, wrapped
+from playground.studio.draw import OVERLAY, QUIET, Area, button, inked, pushed_id, styled, window, wrapped
 from playground.studio.interface import Interface
-from playground.studio.problems.error_excerpt import numbered, short_place
+from playground.studio.problems.non_finite import FiniteWatch, summary
 from playground.studio.problems.problems import Problems, passes_of
 from playground.studio.session import Session
 from playground.studio.theme import Theme
+
+_BEFORE = 0.6  # share of the room that may lie before the column
+
+
+def numbered(lines: list[tuple[int, str]], wrong: int, column: int, room: int) -> tuple[list[str], int]:
+    """Return (lines of a file as rows, a mark below the wrong one's column; which row is wrong, from 0).
+
+    ``lines`` are (number, text); ``wrong`` is a number, ``column`` counts from 1, 0 where it is
+    unknown; rows have about ``room`` characters. What all lines are indented by goes, tabs become
+    four spaces, and long lines are moved to the left together until the column is visible.
+    """
+    digits = len(str(lines[-1][0]))
+    texts = {number: text.rstrip().expandtabs(4) for number, text in lines}
+    indent = min((len(text) - len(text.lstrip()) for text in texts.values() if text), default=0)
+    raw = dict(lines).get(wrong, "")
+    mark = max(len(raw[: column - 1].expandtabs(4)) - indent, 0) if column else -1
+    room = max(room - digits - 3, 8)
+    longest = max(len(text) for text in texts.values()) - indent
+    shift = 0
+    if mark > room * _BEFORE and longest > room:
+        shift = min(mark - int(room * _BEFORE), longest - room + 1)
+    rows: list[str] = []
+    at = 0
+    for number, whole in texts.items():
+        text = whole[indent:]
+        if shift and text:
+            text = f"…{text[shift + 1 :]}"
+        if len(text) > room:
+            text = f"{text[: room - 1]}…"
+        if number == wrong:
+            at = len(rows)
+        rows.append(f"{number:>{digits}} | {text}".rstrip())
+        if number == wrong and mark >= 0:
+            rows.append(f"{' ' * digits} | {' ' * (mark - shift)}^")
+    return rows, at
+
+
+def short_place(location: str, folder: str) -> str:
+    """Return "file:line:column" with the file named from a folder, if it lies in there."""
+    name, colon, rest = location.partition(":") if not location[1:3] == ":\\" else (location, "", "")
+    path = current_folder() / name
+    if folder and path.is_relative_to(folder):
+        return path.relative_to(folder).as_posix() + colon + rest
+    return location
+
 
 MAX_ROWS = 60
 """Diagnostics drawn at most."""
@@ -214,3 +264,51 @@ def _text(label: str, text: str, rgb: theme.Rgb, look: Theme, *, wrap: bool = Fa
     var = imgui.StyleVar_
     with styled(colours, {var.frame_padding: ImVec2(0, 0), var.scrollbar_size: 4 * look.scale}):
         imgui.input_text_multiline(f"##{label}", text, ImVec2(wide, size.y + 2), flags)
+
+
+_MAGENTA = (1.0, 0.42, 1.0)  # readable on dark ground; the texels themselves are as the map has them
+_RING = 14.0  # [units of scale 1] radius of the mark around the first texel
+
+
+def ref_of(first: NotFinite) -> str:
+    """Return the texture that it is in, as a map takes it."""
+    return f"{first.path}:{first.output}"
+
+
+def place_in(first: NotFinite, area: Area) -> tuple[float, float]:
+    """Return where a map over an area shows the first texel, in the window's units, y from above."""
+    x, y, wide, high = area
+    across, up = first.size
+    worst = max(across / wide, up / high)
+    east = (first.texel[0] + 0.5 - across / 2) / worst + wide / 2
+    north = (first.texel[1] + 0.5 - up / 2) / worst + high / 2
+    return x + east, y + high - north
+
+
+def draw_not_finite(watch: FiniteWatch, session: Session, look: Theme, area: Area) -> None:
+    """Draw the sentence in the picture's upper left corner; a click goes to the texture and back."""
+    if not watch.non_finite:
+        return
+    first, shown = watch.non_finite[0], session.view.map
+    ref = ref_of(first)
+    shows = shown is not None and shown.ref == ref
+    if shows:
+        centre = ImVec2(*place_in(first, area))
+        draw = imgui.get_background_draw_list()
+        draw.add_circle(centre, _RING * look.scale, theme.packed((0, 0, 0), 0.8), 0, 4 * look.scale)
+        draw.add_circle(centre, _RING * look.scale, theme.packed(_MAGENTA), 0, 2 * look.scale)
+    margin = 14 * look.scale
+    imgui.set_next_window_pos(ImVec2(area[0] + margin, area[1] + margin))
+    widest = max(min(area[2] - 2 * margin, 460 * look.scale), 80.0)
+    imgui.set_next_window_size_constraints(ImVec2(0, 0), ImVec2(widest, area[3]))
+    ground = theme.colour(theme.GROUND, 0.92)
+    with window("not finite", OVERLAY, ground=ground, rounding=6 * look.scale):
+        with wrapped(widest - 2 * imgui.get_style().window_padding.x):
+            imgui.text_colored(theme.colour(_MAGENTA), summary(watch.non_finite))
+        imgui.set_item_tooltip("\n".join(map(str, watch.non_finite)))
+        if shows:
+            if button("Back to the picture", small=True):
+                session.show(None)
+        elif session.can_show(ref):
+            if button("Show it", "That texture from above, those texels in magenta", small=True):
+                session.show(ref)

@@ -1,10 +1,12 @@
 """What is wrong with a sketch just now, as a list to look through: errors and warnings, by file.
 
-No window: `errors_list` draws it. The words are those that the terminal prints.
+The messages are those that the terminal prints, where each error comes once while it lasts.
 """
 
 from __future__ import annotations
 
+import contextlib
+import logging
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -217,3 +219,27 @@ def passes_of(sketch: Sketch | None, diagnostic: Diagnostic) -> list[str]:
         return []
     names = [name.partition(".")[0] for name, kernel in kernels_of(sketch.graph) if str(path) in kernel.files]
     return list(dict.fromkeys(names))
+
+
+to_log = logging.getLogger("playground.studio").error
+"""Without a command line: Python's log ends on standard error."""
+
+
+class TerminalErrors:
+    """What the terminal has reported of the errors that the window shows; ``tell`` prints there."""
+
+    def __init__(self, tell: Callable[[str], None]) -> None:
+        self._tell = tell
+        self._reported: frozenset[Diagnostic] = frozenset()
+
+    def take(self, errors: Iterable[Diagnostic]) -> None:
+        """Print the errors that were not there the last time; one that was fixed may come again.
+
+        Where the terminal is gone, nothing is printed; the window shows them all the same.
+        """
+        now = dict.fromkeys(errors)
+        with contextlib.suppress(OSError, ValueError):
+            for diagnostic in now:
+                if diagnostic not in self._reported:
+                    self._tell(str(diagnostic))
+        self._reported = frozenset(now)

@@ -1,4 +1,8 @@
-"""Which files a sketch depends on, so that they can be watched."""
+"""Which files a sketch depends on, so that they can be watched, and which of its data have been drawn with.
+
+New contents of an image or an elevation file go through the sandbox first: what they do to their reader is
+not known yet, and a process of its own finds out.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +11,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from playground.allowed_files import Signature, sidecar_places
+from playground.data.content_hash import content_hash
 from playground.errors import DataError, PlaygroundError
 from playground.memo import INTERFACE
 from playground.paths import GLSL, current_folder, without_part
@@ -86,3 +91,33 @@ def path_named(name: str) -> Path:
     here = current_folder() / name
     path = GLSL / name.removeprefix("glsl/") if name.startswith("glsl/") else here
     return path if path.is_file() else here
+
+
+class DataFiles:
+    """The files that one session has drawn with."""
+
+    def __init__(self) -> None:
+        self._known: dict[Path, str] = {}  # a hash of the contents
+        self._own: set[Path] = set()  # written by this process
+
+    def trust(self, path: Path) -> None:
+        """Take a file that this process writes for good: it needs no sandbox."""
+        self._own.add(path)
+
+    def are_new(self, sketch: Sketch) -> bool:
+        """Say whether a sketch reads data that was never drawn with; a newer date alone is no new data."""
+        return any(
+            path not in self._own and self._known.get(path) != hash_of(path) for path in data_files(sketch)
+        )
+
+    def take(self, sketch: Sketch) -> None:
+        """Remember the data that a sketch was drawn with."""
+        self._known.update((path, hash_of(path)) for path in data_files(sketch))
+
+
+def hash_of(path: Path) -> str:
+    """Return a hash of a file's contents; empty where it cannot be read."""
+    try:
+        return content_hash(path)
+    except (PlaygroundError, OSError):
+        return ""

@@ -1,4 +1,4 @@
-"""Say which files have changed, whichever way an editor saves them.
+"""Say which files have changed, whichever way an editor saves them, and have a session read them.
 
 Folders are watched, not files, because a file that is renamed over or created again is
 another file; a change counts only if the contents differ. Twice a second the thread
@@ -19,6 +19,7 @@ from watchfiles import watch
 
 from playground.allowed_files import Signature, signature
 from playground.files import NotRegularError, open_regular
+from playground.studio.session import Session
 
 STEP, DEBOUNCE = 5, 50  # [ms] quiet after which a batch is reported; longest batch
 LOOK_EVERY = 500  # [ms]
@@ -207,3 +208,34 @@ def _hash(path: Path) -> bytes:
         except OSError:  # another program holds it just now (Windows)
             time.sleep(0.02)
     return b""
+
+
+class Follower:
+    """A session, and the watcher that follows its files."""
+
+    def __init__(self, session: Session, watcher: Watcher) -> None:
+        self.session = session
+        self.watcher = watcher
+        self._followed: tuple[object, ...] = ()  # what decided which files are watched
+
+    def take(self, own: Iterable[Path] = ()) -> bool:
+        """Have the session read its files again if any was saved by others; say whether it did.
+
+        ``own`` are files that this process writes itself and shows already.
+        """
+        changed = self.watcher.take() - set(own)
+        changed_files = changed & self.session.drafts.files if changed else changed
+        if not changed or not (self.session.error or changed_files):
+            return False
+        self.session.drafts.reload(changed_files)
+        return True
+
+    def follow(self) -> None:
+        """Watch the files that the session depends on now."""
+        session = self.session
+        now = (session.shown, session.drafts.coming, session.error, session.drafts.places)
+        before = self._followed
+        if len(before) == len(now) and all(a is b for a, b in zip(now, before, strict=True)):
+            return
+        self._followed = now
+        self.watcher.follow(session.drafts.files, read_at=session.drafts.read_at, read=session.drafts.places)

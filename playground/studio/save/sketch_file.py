@@ -1,17 +1,175 @@
-"""Write into the sketch's file; where it is read-only, offer a copy instead."""
+"""Write into the sketch's file; where it is read-only, offer a copy instead.
+
+Keyframes are written into its own TOML: a ``[[keyframe]]`` with the comments right above it is a block.
+What changes in a block is written over in its place; a block that moves in time takes its comments along to
+its new place among the others; a new one comes after the last, or at the end of the file.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
+from itertools import pairwise
+from operator import attrgetter
+from pathlib import Path
 
-from playground.errors import PlaygroundError
+from playground.errors import PlaygroundError, SketchError
 from playground.paths import shown
-from playground.sketch.model import Keyframe
-from playground.sketch.save import ReadOnlySketch
-from playground.studio.keyframes.saved_keyframes import save_keyframes
+from playground.shader.parameter import shortest
+from playground.sketch.keyframes import EASES
+from playground.sketch.model import Camera, Keyframe, Sketch, Value
+from playground.sketch.save import (
+    ReadOnlySketch,
+    says_same_as,
+    write_over,
+    written_number,
+    written_so_far,
+    written_value,
+)
+from playground.sketch.toml_text import KeyPath, TomlPlaces, append, drop, newline_of, put, text_of
 from playground.studio.notices import Notices
 from playground.studio.session import Session
+
+
+def save_keyframes(file: Sketch, keyframes: Sequence[Keyframe]) -> None:
+    """Write keyframes into the file that ``file`` was loaded from, in place of those that it has.
+
+    They are written by time. Raises ``ReadOnlySketch`` and ``SketchError`` as ``save``
+    does; of times that are the same, and of keyframes that do not fit each other, too.
+    """
+    in_order = tuple(sorted(keyframes, key=lambda keyframe: keyframe.time))
+    for earlier, later in pairwise(in_order):
+        if earlier.time == later.time:
+            raise SketchError(f"there is a keyframe at {earlier.time:g} s already", file=shown(file.file))
+    says_the_rest = says_same_as(file)
+
+    def is_right(reloaded: Sketch) -> bool:
+        shots = [replace(shot, line=0) for shot in file.shots]
+        return (
+            _without_lines(reloaded.keyframes) == _without_lines(in_order)
+            and says_the_rest(reloaded)
+            and reloaded.presets == file.presets
+            and [replace(shot, line=0) for shot in reloaded.shots] == shots
+        )
+
+    write_over(Path(file.file), file, lambda text: with_keyframes(text, file, in_order), is_right)
+
+
+def with_keyframes(text: str, file: Sketch, keyframes: Sequence[Keyframe]) -> str:
+    """Return a sketch's text, which says what ``file`` does, with these keyframes; they are by time."""
+    if len(_blocks(text)) != len(file.keyframes):
+        message = "its keyframes are written as one list; write each as a [[keyframe]] to change them here"
+        raise SketchError(message, file=shown(file.file))
+    before = _matched(file.keyframes, keyframes)
+    for keyframe, index in zip(keyframes, before, strict=True):
+        if index is not None:
+            text = _changed(text, file, ("keyframe", index), file.keyframes[index], keyframe)
+    spans = _blocks(text)
+    blocks = [text[start:end] for start, end in spans]
+    newline = newline_of(text)
+    made = [
+        blocks[index] if index is not None else _new_block(file, keyframe, newline)
+        for keyframe, index in zip(keyframes, before, strict=True)
+    ]
+    if spans:
+        return _placed(text, spans, made, newline)
+    for block in made:
+        text = append(text, block.splitlines())
+    return text
+
+
+def _placed(text: str, spans: list[tuple[int, int]], made: list[str], newline: str) -> str:
+    """Return the text with blocks in the places of its own: one each, what is left after the last."""
+    text_placed, at = "", 0
+    for number, (start, end) in enumerate(spans):
+        text_placed += text[at:start]
+        at = end
+        here = made[number:] if number == len(spans) - 1 else made[number : number + 1]
+        for further, block in enumerate(here):
+            text_placed += newline if further else ""
+            text_placed += block if block.endswith("\n") else block + newline
+        if not here and text_placed.endswith(newline * 2):
+            # No two empty lines where a block was, and none at the end.
+            if text[at:].startswith(newline):
+                at += len(newline)
+            elif not text[at:].strip():
+                text_placed = text_placed[: -len(newline)]
+    return text_placed + text[at:]
+
+
+def _blocks(text: str) -> list[tuple[int, int]]:
+    """Return where each keyframe's block begins and ends, without the empty lines after it."""
+    headers = [(text.rfind("\n", 0, h.start) + 1, h) for h in TomlPlaces(text).headers]
+    blocks_found = []
+    for number, (start, header) in enumerate(headers):
+        if not header.is_list or header.keys != ["keyframe"]:
+            continue
+        following = (s for s, h in headers[number + 1 :] if h.keys[0] != "keyframe" or len(h.keys) == 1)
+        end = next((_above(text, s) for s in following), len(text))
+        last = start + len(text[start:end].rstrip())  # the end of the last line that is not empty
+        line_end = text.find("\n", last, end)
+        blocks_found.append((_above(text, start), line_end + 1 if line_end >= 0 else end))
+    return blocks_found
+
+
+def _above(text: str, start: int) -> int:
+    """Return where the comments right above a line begin; the line itself, where there are none."""
+    while start > 0:
+        before = text.rfind("\n", 0, start - 1) + 1
+        if not text[before:start].lstrip().startswith("#"):
+            break
+        start = before
+    return start
+
+
+def _matched(keyframes_in_file: Sequence[Keyframe], keyframes: Sequence[Keyframe]) -> list[int | None]:
+    """Return which known keyframe each wanted one was: the same, else at its time, else with its values."""
+    left = dict(enumerate(_without_lines(keyframes_in_file)))
+    matches: list[int | None] = [None] * len(keyframes)
+    for names in (["time", "camera", "values", "ease"], ["time"], ["camera", "values"]):
+        key = attrgetter(*names)
+        for number, keyframe in enumerate(_without_lines(keyframes)):
+            if matches[number] is None:
+                hit = next((i for i, other in left.items() if key(other) == key(keyframe)), None)
+                if hit is not None:
+                    matches[number] = hit
+                    del left[hit]
+    return matches
+
+
+def _without_lines(keyframes: Sequence[Keyframe]) -> list[Keyframe]:
+    """Return keyframes without their lines, camera fields and values in one order."""
+
+    def values(keyframe: Keyframe) -> tuple[tuple[str, Value], ...]:
+        return tuple(sorted(((p, shortest(v)) for p, v in keyframe.values), key=lambda v: v[0]))
+
+    return [replace(k, line=0, camera=tuple(sorted(k.camera)), values=values(k)) for k in keyframes]
+
+
+def _changed(text: str, file: Sketch, key_path: KeyPath, was: Keyframe, now: Keyframe) -> str:
+    """Return the text with what differs between two keyframes written over in the first one's table."""
+    if now.time != was.time:
+        text = put(text, key_path, "time", repr(float(now.time)))
+    cameras, values = dict(was.camera), dict(was.values)
+    order = [part.name for part in fields(Camera)]
+    for name, number in sorted(now.camera, key=lambda pair: order.index(pair[0])):
+        if name not in cameras or cameras[name] != number:
+            text = put(text, (*key_path, "camera"), name, written_number(number))
+    for name, value in now.values:
+        if name not in values or values[name] != value:
+            table = (*key_path, "set")
+            text = put(text, table, name, written_value(file, name, value, written_so_far(text, table, name)))
+    for name in cameras.keys() - dict(now.camera).keys():
+        text = drop(text, (*key_path, "camera"), name)
+    for name in values.keys() - dict(now.values).keys():
+        text = drop(text, (*key_path, "set"), name)
+    return text if now.ease == was.ease else put(text, key_path, "ease", text_of(now.ease))
+
+
+def _new_block(file: Sketch, keyframe: Keyframe, newline: str) -> str:
+    """Return a new keyframe as TOML writes it."""
+    empty = Keyframe(-1.0, ease=EASES[0])
+    return _changed(f"[[keyframe]]{newline}", file, ("keyframe", 0), empty, keyframe)
 
 
 @dataclass

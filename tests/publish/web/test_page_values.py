@@ -17,8 +17,8 @@ from playground.shader.parameter import coerce, is_whole, length_of, tidied
 from playground.sketch.assign import check_value, resolve, shown_parameters, values_of
 from playground.sketch.find import shipped_sketches
 from playground.sketch.model import Camera, Parameter, Sketch, Value
+from playground.studio.clock import stepped
 from playground.studio.edits.edits import Draft
-from playground.studio.keyframes.time_range import stepped
 from playground.studio.panel import dome
 from playground.studio.panel.number_format import decimals, format_of, snapped, unit_of
 from playground.studio.panel.parameter_list import Listing

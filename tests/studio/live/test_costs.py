@@ -12,8 +12,7 @@ from imgui_bundle import imgui, implot
 from playground.engine.cache_keys import Keys, StepKey
 from playground.engine.engine import Engine
 from playground.engine.execution import FrameRecord
-from playground.studio.cost.frame_costs import Record
-from playground.studio.cost.run_reasons import RunReasons
+from playground.studio.cost.costs import Record, RunReasons
 
 from ...variants import trust
 from .desk import Bare

@@ -18,8 +18,8 @@ from playground.studio import overlay
 from playground.studio.code import open_files as sources
 from playground.studio.code import panel as code_window
 from playground.studio.code.editors import Editor
+from playground.studio.code.open_files import typed_in, unsaved
 from playground.studio.code.panel import draw_code
-from playground.studio.code.text_file import typed_in, unsaved
 from playground.studio.draw import plate, plate_size
 from playground.studio.overlay import draw_notices
 from playground.studio.problems import panel as errors_list

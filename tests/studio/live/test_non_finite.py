@@ -15,7 +15,7 @@ from playground.engine.non_finite import NotFinite
 from playground.studio.bench import Workbench
 from playground.studio.interface import WindowControls
 from playground.studio.problems.non_finite import REST, FiniteWatch, summary
-from playground.studio.problems.non_finite_panel import place_in, ref_of
+from playground.studio.problems.panel import place_in, ref_of
 from playground.studio.session import Session
 
 from ...sketch_texts import map_of, passes
@@ -154,7 +154,7 @@ def test_a_map_is_placed_as_its_kernel_places_it() -> None:
 def test_the_words_lead_to_the_texture_and_back(
     any_engine: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from playground.studio.problems import non_finite_panel as finite
+    from playground.studio.problems import panel as finite
 
     Harness(any_engine, tmp_path).session.release()
     bare = Bare(any_engine, tmp_path / "sketch.toml")

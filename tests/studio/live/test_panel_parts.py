@@ -15,7 +15,7 @@ from playground.studio.panel.dome import direction_at, dot_of
 from playground.studio.panel.number_format import decimals, format_of, snapped
 from playground.studio.panel.widgets import CONTROLS
 from playground.studio.picture.camera_drag import Gesture, steered
-from playground.studio.problems.error_excerpt import numbered, short_place
+from playground.studio.problems.panel import numbered, short_place
 
 
 def test_every_widget_of_an_annotation_has_a_control():

@@ -8,9 +8,8 @@ import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.studio.clock import Clock
+from playground.studio.clock import Clock, marks_of, span_of, stepped, toggle_loop
 from playground.studio.input.mouse import PictureMouse
-from playground.studio.keyframes.time_range import marks_of, span_of, stepped, toggle_loop
 
 from ...loading import load
 from ...sketch_texts import passes

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from playground.studio.reload.reload_stages import ReloadStage
+from playground.studio.reload.stages import ReloadStage
 
 from .checked_desk import ELEVATION, LEVEL, Harness, RandomPlayer
 

@@ -14,10 +14,9 @@ import pytest
 from playground.engine.file_sources import read_numbers
 from playground.errors import DataError
 from playground.studio.actions import Commands
-from playground.studio.edits.latest_write import LatestWrite
 from playground.studio.edits.undo import Undo
 from playground.studio.notices import Notices
-from playground.studio.paint.layer import NUMBERS
+from playground.studio.paint.layer import NUMBERS, LatestWrite
 from playground.studio.paint.painting import Painting
 from playground.studio.save.sketch_file import SketchFile
 from playground.studio.session import Session

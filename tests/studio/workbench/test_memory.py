@@ -15,8 +15,7 @@ from playground.paths import cache_folder, state_folder
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
 from playground.studio.edits.autosave import QUIET, TIME, Autosave
-from playground.studio.edits.edit_merge import FileValue
-from playground.studio.edits.edits import Edits
+from playground.studio.edits.edits import Edits, FileValue
 from playground.studio.edits.memory import Compared, Memory, Remembered
 from playground.studio.session import Session
 

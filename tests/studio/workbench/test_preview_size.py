@@ -14,7 +14,7 @@ import pytest
 
 from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
-from playground.studio.cost.pass_costs import PassCosts
+from playground.studio.cost.costs import PassCosts
 from playground.studio.inspect.toggles import Inspection
 from playground.studio.picture.enlarged import Enlarger
 from playground.studio.picture.preview_size import BUDGETS, DIVISORS, chosen

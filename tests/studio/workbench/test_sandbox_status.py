@@ -9,7 +9,7 @@ import pytest
 from playground.engine.engine import Engine
 from playground.engine.sandbox import SandboxReport
 from playground.studio.overlay import PATIENCE, checking_text
-from playground.studio.reload.reload import Follower
+from playground.studio.reload.watcher import Follower
 from playground.studio.session import Session
 
 from .test_session import KERNEL, SKETCH, TILT, FakeSandbox

@@ -11,7 +11,7 @@ import pytest
 from playground.errors import PlaygroundError, SketchError
 from playground.sketch.load import load
 from playground.sketch.model import Keyframe, Sketch
-from playground.studio.keyframes.saved_keyframes import _without_lines, save_keyframes, with_keyframes
+from playground.studio.save.sketch_file import _without_lines, save_keyframes, with_keyframes
 
 SKETCH = """format = 1  # ours
 size = 33

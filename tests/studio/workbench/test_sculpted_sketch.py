@@ -12,10 +12,9 @@ from playground.engine.engine import Engine
 from playground.engine.file_sources import read_numbers, write_numbers
 from playground.engine.textures import read_texture
 from playground.errors import DataError
-from playground.studio.paint.brush import Brush, Dab
+from playground.studio.paint.brush import RISE, Brush, Dab
 from playground.studio.paint.layer import NUMBERS, Layer
 from playground.studio.paint.painting import CLICK, MAX_DAB_SECONDS, Painting
-from playground.studio.paint.sculpting import RISE
 from playground.studio.session import Session
 
 from ...sketch_texts import passes

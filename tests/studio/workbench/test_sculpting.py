@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from playground.studio.paint.brush import TOOLS, Brush, Dab
-from playground.studio.paint.sculpting import APPROACH, SHARPEN, sculpt
+from playground.studio.paint.brush import APPROACH, SHARPEN, TOOLS, Brush, Dab, sculpt
 
 SHAPING = tuple(tool for tool in TOOLS if tool != "erode")  # which runs a technique
 EXTENT = (900.0, 400.0)

@@ -17,7 +17,7 @@ from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE, Camera
 from playground.studio.picture.framing import framed
 from playground.studio.reload.dependencies import files_of
-from playground.studio.reload.reload_stages import ReloadStage
+from playground.studio.reload.stages import ReloadStage
 from playground.studio.session import Session
 
 from ...plans import plans_made_whole

@@ -19,7 +19,7 @@ from playground.sketch.model import Camera
 from playground.studio.compare.compare import Compare
 from playground.studio.inspect.inspector import Inspector
 from playground.studio.inspect.thumbnails import Thumbnails
-from playground.studio.reload.reload_stages import ReloadStage
+from playground.studio.reload.stages import ReloadStage
 from playground.studio.session import Session
 
 from ...sketch_texts import map_of, passes

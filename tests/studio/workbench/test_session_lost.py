@@ -13,7 +13,7 @@ from playground.engine.context import abandon
 from playground.engine.engine import open_engine
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
-from playground.studio.reload.reload_stages import ReloadStage
+from playground.studio.reload.stages import ReloadStage
 from playground.studio.session import Session
 
 SIZE = (64, 48)

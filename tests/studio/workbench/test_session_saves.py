@@ -27,9 +27,8 @@ from playground.engine.sandbox import Sandbox
 from playground.errors import PlaygroundError
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
-from playground.studio.reload.reload import Follower
-from playground.studio.reload.reload_stages import ReloadStage, explained, missing_file_error
-from playground.studio.reload.watcher import Watcher
+from playground.studio.reload.stages import ReloadStage, explained, missing_file_error
+from playground.studio.reload.watcher import Follower, Watcher
 from playground.studio.session import Session
 
 from ...loading import load

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from playground.errors import Diagnostic
-from playground.studio.problems.terminal_errors import TerminalErrors
+from playground.studio.problems.problems import TerminalErrors
 
 ONE, OTHER = Diagnostic("no name 'p'", "terrain.glsl", 3), Diagnostic("a ; is missing", "wave.glsl", 7)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from playground.errors import DataError
-from playground.studio.code.text_file import OpenText
+from playground.studio.code.open_files import OpenText
 
 TEXT = "one\ntwo\nthree\nfour\nfive\n"
 

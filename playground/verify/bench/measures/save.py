@@ -11,8 +11,7 @@ from playground.engine.sandbox import Sandbox
 from playground.errors import PlaygroundError
 from playground.paths import GLSL
 from playground.sketch.model import Kernel
-from playground.studio.reload.reload import Follower
-from playground.studio.reload.watcher import Watcher
+from playground.studio.reload.watcher import Follower, Watcher
 from playground.studio.session import Session
 from playground.verify.bench.results import Figure
 from playground.verify.bench.room import Room

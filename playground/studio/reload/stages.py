@@ -1,8 +1,10 @@
-"""The stages that a saved sketch goes through before it is shown, and the errors on the way."""
+"""The stages that a saved sketch goes through before it is shown, how it is checked, and its errors."""
 
 from __future__ import annotations
 
 import logging
+import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
@@ -12,6 +14,7 @@ from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ContextError, PlaygroundError, SketchError
 from playground.files import irregularity
 from playground.paths import shown
+from playground.sketch.model import Sketch
 
 log = logging.getLogger("playground.studio")
 
@@ -79,3 +82,24 @@ def missing_file_error(sketch: Path) -> SketchError | None:
     where = "from" if sketch.parent.is_dir() else "with its folder"
     ways = "moved, renamed or deleted; put it back, or drop another sketch on the window"
     return SketchError(f"the file is gone {where} {sketch.parent}: {ways}", file=sketch)
+
+
+class DrawnState(Protocol):
+    """What has been drawn already: it needs no sandbox."""
+
+    def needs_drawing(self, sketch: Sketch) -> bool:
+        """Say whether the driver would get anything that it has not drawn already."""
+
+    def reads_new_data(self, sketch: Sketch) -> bool:
+        """Say whether a sketch reads data that was never drawn with."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Checks:
+    """Where and how a draft is checked before it is drawn."""
+
+    driver: str
+    variants: tuple[str, ...] = ()  # kinds of fast variants that can run
+    sandbox: Sandbox | None = None
+    now: Callable[[], float] = time.perf_counter  # [s] of any clock
+    sketch_time: Callable[[], float] = lambda: 0.0  # [s] at which the sandbox draws
