@@ -51,8 +51,8 @@ from playground.studio.keyframes.panel import height_of_timeline
 from playground.studio.overlay import checking_text, draw_behind, draw_checking, draw_notices, draw_waiting
 from playground.studio.panel.panel import Panel
 from playground.studio.picture.disk_caching import SessionCaching
-from playground.studio.picture.last_frame import Painter
-from playground.studio.picture.part_labels import draw_part_labels
+from playground.studio.picture.full_screen import Painter
+from playground.studio.picture.panel import draw_part_labels
 from playground.studio.problems.non_finite import FiniteWatch
 from playground.studio.problems.panel import ErrorsList, draw_not_finite
 from playground.studio.problems.problems import TerminalErrors, Warnings, to_log

@@ -11,7 +11,7 @@ from playground.studio.addition import Addition
 from playground.studio.code.editors import Opener
 from playground.studio.code.open_files import OpenFiles
 from playground.studio.edits.undo import Undo
-from playground.studio.inspect.toggles import Inspection
+from playground.studio.inspect.inspection import Inspection
 from playground.studio.interface import Interface, InterfaceSize, WindowControls
 from playground.studio.keyframes.keyframe_edits import KeyframeEdits
 from playground.studio.notices import Notices

@@ -31,10 +31,8 @@ from playground.sketch.traits import has_moving_counts, is_animated, traits_of
 from playground.studio.clock import Clock
 from playground.studio.edits.drafts import Drafts
 from playground.studio.edits.edits import Draft, StoredEdits
-from playground.studio.picture.catch_up import CatchUp
-from playground.studio.picture.maps import fitted, in_view
-from playground.studio.picture.shown_picture import ShownPicture
-from playground.studio.picture.view import View, steps_of_repeats
+from playground.studio.picture.shown_picture import CatchUp, ShownPicture
+from playground.studio.picture.view import View, fitted, in_view, steps_of_repeats
 from playground.studio.reload.dependencies import DataFiles
 from playground.studio.reload.stages import Checks, Reload, ReloadStage, Sandbox
 
@@ -42,6 +40,9 @@ if TYPE_CHECKING:
     import moderngl
     import numpy as np
     from numpy.typing import NDArray
+
+Version = tuple[int, int, int]
+"""Changes whenever the numbers of a texture may have: its pass ran again, or another engine did."""
 
 
 class Session:
@@ -300,6 +301,16 @@ class Session:
             self.show(None)
         elif refs := self.refs:
             self.show(self.view.last_ref if self.view.last_ref in refs else refs[0])
+
+    def result_of(self, ref: str) -> tuple[moderngl.Texture, Version] | None:
+        """Return the texture "pass:output" of the last picture, and its version; None where it had none."""
+        plan, engine = self.plan, self.engine
+        path, _, output = ref.partition(":")
+        source = plan.flat.outputs.get(path, {}).get(output) if plan is not None else None
+        result = engine.record.results.get(source.path) if source is not None else None
+        if source is None or result is None or source.output not in result.textures:
+            return None
+        return result.textures[source.output], (id(engine), result.number, engine.runs[source.path])
 
     def restore_view(self, steps: Mapping[str, int], shown: Map | None) -> None:
         """Stop repeats and show a map, as ``View.restore``; of a sketch being opened, once that is drawn."""

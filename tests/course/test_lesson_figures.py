@@ -18,7 +18,7 @@ from playground.course.window.panel import play_on
 from playground.course.window.reader import BOTH
 from playground.sketch.find import find
 from playground.studio.edits.edits import Draft, Edits, StoredEdits
-from playground.studio.picture.framing import framed
+from playground.studio.picture.view import framed
 
 from ..loading import load
 from .lesson_desk import FILE, OWN, Harness, shelved, value

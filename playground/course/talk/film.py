@@ -29,7 +29,7 @@ from playground.files import write_file
 from playground.publish.video import QUALITY, Video, check_video
 from playground.sketch.assign import resolve
 from playground.sketch.model import Value
-from playground.studio.picture.framing import framed
+from playground.studio.picture.view import framed
 
 FPS = Fraction(10)
 _VALUE = 0.5

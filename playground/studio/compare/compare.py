@@ -21,10 +21,9 @@ from playground.engine.planner import repeats_of
 from playground.errors import PlaygroundError
 from playground.sketch.model import Sketch
 from playground.sketch.traits import is_animated, traits_of
-from playground.studio.compare.blend import Blend
 from playground.studio.edits.edits import Draft, StoredEdits, first_draft
 from playground.studio.edits.memory import Compared
-from playground.studio.picture.last_frame import Painter, Picture
+from playground.studio.picture.full_screen import Blend, Painter, Picture
 from playground.studio.picture.preview import as_preview
 from playground.studio.picture.shown_picture import pointed_at
 from playground.studio.reload.dependencies import hash_of

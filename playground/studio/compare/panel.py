@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2, imgui
 
 from playground.studio import theme
-from playground.studio.compare.blend import Blend
 from playground.studio.compare.compare import PERIOD, Compare, Mode
 from playground.studio.draw import OVERLAY, Area, button, choose, window
 from playground.studio.edits.undo import Undo
 from playground.studio.panel.sliders import slide
-from playground.studio.picture.dividers import GRAB_DISTANCE, moved
+from playground.studio.picture.full_screen import Blend
+from playground.studio.picture.gestures import GRAB_DISTANCE, divider_position
 from playground.studio.theme import Theme
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def drag_line(compare: Compare, area: Area) -> bool:
     elif imgui.is_mouse_clicked(0) and near:
         compare.held = True
     if compare.held:
-        compare.split = moved(across, area[2])
+        compare.split = divider_position(across, area[2])
     if compare.held or near:
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
     return compare.held

@@ -18,7 +18,7 @@ from playground.studio import theme
 from playground.studio.cost.costs import Record
 from playground.studio.draw import header, table
 from playground.studio.inspect import plots
-from playground.studio.inspect.toggles import Inspection
+from playground.studio.inspect.inspection import Inspection
 from playground.studio.panel.rows import fitting
 from playground.studio.session import Session
 from playground.studio.theme import Theme

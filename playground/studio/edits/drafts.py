@@ -35,7 +35,7 @@ from playground.sketch.replace_technique import with_texts
 from playground.studio.edits.edits import Draft, Edits, StoredEdits, first_draft, reload_draft, stored, taken
 from playground.studio.edits.history import CHECKED, Key, applied, changes_between, edits_of, state_of
 from playground.studio.edits.technique_cache import TechniqueCache
-from playground.studio.picture.sun_drag import suns_of, turned
+from playground.studio.picture.gestures import suns_of, turned_sun
 from playground.studio.reload.dependencies import watched
 from playground.studio.reload.stages import (
     Checks,
@@ -459,7 +459,7 @@ class Drafts:
         """Move every sun of the sketch by so much of the picture's height, to the right and upwards."""
         if self.sketch is not None:
             for path, sun in suns_of(self.sketch).items():
-                self.set(path, turned(sun, across, up))
+                self.set(path, turned_sun(sun, across, up))
 
     def reset_values(self) -> None:
         """Reset all that is not locked, and every pass, to what the file says."""

@@ -9,9 +9,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.studio import theme
 from playground.studio.draw import Area
 from playground.studio.paint.painting import Painting
-from playground.studio.picture.camera_drag import Gesture
-from playground.studio.picture.dividers import divider_at, moved
-from playground.studio.picture.framing import moved as moved_by
+from playground.studio.picture.gestures import Gesture, divider_at, divider_position, steered_through
 from playground.studio.session import Session
 
 _ROUND = 48  # corners of the circle that shows a brush
@@ -56,7 +54,7 @@ class PictureMouse:
             # Keyframes move the camera; a drag begins where it was in the picture that is shown.
             plan, sketch = session.plan, session.sketch
             camera = sketch.camera if by_hand else sketch.at(plan.time).camera
-            session.drafts.set_camera(moved_by(camera, plan.eye, gesture, plan.sketch.camera))
+            session.drafts.set_camera(steered_through(camera, plan.eye, gesture, plan.sketch.camera))
         x, y = (io.mouse_pos.x - area[0]) * density, (area[3] - io.mouse_pos.y) * density
         pressed = imgui.is_mouse_down(0)
         session.hover((x, y), pressed=pressed, clicked=imgui.is_mouse_clicked(0))
@@ -75,7 +73,7 @@ class PictureMouse:
             self.divider = ""
         motion = imgui.get_io().mouse_delta
         if self.divider and motion.x:
-            session.drafts.set(self.divider, moved(across, width))
+            session.drafts.set(self.divider, divider_position(across, width))
         if motion.x or motion.y:
             self.on_divider = bool(self.divider or divider_at(session.sketch, across, width))
         if self.on_divider:

@@ -1,8 +1,9 @@
-"""How the numbers of a texture are spread: read and counted a bounded piece a frame, so that no frame waits.
+"""The numbers of a map's texture: how they are spread, and the colours of the map's ramp.
 
-A texture of up to ``MAX_TEXELS_READ`` texels is read whole; of a larger one rows are left out, evenly,
-and it reports it. The count goes twice over its numbers: once for the least, the greatest,
-the mean and what is no number, once to count them into bins between the two.
+They are read and counted a bounded piece a frame, so that no frame waits. A texture of up to
+``MAX_TEXELS_READ`` texels is read whole; of a larger one rows are left out, evenly, and it is reported. The
+count goes twice over its numbers: once for the least, the greatest, the mean and what is no number, once to
+count them into bins between the two.
 """
 
 from __future__ import annotations
@@ -16,11 +17,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.textures import read_texels
-from playground.studio.inspect.results import result_of
+from playground.memo import INTERFACE
+from playground.paths import GLSL
+from playground.shader.own_shaders import own_shader
+from playground.studio.picture.full_screen import TexelShader
 from playground.studio.session import Session
 
 if TYPE_CHECKING:
     import moderngl
+
+    from playground.sketch.map_sketch import Map
+
+# ── the histogram ──────────────────────────────────────────────────────────────
+
 
 BINS = 128
 PIECE = 2**17
@@ -203,5 +212,59 @@ class Counter:
 
     def _shown(self) -> tuple[moderngl.Texture, tuple[object, ...]] | None:
         shown = self.session.view.map
-        result = result_of(self.session, shown.ref) if shown is not None else None
+        result = self.session.result_of(shown.ref) if shown is not None else None
         return (result[0], (shown.ref, *result[1])) if shown is not None and result is not None else None
+
+
+# ── the ramp ───────────────────────────────────────────────────────────────────
+
+
+STEPS = 64
+Colour = tuple[float, float, float]
+
+
+def colours_of(ctx: moderngl.Context, ramp: int) -> tuple[Colour, ...]:
+    """Return ``STEPS`` display-encoded colours of a ramp, evenly from its begin to its end.
+
+    The context is the caller's to make current and to leave as it was; nothing stays in it.
+    """
+    ramp_functions = (GLSL / "colour" / "ramp.glsl").read_text(encoding="utf-8")
+    shader = TexelShader(ctx, f"#version 330\n{ramp_functions}{own_shader('ramp_main.glsl')}", (STEPS, 1))
+    try:
+        (values,) = shader.compute({}, ramp=ramp, steps=float(STEPS))
+    finally:
+        shader.release()
+    return tuple((float(r), float(g), float(b)) for r, g, b, _ in values)
+
+
+def ends_of(shown: Map) -> tuple[float, float]:
+    """Return the numbers at the two ends of a map's legend.
+
+    Around a middle they are as far from it on either side, independent of where the map's range begins.
+    """
+    low, high, middle = (_number(shown, name) for name in ("lowest", "highest", "middle"))
+    if _number(shown, "ramp") != 4:
+        return low, high
+    half = max(abs(high - middle), abs(low - middle))
+    return middle - half, middle + half
+
+
+@INTERFACE.cached()
+def ticks(low: float, high: float, most: int = 5) -> tuple[float, ...]:
+    """Return round numbers between two, at most so many."""
+    span = abs(high - low)
+    if not (0 < span < 1e30):
+        return (low,)
+    step = 10.0 ** np.floor(np.log10(span / max(most - 1, 1)))
+    for factor in (1, 2, 2.5, 5, 10, 20):
+        if span / (step * factor) <= most - 1:
+            step *= factor
+            break
+    first = np.ceil(min(low, high) / step - 1e-9)
+    last = np.floor(max(low, high) / step + 1e-9)
+    return tuple(float(n * step) + 0.0 for n in np.arange(first, last + 1))
+
+
+def _number(shown: Map, name: str) -> float:
+    value = shown.value(name)
+    return float(value) if isinstance(value, int | float) else 0.0

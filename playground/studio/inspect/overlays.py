@@ -11,7 +11,7 @@ from playground.studio.compare.panel import draw_ab
 from playground.studio.draw import Area
 from playground.studio.graph.panel import draw_graph
 from playground.studio.inspect.inspector import Inspector
-from playground.studio.inspect.tooltip import draw_values
+from playground.studio.inspect.panel import draw_values
 from playground.studio.keyframes.panel import draw_timeline
 from playground.studio.theme import Theme
 

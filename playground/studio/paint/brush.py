@@ -1,7 +1,8 @@
 """A round brush: where it reaches, what it leaves on a mask of four weights, what its tools do to terrain.
 
-The tools change what is added to terrain, in metres. Each stamp of the brush lasts some seconds, and what it
-does is a rate, so a stroke does not depend on how many frames it was painted in. ``w`` is strength times falloff, 0..1; h the terrain, ground and change:
+The tools change what is added to terrain, in metres. Each stamp of the brush lasts some seconds, and what
+it does is a rate, so a stroke does not depend on how many frames it was painted in. ``w`` is strength times
+falloff, 0..1; h the terrain, ground and change:
 
     raise, lower   dh/dt = w rate, -w rate
     smooth         dh/dt = div(w D grad h), explicit, five points; fluxes are antisymmetric, so no rock

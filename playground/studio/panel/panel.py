@@ -18,8 +18,8 @@ from playground.studio.cost.panel import draw_costs
 from playground.studio.draw import SIDE_PANEL, wrapped
 from playground.studio.input.keys import KEYS
 from playground.studio.input.text_field import await_field
-from playground.studio.inspect.map_panel import draw_spread
-from playground.studio.inspect.toggles import Inspection
+from playground.studio.inspect.inspection import Inspection
+from playground.studio.inspect.panel import draw_spread
 from playground.studio.keyframes.panel import KeyframeList
 from playground.studio.paint.panel import draw_paintbox
 from playground.studio.panel.head import draw_head, draw_search

@@ -21,7 +21,7 @@ from playground.studio.code.open_files import OpenFiles, editor_name
 from playground.studio.cost.costs import RunReasons
 from playground.studio.draw import choose, header, inked, pushed_id
 from playground.studio.edits.edits import Draft
-from playground.studio.graph.pass_graph import cost_of
+from playground.studio.graph.graph import cost_of
 from playground.studio.panel.memory import Memory
 from playground.studio.panel.parameter_list import Group, Item, Section
 from playground.studio.panel.parameter_row import Rows

@@ -13,7 +13,7 @@ from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 
 if TYPE_CHECKING:
-    from playground.studio.inspect.toggles import Inspection
+    from playground.studio.inspect.inspection import Inspection
     from playground.studio.problems.non_finite import FiniteWatch
     from playground.studio.session import Session
 

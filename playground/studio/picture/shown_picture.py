@@ -4,10 +4,15 @@ On a software renderer what changes is drawn with one sample a pixel and a coars
 ``preview``), and with as few pixels as it takes to follow the hand (see ``preview_size``), enlarged to
 the size of the picture. What is read from it, saved or compared at rest is drawn in full. At rest that goes
 on in pieces, so that the window answers meanwhile; until the last pass has run the preview stays.
+
+A loop that follows the time runs in pieces as well: after a jump in time, or where a frame takes longer than
+its 1/60 s, each picture runs for a short time and shows how far that came, and the sketch's clock waits until
+it is there. It waits likewise while a source is at work: then the last picture stays.
 """
 
 from __future__ import annotations
 
+import time
 import time as clock
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -17,19 +22,64 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.engine.plan import Plan
 from playground.engine.runner import Runner
-from playground.engine.unfinished import PassesUnfinished
+from playground.engine.unfinished import PassesUnfinished, SourceUnfinished, Unfinished
 from playground.sketch.model import Sketch, kernels_of
 from playground.sketch.traits import traits_of
 from playground.sketch.variants import canonical_path
-from playground.studio.picture.catch_up import CatchUp
-from playground.studio.picture.framing import framed
-from playground.studio.picture.last_frame import Painter, Picture
-from playground.studio.picture.preview import as_preview
-from playground.studio.picture.preview_size import SLOW, PreviewSize, Size, divided
-from playground.studio.picture.view import View
+from playground.studio.picture.full_screen import Painter, Picture
+from playground.studio.picture.preview import SLOW, PreviewSize, Size, as_preview, divided
+from playground.studio.picture.view import View, framed
 
 if TYPE_CHECKING:
     import moderngl
+
+LOOP_PIECE = 0.1
+"""[s] that loops may run for one picture."""
+_TRIES = 4  # at earlier times: of several loops, each may have come less far
+
+
+class CatchUp:
+    """How far the picture is behind the clock."""
+
+    def __init__(self, now: Callable[[], float] = time.perf_counter) -> None:
+        self.behind: tuple[int, int] | None = None  # iterations that have run, and those that are wanted
+        self.source = ""  # the path of the source that is at work, whose parts those are then
+        self._now = now
+        self._since = 0.0
+
+    @property
+    def seconds(self) -> float:
+        """How long it has been behind [s]."""
+        return self._now() - self._since if self.behind else 0.0
+
+    def draw(
+        self, engine: Engine, seconds: float, draw: Callable[[float], moderngl.Texture], *, in_full: bool
+    ) -> moderngl.Texture | None:
+        """Return the picture at a time [s], or ``in_full`` unset at an earlier one that was reached.
+
+        ``draw`` draws the picture of a time; None is returned where the loops need more time for any, and
+        while a source is at work.
+        """
+        before = self.behind
+        self.behind, self.source, at = None, "", seconds
+        engine.options.patience = None if in_full else LOOP_PIECE
+        try:
+            for _ in range(1 + _TRIES):
+                try:
+                    return draw(at)
+                except SourceUnfinished as stopped:
+                    self.behind, self.source = (stopped.done, stopped.total), stopped.path
+                    self._since = self._since if before else self._now()
+                    return None
+                except Unfinished as stopped:
+                    at *= stopped.done / stopped.total
+                    if self.behind is None:
+                        self.behind = stopped.done, stopped.total
+                        self._since = self._since if before else self._now()
+            return None
+        finally:
+            engine.options.patience = None
+
 
 REST = 0.2  # [s] without a change after which a preview is drawn again in full
 PIECE = 0.15

@@ -1,13 +1,24 @@
-"""What is drawn of a sketch: its own view or a map of a texture, repeats stopped early, the frame's sides."""
+"""What is drawn of a sketch: its own view or a map of a texture, repeats stopped early, the frame's sides.
+
+A camera's field of view is its vertical one. Next to the panels a picture is narrower than what
+the sketch was framed for, and would be cut at its sides: it is opened instead, so that more is
+visible above and below. Only the window does so; a render of a size is that of the sketch's camera.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
 
 from playground.engine.planner import repeats_of
 from playground.errors import PlaygroundError
 from playground.sketch.map_sketch import Map
-from playground.sketch.model import DEFAULT_PICTURE, Sketch, Value
+from playground.sketch.model import DEFAULT_PICTURE, Graph, Sketch, Technique, Value
+from playground.sketch.wiring import output_names
 
 
 class View:
@@ -88,3 +99,69 @@ def steps_of_repeats(sketch: Sketch, time: float) -> dict[str, int]:
         return repeats_of(sketch, time=time)
     except PlaygroundError:  # it is reported when the sketch is drawn
         return {}
+
+
+# ── maps ───────────────────────────────────────────────────────────────────────
+
+
+def in_view(sketch: Sketch, ref: str) -> bool:
+    """Say whether a texture is one of the sketch's view: a map can show it, though no list has it."""
+    path, _, output = ref.partition(":")
+    technique: Technique | None = None
+    for number, name in enumerate(path.split(".")):
+        around = technique if number else sketch.graph
+        spec = around.find(name) if isinstance(around, Graph) else None
+        if spec is None or (number == 0 and name != "view"):
+            return False
+        technique = spec.technique
+    return technique is not None and output in output_names(technique)
+
+
+def fitted(shown: Map, values: NDArray[np.float32]) -> Map:
+    """Return the map with its channel and range chosen to suit a texture's values.
+
+    One or two components are shown as a number, from the lowest to the highest there
+    is; three or four as a colour from 0 to 1. Values that are not finite are left out.
+    """
+    names = {p.name for p in shown.kernel.parameters}
+    components = 1 if values.ndim == 2 else values.shape[2]
+    settings: dict[str, Value] = {"channel": 0 if components >= 3 else 1, "lowest": 0.0, "highest": 1.0}
+    if components < 3:
+        numbers = values if values.ndim == 2 else values[..., 0]
+        finite = numbers[np.isfinite(numbers)]
+        if finite.size and finite.min() < finite.max():
+            settings |= {"lowest": float(finite.min()), "highest": float(finite.max())}
+    for name, value in settings.items():
+        if name in names:
+            shown = shown.with_value(name, value)
+    return shown
+
+
+# ── the frame ──────────────────────────────────────────────────────────────────
+
+
+MAX_FIELD_OF_VIEW = 100.0
+"""[degrees] that a view is opened to at most: beyond, what is near its edges is drawn out of shape."""
+
+Size = tuple[int, int]
+
+
+def framed(sketch: Sketch, time: float, size: Size, room: Size) -> Sketch:
+    """Return a sketch at a time as it is shown in a ``room``; the same object where nothing is opened.
+
+    ``size``: the size of the picture whose sides stay visible. Sizes in pixels.
+    """
+    now = sketch.at(time)
+    opened = field_for(now.camera.field_of_view, size, room)
+    if opened == now.camera.field_of_view:
+        return sketch
+    return replace(now, camera=replace(now.camera, field_of_view=opened))
+
+
+def field_for(degrees: float, size: Size, room: Size) -> float:
+    """Return the vertical field of view that shows in a room what a picture shows from side to side."""
+    narrower = (size[0] / size[1]) / (room[0] / max(room[1], 1))
+    if narrower <= 1.0:
+        return degrees
+    opened = 2 * math.degrees(math.atan(math.tan(math.radians(degrees) / 2) * narrower))
+    return max(degrees, min(opened, MAX_FIELD_OF_VIEW))

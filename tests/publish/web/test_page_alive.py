@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from playground.engine.engine import Engine
 from playground.publish.web_page import page_bytes, prepare_page
 from playground.sketch.model import DEFAULT_PICTURE, Camera, Sketch
-from playground.studio.picture.framing import field_for
+from playground.studio.picture.view import field_for
 
 from ...loading import load
 from ...verify.report.browser import MESA, Browser

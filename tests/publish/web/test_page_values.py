@@ -22,9 +22,8 @@ from playground.studio.edits.edits import Draft
 from playground.studio.panel import dome
 from playground.studio.panel.number_format import decimals, format_of, snapped, unit_of
 from playground.studio.panel.parameter_list import Listing
-from playground.studio.picture.camera_drag import Gesture, steered
-from playground.studio.picture.framing import field_for
-from playground.studio.picture.sun_drag import turned
+from playground.studio.picture.gestures import Gesture, steered, turned_sun
+from playground.studio.picture.view import field_for
 
 from ...loading import load
 from .node import Node
@@ -272,7 +271,7 @@ def test_a_drag_with_ctrl_moves_a_sun_as_in_the_window(node: Node):
     drags = RANDOM.uniform((-10, -10, -3, -3), (370, 90, 3, 3), (50, 4)).tolist()
     script = "async (n, load) => { const { sunMoved } = await load('camera_moves.js');"
     script += " return n.map(([a, e, across, up]) => sunMoved([a, e], across, up)); }"
-    expected = [list(turned((a, e), across, up)) for a, e, across, up in drags]
+    expected = [list(turned_sun((a, e), across, up)) for a, e, across, up in drags]
     np.testing.assert_allclose(node.run(script, drags), expected, atol=0.0100001)
 
 

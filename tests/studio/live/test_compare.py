@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.engine.textures import make_framebuffer, make_texture, read_picture, write_texture
-from playground.studio.compare.blend import Blend
 from playground.studio.compare.compare import PERIOD, Compare, Mode
 from playground.studio.compare.panel import drag_line, shows_first
+from playground.studio.inspect.inspection import Inspection
 from playground.studio.inspect.inspector import Inspector
-from playground.studio.inspect.toggles import Inspection
+from playground.studio.picture.full_screen import Blend
 from playground.studio.picture.preview import as_preview
 from playground.studio.session import Session
 

@@ -16,7 +16,7 @@ from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.errors import ContextError
 from playground.studio.bench import Workbench
-from playground.studio.inspect.thumbnails import Thumbnails
+from playground.studio.graph.graph import Thumbnails
 from playground.studio.interface import WindowControls
 from playground.studio.picture import disk_caching as module
 from playground.studio.picture.disk_caching import SessionCaching

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from playground.paths import GLSL
-from playground.studio.picture.dividers import GRAB_DISTANCE, divider_at, dividers_of, moved
+from playground.studio.picture.gestures import GRAB_DISTANCE, divider_at, divider_position, dividers_of
 
 from ...loading import load
 
@@ -40,7 +40,7 @@ def test_a_sketch_without_any_has_none() -> None:
 
 
 def test_a_line_stays_in_the_picture() -> None:
-    assert [moved(x, 200.0) for x in (-20.0, 0.0, 50.0, 400.0)] == [0.0, 0.0, 0.25, 1.0]
+    assert [divider_position(x, 200.0) for x in (-20.0, 0.0, 50.0, 400.0)] == [0.0, 0.0, 0.25, 1.0]
 
 
 def test_its_value_is_a_share(tmp_path: Path) -> None:

@@ -11,8 +11,7 @@ from imgui_bundle import imgui
 from playground.engine.engine import Engine
 from playground.engine.textures import read_raw
 from playground.paths import SKETCHES
-from playground.studio.graph.pass_graph import node_grid, wiring_of
-from playground.studio.inspect.thumbnails import APART, SIDE, Thumbnails, picture_of
+from playground.studio.graph.graph import APART, SIDE, Thumbnails, node_grid, picture_of, wiring_of
 from playground.studio.session import Session
 
 from ...loading import load
@@ -189,7 +188,7 @@ def test_the_panel_s_head_has_a_button_for_it_and_room_for_all(
     try:
         bare.run_frames()
         margin = imgui.get_style().window_padding.x
-        for label in "Undo Redo History Random A/B Reset Copy Save PNG Capture Graph".split():
+        for label in "Undo Redo History Random A/B Reset Copy Save PNG Graph".split():
             x, _, width, _ = bare.places[label]
             assert margin <= x and x + width <= bare.panel.width * scale - margin, label
         graph = bare.bench.inspection.graph

@@ -13,8 +13,16 @@ from playground.engine.engine import Engine
 from playground.engine.textures import make_texture, write_texture
 from playground.sketch.map_sketch import Map
 from playground.studio.inspect import histogram
-from playground.studio.inspect.histogram import BINS, Counter, Histogram, count
-from playground.studio.inspect.legend import STEPS, colours_of, ends_of, ticks
+from playground.studio.inspect.histogram import (
+    BINS,
+    STEPS,
+    Counter,
+    Histogram,
+    colours_of,
+    count,
+    ends_of,
+    ticks,
+)
 from playground.studio.session import Session
 
 from ...sketch_texts import map_of_height

@@ -14,7 +14,7 @@ from playground.engine.camera import ground_under
 from playground.engine.engine import Engine
 from playground.engine.textures import read_picture, read_texels, read_texture
 from playground.studio.inspect.inspector import Inspector
-from playground.studio.inspect.tooltip import lines_of
+from playground.studio.inspect.panel import lines_of
 from playground.studio.session import Session
 
 from ...sketch_texts import passes

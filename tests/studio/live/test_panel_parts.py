@@ -14,7 +14,7 @@ from playground.sketch.model import Camera, Parameter
 from playground.studio.panel.dome import direction_at, dot_of
 from playground.studio.panel.number_format import decimals, format_of, snapped
 from playground.studio.panel.widgets import CONTROLS
-from playground.studio.picture.camera_drag import Gesture, steered
+from playground.studio.picture.gestures import Gesture, steered
 from playground.studio.problems.panel import numbered, short_place
 
 

@@ -7,7 +7,7 @@ import pytest
 from playground.sketch.find import find
 from playground.sketch.model import Sketch
 from playground.sketch.replace_technique import with_technique
-from playground.studio.picture.part_labels import PictureRegion, parts_of
+from playground.studio.picture.panel import PictureRegion, parts_of
 
 from ...loading import load
 

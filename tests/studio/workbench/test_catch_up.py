@@ -11,7 +11,7 @@ import pytest
 from playground.engine.engine import Engine
 from playground.engine.unfinished import Unfinished
 from playground.studio.overlay import behind_text
-from playground.studio.picture import catch_up
+from playground.studio.picture import shown_picture
 from playground.studio.session import Session
 
 from ...sketch_texts import map_of, passes
@@ -43,7 +43,7 @@ def session(tmp_path: Path, any_engine: Engine):
 @pytest.fixture
 def slow(session, monkeypatch):
     """Let each look at the clock find that time is over."""
-    monkeypatch.setattr(catch_up, "PIECE", -1.0)
+    monkeypatch.setattr(shown_picture, "LOOP_PIECE", -1.0)
     return session
 
 
@@ -100,7 +100,7 @@ def test_a_save_at_a_late_time_shows_how_far_it_came_as_well(slow):
 
 
 def test_a_short_run_is_not_parted(session, monkeypatch):
-    monkeypatch.setattr(catch_up, "PIECE", 3600.0)  # shorter than that on a busy machine too
+    monkeypatch.setattr(shown_picture, "LOOP_PIECE", 3600.0)  # shorter than that on a busy machine too
     session.clock.time = 1.0
     session.frame(SIZE)
     assert session.catch_up.behind is None

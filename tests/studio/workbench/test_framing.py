@@ -12,8 +12,8 @@ from playground.engine.camera import look
 from playground.engine.engine import Engine
 from playground.sketch.find import find
 from playground.sketch.model import DEFAULT_PICTURE, Camera
-from playground.studio.picture.camera_drag import Gesture
-from playground.studio.picture.framing import MAX_FIELD_OF_VIEW, field_for, framed, moved
+from playground.studio.picture.gestures import Gesture, steered_through
+from playground.studio.picture.view import MAX_FIELD_OF_VIEW, field_for, framed
 from playground.studio.session import Session
 
 from ...loading import load
@@ -57,7 +57,7 @@ def test_gesture_moves_camera_as_seen_and_keeps_field_of_view() -> None:
     wide = replace(camera, field_of_view=field_for(camera.field_of_view, DEFAULT_PICTURE, NARROW))
     gesture = Gesture(height=720.0, across=100.0, panning=True)
     target = np.array([[EXTENT[0] / 2, EXTENT[1] / 2, RELIEF / 2]])  # it goes with the mouse
-    after = moved(camera, look(wide, EXTENT, RELIEF, NARROW), gesture, wide)
+    after = steered_through(camera, look(wide, EXTENT, RELIEF, NARROW), gesture, wide)
     assert after.field_of_view == camera.field_of_view
     seen = replace(after, field_of_view=wide.field_of_view)
     assert across(seen, NARROW, target)[0] * NARROW[0] / 2 == pytest.approx(100.0, rel=1e-3)

@@ -18,7 +18,7 @@ from playground.studio.compare.compare import Compare, Mode
 from playground.studio.edits.autosave import Autosave
 from playground.studio.edits.edits import Edits
 from playground.studio.edits.memory import Compared, Memory, Remembered
-from playground.studio.picture.framing import framed
+from playground.studio.picture.view import framed
 from playground.studio.session import Session
 
 SIZE = (48, 32)

@@ -12,7 +12,7 @@ from playground.engine import renderer
 from playground.engine.engine import Engine
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
-from playground.studio.picture.enlarged import Enlarger
+from playground.studio.picture.full_screen import Enlarger
 from playground.studio.picture.preview import GRID, GRID_OF_FEWER, as_preview
 from playground.studio.session import Session
 

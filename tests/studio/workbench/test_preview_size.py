@@ -15,9 +15,9 @@ import pytest
 from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
 from playground.studio.cost.costs import PassCosts
-from playground.studio.inspect.toggles import Inspection
-from playground.studio.picture.enlarged import Enlarger
-from playground.studio.picture.preview_size import BUDGETS, DIVISORS, chosen
+from playground.studio.inspect.inspection import Inspection
+from playground.studio.picture.full_screen import Enlarger
+from playground.studio.picture.preview import BUDGETS, DIVISORS, chosen_divisor
 from playground.studio.picture.shown_picture import REST
 from playground.studio.session import Session
 
@@ -174,14 +174,18 @@ def test_preview_size_is_steady_under_varying_machine_load(slow: Slow):
 
 def test_preview_size_changes_with_one_fifth_hysteresis():
     by_size = {d: 4.5 * BUDGETS[2] / d**2 for d in DIVISORS}  # a half: 1.125 of its budget
-    assert chosen(by_size, 2) == 2 and chosen(by_size, 3) == 3 and chosen(by_size, 1) == 3
+    assert (
+        chosen_divisor(by_size, 2) == 2
+        and chosen_divisor(by_size, 3) == 3
+        and chosen_divisor(by_size, 1) == 3
+    )
     by_size = {d: 3.6 * BUDGETS[2] / d**2 for d in DIVISORS}
-    assert chosen(by_size, 3) == 3 and chosen(by_size, 1) == 2
+    assert chosen_divisor(by_size, 3) == 3 and chosen_divisor(by_size, 1) == 2
     by_size = {d: 3.0 * BUDGETS[2] / d**2 for d in DIVISORS}
-    assert chosen(by_size, 3) == 2
+    assert chosen_divisor(by_size, 3) == 2
     by_size = {d: 1.1 * BUDGETS[1] / d for d in DIVISORS}
-    assert chosen(by_size, 1) == 1 and chosen(by_size, 2) == 2
-    assert chosen({d: 9.0 + 0.1 / d**2 for d in DIVISORS}, 4) == 1, "fewer pixels gain nothing"
+    assert chosen_divisor(by_size, 1) == 1 and chosen_divisor(by_size, 2) == 2
+    assert chosen_divisor({d: 9.0 + 0.1 / d**2 for d in DIVISORS}, 4) == 1, "fewer pixels gain nothing"
 
 
 def test_a_simulation_keeps_its_size(slow: Slow, tmp_path: Path):

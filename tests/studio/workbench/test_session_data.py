@@ -17,8 +17,8 @@ from playground.engine.sandbox import SandboxReport
 from playground.errors import SandboxCrash
 from playground.sketch.model import Camera
 from playground.studio.compare.compare import Compare
+from playground.studio.graph.graph import Thumbnails
 from playground.studio.inspect.inspector import Inspector
-from playground.studio.inspect.thumbnails import Thumbnails
 from playground.studio.reload.stages import ReloadStage
 from playground.studio.session import Session
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from playground.engine.engine import Engine
-from playground.studio.picture.sun_drag import suns_of, turned
+from playground.studio.picture.gestures import suns_of, turned_sun
 from playground.studio.session import Session
 
 from ...loading import load
@@ -32,13 +32,13 @@ def test_the_suns_are_those_of_the_passes(path: Path) -> None:
 
 
 def test_full_height_drag_turns_sun_half_around_and_quarter_up() -> None:
-    assert turned((10.0, 20.0), 1.0, 0.0) == (190.0, 20.0)
-    assert turned((350.0, 20.0), 0.25, 0.5) == (35.0, 65.0)
+    assert turned_sun((10.0, 20.0), 1.0, 0.0) == (190.0, 20.0)
+    assert turned_sun((350.0, 20.0), 0.25, 0.5) == (35.0, 65.0)
 
 
 def test_the_sun_stops_overhead_and_a_little_below_the_horizon() -> None:
-    assert turned((10.0, 80.0), 0.0, 1.0) == (10.0, 90.0)
-    assert turned((10.0, 5.0), 0.0, -1.0) == (10.0, -10.0)
+    assert turned_sun((10.0, 80.0), 0.0, 1.0) == (10.0, 90.0)
+    assert turned_sun((10.0, 5.0), 0.0, -1.0) == (10.0, -10.0)
 
 
 def test_a_drag_turns_every_sun_and_runs_the_light_alone(path: Path, any_engine: Engine) -> None:

@@ -5,55 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from playground.sketch.model import Sketch
 from playground.studio.compare.compare import PERIOD, Compare, Mode
 from playground.studio.cost.costs import Record, RunReasons
-from playground.studio.graph.pass_graph import Wiring, wiring_of
-from playground.studio.inspect.histogram import Counter
+from playground.studio.graph.graph import APART, Graph
+from playground.studio.inspect.histogram import Colour, Counter, colours_of
 from playground.studio.inspect.inspector import Inspector
-from playground.studio.inspect.legend import Colour, colours_of
-from playground.studio.inspect.thumbnails import APART, Thumbnails
 from playground.studio.session import Session
-
-
-@dataclass
-class Graph:
-    """The window of the passes."""
-
-    session: Session
-    on: bool = False
-    inner: bool = False  # passes inside techniques, too
-    timed: bool = False
-    _stale: bool = False
-    _wiring: tuple[object, bool, Wiring] | None = None  # of which sketch's passes, with those inside
-    thumbnails: Thumbnails = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.thumbnails = Thumbnails(self.session)
-
-    def toggle(self) -> None:
-        """Show or hide the passes."""
-        self.on = not self.on
-
-    def wiring(self, sketch: Sketch) -> Wiring:
-        """Return the graph of a sketch; worked out once for each."""
-        if self._wiring is None or self._wiring[0] is not sketch.graph or self._wiring[1] != self.inner:
-            self._wiring = sketch.graph, self.inner, wiring_of(sketch, inner=self.inner)
-        return self._wiring[2]
-
-    def update(self, now: float) -> None:
-        """Draw one stale thumbnail; release all while the graph is hidden."""
-        sketch = self.session.sketch
-        if not self.on or sketch is None:
-            self._stale = False
-            self.thumbnails.release()
-        else:
-            self._stale = self.thumbnails.refresh(self.wiring(sketch).refs.values(), now)
-
-    @property
-    def waits(self) -> bool:
-        """Whether thumbnails are still to be drawn."""
-        return self.on and self._stale
 
 
 @dataclass
