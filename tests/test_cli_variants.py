@@ -14,7 +14,7 @@ from playground.paths import GLSL
 from playground.sketch.find import shipped_sketches
 from playground.sketch.variants import NAME
 
-from .sketch_texts import map_of_height
+from .sketch_texts import map_of_height, passes
 from .variants import trust
 
 KERNEL = """// terrain.glsl -- a slope.
@@ -22,13 +22,7 @@ KERNEL = """// terrain.glsl -- a slope.
 uniform float rise = 1.0;  //! slider(0, 4) How high the eastern edge is
 float kernel(ivec2 texel) { return rise * float(texel.x) / float(size.x - 1); }
 """
-FAST = """agrees = "1e-6"
-[[pass]]
-name = "height"
-use = "./same"
-[parameters]
-rise = "height.rise"
-"""
+FAST = 'agrees = "1e-6"\n' + passes(height="./same") + '[parameters]\nrise = "height.rise"\n'
 SKETCH = "format = 1\nsize = 33\n" + map_of_height(channel="red")
 
 

@@ -15,6 +15,7 @@ import pytest
 from playground import cli
 
 from ..publish.web.unpressed import parts_of
+from ..sketch_texts import passes
 
 HEIGHT = """// rise.glsl -- A slope that rises to the north.
 #pragma kernel(output = "height:r32f")
@@ -28,16 +29,10 @@ float kernel(ivec2 texel) { return 0.5; }
 COLOUR = """#pragma kernel(output = "colour:rgba16f")
 vec4 kernel(ivec2 texel) { return vec4(0.5); }
 """
-SKETCH = """format = 1
-title = "Rise & fall"
-size = 17
-[[pass]]
-name = "height"
-use  = "./rise"
-[[pass]]
-name = "colour"
-use  = "./colour"
-[view]
+SKETCH = (
+    'format = 1\ntitle = "Rise & fall"\nsize = 17\n'
+    + passes(height="./rise", colour="./colour")
+    + """[view]
 use = "view/terrain"
 [[preset]]
 name = "half"
@@ -48,6 +43,7 @@ size = [200, 100]
 time = 1.5
 set = { "height.rise" = 0.25 }
 """
+)
 COMPUTE = """#version 430
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba16f, binding = 0) uniform writeonly image2D picture;

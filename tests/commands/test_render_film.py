@@ -15,7 +15,7 @@ import pytest
 from playground import cli
 from playground.data.image_files import read_png
 
-from ..sketch_texts import LIT_NOISE, SMALL_VIEW, map_of_height
+from ..sketch_texts import LIT_NOISE, SMALL_VIEW, map_of_height, passes
 
 ROOT = Path(__file__).resolve().parents[2]
 SKETCH = (
@@ -192,14 +192,9 @@ CLEAR = """// clear.glsl -- seen through where it is low
 uniform float alpha = 1.0; //! slider(0, 1)
 vec4 kernel(ivec2 texel) { return vec4(0.5, 0.5, 0.5, texel.x == 0 ? alpha : 1.0); }
 """
-CLEAR_SKETCH = """format = 1
-size = 9
-[[pass]]
-name = "height"
-use = "generation/white_noise"
-[view]
-use = "./clear"
-"""
+CLEAR_SKETCH = (
+    "format = 1\nsize = 9\n" + passes(height="generation/white_noise") + '[view]\nuse = "./clear"\n'
+)
 
 
 def test_what_drops_alpha_says_so(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -10,6 +10,8 @@ import pytest
 
 from playground.errors import PlaygroundError
 
+from ..sketch_texts import passes
+
 PAIR = """#pragma draw(mesh = "sheet", output = "seen:rgba32f, more:rg16f"{more})
 uniform float right = 1.0;
 uniform float depth = 0.0;
@@ -98,10 +100,7 @@ def test_a_draw_of_other_outputs_cannot_go_on_from_one(any_engine, folder):
     folder.write(
         "two.glsl", single.replace("seen = vec4(mark", "return vec4(mark").replace("    more =", "    //")
     )
-    sketch = folder.sketch(
-        '[[pass]]\nname = "one"\nuse = "./one"\n[[pass]]\nname = "two"\nuse = "./two"\n'
-        'inputs = { initial = "one" }\n'
-    )
+    sketch = folder.sketch(passes(one="./one", two=("./two", 'inputs = { initial = "one" }')))
     with pytest.raises(
         PlaygroundError, match="pass 'two' goes on from 'one', a draw of seen, more; it gives seen"
     ):
@@ -135,8 +134,7 @@ def dots(folder):
         folder.write("list.glsl", text)
         folder.write("dots.glsl", DOTS.replace("{count}", count))
         return folder.sketch(
-            '[[pass]]\nname = "list"\nuse = "./list"\n[[pass]]\nname = "dots"\nuse = "./dots"\n'
-            'inputs = { list = "list:list" }\n',
+            passes(list="./list", dots=("./dots", 'inputs = { list = "list:list" }')),
             size="size = 16",
         )
 

@@ -13,6 +13,7 @@ from playground.engine.software import FIXED, specialise
 from playground.shader.sampler_reads import fixed_texels
 from playground.shader.wrap import FRAGMENT, wrap
 
+from ..sketch_texts import passes
 from .conftest import Folder, on_both_kinds
 
 ROW = """#pragma kernel(output = "row:FORMAT")
@@ -28,15 +29,7 @@ vec4 kernel(ivec2 texel) {
             + texelFetch(more, ivec2(0), 0) * float(texel.x);
 }
 """
-PASSES = """
-[[pass]]
-name = "row"
-use = "./row"
-size = [SIZE]
-[[pass]]
-name = "a"
-use = "./reads"
-"""
+PASSES = "\n" + passes(row=("./row", "size = [SIZE]"), a="./reads")
 
 
 def sketch_of(folder: Folder, form: str = "rgba32f", size: str = "5, 2"):
@@ -102,18 +95,10 @@ def test_one_texel_input_reads_alike_at_all_fixed_texels(any_engine: Engine, fol
     np.testing.assert_allclose(result, expected * np.ones((17, 1, 1)), rtol=1e-5)
 
 
-LOOP = """
-[[pass]]
-name = "row"
-use = "./row"
-size = [5, 2]
-[[pass]]
-name = "a"
-use = "./grows"
-repeat = "3"
-inputs = { before = "row" }
-feedback = { before = "sum" }
-"""
+LOOP = "\n" + passes(
+    row=("./row", "size = [5, 2]"),
+    a=("./grows", 'repeat = "3"', 'inputs = { before = "row" }', 'feedback = { before = "sum" }'),
+)
 GROWS = """format = 1
 [[pass]]
 name = "sum"

@@ -176,9 +176,7 @@ float kernel(ivec2 texel) {
 
 def test_own_kernel_frame_loop_gets_frame_time_and_fallback(engine, folder):
     folder.write("sum.glsl", KERNEL)
-    sketch = folder.sketch(
-        '[[pass]]\nname = "a"\nuse = "./sum"\nrepeat = "frames"\nfeedback = { before = "sum" }\n'
-    )
+    sketch = folder.sketch(passes(a=("./sum", 'repeat = "frames"', 'feedback = { before = "sum" }')))
     for last in (0, 1, 12, 6, 18):
         expected = sum(n / 60 + (100 if n else 0) for n in range(last + 1))
         np.testing.assert_allclose(engine.read(sketch, "a", time=last / 60), expected, rtol=1e-6)
@@ -208,9 +206,7 @@ def test_inner_loop_and_siblings_use_time_of_outer_frame(engine, folder):
         passes(sum=("./sum", "repeat = 3", 'feedback = { before = "sum" }'), now="./now")
         + '[inputs]\nbefore = "sum.before"\n[outputs]\nsum = "sum:sum"\nnow = "now:now"\n',
     )
-    sketch = folder.sketch(
-        '[[pass]]\nname = "a"\nuse = "./frame"\nrepeat = "frames"\nfeedback = { before = "sum" }\n'
-    )
+    sketch = folder.sketch(passes(a=("./frame", 'repeat = "frames"', 'feedback = { before = "sum" }')))
     total = 0.0
     for n in range(7):
         total += n / 60 * (1 + 2 + 3) + 300

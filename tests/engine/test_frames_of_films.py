@@ -9,36 +9,28 @@ from playground.engine.engine import Engine
 from tests.data.films import colour, own_film
 
 from ..loading import load
+from ..sketch_texts import passes
 
-SKETCH = """format = 1
-size = 8
-[[pass]]
-name = "film"
-use = "foreign/video"
-set = { video = "v.mp4", loop = false }
-[[pass]]
-name = "red"
-use = "./red"
-inputs = { film = "film" }
-[[pass]]
-name = "second"
-use = "./second"
-size = [1, 1]
-[[pass]]
-name = "still"
-use = "foreign/noise"
-size = [4, 4]
-[[pass]]
-name = "sums"
-use = "./sum"
-repeat = "frames"
-feedback = { before = "sums" }
-size = [2, 2]
-inputs = { red = "red", second = "second", still = "still" }
-[view]
+SKETCH = (
+    "format = 1\nsize = 8\n"
+    + passes(
+        film=("foreign/video", 'set = { video = "v.mp4", loop = false }'),
+        red=("./red", 'inputs = { film = "film" }'),
+        second=("./second", "size = [1, 1]"),
+        still=("foreign/noise", "size = [4, 4]"),
+        sums=(
+            "./sum",
+            'repeat = "frames"',
+            'feedback = { before = "sums" }',
+            "size = [2, 2]",
+            'inputs = { red = "red", second = "second", still = "still" }',
+        ),
+    )
+    + """[view]
 use = "./shown"
 inputs = { sums = "sums", film = "film" }
 """
+)
 RED = """#pragma kernel(output = "red:r32f")
 uniform sampler2D film;  //! input
 float kernel(ivec2 texel) { return texelFetch(film, ivec2(textureSize(film, 0).x - 2, 1), 0).r; }

@@ -25,16 +25,10 @@ SHOW = """#pragma kernel(output = "shown:r32f")
 uniform sampler2D state;  //! input
 float kernel(ivec2 texel) { return 2.0 * texelFetch(state, texel, 0).r; }
 """
-TOML = """[[pass]]
-name = "grow"
-use = "./step"
-repeat = "frames"
-feedback = { own = "state" }
-[[pass]]
-name = "after"
-use = "./show"
-inputs = { state = "grow:shown" }
-"""
+TOML = passes(
+    grow=("./step", 'repeat = "frames"', 'feedback = { own = "state" }'),
+    after=("./show", 'inputs = { state = "grow:shown" }'),
+)
 
 
 @pytest.fixture

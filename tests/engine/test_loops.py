@@ -55,21 +55,16 @@ silt = "move:left"
 flow = "flow:flow"
 """
 )
-SKETCH = """
-[[pass]]
-name = "start"
-use = "./start"
-[[pass]]
-name = "rain"
-use = "./rain"
-inputs = { water = "start:water" }
-repeat = "REPEAT"
-feedback = { water = "water", silt = "silt" }
-[[pass]]
-name = "after"
-use = "./flow"
-inputs = { water = "rain:water" }
-"""
+SKETCH = "\n" + passes(
+    start="./start",
+    rain=(
+        "./rain",
+        'inputs = { water = "start:water" }',
+        'repeat = "REPEAT"',
+        'feedback = { water = "water", silt = "silt" }',
+    ),
+    after=("./flow", 'inputs = { water = "rain:water" }'),
+)
 
 
 @pytest.fixture
@@ -185,12 +180,8 @@ def test_the_iteration_is_known_inside(engine, folder):
         "float kernel(ivec2 texel) { return texelFetch(sum_before, texel, 0).r + "
         "float(iteration) + 0.01 * float(iterations); }\n",
     )
-    folder.write(
-        "add_up.toml", '[[pass]]\nname="add"\nuse="./add"\n[inputs]\nsum_before = "add.sum_before"\n'
-    )
-    sketch = folder.sketch(
-        '[[pass]]\nname = "a"\nuse = "./add_up"\nrepeat = 5\nfeedback = { sum_before = "sum" }\n'
-    )
+    folder.write("add_up.toml", (passes(add="./add") + '[inputs]\nsum_before = "add.sum_before"\n'))
+    sketch = folder.sketch(passes(a=("./add_up", "repeat = 5", 'feedback = { sum_before = "sum" }')))
     np.testing.assert_allclose(engine.read(sketch, "a"), sum(range(5)) + 5 * 0.05, rtol=1e-5)
     stopped = engine.read(sketch, "a", steps={"a": 3})
     np.testing.assert_allclose(stopped, sum(range(3)) + 3 * 0.05, rtol=1e-5)
@@ -210,8 +201,7 @@ def test_pass_reading_iteration_runs_each_time_without_feedback(engine, folder):
     )
     folder.write(
         "add_up.toml",
-        '[[pass]]\nname="now"\nuse="./turn"\n[[pass]]\nname="add"\n'
-        'use="./add"\n[inputs]\nsum_before = "add.sum_before"\n',
+        (passes(now="./turn", add="./add") + '[inputs]\nsum_before = "add.sum_before"\n'),
     )
     sketch = folder.sketch(
         '[[pass]]\nname = "a"\nuse = "./add_up"\nrepeat = 5\nfeedback = { sum_before = "sum" }\n'
@@ -261,18 +251,16 @@ v = "go:v"
 slow = "slow:slow"
 """
 )
-OUTER_TOML = """
-[[pass]]
-name = "round"
-use = "./inner_loop"
-repeat = 3
-feedback = { before = "v" }
-[inputs]
+OUTER_TOML = (
+    "\n"
+    + passes(round=("./inner_loop", "repeat = 3", 'feedback = { before = "v" }'))
+    + """[inputs]
 fed = "round.fed"
 [outputs]
 v = "round:v"
 slow = "round:slow"
 """
+)
 
 
 def test_nested_loops(engine, folder):
@@ -280,9 +268,7 @@ def test_nested_loops(engine, folder):
         folder.write(f"{name}.glsl", text)
     folder.write("inner_loop.toml", INNER_TOML)
     folder.write("outer.toml", OUTER_TOML)
-    sketch = folder.sketch(
-        '[[pass]]\nname="o"\nuse="./outer"\nrepeat="floor(time)"\nfeedback={ fed = "v" }\n'
-    )
+    sketch = folder.sketch(passes(o=("./outer", 'repeat="floor(time)"', 'feedback={ fed = "v" }')))
     y, x = np.mgrid[0:17, 0:17]
     for time in (2.0, 5.0, 1.0):
         fed, v, slow = np.zeros((17, 17)), np.zeros((17, 17)), np.zeros((17, 17))

@@ -14,6 +14,7 @@ from playground.sketch.techniques import read_technique
 
 from ..loading import load
 from ..plans import plans_made_whole
+from ..sketch_texts import passes
 
 HILLS = """#pragma kernel(output = "height:r32f")
 uniform int seed = 3; //! slider(0, 99)
@@ -35,13 +36,10 @@ void kernel(ivec2 texel, out float height, out vec2 moved) {
     height = here + (moved.x + moved.y) / (relief + base_elevation);
 }
 """
-SLUMPS = """
-[[pass]]
-name = "slump"
-use = "./slump"
-repeat = "6"
-feedback = { height_before = "height" }
-[inputs]
+SLUMPS = (
+    "\n"
+    + passes(slump=("./slump", 'repeat = "6"', 'feedback = { height_before = "height" }'))
+    + """[inputs]
 height_before = "slump.height_before"
 rain = "slump.rain"
 [parameters]
@@ -50,21 +48,12 @@ rate = "slump.rate"
 height = "slump:height"
 moved = "slump:moved"
 """
-SKETCH = """extent = [320.0, 240.0]
-relief = 40.0
-base_elevation = 7.0
-[[pass]]
-name = "hills"
-use = "./hills"
-[[pass]]
-name = "rain"
-use = "./rain"
-[[pass]]
-name = "a"
-use = "./slumps"
-inputs = { height_before = "hills", rain = "rain" }
-set = { rate = 0.25 }
-"""
+)
+SKETCH = "extent = [320.0, 240.0]\nrelief = 40.0\nbase_elevation = 7.0\n" + passes(
+    hills="./hills",
+    rain="./rain",
+    a=("./slumps", 'inputs = { height_before = "hills", rain = "rain" }', "set = { rate = 0.25 }"),
+)
 OPTIONS = {"spacing": (320.0 / 16, 240.0 / 12), "relief": 40.0, "base_elevation": 7.0}
 
 

@@ -12,17 +12,13 @@ from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 
 from ..loading import load
+from ..sketch_texts import map_of, passes
 
-SKETCH = """format = 1
-[[pass]]
-name = "photo"
-use = "foreign/image"
-set = { image = "a.png" }
-size = SIZE
-[view]
-use = "view/map"
-inputs = { shown = "photo" }
-"""
+SKETCH = (
+    "format = 1\n"
+    + passes(photo=("foreign/image", 'set = { image = "a.png" }', "size = SIZE"))
+    + map_of("photo")
+)
 
 
 def picture(path: Path, width: int, height: int) -> None:

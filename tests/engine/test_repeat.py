@@ -124,10 +124,7 @@ void kernel(ivec2 texel, out float a, out vec2 b) {
 def test_several_outputs_change_places_together(engine, folder):
     folder.write("one.glsl", TWO)
     folder.write("numbers.glsl", NUMBERS)
-    sketch = folder.sketch(
-        '[[pass]]\nname = "n"\nuse = "./numbers"\n'
-        '[[pass]]\nname = "p"\nuse = "./one"\ninputs = { initial_a = "n" }\n'
-    )
+    sketch = folder.sketch(passes(n="./numbers", p=("./one", 'inputs = { initial_a = "n" }')))
     a, b = numbers(), np.zeros((17, 17, 2))
     for _ in range(3):
         a, b = a + 1, np.stack([b[..., 1] + a, b[..., 0] + 2], axis=-1)

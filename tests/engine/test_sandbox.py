@@ -21,6 +21,7 @@ from playground.engine.sandbox import Sandbox, SandboxReport, TryLibrary, TrySke
 from playground.errors import SandboxCrash, SandboxTimeout, ShaderError
 
 from ..loading import load
+from ..sketch_texts import passes
 
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 90.0  # [s] for what happens soon on any machine that is not busy
@@ -117,12 +118,7 @@ AFTER = """#pragma kernel(output = "b:r32f")
 uniform sampler2D count;  //! input
 float kernel(ivec2 texel) { return texelFetch(count, texel, 0).r + 1.0; }
 """
-COUNTING = """[[pass]]
-name     = "counted"
-use      = "./counts"
-repeat   = "frames"
-feedback = { own = "a" }
-"""
+COUNTING = passes(counted=("./counts", 'repeat   = "frames"', 'feedback = { own = "a" }'))
 
 
 @pytest.mark.parametrize("wrong", [False, True])
@@ -300,8 +296,7 @@ def test_the_pass_that_takes_too_long_is_the_one_that_is_named(sandbox, folder, 
     folder.write("slow.glsl", SLOW.replace("1000", "1"))  # one draw, which is only queued
     folder.write("after.glsl", after)
     sketch = folder.sketch(
-        '[[pass]]\nname = "slow"\nuse = "./slow"\nsize = 257\n'
-        '[[pass]]\nname = "after"\nuse = "./after"\ninputs = { from = "slow" }\n'
+        passes(slow=("./slow", "size = 257"), after=("./after", 'inputs = { from = "slow" }'))
     )
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
     with monkeypatch.context() as patch:

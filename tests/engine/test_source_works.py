@@ -21,6 +21,7 @@ from playground.engine.unfinished import SourceUnfinished, SourceWorks
 from playground.errors import DataError, PlaygroundError
 
 from ..loading import load
+from ..sketch_texts import map_of, passes
 
 RAMP = """#pragma kernel(output = "ramp:r32f")
 uniform float rise = 1.0;  //! slider(0, 9)
@@ -31,21 +32,13 @@ SOURCE = """#pragma source("turned", output = "height:r32f", reads = "spacing, r
 uniform sampler2D given;       //! input("black")
 uniform float gain = 1.0;      //! slider(0, 9)
 """
-BODY = """relief = 70.0
-extent = [160.0, 320.0]
-[[pass]]
-name = "ramp"
-use = "./ramp"
-size = [5, 3]
-[[pass]]
-name = "height"
-use = "./source"
-size = [9, 17]
-inputs = { given = "ramp" }
-[view]
-use = "view/map"
-inputs = { shown = "height" }
-"""
+BODY = (
+    "relief = 70.0\nextent = [160.0, 320.0]\n"
+    + passes(
+        ramp=("./ramp", "size = [5, 3]"), height=("./source", "size = [9, 17]", 'inputs = { given = "ramp" }')
+    )
+    + map_of("height")
+)
 
 
 class Turned:

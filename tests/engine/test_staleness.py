@@ -138,9 +138,7 @@ def test_the_camera_matters_to_what_names_it(engine, folder):
         "eye.glsl", '#pragma kernel(output = "e:r32f")\nfloat kernel(ivec2 texel) { return eye.x; }\n'
     )
     folder.write("terrain.glsl", TERRAIN)
-    sketch = folder.sketch(
-        '[[pass]]\nname = "height"\nuse = "./terrain"\n[[pass]]\nname = "e"\nuse = "./eye"\n'
-    )
+    sketch = folder.sketch(passes(height="./terrain", e="./eye"))
     engine.texture(sketch, "e")
     engine.texture(sketch, "height")
     turned = replace(sketch, camera=replace(sketch.camera, azimuth=10.0))
@@ -226,9 +224,7 @@ def test_mipmaps_count(ctx, folder):
         "far.glsl", LIGHT.replace("//! input", '//! input("linear", "mipmap")').replace("height", "a")
     )
     folder.write("one.glsl", TERRAIN)
-    sketch = folder.sketch(
-        '[[pass]]\nname="a"\nuse="./one"\n[[pass]]\nname="b"\nuse="./far"\n', size="size = 64"
-    )
+    sketch = folder.sketch(passes(a="./one", b="./far"), size="size = 64")
     with Engine(ctx) as engine:
         engine.texture(sketch, "a")
         before = engine.cache.bytes

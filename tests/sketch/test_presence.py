@@ -13,6 +13,8 @@ from playground.sketch.flatten import flatten
 from playground.sketch.techniques import read_technique
 from playground.sketch.wiring import as_wired, deciding_inputs, form_of, input_names, missing_input
 
+from ..sketch_texts import passes
+
 NUMBER = """
 #pragma kernel(output = "{name}:r32f")
 uniform float {name}_is = {value};  //! slider(0, 100)
@@ -36,23 +38,19 @@ void kernel(ivec2 texel, out float more, out float twice) {
     twice = 2.0 * more;
 }
 """
-INNER = """
-[[pass]]
-name = "plain"
-use = "./plain"
-[[pass]]
-name = "added"
-use = "./added"
-inputs = { density = "density" }
-[[pass]]
-name = "sum"
-use = "./sum"
-inputs = { base = ["added:more", "plain"], extra = ["added:twice"] }
-[inputs]
+INNER = (
+    "\n"
+    + passes(
+        plain="./plain",
+        added=("./added", 'inputs = { density = "density" }'),
+        sum=("./sum", 'inputs = { base = ["added:more", "plain"], extra = ["added:twice"] }'),
+    )
+    + """[inputs]
 density = "added.density"
 [parameters]
 "*" = "*"
 """
+)
 OUTER = """
 [[pass]]
 name = "within"
@@ -62,15 +60,7 @@ density = "within.density"
 [parameters]
 by = "within.by"
 """
-END = """
-[[pass]]
-name = "plain"
-use = "./plain"
-[[pass]]
-name = "end"
-use = "./sum"
-inputs = { base = ["within", "plain"] }
-"""
+END = "\n" + passes(plain="./plain", end=("./sum", 'inputs = { base = ["within", "plain"] }'))
 VIEW = '[view]\nuse = "view/map"\ninputs = { shown = "it" }\n'
 
 

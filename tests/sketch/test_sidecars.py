@@ -15,18 +15,14 @@ from playground.sketch.load import load
 from playground.sketch.save import save, save_copy
 from playground.studio.reload.dependencies import data_files
 
+from ..sketch_texts import passes
+
 KERNEL = """// k.glsl -- a picture
 #pragma kernel(output = "height:r32f")
 uniform sampler2D shape; //! file
 float kernel(ivec2 texel) { return texelFetch(shape, texel, 0).r; }
 """
-SKETCH = """format = 1
-size = 17
-[[pass]]
-name = "height"
-use = "./k"
-set = { shape = "data/a.bil" }
-"""
+SKETCH = "format = 1\nsize = 17\n" + passes(height=("./k", 'set = { shape = "data/a.bil" }'))
 
 
 def grid(path: Path, *endings: str) -> Path:

@@ -11,19 +11,11 @@ from playground.sketch.model import VARIANTS, kernels_of
 from playground.sketch.replace_technique import with_texts
 from playground.sketch.variants import active_variant, trusted
 
+from ..sketch_texts import passes
 from .conftest import TERRAIN, VIEW
 
-NESTED = """\
-[[pass]]
-name = "height"
-use = "./hill"
-"""
-HILL = """\
-title = "A hill"
-[[pass]]
-name = "slope"
-use = "./terrain"
-"""
+NESTED = passes(height="./hill")
+HILL = 'title = "A hill"\n' + passes(slope="./terrain")
 
 
 def kernels(sketch):
