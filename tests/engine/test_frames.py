@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.errors import ShaderError
 from playground.shader.reserved_names import CLOCKED
 from playground.sketch.traits import has_moving_counts, is_animated
 
@@ -218,13 +217,3 @@ def test_inner_loop_and_siblings_use_time_of_outer_frame(engine, folder):
 def test_a_sketch_that_counts_frames_is_known_to_move(sketch):
     assert is_animated(sketch)
     assert has_moving_counts(sketch)
-
-
-def test_parameter_named_frames_is_refused_in_frame_loop(folder):
-    folder.write(
-        "p.glsl",
-        '#pragma kernel(output = "v:r32f", repeat = "frames")\nuniform int frames = 3;\n'
-        "float kernel(ivec2 texel) { return previous(texel) + 1.0; }\n",
-    )
-    with pytest.raises(ShaderError, match=r"p\.glsl:1.*'frames' is the number of frames at a time"):
-        folder.sketch('[[pass]]\nname = "a"\nuse = "./p"\n')

@@ -7,7 +7,6 @@ import pytest
 
 from playground.engine.software import Software
 from playground.engine.tuning import Tuning
-from playground.errors import ShaderError
 
 ASKS = """#pragma kernel(output = "given:rgba32f")
 uniform sampler2D wind;  //! input("black")
@@ -109,10 +108,3 @@ def test_whether_an_input_has_the_size_of_the_pass(each_engine, folder):
         sketch = folder.sketch(f'[[pass]]\nname = "wind"\nuse = "./blows"\n{size}{PASS}')
         assert tuple(each_engine.read(sketch, "asked")[3, 2]) == value
     assert tuple(each_engine.read(folder.sketch(PASS), "asked")[0, 0]) == (0, 0)
-
-
-@pytest.mark.parametrize("name", ["matches_wind", "wired_wind", "towards_sun", "wired_", "towards_anything"])
-def test_their_names_are_taken(folder, name):
-    body = f"uniform float {name} = 1.0;\nfloat kernel(ivec2 texel) {{ return {name}; }}\n"
-    with pytest.raises(ShaderError, match=f"'{name}' is given to every kernel"):
-        folder.one('#pragma kernel(output = "a:r32f")\n' + body)

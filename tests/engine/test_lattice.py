@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from playground.engine.engine import Engine
 from playground.engine.plan import PlanRequest
 from playground.engine.planner import make_plan
-from playground.errors import PlaygroundError
 from playground.sketch.model import Sketch
 
 from ..loading import load
@@ -130,19 +129,3 @@ def test_interpolated_picture_has_its_own_fingerprint_and_hash(engine: Engine, t
     drawn = engine.drawn()
     engine.render(sketch, size=(9, 9), steps=steps, interpolated=False)
     assert engine.drawn() != drawn
-
-
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ('between = "squares"', "give the kernel a stride"),
-        ('visits = "1, 1", stride = "1", between = "sqares"', "did you mean 'squares'"),
-    ],
-)
-def test_mistakes_in_between(tmp_path: Path, options: str, words: str) -> None:
-    text = f'#pragma kernel(output = "height:r32f", repeat = "2", {options})\n'
-    text += "ivec2 visit(ivec2 c) { return c; }\nfloat kernel(ivec2 texel) { return previous(texel); }\n"
-    (tmp_path / "k.glsl").write_text(text, encoding="utf-8")
-    with pytest.raises(PlaygroundError) as caught:
-        load(tmp_path / "k.glsl")
-    assert words in str(caught.value)

@@ -14,7 +14,6 @@ import playground
 from playground import cli
 from playground.engine import sandbox as sandbox_module
 from playground.engine.sandbox import Sandbox
-from playground.errors import PlaygroundError
 from playground.studio.problems.problems import Warnings
 from playground.verify.check import check_file
 
@@ -166,16 +165,3 @@ def test_parameters_that_make_no_sense_together_are_warned_of(any_engine, folder
     any_engine.read(sketch, "a")
     assert len(names) == (message is not None)
     assert all(each.startswith("pass 'a': ") and str(message) in each for each in names)
-
-
-@pytest.mark.parametrize(
-    ("warns", "message"),
-    [("speed > 1", "expected condition: message"), ("sped > 1: too fast", "did you mean 'speed'")],
-)
-def test_a_condition_is_checked_where_it_is_written(folder, warns, message):
-    text = (
-        f'#pragma kernel(output = "a:r32f", warns = "{warns}")\nuniform float speed = 1.0; //! slider(0, 9)\n'
-    )
-    folder.write("a.glsl", text + "float kernel(ivec2 texel) { return speed; }\n")
-    with pytest.raises(PlaygroundError, match=message):
-        folder.sketch('[[pass]]\nname = "a"\nuse = "./a"\n')

@@ -240,25 +240,6 @@ def test_step_of_batched_iterations_continues_from_previous(engine, folder):
     np.testing.assert_array_equal(steps[-1][1], engine.read(sketch, "a"))
 
 
-@pytest.mark.parametrize(
-    ("header", "complaint"),
-    [
-        ('at_once = "4"', "one step only"),
-        ('repeat = "3", at_once = "4"', "never names until"),
-        ('repeat = "3", visits = "1, 1", at_once = "4"', "one or the other"),
-        ('repeat = "3", at_once = "four"', "at_once"),
-        ('repeat = "3", stride = "2"', "give the kernel visits"),
-        ('repeat = "3", visits = "1, 1", stride = "wide"', "stride"),
-    ],
-)
-def test_a_header_that_says_how_iterations_run_is_checked(folder, header, complaint):
-    body = "float kernel(ivec2 texel) { return previous(texel); }"
-    text = f'#pragma kernel(output = "a:r32f", {header})\n{body}\n'
-    with pytest.raises(PlaygroundError, match=complaint) as raised:
-        folder.one(text)
-    assert raised.value.diagnostics[0].line == 1
-
-
 # Every texel of an ever finer lattice is its south-western neighbour a stride away, plus the iteration.
 LATTICE = """#pragma kernel(output = "a:r32f", repeat = "log2(size.x - 1) + 1", STRIDE
     visits = "2**iteration + 1, (size.y - 1) // (size.x - 1) * 2**iteration + 1")

@@ -172,46 +172,6 @@ def test_what_is_set_by_user_stays(sketch: Sketch):
     assert dict(turned.at(2.0).overrides) == values(sketch, 2.0)
 
 
-GAIN = "set = { 'light.gain' = 2 }\n"
-
-
-def keyframe(*lines: str) -> str:
-    return "\n".join(["[[keyframe]]", *lines]) + "\n"
-
-
-TWO = keyframe("time = 2", GAIN.strip())
-MISTAKES = [
-    (keyframe(GAIN), 13, "a keyframe needs time = …"),
-    (keyframe("time = 1"), 13, "keyframe at 1 s: it sets nothing; expected camera"),
-    (keyframe("time = -1", GAIN), 14, "time = -1: expected seconds from 0"),
-    (keyframe("time = 'x'"), 14, "time = 'x': expected a finite number"),
-    (keyframe("time = 1", "sat = 1"), 15, "no key 'sat' here; did you mean 'set'?"),
-    (TWO + TWO, 17, "time = 2: there is one at that time, on line 13; times must increase"),
-    (TWO + keyframe("time = 1", GAIN), 17, "time = 1: the one before is at 2 s, on line 13"),
-    (keyframe("time = 1", "[keyframe.set]", "'light.gian' = 2"), 16, "did you mean 'light.gain'?"),
-    (keyframe("time = 1", "[keyframe.set]", "light.gain = 900"), 16, "900 is outside its range"),
-    (keyframe("time = 1", "set = { size = 65 }"), 15, "'size' is the terrain's"),
-    (keyframe("time = 1", GAIN.strip(), "ease = 'soft'"), 16, "expected smooth, linear, hold"),
-    (keyframe("time = 1", "camera = { elevation = 95 }"), 15, "elevation = 95: expected -89 to 89"),
-    (
-        keyframe("time = 1", "camera = { distance = 0 }") + keyframe("time = 2", "camera = { distance = 5 }"),
-        15,
-        "distance = 0 shows the whole terrain",
-    ),
-    ("[keyframe]\ntime = 1", 13, "[keyframe]: expected [[keyframe]]"),
-]
-
-
-@pytest.mark.parametrize(
-    ("keys", "line", "sentence"), MISTAKES, ids=[sentence for _, _, sentence in MISTAKES]
-)
-def test_a_mistake_is_a_sentence_with_its_line(write, keys: str, line: int, sentence: str):
-    with pytest.raises(SketchError) as caught:
-        load(write(keys))
-    assert sentence in str(caught.value)
-    assert caught.value.diagnostics[0].line == line
-
-
 def test_one_parameter_may_not_have_two_names(write):
     keys = "[[keyframe]]\ntime = 1\nset = { 'view.haze' = 0.1 }\n"
     keys += "[[keyframe]]\ntime = 2\nset = { 'view.land.haze' = 0.2 }"

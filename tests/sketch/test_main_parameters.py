@@ -24,18 +24,6 @@ def test_a_sketch_lists_its_main_parameters(folder):
 
 
 @pytest.mark.parametrize(
-    ("main", "words"),
-    [
-        ('["height.rise", "height.rise"]', "'height.rise' appears twice"),
-        ('"height.rise"', "expected a list"),
-        ("[1]", "expected paths of parameters"),
-    ],
-)
-def test_a_wrong_one_is_refused_at_its_line(folder, main, words):
-    folder.refused(words, line=2, head=f"format = 1\nmain = {main}\n")
-
-
-@pytest.mark.parametrize(
     ("path", "words"), [("height.rize", "did you mean 'height.rise'"), ("relief", "no parameter 'relief'")]
 )
 def test_one_that_is_gone_is_left_out_with_a_warning(folder, path, words):
@@ -44,11 +32,6 @@ def test_one_that_is_gone_is_left_out_with_a_warning(folder, path, words):
     assert sketch.main == ("height.rise",)
     assert warning.message.startswith(f"main leaves out {path}: ") and words in warning.message
     assert warning.line == 2
-
-
-def test_a_technique_does_not_take_the_key(folder):
-    folder.write("two.toml", 'main = ["a.rise"]\n[[pass]]\nname = "a"\nuse = "./terrain"\n')
-    folder.refused("no key 'main' here", 1, "two.toml", body='[[pass]]\nname = "height"\nuse = "./two"\n')
 
 
 def test_it_stays_when_a_value_is_saved(folder):

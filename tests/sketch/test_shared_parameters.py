@@ -103,25 +103,6 @@ def test_kernel_declares_differing_parameter_and_includes_rest(folder: Folder) -
     assert (gain.default, gain.label, steps.default) == (1.0, "Brightness", 4)
 
 
-@pytest.mark.parametrize(
-    ("text", "line", "words"),
-    [
-        ("\nuniform float a = 1.0;  //! slidr(0, 1)\n", 2, "no widget 'slidr'"),
-        ("\nuniform float a = 1.0;  //! slider(1, 0)\n", 2, "slider of 'a'"),
-        ('uniform float a;  //! slider(0, 1)\n  //! unit("m")\n//! grup("Sun") Words\n', 3, "'group'"),
-        ("uniform float a;  //! step(1)\n//! step(2)\n", 2, "'step' appears twice"),
-        ("uniform float a;  //! step(1)\n//! slider(0,\n", 2, "'slider(' is not closed"),
-    ],
-)
-def test_error_in_included_annotation_is_reported_at_its_line(
-    folder: Folder, text: str, line: int, words: str
-) -> None:
-    folder.write(shared=text)
-    message, *position = folder.refused(f'{PRAGMA}\n#include "shared.glsl"\n')
-    assert words in message
-    assert position == ["shared.glsl", line, ("kernel.glsl:3",)]
-
-
 def test_what_no_code_reads_is_reported_at_its_declaration(folder: Folder) -> None:
     diagnostics = unread(
         folder.kernel(f'{PRAGMA}#include "sun.glsl"\nfloat kernel(ivec2 t) {{ return gain; }}\n')
@@ -176,24 +157,3 @@ def test_where_applies_to_groups_and_buffer_counts_not_names(folder: Folder) -> 
     assert [(b.name, b.type, b.count) for b in kernel.storage.buffers] == [
         ("row", "float", "(size.x + 1) * size.y * (2)")
     ]
-
-
-@pytest.mark.parametrize(
-    ("where", "words"),
-    [
-        ("half", "expected name = expression"),
-        ("2 = size.x", "expected name = expression"),
-        ("half = size.z", "where 'half': "),
-        ("half = later; later = 2", "where 'half': "),
-        ("half = 2; half = 3", "the name 'half' is taken"),
-        ("steps = 2", "the name 'steps' is taken"),
-        ("max = 2", "the name 'max' is taken"),
-    ],
-)
-def test_mistakes_in_where(folder: Folder, where: str, words: str) -> None:
-    text = (
-        f'#pragma kernel(output = "height:r32f", where = "{where}", repeat = "2")\nuniform int steps = 3;\n'
-    )
-    message, *position = folder.refused(text)
-    assert words in message
-    assert position == ["kernel.glsl", 1, ()]

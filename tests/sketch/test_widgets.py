@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from playground.commands.entries import Choice
-from playground.errors import ParameterError, ShaderError
+from playground.errors import ParameterError
 from playground.publish.sweep import parts_of, sweep_text
 from playground.shader.parameter import coerce, expected, write
 from playground.sketch.load import load
@@ -50,31 +50,6 @@ def test_what_an_annotation_says(sketch):
     assert (result["place"].widget.low, result["place"].widget.high) == (-1.0, 4.0)
     assert (result["even"].widget.axes, result["even"].widget.low) == ((), -2.0)
     assert (result["go"].widget.kind, result["go"].default, result["go"].title) == ("button", False, "Go!")
-
-
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        (
-            'uniform int a = 2;  //! menu("x", "y") values(1, 4)',
-            "is 2; its menu's values are 1, 4",
-        ),
-        ('uniform int a = 1;  //! menu("x", "y") values(1)', "expected 2 whole numbers"),
-        ('uniform int a = 1;  //! menu("x", "y") values(1, 2.5)', "expected 2 whole numbers"),
-        ("uniform int a = 1;  //! slider(0, 4) values(1, 4)", "a menu before it"),
-        ("uniform bool a = true;  //! button", "must be false"),
-        ("uniform float a;  //! button", "button is for bool"),
-        ("uniform vec2 a;  //! point(1)", "two numbers, the lower first"),
-        ("uniform vec2 a;  //! point(0, 1, 2)", "two numbers, the lower first"),
-        ("uniform vec2 a = vec2(2.0);  //! point(0, 1)", "outside its range 0 to 1"),
-        ("uniform vec2 a = vec2(0.5, 0.5);  //! point(0, 1, 2, 4)", "outside its range 2 to 4"),
-    ],
-)
-def test_what_is_refused_at_its_line(folder, line, words):
-    text = f'#pragma kernel(output = "h:r32f")\n{line}\nfloat kernel(ivec2 t) {{ return 0.0; }}\n'
-    with pytest.raises(ShaderError, match=words) as caught:
-        load(folder.write("b.glsl", text))
-    assert caught.value.diagnostics[0].line == 2
 
 
 def test_values_are_taken_and_written(sketch):

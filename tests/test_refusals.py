@@ -1,0 +1,76 @@
+"""Each row of ``refusals/*.toml`` is refused in one message at its line, which names what is wrong."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from playground.errors import PlaygroundError, ShaderError
+from playground.shader.header import parse_kernel
+from playground.shader.source import read_source
+
+from .cases import each
+from .sketch.conftest import PASS, TAIL, Folder
+
+KERNEL = '#pragma kernel(output = "height:r32f")\n'
+Row = dict[str, Any]
+
+
+def rows(name: str) -> list[Row]:
+    """Return the rows of a file of ``tests/refusals``."""
+    path = Path(__file__).parent / "refusals" / f"{name}.toml"
+    result: list[Row] = tomllib.loads(path.read_text("utf-8"))["rows"]
+    return result
+
+
+def assert_refused(act: Callable[[], object], row: Row, file: str, line: int | None) -> PlaygroundError:
+    """Assert that an act is refused as a row says, at a line of a file."""
+    with pytest.raises(PlaygroundError) as caught:
+        act()
+    first = caught.value.diagnostics[0]
+    assert row["names"] in first.message and "\n" not in first.message, first
+    assert Path(first.file).name == file and first.line == (first.line if line is None else line), first
+    return caught.value
+
+
+@each("row", rows("sketch"), ids=lambda row: row["names"])
+def test_a_mistake_in_a_sketch_is_refused_at_its_line(row: Row, tmp_path: Path) -> None:
+    folder = Folder(tmp_path / "mine")
+    head = row.get("head", f"format = 1\n{row.get('top', '')}\n" if "top" in row else "format = 1\n")
+    body = row.get("body", PASS + (f"{row['pass']}\n" if "pass" in row else ""))
+    tail = row.get("tail", TAIL + (f"{row['view']}\n" if "view" in row else ""))
+    file = "s.toml"
+    if "technique" in row:
+        body, file = PASS.replace("terrain", "t"), "t.toml"
+        folder.write(file, row["technique"])
+    assert_refused(lambda: folder.sketch(body, tail, head), row, file, row.get("line"))
+
+
+@each("row", rows("kernel"), ids=lambda row: row["names"])
+def test_a_mistake_in_a_kernel_is_refused_at_its_line(row: Row, tmp_path: Path) -> None:
+    texts = []
+    if "pragma" in row:
+        texts = [(f"{row['pragma']}\n", 1), (f"// first\n{row['pragma']}\n", 2)]
+    elif "code" in row:
+        texts = [(f"{KERNEL}float f;\n{row['code']}\n", 3)]
+    elif "shared" in row:
+        (tmp_path / "shared.glsl").write_text(row["shared"], "utf-8")
+        texts = [(f'{KERNEL}\n#include "shared.glsl"\n', row["line"])]
+    else:
+        texts = [(row["text"], row["line"])]
+    for text, line in texts:
+        (tmp_path / "k.glsl").write_text(text, "utf-8")
+        file = "shared.glsl" if "shared" in row else "k.glsl"
+        error = assert_refused(
+            lambda: parse_kernel("k", read_source(tmp_path / "k.glsl", (tmp_path,))), row, file, line
+        )
+        first = error.diagnostics[0]
+        assert isinstance(error, ShaderError)
+        if "shared" in row:
+            assert [Path(position).name for position in first.chain] == ["k.glsl:3"]
+        else:
+            assert first.excerpt == text.split("\n")[line - 1]
