@@ -103,18 +103,6 @@ def test_variants_that_ship_are_named_as_techniques_are(capsys):
     assert "fourier.comp" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(
-    ("what", "words"),
-    [
-        ("generation/forrier", "there is no file and no technique 'generation/forrier'; did you mean"),
-        ("generation/white_noise", "there is no fast variant in generation/white_noise"),
-    ],
-)
-def test_nothing_to_verify_is_a_sentence(capsys, what, words):
-    assert main(["variants", "verify", what]) == 2
-    assert words in capsys.readouterr().err
-
-
 @pytest.mark.slow
 def test_every_shipped_sketch_runs_its_fast_variants():
     """None of those that ship is left out: the record is that of the texts."""

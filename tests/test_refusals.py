@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -9,12 +10,14 @@ from typing import Any
 
 import pytest
 
+from playground import cli
 from playground.errors import PlaygroundError, ShaderError
 from playground.shader.header import parse_kernel
 from playground.shader.source import read_source
 
 from .cases import each
 from .sketch.conftest import PASS, TAIL, Folder
+from .sketch_texts import LIT_NOISE, SMALL_VIEW, passes
 
 KERNEL = '#pragma kernel(output = "height:r32f")\n'
 Row = dict[str, Any]
@@ -74,3 +77,55 @@ def test_a_mistake_in_a_kernel_is_refused_at_its_line(row: Row, tmp_path: Path) 
             assert [Path(position).name for position in first.chain] == ["k.glsl:3"]
         else:
             assert first.excerpt == text.split("\n")[line - 1]
+
+
+SLOPE = """// rise.glsl -- a slope that rises to the north.
+#pragma kernel(output = "height:r32f")
+uniform float rise = 1.0;  //! slider(0, 4) How high the northern edge is
+float kernel(ivec2 texel) { return rise * float(texel.y) / float(size.y - 1); }
+"""
+COLOUR = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) { return vec4(0.5); }\n'
+RISE = f"""format = 1
+size = 17
+{passes(height="./rise", colour="./wave")}[view]
+use = "view/terrain"
+[[preset]]
+name = "half"
+set = {{ "height.rise" = 0.5 }}
+[[shot]]
+name = "quarter"
+set = {{ "height.rise" = 0.25 }}
+"""
+FILM = f"""format = 1
+size = 33
+{LIT_NOISE}{SMALL_VIEW}[[keyframe]]
+time = 0.5
+set = {{ "light.gain" = 2.0 }}
+"""
+COMPUTE = """#version 430
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(rgba16f, binding = 0) uniform writeonly image2D picture;
+void main() { imageStore(picture, ivec2(gl_GlobalInvocationID.xy), vec4(1.0)); }
+"""
+FILES = {"note.txt": "a note", "terrain.toml": FILM, "all.comp": COMPUTE, "rise/sketch.toml": RISE}
+FILES |= {
+    "rise/rise.glsl": SLOPE,
+    "rise/wave.glsl": COLOUR,
+    "rise/flat.glsl": SLOPE.replace("rise *", "0.0 *"),
+}
+
+
+@pytest.mark.parametrize("row", rows("command"), ids=lambda row: row["command"])
+def test_a_mistake_in_a_command_is_one_line_and_status_2(
+    row: Row, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    for folder in ("empty", "rise"):
+        (tmp_path / folder).mkdir()
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text)
+    monkeypatch.chdir(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    assert cli.main(shlex.split(row["command"])) == 2
+    out, error = capfd.readouterr()
+    assert out == "" and error.startswith("error: ") and row["names"] in error
+    assert len(error.splitlines()) == 1 and sorted(tmp_path.rglob("*")) == before

@@ -104,9 +104,7 @@ def test_the_doctor_says_size_and_place(cached: Path, capsys: pytest.CaptureFixt
     assert f"3 files, 512 KiB of at most 1.0 GiB, in {cache_directory()}" in capsys.readouterr().out
 
 
-def test_a_mistake_is_one_sentence(cached: Path, capsys: pytest.CaptureFixture[str]):
-    assert cli.main(["cache", "shwo"]) == 2
-    assert "no command 'shwo' in playground cache; did you mean 'show'?" in capsys.readouterr().err
+def test_the_group_alone_lists_its_commands(cached: Path, capsys: pytest.CaptureFixture[str]):
     assert cli.main(["cache"]) == 0
     assert "playground cache clear" in capsys.readouterr().out
 

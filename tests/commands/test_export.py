@@ -11,7 +11,6 @@ import pytest
 
 from playground import cli
 from playground.publish.commands.export import HELP
-from playground.publish.extensions import ENDINGS
 
 from ..elevations import write_geotiff
 from ..sketch_texts import map_of, passes
@@ -114,63 +113,6 @@ def test_bits_range_grid_and_driver_are_heard(folder: Path, capsys: pytest.Captu
     )
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--to", "terrain.gltf"], "terrain.gltf: nothing is exported as '.gltf'; did you mean '.glb'?"),
-        (["--to", "terrain.tif16"], "terrain.tif16: nothing is exported as '.tif16'; did you mean '.tif'?"),
-        (["--to", "a.zip"], f"nothing is exported as '.zip'; expected one of {', '.join(ENDINGS)}"),
-        *((["--to", f"a.{e}"], f"nothing is exported as '.{e}'; a mesh is .glb or .obj")
-          for e in ("blend", "fbx", "stl", "ply")),
-        (["--to", "a.toml"], "nothing is exported as '.toml'; a sketch is packed by playground pack"),
-        (["--to", "a.asc"], "nothing is exported as '.asc'; heights are .tif, .npy,"),
-        (["--to", "a.bmp"], "nothing is exported as '.bmp'; a picture is .png, .webp or .jpg"),
-        (["--to", "a.hlsl"], "nothing is exported as '.hlsl'; a shader is .fs, .frag, .json or .glsl"),
-        (["--to", "a.mp4"], "exported as '.mp4'; a video is what playground render --video writes"),
-        (["--to", "a.gbl"], "nothing is exported as '.gbl'; did you mean '.glb'?"),
-        (["--to", "terrain"], "terrain: the name has no ending; expected one of .png"),
-        (["--to", "no/terrain.png"], "no/terrain.png: there is no folder 'no' to write into"),
-        (["--to", "rise"], "rise: is a folder; expected the name of a file to write"),
-        (["--to", "a.png", "--to", "a.png"], "--to a.png: a.png would be written twice"),
-        (["--to", "a.obj", "--to", "a-texture.png"], "a-texture.png would be written twice"),
-        (["--to", "a.jpg"], "a.jpg: .jpg does not hold heights; .png"),
-        (["--to", "a.png", "--texture", "colr"], "no pass 'colr' in sketch rise; did you mean 'colour'?"),
-        (["--to", "a.png", "--texture", "height:water"], "pass 'height' has no output 'water'"),
-        (["--to", "a.r16", "--texture", "colour"], "a.r16: .r16 does not hold colours"),
-        (["--to", "a.png", "--as", "heights"], "a texture is not 'heights'; expected height, colour"),
-        (["--to", "a.npy", "--bits", "16"], "a.npy: .npy has 32 bits for these, not 16"),
-        (["--to", "a.png", "--bits", "many"], "--bits many: expected a whole number above 0"),
-        (["--to", "a.png", "--range", "5"], "--range 5: expected two numbers, as 0,2500"),
-        (["--to", "a.png", "--range", "5,5"], "a range from 5 to 5; expected two numbers, the lower first"),
-        (["--to", "a.png", "--range", "nan,5"], "expected two numbers, the lower first"),
-        (["--to", "a.npy", "--range", "0,5"], "a.npy: a range is for whole numbers; floats hold any value"),
-        (["--to", "a.glb", "--range", "0,5"], "a.glb: a mesh has no bits and no range to choose"),
-        (["--to", "a.glb", "--grid", "1"], "a grid of 1 vertices a side: .glb takes 2 to 2049"),
-        (["--to", "a.obj", "--grid", "1026"], "a grid of 1026 vertices a side: .obj takes 2 to 1025"),
-        (["--to", "a.glb", "--grid", "-3"], "--grid -3: expected a whole number above 0"),
-        (["--to", "a.png", "--grid", "9"], "a.png: a grid is for a mesh: .glb or .obj"),
-        (["--to", "a.png", "--light"], "a.png: light baked in is for a mesh: .glb or .obj"),
-        (["--to", "a.glb", "--light"], "sketch rise has no light to bake in"),
-        (["--bits", "16"], "rise.glb: a mesh has no bits"),
-        (["--to", "a.png", "--shot", "third"], "no shot 'third' in sketch rise"),
-        (["--to", "a.png", "--preset", "third"], "no preset 'third'"),
-        (["--to", "a.png", "--set", "height.ryse=1"], "no parameter 'height.ryse' in sketch rise"),
-        (["--to", "a.png", "--steps", "height=1"], "no repeated pass 'height' in sketch rise"),
-        (["--to", "a.png", "--time", "noon"], "--time noon: expected a number of seconds"),
-        (["--to", "a.png", "--driver", "metal"], "--driver metal: expected auto, fragment or compute"),
-    ],
-    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
-)  # fmt: skip
-def test_a_mistake_is_one_sentence_and_status_2(
-    arguments: list[str], words: str, folder: Path, capsys: pytest.CaptureFixture[str]
-):
-    assert cli.main(["export", "rise", *arguments]) == 2
-    out, error = printed(capsys)
-    assert out == ""
-    assert error.startswith("error: ") and words in error and len(error.splitlines()) == 1
-    assert names(folder) == []
-
-
 def test_what_is_right_is_written_beside_mistakes(folder: Path, capsys: pytest.CaptureFixture[str]):
     """Each mistake once, at the end; of the sketch's, too, which shows when a file is prepared."""
     command = ["export", "rise", "--to", "a.fbx", "--to", "a.npy", "--to", "no/b.png", "--to", "c.npy"]
@@ -262,35 +204,6 @@ def test_a_shader_comes_in_by_a_pipe_and_leaves_by_one(
     assert cli.main(["export", "-", "--to", "-", "--format", "fs", "-q"]) == 0
     out, err = capfdbinary.readouterr()
     assert out.startswith(b"/*{") and b"0.5, 0.0, 0.0" in out and err == b""
-
-
-@pytest.mark.parametrize(
-    ("arguments", "sentence"),
-    [
-        (
-            ["--to", "-", "--format", "obj"],
-            "cannot go to standard output; it is more than one file; expected",
-        ),
-        (
-            ["--to", "-", "--format", "r16"],
-            "cannot go to standard output; it is more than one file; expected",
-        ),
-        (["--to", "-", "--format", "bmp"], "--format bmp cannot go to standard output; expected png, tif"),
-        (["--to", "-", "--to", "a.glb"], "--to - writes one file to standard output; leave the other"),
-        (
-            ["--to", "a.glb", "--format", "glb"],
-            "--format is for --to -; the name of a file says what it holds",
-        ),
-        (["--to", "-", "--format", "webp", "--texture", "height"], "height"),
-    ],
-)
-def test_what_cannot_be_piped_is_one_sentence(
-    arguments: list[str], sentence: str, capfd: pytest.CaptureFixture[str], folder: Path
-):
-    assert cli.main(["export", "rise", *arguments]) == 2
-    out, err = capfd.readouterr()
-    assert out == "" and err.startswith("error: ") and sentence in err and err.count("\n") == 1
-    assert [path.name for path in folder.iterdir()] == ["rise"]
 
 
 def test_a_terminal_gets_no_bytes(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]):

@@ -158,39 +158,6 @@ def test_two_menus_have_a_sketch_for_each_pair(folder: Path):
                 assert there[1 - at] == now[number][1 - at], "the other menu stays as it is"
 
 
-@pytest.mark.parametrize(
-    ("arguments", "sentence"),
-    [
-        (["rise", "--texture", "height", "--to", "a.html"], "one texture is nothing it could be given"),
-        (["rise", "--light", "--to", "a.html"], "light baked in is nothing it could be given"),
-        (["rise", "--grid", "9", "--to", "a.html"], "a grid is nothing it could be given"),
-        (["rise", "--to", "a.htm"], "nothing is exported as '.htm'; did you mean '.html'?"),
-        (["rise", "--technique", "height", "--to", "a.png"], "menus of techniques are for a web page"),
-        (["rise", "--technique", "height"], "menus of techniques are for a web page"),
-        (["rise", "--lang", "de", "--to", "a.html"], "no page is in 'de'; expected en or fr"),
-        (["rise", "--lang", "fr", "--to", "a.png"], "a language is for a web page"),
-        (["rise", "--technique", "=a", "--to", "a.html"], "expected a pass, as height"),
-        (["rise", "--technique", "height=", "--to", "a.html"], "expected a pass, as height"),
-        (["rise", "--technique", "hight", "--to", "a.html"], "no pass 'hight'"),
-        (["rise", "--technique", "height=./flot", "--to", "a.html"], "did you mean './flat'?"),
-        (
-            ["rise", *["--technique", "height"] * 2, "--to", "a.html"],
-            "--technique height is given twice; list its techniques with commas",
-        ),
-        (["variants", "--technique", "rock", "--technique", "light", "--to", "a.html"], "at most 24"),
-        (["all.comp", "--to", "a.html"], "is a compute shader, which no web page can run"),
-        (["rise", "--to", "nowhere/a.html"], "there is no folder 'nowhere' to write into"),
-    ],
-)
-def test_page_export_error_is_one_message_and_writes_nothing(
-    folder: Path, capfd: pytest.CaptureFixture[str], arguments: list[str], sentence: str
-):
-    assert cli.main(["export", *arguments]) == 2
-    out, error = capfd.readouterr()
-    assert out == "" and sentence in error and "Traceback" not in error
-    assert sorted(path.name for path in folder.iterdir()) == ["all.comp", "rise"]
-
-
 def test_what_the_page_does_otherwise_is_said(capfd: pytest.CaptureFixture[str]):
     assert cli.main(["export", "delaunay_flips", "--to", "a.html"]) == 0
     assert "the triangulation is exported as it is" in capfd.readouterr().err

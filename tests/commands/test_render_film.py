@@ -94,45 +94,6 @@ def test_a_picture_larger_than_any_texture(folder: Path, capsys: pytest.CaptureF
     assert pixels.shape == (20, 17000, 4) and pixels[..., :3].std() > 5
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["--seconds", "3"], "--seconds needs --video FILE"),
-        (["--quality", "low"], "--quality needs --video FILE"),
-        (["--fps", "3"], "--fps needs --video or --frames"),
-        (["--resume"], "--resume needs --frames FIRST..LAST"),
-        (["-n", "3"], "-n needs --sweep"),
-        (["--video", "a.mp4", "--frames", "0..2"], "a film is one file, or many"),
-        (["--video", "a.mp4", "-o", "b.mp4"], "--video says which file to write"),
-        (["--sweep", "light.gain=1..2", "--frames", "0..2"], "--sweep and --frames"),
-        (["--video", "a.mp4", "--texture", "height"], "--texture is for one pass's values"),
-        (["--frames", "0..2", "--profile"], "--profile is for one picture"),
-        (["--video", "a.mp4", "--seconds", "none"], "--seconds none: expected a number above 0"),
-        (["--video", "a.mp4", "--fps", "0"], "--fps 0: expected pictures a second"),
-        (["--video", "a.mp4", "--size", "65x36"], "both must be even, as 66x36"),
-        (["--video", "a.mov"], "a video is written to a name ending in"),
-        (["--video", "a.gif"], "a GIF cannot show 30 pictures a second"),
-        (["--video", "no/a.mp4"], "there is no folder 'no'"),
-        (["--video", "a.mp4", "--quality", "hgih"], "quality 'hgih': expected low, medium, high, best"),
-        (["--frames", "5..2"], "--frames 5..2: expected FIRST..LAST"),
-        (["--frames", "0..2", "-o", "a.png"], "a.png: expected a name for numbered files"),
-        (["--sweep", "light.gian=1..2"], "did you mean 'light.gain'?"),
-        (["--sweep", "light.gain=1..2", "-n", "1"], "-n 1: expected a whole number from 2"),
-        (["--sweep", "light.gain=1..2", "-o", "a.jpg"], "a sheet is written to a name ending in .png"),
-        (["--size", "70000x20"], "1 to 65536 pixels"),
-        (["--set", "light.gain=1", "--video", "a.mp4", "--time", "4"], "no keyframe after 4 s"),
-    ],
-)
-def test_a_mistake_is_one_sentence(
-    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], message: str
-) -> None:
-    status = cli.main(["render", "terrain.toml", *words])
-    out, err = capsys.readouterr()
-    assert status == 2 and out == "" and message in err
-    assert err.startswith("error: ") and "Traceback" not in err
-    assert [path.name for path in folder.iterdir()] == ["terrain.toml"]
-
-
 def test_help_has_examples(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["render", "--help"]) == 0
     out = capsys.readouterr().out
