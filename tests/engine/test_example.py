@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 import tifffile
 from scipy.ndimage import gaussian_filter
+from scipy.special import ndtri
+from scipy.stats import rankdata
 
 from playground.data import by_example
 from playground.data.by_example import (
@@ -22,6 +24,7 @@ from playground.data.by_example import (
     in_cells,
     integrated,
     made_like,
+    normal_deviate,
     oriented,
     quilted,
     smoothed,
@@ -29,6 +32,7 @@ from playground.data.by_example import (
 from playground.data.elevation import Elevation, read_elevation
 from playground.engine import file_sources
 from playground.engine.source_kinds import Material
+from playground.engine.sources import rank_heights
 from playground.errors import DataError
 from playground.memo import SOURCES
 from playground.paths import GLSL
@@ -406,3 +410,57 @@ def test_of_a_large_file_no_more_is_read_than_an_example_needs(tmp_path):
     )
     example, coarser = file_sources._example(values(file))
     assert (example.size[0], coarser) == (2049, 2.0)
+
+
+# ── Ranks and sorted heights against SciPy's ─────────────────────────────────
+
+
+def test_normal_deviates_are_scipy_s():
+    shares = np.concatenate([np.geomspace(1e-9, 0.5, 4000), 1 - np.geomspace(1e-9, 0.5, 4000)])
+    np.testing.assert_allclose(normal_deviate(shares), ndtri(shares), atol=1e-8)
+
+
+def test_ranks_become_normal_and_heights_are_sorted():
+    heights = RNG.permutation(13 * 17).reshape(13, 17).astype(np.float32)
+    arrays = rank_heights({"widest": 0.0}, (17, 13), Material({"example": heights}))
+    np.testing.assert_array_equal(arrays["sorted"].ravel(), np.sort(heights, axis=None))
+    heights = heights.astype(np.float64)  # SciPy 1.18 gives ranks in the dtype of what is ranked
+    shares = (rankdata(heights) - 0.5) / heights.size
+    np.testing.assert_allclose(arrays["normal"], ndtri(shares).reshape(13, 17), atol=1e-6)
+
+
+def test_what_is_too_wide_is_left_out():
+    heights = RNG.normal(size=(60, 80)).astype(np.float32)
+    arrays = rank_heights({"widest": 0.2}, (80, 60), Material({"example": heights[..., None]}))
+    expected = heights - gaussian_filter(heights.astype(np.float64), 4.0, mode="reflect", truncate=9)
+    np.testing.assert_allclose(arrays["sorted"].ravel(), np.sort(expected, axis=None), atol=1e-5)
+
+
+@pytest.mark.parametrize("value", [{}, {"example": np.full((1, 1), 3.0, np.float32)}], ids=["none", "texel"])
+def test_no_example_is_flat(value):
+    assert not rank_heights({"widest": 0.1}, (4, 3), Material(value))["sorted"].any()
+
+
+def test_numbers_that_are_none_count_as_0():
+    heights = np.array([[1, np.nan], [np.inf, -np.inf]], np.float32)
+    arrays = rank_heights({"widest": 0.0}, (2, 2), Material({"example": heights}))
+    np.testing.assert_array_equal(arrays["sorted"].ravel(), [0, 0, 0, 1])
+
+
+def test_it_says_how_far_it_is_and_stops_where_it_is_told_to():
+    heights, seen = RNG.normal(size=(20, 30)).astype(np.float32), []
+    material = Material({"example": heights}, report=lambda *at: seen.append(at))
+    rank_heights({"widest": 0.2}, (80, 60), material)
+    assert seen == [(done, len(seen)) for done in range(len(seen))] and len(seen) >= 4
+
+    class Stop(Exception):
+        pass
+
+    for last in range(len(seen)):
+
+        def stop(done, wanted, last=last):
+            if done == last:
+                raise Stop
+
+        with pytest.raises(Stop):
+            rank_heights({"widest": 0.2}, (80, 60), Material({"example": heights}, report=stop))

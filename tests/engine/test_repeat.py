@@ -1,20 +1,26 @@
-"""A kernel that repeats gives what the same loop gives in NumPy, by either driver, bit for bit."""
+"""A kernel that repeats gives what the same loop gives in NumPy, ends when settled, and stops anywhere."""
 
 from __future__ import annotations
 
 import contextlib
 from dataclasses import replace
+from math import isqrt
+from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
+from scipy import ndimage
 
 from playground.engine.engine import Engine
+from playground.engine.plan import PlanRequest
+from playground.engine.planner import make_plan
 from playground.engine.programs import Program
 from playground.errors import PlaygroundError
-from playground.sketch.model import Keyframe
+from playground.sketch.model import Keyframe, Sketch
 
 from ..loading import load
-from ..sketch_texts import passes
+from ..sketch_texts import map_of, passes
 
 COUNT = """#pragma kernel(output = "a:r32f", repeat = "count")
 uniform int count = 5; //! slider(0, 50)
@@ -427,3 +433,263 @@ def test_resumed_iterations_rebuild_their_own_mipmaps(any_engine, folder, kernel
         result = any_engine.read(sketch, "mean", steps={"a": stop})
         expected = value(stop) if kernel is VISITED else value(stop, 9)
         np.testing.assert_allclose(result, expected, rtol=1e-6)
+
+
+# ── A repeat that ends once a step changed nothing gives the bits of all its steps, and runs few too
+
+
+UNTIL = ', until = "unchanged"'
+WALLS = """#pragma kernel(output = "wall:r32f")
+uniform int gap = 1; //! slider(1, 9)
+float kernel(ivec2 texel) {
+    int x = texel.x % 4;
+    bool open = texel.y / 3 % 2 == 0 ? texel.y + gap >= size.y : texel.y < gap;
+    bool gate = texel.x / 4 % 2 == 0 ? texel.y == 0 : texel.y == size.y - 1;
+    return x == 3 && !gate ? 1.0 : 0.0;
+}
+"""
+FLOOD = """#pragma kernel(output = "wet:r32f", repeat = "count", until = "unchanged")
+uniform sampler2D wall; //! input
+uniform int count = 4096; //! slider(0, 9999)
+float kernel(ivec2 texel) {
+    if (texelFetch(wall, texel, 0).r > 0.5) return 0.0;
+    if (texel == ivec2(0, size.y - 1)) return 1.0;
+    return max(previous(texel), max(max(previous(texel - ivec2(1, 0)), previous(texel + ivec2(1, 0))),
+                                    max(previous(texel - ivec2(0, 1)), previous(texel + ivec2(0, 1)))));
+}
+"""
+PASSES = '[[pass]]\nname = "wall"\nuse = "./walls"\n[[pass]]\nname = "a"\nuse = "./spread"\n'
+
+
+def serpentine(ny: int, nx: int) -> np.ndarray:
+    """Return after how many steps each texel of a folded corridor is wet; 0: never."""
+    y, x = np.mgrid[0:ny, 0:nx]
+    gate = np.where(x // 4 % 2 == 0, y == 0, y == ny - 1)
+    free = ~((x % 4 == 3) & ~gate)
+    wet = np.zeros((ny, nx), bool)
+    steps = np.zeros((ny, nx), int)
+    cross = ndimage.generate_binary_structure(2, 1)
+    for step in range(1, ny * nx + 2):
+        now = ndimage.binary_dilation(wet, cross, mask=free) if step > 1 else wet.copy()
+        now[ny - 1, 0] = True
+        if (now == wet).all():
+            return steps
+        steps[now & ~wet] = step
+        wet = now
+    raise AssertionError("it never settles")
+
+
+@pytest.fixture
+def flood(folder):
+    folder.write("walls.glsl", WALLS)
+
+    def sketch(text: str = FLOOD, size: str = "size = 33"):
+        folder.write("spread.glsl", text)
+        return folder.sketch(PASSES, size=size)
+
+    return sketch
+
+
+@pytest.mark.parametrize("waits", [True, False])
+@pytest.mark.parametrize("size", ["1", "2", "33", "[29, 18]", "65"])
+def test_a_flood_ends_few_steps_after_it_has_settled(engine, flood, size, waits):
+    """A graphics card is not waited for: there an answer is read at the next comparison."""
+    engine.runner.kernels.settling.waits = waits
+    result = engine.read(flood(size=f"size = {size}"), "a")
+    truth = serpentine(*result.shape)
+    np.testing.assert_array_equal(result > 0, truth > 0)
+    settled, ran = int(truth.max()), engine.record.iterations["a"]
+    assert settled < ran <= settled + (1 if waits else 2) * (isqrt(settled) + 4)
+    assert engine.record.results["a"].iterations == 4096
+    assert engine.runner.kernels.settling.compared <= 2 * isqrt(ran) + 2
+
+
+@pytest.mark.slow
+def test_its_bits_are_those_of_every_step_run(ctx, engine, flood):
+    blur = FLOOD.replace("max(previous(texel), max(", "max(0.5 * previous(texel), 0.999 * max(")
+    result = engine.read(flood(blur), "a").copy()
+    ran = engine.record.iterations["a"]
+    with Engine(ctx, driver=engine.driver) as whole:
+        np.testing.assert_array_equal(result, whole.read(flood(blur.replace(UNTIL, "")), "a"))
+        assert ran < whole.record.iterations["a"] == 4096
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 3, 7, 100])
+def test_a_count_below_is_kept(ctx, engine, flood, count):
+    sketch = flood().with_values({"a.count": count})
+    result = engine.read(sketch, "a").copy()
+    np.testing.assert_array_equal(result > 0, (serpentine(33, 33) <= count) & (serpentine(33, 33) > 0))
+    assert engine.record.iterations["a"] == count
+
+
+def test_a_settled_result_goes_on_without_a_step(engine, flood):
+    sketch = flood()
+    engine.read(sketch.with_values({"a.count": 1000}), "a")
+    before = engine.read(sketch.with_values({"a.count": 1000}), "a").copy()
+    np.testing.assert_array_equal(engine.read(sketch.with_values({"a.count": 5000}), "a"), before)
+    assert engine.record.iterations["a"] == 0
+
+
+def test_each_step_can_be_shown(engine, flood):
+    truth = serpentine(33, 33)
+    sketch = flood().with_values({"a.count": 40})
+    for done, values in engine.steps(sketch, "a"):
+        assert (values > 0).sum() == ((truth > 0) & (truth <= done)).sum()
+
+
+def test_nan_that_stays_is_unchanged_and_minus_zero_is_not_zero(engine, folder):
+    text = """#pragma kernel(output = "a:rg32f, b:r16f", repeat = "500", until = "unchanged")
+    void kernel(ivec2 texel, out vec2 a, out float b) {
+        float far = previous_b(texel - ivec2(1, 0));
+        a = vec2(intBitsToFloat(0x7fc00000), previous_b(texel) > 0.0 ? -0.0 : 0.0);
+        b = texel.x == 0 ? 1.0 : far;
+    }
+    """
+    result = engine.read(folder.one(text.replace("\n    ", "\n")), "a:a")
+    assert np.isnan(result[..., 0]).all()
+    assert np.signbit(result[..., 1]).all()
+    assert 18 <= engine.record.iterations["a"] <= 18 + 2 * (isqrt(18) + 3)
+
+
+def test_an_output_that_changes_alone_is_seen(engine, folder):
+    text = """#pragma kernel(output = "a:r32f, b:rgba8", repeat = "600", until = "unchanged")
+    void kernel(ivec2 texel, out float a, out vec4 b) {
+        a = 1.0;
+        b = vec4(0.0, 0.0, 0.0, previous_b(texel).a + 1.0 / 255.0);
+    }
+    """
+    result = engine.read(folder.one(text.replace("\n    ", "\n")), "a:b")
+    assert (result[..., 3] == 1.0).all()
+    assert 255 < engine.record.iterations["a"] < 300
+
+
+@pytest.mark.slow
+def test_in_a_loop_each_run_of_it_ends_by_itself(ctx, engine, folder, flood):
+    flood()
+    loop = '[[pass]]\nname = "again"\nuse = "./spread"\ninputs = { wall = "wall" }\nrepeat = 3\n'
+    sketch = folder.sketch(PASSES + loop + 'feedback = { wall = "wet" }\n')
+    result = engine.read(sketch, "again").copy()
+    assert engine.record.iterations["again"] < 3 * 4096
+    folder.write("spread.glsl", FLOOD.replace(UNTIL, ""))
+    with Engine(ctx, driver=engine.driver) as whole:
+        np.testing.assert_array_equal(
+            result, whole.read(folder.sketch(PASSES + loop + 'feedback = { wall = "wet" }\n'), "again")
+        )
+
+
+# ── What a stopped run has not reached: interpolated in pictures, 0 in values, and never gone on fro
+
+
+SIDE = 16
+SKETCH = (
+    "format = 1\nsize = 17\n" + passes(height=("generation/NAME", "set = { seed = 5 }")) + map_of("height")
+)
+NAMES = ("diamond_square", "midpoint_displacement", "triangle_subdivision")
+
+
+def sketch_of(folder: Path, name: str) -> Sketch:
+    (folder / "s.toml").write_text(SKETCH.replace("NAME", name), encoding="utf-8")
+    return load(folder / "s.toml")
+
+
+def in_triangle(position: tuple[float, float], corners: list[tuple[float, float, float]]) -> float | None:
+    """Return the height at a place of a triangle's plane; None outside."""
+    (ax, ay, ah), (bx, by, bh), (cx, cy, ch) = corners
+    share = np.linalg.solve([[ax, bx, cx], [ay, by, cy], [1, 1, 1]], [*position, 1.0])
+    return float(share @ [ah, bh, ch]) if share.min() > -1e-9 else None
+
+
+def joined(raw: NDArray[np.float32], stride: int, form: str) -> NDArray[np.float64]:
+    """Join the nodes of a lattice, texel by texel, square by square."""
+    array = np.full(raw.shape, np.nan)
+    side = 2 * stride if form == "centres" else stride
+    for y in range(raw.shape[0]):
+        for x in range(raw.shape[1]):
+            west, south = min(x // side * side, SIDE - side), min(y // side * side, SIDE - side)
+            nodes = [(west + i * side, south + j * side) for j in (0, 1) for i in (0, 1)]
+            sw, se, nw, ne = ((float(i), float(j), float(raw[j, i])) for i, j in nodes)
+            if form == "squares":
+                u, v = (x - west) / side, (y - south) / side
+                low, high = sw[2] + u * (se[2] - sw[2]), nw[2] + u * (ne[2] - nw[2])
+                array[y, x] = low + v * (high - low)
+                continue
+            middle = (west + side / 2, south + side / 2, float(raw[south + side // 2, west + side // 2]))
+            triangles = [[sw, se, middle], [se, ne, middle], [ne, nw, middle], [nw, sw, middle]]
+            if form == "triangles":
+                triangles = [[sw, se, ne], [sw, nw, ne]]
+            heights = [h for t in triangles if (h := in_triangle((x, y), t)) is not None]
+            assert heights and np.ptp(heights) < 1e-6
+            array[y, x] = heights[0]
+    return array
+
+
+@pytest.mark.parametrize(
+    ("name", "iterations", "stride", "form"),
+    [
+        ("diamond_square", 1, 16, "squares"),
+        ("diamond_square", 2, 8, "centres"),
+        ("diamond_square", 3, 8, "squares"),
+        ("diamond_square", 6, 2, "centres"),
+        ("diamond_square", 7, 2, "squares"),
+        ("midpoint_displacement", 1, 8, "squares"),
+        ("midpoint_displacement", 3, 2, "squares"),
+        ("triangle_subdivision", 1, 16, "triangles"),
+        ("triangle_subdivision", 3, 4, "triangles"),
+    ],
+)
+def test_a_stopped_run_is_joined_up_between_what_is_known(
+    engine: Engine, tmp_path: Path, name: str, iterations: int, stride: int, form: str
+) -> None:
+    sketch, steps = sketch_of(tmp_path, name), {"height.raw": iterations}
+    raw = engine.read(sketch, "height.raw", steps=steps)
+    shown = engine.read(sketch, "height.raw", steps=steps, interpolated=True)
+    np.testing.assert_allclose(shown, joined(raw, stride, form), atol=2e-6)
+    existing = raw != 0
+    assert existing.sum() > 2
+    np.testing.assert_array_equal(
+        shown[existing], raw[existing], "what is known stays as it is, to the last bit"
+    )
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_picture_is_interpolated_and_values_and_steps_are_not(
+    engine: Engine, tmp_path: Path, name: str
+) -> None:
+    sketch, steps = sketch_of(tmp_path, name), {"height.raw": 2}
+    smooth = engine.render(sketch, size=(17, 17), steps=steps).array
+    engine.read(sketch, "height", steps=steps, interpolated=True)
+    nails = engine.render(sketch, size=(17, 17), steps=steps, interpolated=False).array
+    assert (smooth != nails).any()
+    values = dict(engine.steps(sketch, "height.raw"))
+    np.testing.assert_array_equal(values[2], engine.read(sketch, "height.raw", steps=steps))
+    assert (values[2] == 0).sum() > 200
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_run_goes_on_from_what_it_knows_and_ends_the_same(
+    engine: Engine, tmp_path: Path, name: str
+) -> None:
+    sketch = sketch_of(tmp_path, name)
+    whole = engine.read(sketch, "height.raw")
+    for iterations in range(1, 4):
+        engine.render(sketch, size=(9, 9), steps={"height.raw": iterations})
+        np.testing.assert_array_equal(
+            engine.read(sketch, "height.raw", steps={"height.raw": iterations + 1}),
+            dict(engine.steps(sketch, "height.raw"))[iterations + 1],
+        )
+    np.testing.assert_array_equal(engine.read(sketch, "height.raw"), whole)
+
+
+def test_full_zero_or_unset_steps_are_not_interpolated(tmp_path: Path) -> None:
+    sketch = sketch_of(tmp_path, "diamond_square")
+    for steps in ({}, {"height.raw": 0}, {"height.raw": 9}):
+        step = make_plan(sketch, PlanRequest(frame_size=(9, 9), steps=steps)).step("height.raw")
+        assert step is not None and step.between is None
+
+
+def test_interpolated_picture_has_its_own_fingerprint_and_hash(engine: Engine, tmp_path: Path) -> None:
+    sketch, steps = sketch_of(tmp_path, "diamond_square"), {"height.raw": 3}
+    engine.render(sketch, size=(9, 9), steps=steps)
+    drawn = engine.drawn()
+    engine.render(sketch, size=(9, 9), steps=steps, interpolated=False)
+    assert engine.drawn() != drawn

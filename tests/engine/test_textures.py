@@ -1,10 +1,18 @@
-"""Textures keep what is written to them, in every format, row 0 in the south."""
+"""Textures keep what is written to them; frames show them, pools reuse them, samplers filter them."""
 
 from __future__ import annotations
 
+import io
+
+import moderngl
 import numpy as np
 import pytest
+from PIL import Image
 
+from playground.engine.binder import Binder
+from playground.engine.frame import Frame
+from playground.engine.results import Pool, Swap
+from playground.engine.software import Software
 from playground.engine.textures import (
     bytes_of,
     drain,
@@ -18,8 +26,11 @@ from playground.engine.textures import (
     split_format,
     write_texture,
 )
+from playground.engine.tuning import Tuning
 from playground.errors import ContextError
 from playground.shader.kernel import FORMATS
+from playground.shader.parameter import Sampling
+from playground.sketch.model import Output
 
 from ..cases import each
 
@@ -135,3 +146,142 @@ def test_a_released_framebuffer_breaks_no_later_read(ctx):
     release_framebuffer(framebuffer)
     np.testing.assert_array_equal(read_raw(second).ravel(), np.arange(16))
     assert ctx.error == "GL_NO_ERROR"
+
+
+# ── A frame: which way up it is, its channels, how it shows and saves itself ─
+
+
+CORNERS = """#pragma kernel(output = "frame:{form}")
+{kind} kernel(ivec2 texel) {{
+    bool north = texel.y >= size.y / 2;
+    bool east = texel.x >= size.x / 2;
+    vec4 shown = vec4(north ? 1.0 : 0.0, east ? 1.0 : 0.0, 0.25, north && east ? 0.5 : 1.0);
+    return shown.{swizzle};
+}}
+"""
+
+
+@pytest.fixture
+def corners(folder):
+    def make(form: str):
+        letters = form.rstrip("0123456789f")
+        kind, swizzle = {"r": ("float", "r"), "rg": ("vec2", "rg"), "rgba": ("vec4", "rgba")}[letters]
+        folder.write(
+            "one.glsl", '#pragma kernel(output = "h:r32f")\nfloat kernel(ivec2 texel) { return 0.0; }\n'
+        )
+        folder.write("look.glsl", CORNERS.format(form=form, kind=kind, swizzle=swizzle))
+        return folder.sketch('[[pass]]\nname = "h"\nuse = "./one"\n[view]\nuse = "./look"\n')
+
+    return make
+
+
+def test_north_is_on_top_and_east_on_the_right(any_engine, corners):
+    frame = any_engine.render(corners("rgba8"), size=(6, 4), time=2.0)
+    assert frame.size == (6, 4)
+    assert frame.array.shape == (4, 6, 4)
+    assert frame.array.flags["C_CONTIGUOUS"]
+    assert frame.array[0, 0].tolist() == [255, 0, 64, 255]
+    assert frame.array[-1, -1].tolist() == [0, 255, 64, 255]
+    assert frame.array[0, -1].tolist() == [255, 255, 64, 128], "alpha stays"
+    assert (frame.sketch, frame.time) == ("test_north_is_on_top_and_east_o0", 2.0) or frame.sketch
+
+
+@pytest.mark.parametrize("form", ["rgba16", "rgba16f", "rgba32f"])
+def test_every_format_gives_the_same_bytes(any_engine, corners, form):
+    expected = any_engine.render(corners("rgba8"), size=(6, 4)).array
+    np.testing.assert_array_equal(any_engine.render(corners(form), size=(6, 4)).array, expected)
+
+
+def test_fewer_channels_are_grey_or_red_and_green_and_opaque(any_engine, corners):
+    grey = any_engine.render(corners("r32f"), size=(6, 4)).array
+    assert grey[0, 0].tolist() == [255, 255, 255, 255]
+    assert grey[-1, 0].tolist() == [0, 0, 0, 255]
+    pair = any_engine.render(corners("rg8"), size=(6, 4)).array
+    assert pair[-1, -1].tolist() == [0, 255, 0, 255]
+
+
+def test_nan_renders_black_and_overbright_clamps_to_white(any_engine, folder):
+    folder.write("one.glsl", '#pragma kernel(output = "h:r32f")\nfloat kernel(ivec2 texel) { return 0.0; }\n')
+    folder.write(
+        "look.glsl",
+        '#pragma kernel(output = "frame:rgba32f")\nvec4 kernel(ivec2 texel) {\n'
+        "    float zero = float(texel.x) * 0.0;\n"
+        "    return vec4(zero / zero, 1.0 / zero, -1.0 / zero, 7.0);\n}\n",
+    )
+    sketch = folder.sketch('[[pass]]\nname = "h"\nuse = "./one"\n[view]\nuse = "./look"\n')
+    assert any_engine.render(sketch, size=(4, 4)).array[1, 1].tolist() == [0, 255, 0, 255]
+
+
+def test_it_shows_itself_as_a_png(any_engine, corners):
+    frame = any_engine.render(corners("rgba8"), size=(6, 4))
+    data = frame._repr_png_()
+    assert data.startswith(b"\x89PNG\r\n\x1a\n")
+    with Image.open(io.BytesIO(data)) as image:
+        np.testing.assert_array_equal(np.asarray(image), frame.array)
+
+
+def test_it_saves_itself_with_words(tmp_path):
+    frame = Frame(np.full((2, 3, 4), 200, np.uint8), "s", 1.0)
+    path = frame.save(tmp_path / "f.png", {"Title": "a terrain"})
+    with Image.open(path) as image:
+        assert image.text["Title"] == "a terrain"
+        assert image.size == frame.size == (3, 2)
+
+
+# ── How textures are filtered: along slanted ground by a graphics card, plainly where the processor
+
+
+@pytest.mark.parametrize(
+    ("software", "sampling", "expected"),
+    [
+        (False, Sampling("linear", "repeat", True), 8.0),
+        (False, Sampling("linear", "repeat", False), 1.0),
+        (False, Sampling("nearest", "clamp", True), 1.0),
+        (True, Sampling("linear", "repeat", True), 1.0),
+    ],
+)
+def test_anisotropy_is_for_mipmaps_on_a_graphics_card(ctx, software, sampling, expected):
+    binder = Binder(ctx, Software(ctx) if software else Tuning())
+    try:
+        assert binder._new_sampler(sampling).anisotropy == min(expected, ctx.max_anisotropy)
+    finally:
+        binder.release()
+
+
+# ── Textures are used again; where a pool clears, what they held is gone ─────
+
+
+@pytest.mark.parametrize("clears", [False, True])
+def test_a_pool_that_clears_gives_zeros_for_what_was_full(ctx: moderngl.Context, clears: bool):
+    outputs = (Output("height", "r32f"), Output("colour", "rgba16f"))
+    pool = Pool(ctx, 2**20)
+    pool.clears = clears
+    first = pool.take((5, 3), outputs)
+    first.framebuffer(ctx).use()
+    first.framebuffer(ctx).clear(1.0, 1.0, 1.0, 1.0)
+    pool.give(first)
+    again = pool.take((5, 3), outputs)
+    assert pool.made == 1 and again.textures["height"] is first.textures["height"]
+    result = {name: texture.read() for name, texture in again.textures.items()}
+    full = np.ones(15, np.float32).tobytes(), np.ones(60, np.float16).tobytes()
+    expected = (bytes(60), bytes(120)) if clears else full  # without clearing, it is as it was left
+    assert (result["height"], result["colour"]) == expected
+    again.release()
+
+
+def test_a_repeat_that_fails_gives_all_its_textures_back(ctx: moderngl.Context):
+    outputs, pool = (Output("height", "r32f"),), Pool(ctx, 2**20)
+    with pytest.raises(ZeroDivisionError), Swap(pool, (5, 3), outputs, pool.take((5, 3), outputs)) as swap:
+        for iteration in range(3):
+            swap.target()
+            if iteration == 2:
+                raise ZeroDivisionError
+            swap.advance()
+    assert len(pool) == pool.made
+    with Swap(pool, (5, 3), outputs, None) as swap:
+        for _ in range(3):
+            swap.target()
+            swap.advance()
+    assert swap.before is not None and len(pool) == pool.made - 1
+    pool.give(swap.before)
+    pool.clear()
