@@ -23,16 +23,25 @@ import tifffile
 
 import playground
 from playground import cli
+from playground.cli import main
 from playground.data.image_files import read_png, read_samples
 from playground.doctor import where_to_show
 from playground.engine import sandbox
+from playground.engine.camera import look
+from playground.engine.engine import Engine
 from playground.engine.frame import reduced
 from playground.errors import DataError
 from playground.paths import DEFAULT_SKETCH, GLSL
+from playground.sketch.assign import values_of
 from playground.sketch.find import shipped_sketches
+from playground.sketch.load import load
+from playground.sketch.model import DEFAULT_PICTURE
+from playground.sketch.templates import make_sketch
+from playground.sketch.variants import NAME
 from playground.verify.check import find_files
 
-from .sketch_texts import map_of_height
+from .sketch_texts import map_of_height, passes
+from .variants import trust
 
 ROOT = Path(__file__).resolve().parent.parent
 COMMANDS = ["live", "render", "fly", "export", "check", "list", "doctor", "new"]
@@ -639,3 +648,135 @@ def test_of_a_message_of_many_lines_the_middle_is_left_out():
     assert len(lines) < 300 and lines[0] == "first" and lines[-1] == "last"
     assert any("lines left out" in line for line in lines)
     assert str(DataError("short\nas it is")) == "short\nas it is"
+
+
+# ── Fast variants on the command line: what is printed, ``--plain``, and the commands that verify th
+
+
+KERNEL = """// terrain.glsl -- a slope.
+#pragma kernel(output = "height:r32f")
+uniform float rise = 1.0;  //! slider(0, 4) How high the eastern edge is
+float kernel(ivec2 texel) { return rise * float(texel.x) / float(size.x - 1); }
+"""
+FAST = 'agrees = "1e-6"\n' + passes(height="./same") + '[parameters]\nrise = "height.rise"\n'
+SKETCH = "format = 1\nsize = 33\n" + map_of_height(channel="red")
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A sketch whose kernel has a fast variant, verified; the current folder holds its folder."""
+    folder = tmp_path / "terrain"
+    folder.mkdir()
+    for name, text in {"terrain.glsl": KERNEL, "same.glsl": KERNEL, "terrain.fast.toml": FAST}.items():
+        (folder / name).write_text(text)
+    (folder / "sketch.toml").write_text(SKETCH)
+    trust(folder)
+    monkeypatch.chdir(tmp_path)
+    return folder
+
+
+def drawn(capsys: pytest.CaptureFixture[str], *more: str) -> tuple[np.ndarray, list[str]]:
+    """Return the picture, and the lines on standard error."""
+    assert main(["render", "terrain", "-o", "terrain.png", "--size", "64x48", *more]) == 0
+    return read_png(Path("terrain.png"))[0], capsys.readouterr().err.splitlines()
+
+
+def test_edited_kernel_shows_and_reports_left_out_variant(folder, capsys):
+    before, notes = drawn(capsys)
+    assert notes == []
+    (folder / "terrain.glsl").write_text(KERNEL.replace("rise *", "0.2 * rise *"))
+    after, notes = drawn(capsys)
+    assert (after != before).any()
+    (line,) = notes
+    assert line.startswith(
+        "note: terrain.fast.toml is left out, the plain form runs: terrain.glsl has changed"
+    )
+    again, notes = drawn(capsys, "--plain")
+    np.testing.assert_array_equal(again, after)
+    assert notes == []
+
+
+@pytest.mark.slow
+def test_check_says_it_and_tries_it_all_the_same(folder, capsys):
+    (folder / "terrain.glsl").write_text(KERNEL.replace("rise *", "0.2 * rise *"))
+    assert main(["check", "--json", "terrain"]) == 0
+    reports = {Path(r["path"]).name: r for r in map(json.loads, capsys.readouterr().out.splitlines())}
+    assert set(reports) == {"terrain.glsl", "same.glsl", "terrain.fast.toml", "sketch.toml"}
+    noted = {name for name, report in reports.items() if report["notes"]}
+    assert noted == {"terrain.glsl", "terrain.fast.toml", "sketch.toml"}
+    (folder / "same.glsl").write_text(KERNEL.replace("rise *", "nonsense *"))
+    assert main(["check", "terrain/terrain.fast.toml"]) == 1
+    assert "nonsense" in capsys.readouterr().out
+    assert main(["check", "--plain", "terrain/terrain.glsl", "terrain/sketch.toml"]) == 0
+    assert "note" not in capsys.readouterr().out
+
+
+def test_renew_records_agreeing_variants_and_refuses_rest(folder, capsys):
+    (folder / NAME).unlink()
+    assert main(["variants", "list", "terrain"]) == 0
+    assert "never verified" in capsys.readouterr().out
+    assert main(["variants", "verify", "terrain"]) == 0
+    assert "ok      terrain/terrain.fast.toml: height" in capsys.readouterr().out
+    assert not (folder / NAME).exists(), "verify writes nothing"
+    assert main(["variants", "renew", "terrain/terrain.fast.toml"]) == 0
+    assert str(folder / NAME) in capsys.readouterr().out and (folder / NAME).exists()
+    assert drawn(capsys)[1] == []
+    (folder / "same.glsl").write_text(KERNEL.replace("rise *", "0.9 * rise *"))
+    assert main(["variants", "renew", "terrain"]) == 1
+    out = capsys.readouterr().out
+    assert (
+        "FAILED  terrain/terrain.fast.toml: height differs by" in out and "1 variant of 1 not verified" in out
+    )
+    assert json.loads((folder / NAME).read_text())["variants"] == {}
+
+
+@pytest.mark.slow
+def test_variants_that_ship_are_named_as_techniques_are(capsys):
+    assert main(["variants", "list", "generation/fault_formation", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert [row["variant"].rpartition("/")[2] for row in rows] == ["sum.comp", "sum.fast.toml"]
+    assert main(["variants", "list", "glsl/generation/fourier.comp"]) == 0
+    assert "fourier.comp" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_every_shipped_sketch_runs_its_fast_variants():
+    """None of those that ship is left out: the record is that of the texts."""
+    from playground.sketch.load import load_with
+    from playground.sketch.techniques import Techniques
+    from playground.sketch.variants import unverified
+
+    assert (GLSL / NAME).is_file()
+    reader = Techniques()
+    assert {name: unverified(load_with(reader, name)) for name in shipped_sketches()} == dict.fromkeys(
+        shipped_sketches(), ()
+    )
+
+
+@pytest.mark.slow
+def test_technique_with_own_folder_is_selected_by_its_name(capsys):
+    assert main(["variants", "list", "generation/diamond_square"]) == 0
+    assert "generation/diamond_square.comp" in capsys.readouterr().out
+    assert main(["variants", "list", "glsl/generation/fourier"]) == 0
+    assert "generation/fourier.comp" in capsys.readouterr().out
+
+
+# ── The sketch that `playground new` makes: its first picture shows all of the terrain, and little e
+
+
+def test_the_first_view_of_a_new_sketch_shows_all_of_the_terrain(engine: Engine, tmp_path: Path) -> None:
+    sketch = load(make_sketch(tmp_path / "hills"))
+    extent, relief = sketch.terrain.extent, sketch.terrain.relief
+    assert extent is not None and relief is not None
+    height = engine.read(sketch, "height") * relief
+    rows, columns = height.shape
+    east, north = np.linspace(0, extent[0], columns), np.linspace(0, extent[1], rows)
+    grid = np.stack([*np.meshgrid(east, north), height], axis=-1)
+    foot = -values_of(sketch)["view.land.skirt"] * extent[0]  # type: ignore[operator]
+    corners = [[x, y, foot] for x in (0, extent[0]) for y in (0, extent[1])]
+    places = np.concatenate([grid.reshape(-1, 3), corners]).astype(float)
+    matrix = look(sketch.camera, extent, relief, DEFAULT_PICTURE).clip_from_world.astype(float)
+    clip = np.concatenate([places, np.ones((len(places), 1))], axis=1) @ matrix.T
+    across, up = (clip[:, axis] / clip[:, 3] for axis in (0, 1))
+    assert np.abs(across).max() < 0.95 and np.abs(up).max() < 0.95, "nothing is cut, its cut front included"
+    assert up.max() > 0.7 and np.abs(across).max() > 0.8, "it fills most of the picture"

@@ -12,21 +12,28 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import PIL.Image
 import pytest
+import tifffile
 from PIL import Image as PillowImage
 
 from playground.data.content_hash import content_hash
 from playground.data.image_files import (
+    PICTURE_ENDINGS,
     encode_png,
     encode_samples,
+    picture_size,
     read_image,
     read_png,
     read_samples,
+    write_picture,
     write_png,
 )
 from playground.data.values import write_values
+from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.files import new_name
+from playground.publish.png_strips import PngStrips
 
 RNG = np.random.default_rng(5)
 KINDS = {1: 0, 2: 4, 3: 2, 4: 6}
@@ -468,3 +475,249 @@ def test_saves_in_one_tick_of_the_clock_have_different_hashes(tmp_path, monkeypa
         path.write_bytes(bytes([value]))
         hashes.add(content_hash(path))
     assert len(hashes) == 5
+
+
+# ── A picture is what its name says: the format of the ending, with the same pixels in it
+
+
+FORMATS = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG", ".webp": "WEBP", ".tif": "TIFF", ".tiff": "TIFF"}
+
+
+def picture(alpha: int = 255) -> np.ndarray:
+    made = np.empty((24, 40, 4), np.uint8)
+    made[..., 0] = np.linspace(20, 230, 40)
+    made[..., 1] = np.linspace(200, 30, 24)[:, None]
+    made[..., 2] = 90
+    made[..., 3] = 255
+    made[0, 0, 3] = alpha
+    return made
+
+
+def test_every_ending_has_its_format():
+    assert set(FORMATS) == set(PICTURE_ENDINGS)
+
+
+@pytest.mark.parametrize("ending", FORMATS)
+@pytest.mark.parametrize("upper", [False, True])
+def test_a_frame_is_saved_as_what_its_name_says(tmp_path: Path, ending: str, upper: bool):
+    path = tmp_path / f"a{ending.upper() if upper else ending}"
+    assert Frame(picture()).save(path) == path
+    with PIL.Image.open(path) as result:
+        assert result.format == FORMATS[ending]
+        pixels = np.asarray(result.convert("RGB")).astype(int)
+    worst = np.abs(pixels - picture()[..., :3]).max()
+    assert worst == 0 if FORMATS[ending] != "JPEG" else worst <= 8, "top row first, sRGB as it is"
+    assert [each.name for each in tmp_path.iterdir()] == [path.name]
+
+
+@pytest.mark.parametrize("ending", [".png", ".webp", ".tif"])
+def test_alpha_and_the_colours_under_it_stay(tmp_path: Path, ending: str):
+    messages: list[str] = []
+    Frame(picture(alpha=0)).save(tmp_path / f"a{ending}", say=messages.append)
+    read = tifffile.imread if ending == ".tif" else lambda path: np.asarray(PIL.Image.open(path))
+    np.testing.assert_array_equal(read(tmp_path / f"a{ending}"), picture(alpha=0))
+    assert messages == []
+
+
+def test_a_jpeg_says_that_alpha_was_dropped(tmp_path: Path):
+    messages: list[str] = []
+    Frame(picture(alpha=254)).save(tmp_path / "a.jpg", say=messages.append)
+    assert len(messages) == 1 and "alpha was dropped; .png, .webp and .tif keep it" in messages[0]
+    assert write_picture(tmp_path / "b.jpg", picture()) == ""
+
+
+@pytest.mark.parametrize("name", ["a.exr", "a.bmp", "a", "a.png.gif", ".png"])
+def test_another_ending_is_refused_with_those_there_are(tmp_path: Path, name: str):
+    with pytest.raises(DataError, match=r"ending in \.png, \.jpg, \.jpeg, \.webp, \.tif or \.tiff") as caught:
+        Frame(picture()).save(tmp_path / name)
+    assert name in str(caught.value) and not list(tmp_path.iterdir())
+
+
+def test_what_a_format_cannot_hold_is_refused(tmp_path: Path):
+    wide = np.zeros((1, 16384, 4), np.uint8)
+    with pytest.raises(
+        DataError, match=r"a\.webp: 16384 x 1 pixels are too many for \.webp, which takes 16383"
+    ):
+        write_picture(tmp_path / "a.webp", wide)
+    with pytest.raises(DataError, match=r"a\.jpg: .*holds no text; \.png does"):
+        write_picture(tmp_path / "a.jpg", picture(), text={"a": "b"})
+    assert not list(tmp_path.iterdir())
+
+
+# ── The size of a picture is that of its pixels ──────────────────────────────
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.jpg", "a.webp"])
+@pytest.mark.parametrize("turned", [None, 1, 3, 6, 8])
+def test_it_is_that_of_the_pixels(tmp_path: Path, name: str, turned: int | None) -> None:
+    picture, path = PIL.Image.fromarray(np.zeros((5, 9, 3), np.uint8)), tmp_path / name
+    exif = PIL.Image.Exif()
+    if turned is not None:
+        exif[0x0112] = turned
+    picture.save(path, exif=exif)
+    height, width = read_image(path).pixels.shape[:2]
+    assert picture_size(path) == (width, height)
+
+
+def test_it_follows_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "a.png"
+    for size in ((3, 4), (8, 2)):
+        PIL.Image.new("RGB", size).save(path)
+        assert picture_size(path) == size
+
+
+@pytest.mark.parametrize("data", [b"", b"no picture", b"\x89PNG\r\n\x1a\n"])
+def test_what_is_no_picture_says_so(tmp_path: Path, data: bytes) -> None:
+    path = tmp_path / "a.png"
+    path.write_bytes(data)
+    with pytest.raises(DataError, match=r"a\.png"):
+        picture_size(path)
+    with pytest.raises(DataError, match="no such file"):
+        picture_size(tmp_path / "b.png")
+
+
+# ── A PNG written strip by strip is read by others as the pixels that went in
+
+
+def rough_picture(rows: int, cols: int, channels: int) -> np.ndarray:
+    random = np.random.default_rng(3)
+    smooth = np.linspace(0, 255, rows * cols * channels).reshape(rows, cols, channels).astype(np.uint8)
+    noise = random.integers(0, 256, smooth.shape, np.uint8)
+    return np.where(np.arange(rows)[:, None, None] % 3 == 0, noise, smooth)
+
+
+@pytest.mark.parametrize("channels", [3, 4])
+@pytest.mark.parametrize("heights", [[7], [1, 1, 1, 4], [5, 2], [0, 7]])
+def test_pillow_reads_what_was_written(channels, heights):
+    total = rough_picture(7, 11, channels)
+    stream = io.BytesIO()
+    writer = PngStrips(stream, (11, 7), channels, {"Title": "Terrain – hills"})
+    done = 0
+    for rows in heights:
+        writer.write(total[done : done + rows])
+        done += rows
+    writer.close()
+    stream.seek(0)
+    result = PIL.Image.open(stream)
+    np.testing.assert_array_equal(np.array(result), total)
+    assert result.mode == {3: "RGB", 4: "RGBA"}[channels] and result.text == {"Title": "Terrain – hills"}
+
+
+def test_smooth_rows_pack_well():
+    """A slope in both directions takes a small part of its bytes: the filters are chosen."""
+    rows = (np.add.outer(np.arange(200), np.arange(300)) // 2 % 256).astype(np.uint8)
+    stream = io.BytesIO()
+    writer = PngStrips(stream, (300, 200), 3)
+    writer.write(np.repeat(rows[..., None], 3, axis=2))
+    writer.close()
+    assert len(stream.getvalue()) < 0.05 * rows.size * 3
+
+
+def test_what_does_not_fit_is_refused():
+    writer = PngStrips(io.BytesIO(), (4, 3))
+    with pytest.raises(DataError, match="3 rows of the picture are missing"):
+        writer.close()
+    with pytest.raises(DataError, match="at most 3 rows"):
+        writer.write(np.zeros((4, 4, 4), np.uint8))
+    with pytest.raises(DataError, match="rows"):
+        writer.write(np.zeros((1, 5, 4), np.uint8))
+    with pytest.raises(DataError, match="cannot be written"):
+        PngStrips(io.BytesIO(), (0, 3))
+
+
+# ── Pictures in TIFF files are read to the bit, whatever numbers they hold and however these are lai
+
+
+SHAPE = (6, 9)
+LAYOUTS = [
+    {},
+    {"byteorder": ">"},
+    {"compression": "zlib", "predictor": True},
+    {"tile": (16, 16)},
+    {"rowsperstrip": 2},
+    {"bigtiff": True},
+]
+
+
+def written(path, array, **how):
+    is_colour = array.ndim == 3 and array.shape[-1] > 2
+    how = {"photometric": "rgb" if is_colour else "minisblack", "metadata": None} | how
+    if array.ndim == 3 and array.shape[-1] in (2, 4) and how.get("planarconfig") != "separate":
+        how.setdefault("extrasamples", ["unassalpha"])
+    tifffile.imwrite(path, array[..., 0] if array.shape[-1] == 1 else array, **how)
+    return path
+
+
+def four(array):
+    """Return an array of 1 to 4 channels as red, green, blue and alpha of 1."""
+    channels = array.shape[-1]
+    colour = array if channels > 2 else array[..., [0, 0, 0, *range(1, channels)]]
+    return colour if colour.shape[-1] == 4 else np.concatenate([colour, np.ones_like(colour[..., :1])], -1)
+
+
+@pytest.mark.parametrize("kind", ["uint8", "uint16", "uint32", "float16", "float32", "float64"])
+@pytest.mark.parametrize("channels", [1, 3, 4])
+def test_numbers_are_those_of_the_file(tmp_path, kind, channels):
+    numbers = RNG.random((*SHAPE, channels))
+    dtype = np.dtype(kind)
+    most = 1.0 if dtype.kind == "f" else float(np.iinfo(dtype).max)
+    stored = (numbers * 3 - 1 if dtype.kind == "f" else np.rint(numbers * most)).astype(dtype)
+    for how in LAYOUTS:
+        if dtype.kind == "f" and "predictor" in how:
+            how = {"compression": "zlib"}
+        path = written(tmp_path / "a.tif", stored, **how)
+        image = read_image(path)
+        pixels = image.pixels / 255 if image.pixels.dtype == np.uint8 else image.pixels
+        np.testing.assert_allclose(pixels, four(stored.astype(np.float64) / most), atol=6e-8, rtol=6e-8)
+        assert image.has_alpha == (channels == 4)
+        assert picture_size(path) == image.size == (9, 6)
+
+
+@pytest.mark.parametrize("kind", ["uint8", "uint16", "float32"])
+def test_every_orientation_is_obeyed(tmp_path, kind):
+    stored = RNG.integers(0, 250, (*SHAPE, 3)).astype(kind)
+    most = 1.0 if kind == "float32" else np.iinfo(kind).max
+    turned = stored.swapaxes(0, 1)
+    shown = [stored, stored[:, ::-1], stored[::-1, ::-1], stored[::-1]]
+    shown += [turned, turned[:, ::-1], turned[::-1, ::-1], turned[::-1]]
+    for number, expected in enumerate(shown, 1):
+        path = written(tmp_path / "a.tif", stored, extratags=[(274, 3, 1, number, True)])
+        image = read_image(path)
+        pixels = image.pixels / 255 if kind == "uint8" else image.pixels
+        np.testing.assert_allclose(pixels[..., :3] * most, expected, atol=1e-3, err_msg=str(number))
+        assert picture_size(path) == image.size
+
+
+def test_planes_inverse_grey_and_premultiplied_alpha(tmp_path):
+    planes = RNG.random((3, *SHAPE)).astype(np.float32)
+    path = written(tmp_path / "a.tif", planes, photometric="rgb", planarconfig="separate")
+    np.testing.assert_array_equal(read_image(path).pixels[..., :3], planes.transpose(1, 2, 0))
+    grey = RNG.integers(0, 65536, SHAPE).astype(np.uint16)
+    pixels = read_image(written(tmp_path / "b.tif", grey, photometric="miniswhite")).pixels
+    np.testing.assert_allclose(pixels[..., 0], 1 - grey / 65535, atol=1e-7)
+    straight = RNG.random((*SHAPE, 4)).astype(np.float32)
+    straight[0, 0, 3] = 0.0
+    stored = np.concatenate([straight[..., :3] * straight[..., 3:], straight[..., 3:]], -1)
+    pixels = read_image(written(tmp_path / "c.tif", stored, extrasamples=["assocalpha"])).pixels
+    straight[0, 0, :3] = 0.0
+    np.testing.assert_allclose(pixels, straight, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("stored", "words"),
+    [
+        (np.full(SHAPE, np.nan, np.float32), "beyond 65504"),
+        (np.full(SHAPE, 1e6, np.float32), "beyond 65504"),
+        (np.zeros((5, *SHAPE), np.uint16), "a picture is"),
+        (np.zeros(SHAPE, np.complex64), "a picture is"),
+    ],
+)
+def test_what_is_no_picture_is_one_sentence(tmp_path, stored, words):
+    path = tmp_path / "a.tif"
+    how = {"planarconfig": "contig"} if stored.ndim == 3 else {}
+    tifffile.imwrite(path, stored.transpose(1, 2, 0) if stored.ndim == 3 else stored, metadata=None, **how)
+    with pytest.raises(DataError, match=words):
+        read_image(path)
+    path.write_bytes(path.read_bytes()[:60])
+    with pytest.raises(DataError, match="damaged or cut short"):
+        read_image(path)

@@ -564,7 +564,7 @@ def test_nothing_is_cached_unless_somebody_asks(any_engine, worn, monkeypatch, t
         for p in (ROOT / "playground").rglob("*.py")
         if "engine.disk_cache" in p.read_text("utf-8")
     }
-    assert {name.partition("/")[0] for name in using} == {"commands", "engine", "workbench"}
+    assert {name.partition("/")[0] for name in using} == {"commands", "engine", "studio"}
     assert {name for name in using if name.startswith("commands")} == {
         "commands/cache.py",
         "commands/doctor.py",

@@ -1,16 +1,18 @@
-"""Kernels' headers: what each declares, and each mistake with its line and the nearest name."""
+"""Kernels' headers: what each declares, when it is read again, and what a text is without one."""
 
 from __future__ import annotations
 
+import os
 import random
 from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
-from playground.errors import PlaygroundError, ShaderError
+from playground.errors import ParameterError, PlaygroundError, ShaderError
 from playground.paths import GLSL
-from playground.shader.header import parse_kernel
+from playground.shader.dialect import Dialects, check_name
+from playground.shader.header import parse_kernel, parsed_kernel
 from playground.shader.kernel import PRAGMAS, options_of
 from playground.shader.source import read_source
 from playground.sketch.model import Kernel, Parameter
@@ -341,3 +343,124 @@ def test_mutated_headers_raise_nothing_but_sentences(parse, seed):
 
 def test_a_macro_of_any_other_name_may_stand(parse):
     assert parse(KERNEL + "#define sizes 3\n#define FAR (size.x * 2)\n") is not None
+
+
+# ── Kernels are parsed again when anything they were made of is another, and only then
+
+
+PARTED = """#include "part.glsl"
+#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) { return part(); }
+"""
+PART = "float part() { return 1.0; }\n"
+
+
+@pytest.fixture
+def files(tmp_path):
+    (tmp_path / "inner").mkdir()
+    (tmp_path / "inner" / "k.glsl").write_text(PARTED)
+    (tmp_path / "part.glsl").write_text(PART)
+    return tmp_path
+
+
+def read(files):
+    return parsed_kernel("k", files / "inner" / "k.glsl", (files,))
+
+
+def test_the_same_files_give_the_same_object(files):
+    assert read(files) is read(files)
+
+
+def test_a_change_within_one_tick_and_of_the_same_length_is_seen(files):
+    before, part = read(files), files / "part.glsl"
+    stat = part.stat()
+    part.write_text(PART.replace("1.0", "2.0"))
+    os.utime(part, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+    assert "2.0" in read(files).source.code
+    part.write_text(PART)
+    assert read(files) == before
+
+
+def test_an_include_that_appears_in_a_nearer_place_is_taken(files):
+    read(files)
+    (files / "inner" / "part.glsl").write_text(PART.replace("1.0", "3.0"))
+    assert "3.0" in read(files).source.code
+    (files / "inner" / "part.glsl").unlink()
+    assert "1.0" in read(files).source.code
+
+
+def test_an_include_that_goes_is_missed_and_found_again(files):
+    read(files)
+    (files / "part.glsl").unlink()
+    with pytest.raises(ShaderError, match=r"part\.glsl"):
+        read(files)
+    (files / "part.glsl").write_text(PART)
+    assert "1.0" in read(files).source.code
+
+
+def test_retargeted_symlink_is_detected_despite_equal_text(files):
+    (files / "one.glsl").write_text(PART)
+    (files / "two.glsl").write_text(PART)
+    (files / "part.glsl").unlink()
+    (files / "part.glsl").symlink_to("one.glsl")
+    assert any(file.endswith("one.glsl") for file in read(files).source.files)
+    (files / "part.glsl").unlink()
+    (files / "part.glsl").symlink_to("two.glsl")
+    assert any(file.endswith("two.glsl") for file in read(files).source.files)
+
+
+VARIANT = """#pragma compute(groups = "(size.x + 7) / 8, (size.y + 7) / 8")
+void main() {}
+"""
+
+
+def test_kernel_and_variant_stay_cached_until_either_changes(files):
+    path = files / "inner" / "k.glsl"
+    path.with_suffix(".comp").write_text(VARIANT)
+    first = read_kernel(path, files)
+    assert first.variants and read_kernel(path, files) is first
+    path.with_suffix(".comp").write_text(VARIANT.replace("{}", "{ }"))
+    second = read_kernel(path, files)
+    assert second.variants[0].technique.source.code != first.variants[0].technique.source.code
+    (files / "part.glsl").write_text(PART.replace("1.0", "2.0"))
+    third = read_kernel(path, files)
+    assert third.variants == second.variants and "2.0" in third.source.code
+
+
+# ── Without a room that reads other tools' shaders: our own kernels and plain shaders, and nothing e
+
+
+OWN = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n'
+PLAIN = "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(1.0); }\n"
+TOY = "void mainImage(out vec4 c, in vec2 p) { c = vec4(1.0); }\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        (OWN, "own"),
+        (PLAIN, "own"),
+        (TOY, ""),
+        ("// #pragma kernel\n", ""),
+        ("void main() { gl_FragColor = vec4(1.0); }\n", ""),
+        ("#version 330\nfloat twice(float x) { return 2.0 * x; }\n", ""),
+    ],
+    ids=["kernel", "plain", "toy", "comment", "old", "library"],
+)
+def test_without_a_room_only_our_own_texts_have_a_name(text, name):
+    assert Dialects().name_of(text) == name
+
+
+def test_without_a_room_a_json_is_no_shader(tmp_path):
+    path = tmp_path / "a.json"
+    path.write_text('{"renderpass": []}', encoding="utf-8")
+    alone = Dialects()
+    assert not alone.endings and not alone.is_export(path)
+    assert alone.image_of(tmp_path) is None and not alone.is_inside(path)
+    assert alone.read(path, "a", tmp_path, lambda use, folder, root: pytest.fail(use)) is None
+
+
+def test_a_dialect_that_is_none_is_named_with_those_there_are():
+    assert check_name("") == "" and check_name("own") == "own"
+    with pytest.raises(ParameterError, match="--dialect nothing: no such dialect"):
+        check_name("nothing")

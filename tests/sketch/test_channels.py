@@ -1,4 +1,4 @@
-"""The channels of other tools' shaders: what feeds them, what may, and what is changed for another source."""
+"""The channels of other tools' shaders: what feeds them, what may, and what is saved of it."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 from playground.paths import GLSL
+from playground.sketch.assign import values_of
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
+from playground.sketch.save import save
 from playground.studio.channels.channels import channels, source_of, sources, with_source
 from tests.data.films import own_film
 
@@ -247,3 +249,77 @@ def test_a_film_brings_its_size_and_keys_theirs(folder: Path, any_engine: Engine
     assert any_engine.read(heard, "iChannel0").shape == (2, 512)
     seen = with_source(film, "view.iChannel0", "foreign/camera")
     assert any_engine.read(seen, "iChannel0").shape == (480, 640, 4)
+
+
+# ── What feeds a channel is written into the sketch's file, and read again ───
+
+
+VIEW = 'format = 1  # ours\n\n[view]\nuse = "./two"\n'
+LAND_PHOTO = """format = 1
+[[pass]]
+name = "land"   # a texture
+use = "generation/white_noise"
+size = 16
+[[pass]]
+name = "photo"
+use = "foreign/image"
+size = [8, 4]   # texels
+set = { image = "a.png" }
+[view]
+use = "./two"
+inputs = { iChannel0 = "photo" }
+"""
+
+
+def sources_in(sketch: Sketch) -> list[str]:
+    return [channel.source for channel in channels(sketch)]
+
+
+def parts(sketch: Sketch) -> object:
+    return [(spec.name, spec.use, spec.size, spec.inputs) for spec in sketch.graph.passes]
+
+
+def saved(folder: Path, text: str, *changes: tuple[str, str], **values: str) -> str:
+    """Save a sketch of a text with other sources; return the new text, which says what was wanted."""
+    file = folder / "sketch.toml"
+    file.write_text(text, "utf-8")
+    loaded = expected = load(file)
+    for channel, source in changes:
+        expected = with_source(expected, f"view.{channel}", source)
+    expected = expected.with_values({name.replace("__", "."): value for name, value in values.items()})
+    save(loaded, expected)
+    again = load(file)
+    assert sources_in(again) == sources_in(expected)
+    assert parts(again) == parts(expected) and values_of(again) == values_of(expected)
+    return file.read_text("utf-8")
+
+
+def test_a_source_comes_as_a_new_pass_at_the_end(folder: Path) -> None:
+    text = saved(folder, VIEW, ("iChannel1", "foreign/picture"))
+    assert text == VIEW + (
+        'inputs = { iChannel1 = "iChannel1" }\n\n'
+        '[[pass]]\nname = "iChannel1"\nuse  = "foreign/picture"\nsize = [256, 256]\nset  = { number = 1 }\n'
+    )
+
+
+def test_an_image_has_its_own_size_and_its_file(folder: Path) -> None:
+    text = saved(folder, VIEW, ("iChannel0", "foreign/image"), iChannel0__image="a.png")
+    assert 'size = ["iChannel0.image.size.x", "iChannel0.image.size.y"]' in text
+    assert 'image = "a.png"' in text
+
+
+def test_another_source_replaces_the_one_there(folder: Path) -> None:
+    text = saved(folder, LAND_PHOTO, ("iChannel0", "foreign/noise"))
+    assert 'use = "foreign/noise"\nsize = [256, 256]   # texels\n' in text and "a.png" not in text
+
+
+def test_a_video_has_its_own_size(folder: Path) -> None:
+    text = saved(folder, LAND_PHOTO, ("iChannel0", "foreign/video"))
+    assert 'use = "foreign/video"\nset = {}\n[view]' in text
+
+
+def test_a_pass_is_wired_and_the_one_before_stays(folder: Path) -> None:
+    text = saved(folder, LAND_PHOTO, ("iChannel0", "land"), ("iChannel1", "photo"))
+    assert text == LAND_PHOTO.replace(
+        '{ iChannel0 = "photo" }', '{ iChannel0 = "land", iChannel1 = "photo" }'
+    )

@@ -7,22 +7,30 @@ import pickle
 import random
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+import tifffile
 
+from playground.allowed_files import ELEVATIONS
 from playground.errors import DataError, ParameterError, PlaygroundError, ShaderError, SketchError
 from playground.paths import SKETCHES
 from playground.shader.parameter import coerce
 from playground.sketch.find import find, shipped_names, shipped_sketches
-from playground.sketch.load import is_technique, load, load_with
-from playground.sketch.model import Camera, Kernel, TerrainSettings
+from playground.sketch.load import elevation_text, is_technique, load, load_with
+from playground.sketch.model import VARIANTS, Camera, Kernel, TerrainSettings, kernels_of
+from playground.sketch.replace_technique import with_texts
 from playground.sketch.techniques import Techniques, WithLibrary, shipped_techniques
+from playground.sketch.toml_text import TomlPlaces
+from playground.sketch.variants import active_variant, trusted
 
 from ..cases import each
 from ..loading import library
 from ..loading import load as load_once
-from .conftest import PASS, TAIL, TERRAIN
+from ..sketch_texts import passes
+from .conftest import PASS, TAIL, TERRAIN, VIEW
 
 IMAGE = """\
 #pragma kernel(output = "height:r32f")
@@ -587,3 +595,262 @@ def test_the_kinds_of_error():
     with pytest.raises(ParameterError):
         coerce(load().graph.passes[0].technique.parameters[0], 3)
     assert not issubclass(DataError, SketchError)
+
+
+# ── An elevation file that is opened alone: the sketch around it, and how it is found
+
+
+@pytest.fixture
+def dem(tmp_path):
+    path = tmp_path / 'a "b" `c` é.TIF'
+    tifffile.imwrite(path, np.arange(12, dtype=np.float32).reshape(3, 4))
+    return path
+
+
+def test_dem_sketch_names_its_file_and_leaves_terrain_to_it(dem):
+    sketch = load(dem)
+    assert (sketch.file, sketch.folder, sketch.name) == (str(dem), str(dem.parent), dem.stem)
+    assert sketch.terrain == TerrainSettings()
+    height = sketch.graph.find("height")
+    assert dict(height.values) == {"elevation": dem.name, "longest": 1025, "no_data": 1}
+    assert [spec.name for spec in sketch.graph.passes if spec.name in ("colour", "light", "view")]
+    assert {spec.line for spec in sketch.graph.passes} == {0}, "no line of the file says any of it"
+    assert not sketch.warnings
+
+
+def test_saved_beside_the_file_its_text_is_the_same_sketch(dem):
+    saved = dem.with_suffix(".toml")
+    saved.write_text(elevation_text(dem, dem.name), "utf-8")
+    alone, again = load(dem), load(saved)
+    assert [(p.name, p.use, p.values, p.inputs) for p in alone.graph.passes] == [
+        (p.name, p.use, p.values, p.inputs) for p in again.graph.passes
+    ]
+    assert (alone.camera, alone.main, alone.title) == (again.camera, again.main, again.title)
+
+
+@pytest.mark.parametrize("ending", ELEVATIONS)
+def test_every_ending_of_elevations_is_found(tmp_path, ending):
+    path = tmp_path / f"land{ending}"
+    path.write_bytes(b"")
+    assert find(path) == path and load(path).name == "land"
+
+
+def test_what_is_neither_says_what_is(tmp_path):
+    (tmp_path / "a.pdf").write_bytes(b"%PDF")
+    with pytest.raises(SketchError, match=r"an elevation file in \.png, \.tif, .*\.hgt"):
+        find(tmp_path / "a.pdf")
+
+
+@pytest.mark.room("dialects")
+def test_a_dialect_is_for_shaders(dem):
+    with pytest.raises(SketchError, match="--dialect is for a shader file"):
+        load(dem, dialect="isf")
+
+
+# ── A sketch with other texts in place of its files': what follows the texts, and what stays itself
+
+
+NESTED = passes(height="./hill")
+HILL = 'title = "A hill"\n' + passes(slope="./terrain")
+
+
+def kernels(sketch):
+    return {kernel.name.rpartition("/")[2]: kernel for _, kernel in kernels_of(sketch.graph)}
+
+
+def test_a_main_parameter_that_a_text_lacks_is_one_no_more(folder):
+    sketch = folder.sketch(head='format = 1\nmain = ["height.rise"]\n')
+    assert with_texts(sketch, {str(folder.path / "terrain.glsl"): TERRAIN}).main == ("height.rise",)
+    steep = TERRAIN.replace("rise", "climb")
+    assert with_texts(sketch, {str(folder.path / "terrain.glsl"): steep}).main == ()
+
+
+def test_override_text_replaces_file_and_its_declarations(folder):
+    sketch = folder.sketch()
+    steep = TERRAIN.replace("rise", "climb").replace("0.5", "0.75")
+    result = with_texts(sketch, {str(folder.path / "terrain.glsl"): steep})
+    before, after = kernels(sketch), kernels(result)
+    assert [(p.name, p.default) for p in before["terrain"].parameters] == [("rise", 0.5)]
+    assert [(p.name, p.default) for p in after["terrain"].parameters] == [("climb", 0.75)]
+    assert "climb * float" in after["terrain"].source.code
+    assert after["look"] is before["look"], "what no text is of stays itself"
+    assert (folder.path / "terrain.glsl").read_text(encoding="utf-8") == TERRAIN
+
+
+def test_an_included_text_changes_every_kernel_that_includes_it(folder):
+    file = folder.write("share.glsl", "const float SHARE = 0.5;\n")
+    folder.write("terrain.glsl", '#include "share.glsl"\n' + TERRAIN)
+    folder.write("look.glsl", '#include "share.glsl"\n' + VIEW)
+    result = with_texts(folder.sketch(), {str(file): "const float SHARE = 0.25;\n"})
+    assert ["SHARE = 0.25;" in kernel.source.code for kernel in kernels(result).values()] == [True, True]
+
+
+def test_a_text_is_found_inside_a_technique_of_several_passes(folder):
+    folder.write("hill.toml", HILL)
+    sketch = folder.sketch(NESTED)
+    result = with_texts(sketch, {str(folder.path / "terrain.glsl"): TERRAIN.replace("0.5", "0.75")})
+    assert kernels(result)["terrain"].parameters[0].default == 0.75
+    assert kernels(sketch)["terrain"].parameters[0].default == 0.5
+
+
+def test_texts_that_a_sketch_does_not_use_change_nothing(folder):
+    sketch = folder.sketch()
+    assert with_texts(sketch, {}) is sketch
+    assert with_texts(sketch, {str(folder.path / "other.glsl"): "not GLSL"}) == sketch
+
+
+def test_variant_is_disabled_unless_override_equals_file(folder):
+    file = folder.write("terrain.comp", '#pragma compute(groups = "1, 1")\nuniform float rise = 0.5;\n')
+    sketch = folder.sketch()
+    sketch = replace(sketch, graph=trusted(sketch.graph))
+
+    def runs(texts):
+        kernel = kernels(with_texts(sketch, texts))["terrain"]
+        return active_variant(kernel, VARIANTS) is not None
+
+    kernel_file = str(folder.path / "terrain.glsl")
+    assert runs({kernel_file: TERRAIN})
+    assert runs({kernel_file: TERRAIN + "// the same\n"})
+    assert not runs({kernel_file: TERRAIN.replace("0.5", "0.75")})
+    assert not runs({str(file): file.read_text() + "float more;\n"})
+
+
+def test_a_text_that_is_no_kernel_is_refused_in_a_sentence(folder):
+    sketch, file = folder.sketch(), str(folder.path / "terrain.glsl")
+    with pytest.raises(DataError, match="no kernel is left of this text"):
+        with_texts(sketch, {file: "float f() { return 1.0; }\n"})
+    with pytest.raises(ShaderError, match=r"no file 'nowhere\.glsl' to include"):
+        with_texts(sketch, {file: '#include "nowhere.glsl"\n' + TERRAIN})
+
+
+# ── Lines of TOML keys: against a document made with its line numbers known ──
+
+
+TEXT = '''\
+# a comment = 1
+format = 1
+"quoted key" = 2
+a.b."c.d" = 3
+text = """
+not = "a key"
+[[not.a.table]]
+"""
+raw = \'\'\'x = "1"
+y = 2\'\'\'
+list = [1, 0.5,
+  # comment, ]
+  { deep = 1, other = [2, 3] }, "]",
+  4]
+
+[[pass]]
+name = "one"   # name = 7
+set = { sun = { azimuth = 1.5, elevation = 2 }, "detail.frequency" = 3, x.y = 4 }
+  [pass.inputs]
+  height = "a"
+[[pass]]
+name = "two"
+[ pass . set ]
+smoothing = 1979-05-27T07:32:00
+[[pass.inner]]
+z = 1
+[[pass.inner]]
+z = 2
+[view]
+use = "x#y" # end
+camera.azimuth = 1'''
+
+
+def expected() -> dict[tuple[str | int, ...], int]:
+    return {
+        ("format",): 2,
+        ("quoted key",): 3,
+        ("a", "b", "c.d"): 4,
+        ("text",): 5,
+        ("raw",): 9,
+        ("list",): 11,
+        ("list", 0): 11,
+        ("list", 1): 11,
+        ("list", 2): 13,
+        ("list", 2, "deep"): 13,
+        ("list", 2, "other"): 13,
+        ("list", 2, "other", 0): 13,
+        ("list", 2, "other", 1): 13,
+        ("list", 3): 13,
+        ("list", 4): 14,
+        ("pass", 0): 16,
+        ("pass", 0, "name"): 17,
+        ("pass", 0, "set"): 18,
+        ("pass", 0, "set", "sun"): 18,
+        ("pass", 0, "set", "sun", "azimuth"): 18,
+        ("pass", 0, "set", "sun", "elevation"): 18,
+        ("pass", 0, "set", "detail.frequency"): 18,
+        ("pass", 0, "set", "x", "y"): 18,
+        ("pass", 0, "inputs"): 19,
+        ("pass", 0, "inputs", "height"): 20,
+        ("pass", 1): 21,
+        ("pass", 1, "name"): 22,
+        ("pass", 1, "set"): 23,
+        ("pass", 1, "set", "smoothing"): 24,
+        ("pass", 1, "inner", 0): 25,
+        ("pass", 1, "inner", 0, "z"): 26,
+        ("pass", 1, "inner", 1): 27,
+        ("pass", 1, "inner", 1, "z"): 28,
+        ("view",): 29,
+        ("view", "use"): 30,
+        ("view", "camera", "azimuth"): 31,
+    }
+
+
+def test_every_key_has_its_line():
+    assert TomlPlaces(TEXT).lines == expected()
+
+
+def test_a_place_without_a_line_has_that_of_what_is_around_it():
+    lines = TomlPlaces(TEXT)
+    assert lines.line(("pass", 0, "set", "nothing", "there")) == 18
+    assert lines.line(("pass", 7, "name")) == 16  # the first of the list
+    assert lines.line(("nothing", 7, "name")) == 0
+    assert lines.line(()) == 0
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "\n\n",
+        "[",
+        "[[",
+        "[[pass]",
+        "a",
+        "a =",
+        "a = [",
+        "a = {",
+        "= 1",
+        'a = "',
+        "[]",
+        "a.=1",
+        "]",
+        "}",
+        "a = [}",
+    ],
+)
+def test_what_is_not_toml_gives_what_there_is(text):
+    places = TomlPlaces("first = 1\n" + text)
+    assert places.lines["first",] == 1 and places.pairs["first",].value == len("first = ")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [2, pytest.param(102, marks=pytest.mark.slow)])
+def test_any_text_ends_soon_and_raises_nothing(seed):
+    rng = random.Random(seed)
+    for _ in range(750):
+        letters = list(TEXT)
+        for _ in range(rng.randint(1, 12)):
+            at = rng.randrange(len(letters))
+            letters[at : at + rng.randint(0, 3)] = rng.choice(
+                ["", "[", '"', "'''", "{", "=", "\n", "\\", "}"]
+            )
+        TomlPlaces("".join(letters))
+    TomlPlaces("a = " + "[" * 100_000)
+    TomlPlaces("a = [" + "1, " * 100_000 + "]")
+    TomlPlaces("a = {" + "b = {" * 50_000)

@@ -6,7 +6,7 @@
 //   units    heights as the example's
 //   source   Heitz and Neyret 2018, "High-Performance By-Example Noise using a
 //            Histogram-Preserving Blending Operator" (Proc. ACM CGIT 1(2))
-//   tested   tests/engine/test_ranked.py, against SciPy's ranks and normal distribution
+//   tested   tests/engine/test_example.py, against SciPy's ranks and normal distribution
 #pragma source("ranked_heights", output = "normal:r32f, sorted:r32f")
 
 uniform sampler2D example;     //! input

@@ -1,4 +1,4 @@
-"""Half-written files: removed when their process ends in any way; those of others are untouched."""
+"""Files half written, files that are none, and texts of JSON."""
 
 from __future__ import annotations
 
