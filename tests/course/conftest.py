@@ -15,7 +15,7 @@ from playground.course.translate import translated, write_hashes
 from playground.engine.engine import Engine
 
 from ..publish.web.conftest import node as node
-from ..studio.live.conftest import screen as screen
+from ..studio.conftest import screen as screen
 from .lesson_desk import OWN, Harness, shelved
 
 FRONT = """+++

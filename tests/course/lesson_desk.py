@@ -21,7 +21,7 @@ from playground.studio.host import Host
 from playground.studio.keyframes.panel import height_of_timeline
 
 from ..sketch_texts import map_of_height
-from ..studio.live.desk import Bare
+from ..studio.panel_desk import Bare
 
 FILE = (GLSL / "generation/diamond_square/raw.glsl").resolve()
 """The shader that the lesson quotes and breaks."""

@@ -9,8 +9,8 @@ import pytest
 from playground.course.typeset import written
 from playground.studio.theme import Theme
 
-from ..studio.live.test_fonts import constants, missing
-from ..studio.live.test_fonts import theme as theme
+from ..studio.test_fonts import constants, missing
+from ..studio.test_fonts import theme as theme
 
 COURSE = Path(__file__).resolve().parents[2] / "playground" / "course"
 TEXTS = COURSE / "texts"

@@ -10,7 +10,7 @@ import pytest
 
 from playground.course.window.progress import Progress, write_progress
 
-from ..studio.live.screen import ON_LINUX, Program, Screen
+from ..studio.screen import ON_LINUX, Program, Screen
 from .lesson_desk import OWN, write_lessons
 
 RUN = """

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from ..studio.live.screen import ON_LINUX, Program, Screen
+from ..studio.screen import ON_LINUX, Program, Screen
 from .lesson_desk import OWN, write_lessons
 
 RUN = """

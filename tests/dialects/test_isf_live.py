@@ -10,7 +10,7 @@ import pytest
 from playground.engine.engine import Engine
 from tests.isf_texts import TEXTS, VERTEX
 
-from ..studio.live.desk import Bare
+from ..studio.panel_desk import Bare
 
 COUNTING = """/*{"ISFVSN": "2", "INPUTS": [{"NAME": "again", "TYPE": "event", "LABEL": "Again!"},
   {"NAME": "mode", "TYPE": "long", "VALUES": [3, 7], "LABELS": ["three", "seven"], "DEFAULT": 3},

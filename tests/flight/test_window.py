@@ -16,7 +16,7 @@ from playground.flight.craft import Controls
 from playground.flight.record import read_record
 
 from ..sketch_texts import passes
-from ..studio.live.screen import LIMIT, ON_LINUX, Program, Screen
+from ..studio.screen import LIMIT, ON_LINUX, Program, Screen
 
 WIDTH, HEIGHT = 640, 360
 SKETCH = (

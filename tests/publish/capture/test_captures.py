@@ -32,7 +32,7 @@ from playground.studio.notices import Notices
 from playground.studio.session import Session
 
 from ...sketch_texts import map_of_height
-from ...studio.live.desk import Bare
+from ...studio.panel_desk import Bare
 
 TERRAIN = """// terrain.glsl -- a slope that goes up
 #pragma kernel(output = "height:r32f")

@@ -1,0 +1,254 @@
+"""The histogram and the legend of a map, against numpy and against what the map draws."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import moderngl
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.engine.textures import make_texture, write_texture
+from playground.sketch.map_sketch import Map
+from playground.studio.inspect import histogram
+from playground.studio.inspect.histogram import (
+    BINS,
+    STEPS,
+    Counter,
+    Histogram,
+    colours_of,
+    count,
+    ends_of,
+    ticks,
+)
+from playground.studio.session import Session
+
+from ..sketch_texts import map_of_height
+from .panel_desk import Bare
+
+TERRAIN = """// terrain.glsl -- a slope from west to east
+#pragma kernel(output = "height:r32f")
+uniform float level = 1.0; //! slider(0, 1) How high
+float kernel(ivec2 texel) { return level * float(texel.x) / float(size.x - 1); }
+"""
+SKETCH = "format = 1\nsize = [64, 8]\nrelief = 250.0\n" + map_of_height()
+
+
+@pytest.fixture
+def ctx(ctx: moderngl.Context) -> moderngl.Context:
+    """Give the context with nothing bound that another test has taken away."""
+    ctx.detect_framebuffer(0).use()
+    return ctx
+
+
+FILES = {"terrain.glsl": TERRAIN, "sketch.toml": SKETCH}
+
+
+def counted(texture: moderngl.Texture, **limits: int) -> tuple[Histogram, int]:
+    """Return the histogram, and in how many pieces it was made."""
+    *pieces, result = count(texture, **limits)
+    assert result is not None and not any(pieces)
+    return result, len(pieces) + 1
+
+
+@pytest.mark.parametrize("piece", [10_000_000, 1000, 1])
+@pytest.mark.parametrize("form", ["r32f", "rgba32f", "rg16"])
+def test_it_is_what_numpy_finds(ctx: moderngl.Context, form: str, piece: int) -> None:
+    texture = make_texture(ctx, (90, 70), form)
+    values = np.random.default_rng(3).normal(0.4, 0.1, (70, 90, texture.components)).astype(np.float32)
+    if form != "rg16":
+        values[3:9, 5, 0] = np.nan
+        values[10, 7:9, 0] = np.inf, -np.inf
+    write_texture(texture, values)
+    if form == "rg16":
+        values = (np.round(np.clip(values, 0, 1) * 65535) / np.float32(65535)).astype(np.float32)
+    result, pieces = counted(texture, piece=piece)
+    assert result.whole and result.size == (90, 70) and len(result.channels) == texture.components
+    assert pieces >= 6300 * 2 // max(piece, 90) - 1
+    good = [values[..., c][np.isfinite(values[..., c])].astype(np.float64) for c in range(texture.components)]
+    low, high = min(g.min() for g in good), max(g.max() for g in good)
+    assert (result.low, result.high) == (low, high)
+    for number, (channel, numbers) in enumerate(zip(result.channels, good, strict=True)):
+        assert channel.count == len(numbers)
+        assert (channel.nans, channel.infinities) == ((6, 2) if form != "rg16" and number == 0 else (0, 0))
+        assert (channel.lowest, channel.highest) == (numbers.min(), numbers.max())
+        assert channel.mean == pytest.approx(numbers.mean(), rel=1e-12)
+        assert channel.deviation == pytest.approx(numbers.std(), rel=1e-9)
+        truth, _ = np.histogram(numbers, BINS, (low, high))
+        assert np.abs(np.cumsum(channel.bins) - np.cumsum(truth)).max() <= 1  # where rounding parts two bins
+        assert channel.bins.sum() == len(numbers)
+    texture.release()
+
+
+def test_no_finite_number_and_one_number_alone(ctx: moderngl.Context) -> None:
+    texture = make_texture(ctx, (4, 4), "r32f")
+    write_texture(texture, np.full((4, 4), np.nan, np.float32))
+    result, _ = counted(texture)
+    assert (
+        result.channels[0].nans == 16
+        and math.isnan(result.channels[0].mean)
+        and not result.channels[0].bins.any()
+    )
+    write_texture(texture, np.full((4, 4), 7.0, np.float32))
+    result, _ = counted(texture)
+    assert result.low == result.high == 7.0 and result.channels[0].bins[0] == 16
+    texture.release()
+
+
+def test_of_a_large_texture_whole_rows_are_left_out(ctx: moderngl.Context) -> None:
+    texture = make_texture(ctx, (50, 100), "r32f")
+    write_texture(texture, np.repeat(np.arange(100, dtype=np.float32)[:, None], 50, axis=1))
+    result, _ = counted(texture, most=1500)
+    assert not result.whole and result.read == 50 * 25
+    assert result.channels[0].mean == np.arange(0, 100, 4).mean()
+    texture.release()
+
+
+def test_shares_of_the_numbers(ctx: moderngl.Context) -> None:
+    texture = make_texture(ctx, (100, 100), "r32f")
+    write_texture(texture, np.linspace(0, 1, 10_000, dtype=np.float32).reshape(100, 100))
+    result, _ = counted(texture)
+    low, high = result.between(0, 0.1)
+    assert low == pytest.approx(0.1, abs=1 / BINS) and high == pytest.approx(0.9, abs=1 / BINS)
+    texture.release()
+
+
+def test_a_frame_reads_no_more_than_a_piece(ctx: moderngl.Context, monkeypatch: pytest.MonkeyPatch) -> None:
+    real, sizes = histogram.read_texels, []
+
+    def noted(texture: moderngl.Texture, corner: tuple[int, int], size: tuple[int, int]) -> object:
+        sizes.append(size[0] * size[1])
+        return real(texture, corner, size)
+
+    monkeypatch.setattr(histogram, "read_texels", noted)
+    texture = make_texture(ctx, (100, 100), "r32f")
+    write_texture(texture, np.zeros((100, 100), np.float32))
+    work = count(texture, piece=1000)
+    next(work)
+    assert sizes == [1000]
+    assert len([None for _ in work]) >= 18 and sum(sizes) == 10_000
+    texture.release()
+
+
+def test_it_follows_the_map_and_begins_anew(folder: Path, any_engine: Engine) -> None:
+    session = Session(any_engine, folder)
+    counter = Counter(session, piece=64)
+
+    def settle() -> int:
+        for frames in range(1, 100):
+            session.frame((32, 32))
+            counter.go_on()
+            if not counter.waits:
+                return frames
+        raise AssertionError("it never ends")
+
+    session.frame((32, 32))
+    counter.go_on()
+    assert counter.latest is None and not counter.waits  # no map is shown
+    session.show("height:height")
+    assert settle() > 5
+    assert counter.latest is not None and counter.fresh and counter.latest.high == 1.0
+    assert settle() == 1  # nothing is counted twice
+    session.drafts.set("height.level", 0.5)
+    session.frame((32, 32))
+    counter.go_on()
+    assert counter.waits and not counter.fresh and counter.latest.high == 1.0  # the old one stays meanwhile
+    settle()
+    assert counter.fresh and counter.latest.high == 0.5
+    draws = session.draws
+    session.view.set_map("ramp", 2)
+    assert settle() == 1 and session.draws == draws + 1  # other colours are no other numbers
+    session.show(None)
+    session.frame((32, 32))
+    counter.go_on()
+    assert counter.latest is None
+    session.release()
+
+
+@pytest.mark.parametrize("ramp", range(5))
+def test_the_legend_has_the_colours_of_the_map(folder: Path, any_engine: Engine, ramp: int) -> None:
+    session = Session(any_engine, folder)
+    session.frame((64, 8))
+    session.show("height:height")
+    for name, value in (("channel", 1), ("ramp", ramp), ("lowest", 0.0), ("highest", 1.0), ("middle", 0.5)):
+        session.view.set_map(name, value)
+    session.frame((64, 8))
+    frame = session.read()
+    assert frame is not None
+    with any_engine.borrowed():
+        legend = np.array(colours_of(any_engine.ctx, ramp)) * 255
+    assert len(legend) == STEPS == 64
+    np.testing.assert_allclose(frame.array[4, :, :3], legend, atol=0.51)  # the slope has the same 64 numbers
+    session.release()
+
+
+@pytest.mark.parametrize("middle", [0.2, 0.5, 0.9])
+def test_around_a_middle_both_sides_have_one_scale(folder: Path, any_engine: Engine, middle: float) -> None:
+    session = Session(any_engine, folder)
+    session.frame((64, 8))
+    session.show("height:height")
+    for name, value in (("channel", 1), ("ramp", 4), ("middle", middle)):
+        session.view.set_map(name, value)
+    session.frame((64, 8))
+    frame = session.read()
+    assert frame is not None and session.view.map is not None
+    low, high = ends_of(session.view.map)
+    assert (low + high) / 2 == pytest.approx(middle) and high - low == pytest.approx(
+        2 * max(middle, 1 - middle)
+    )
+    with any_engine.borrowed():
+        legend = np.array(colours_of(any_engine.ctx, 4)) * 255
+    numbers = np.arange(64) / 63
+    places = (numbers - low) / (high - low) * (STEPS - 1)
+    expected = np.stack([np.interp(places, np.arange(STEPS), legend[:, c]) for c in range(3)], axis=1)
+    np.testing.assert_allclose(frame.array[4, :, :3], expected, atol=2.0)
+    session.release()
+
+
+def test_a_range_may_be_any_numbers(folder: Path) -> None:
+    shown = Map("height:height").with_value("lowest", -4000.0).with_value("highest", 9000.0)
+    assert ends_of(shown) == (-4000.0, 9000.0)
+    for name in ("lowest", "highest", "middle"):
+        parameter = shown.kernel.parameter(name)
+        assert parameter is not None and parameter.widget.low is None
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "marks"),
+    [
+        (0.0, 1.0, (0.0, 0.5, 1.0)),
+        (0.0, 840.0, (0.0, 250.0, 500.0, 750.0)),
+        (-3.0, 4.0, (-2.0, 0.0, 2.0, 4.0)),
+        (5.0, 5.0, (5.0,)),
+    ],
+)
+def test_ticks_are_round_and_few(low: float, high: float, marks: tuple[float, ...]) -> None:
+    values = ticks(low, high)
+    assert len(values) <= 5 and set(marks) <= set(values)
+    assert all(low <= mark <= high for mark in values)
+
+
+def test_the_panel_counts_only_while_it_shows_it(bare: Bare) -> None:
+    see = bare.bench.inspection
+    bare.bench.session.show("height:height")
+    bare.run_frames(5)
+    assert see.counter.latest is None and see.patience(0.0) > 1e6
+    bare.click("Histogram###histogram")
+    bare.run_frames(5)
+    assert see.counter.latest is not None and see.counter.latest.high == 1.0
+    bare.click("All but outliers")
+    shown = bare.session.view.map
+    assert shown is not None
+    assert 0.0 < float(str(shown.value("lowest"))) < 0.1 and 0.9 < float(str(shown.value("highest"))) < 1.0
+    bare.click("All of it")
+    assert bare.session.view.map is not None
+    assert (bare.session.view.map.value("lowest"), bare.session.view.map.value("highest")) == (0.0, 1.0)
+    bare.click("Around the mean")
+    assert bare.session.view.map.value("middle") == pytest.approx(0.5)
+    bare.click("Logarithmic")
+    assert see.logarithmic
+    bare.run_frames(3)
+    bare.click("Histogram###histogram")
+    assert see.counter.latest is None

@@ -1,0 +1,479 @@
+"""The panel under a mouse and keys, without a screen: what each click and each text makes of a sketch."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from imgui_bundle import imgui
+
+from playground.data.image_files import write_png
+from playground.engine.engine import Engine
+from playground.paths import SKETCHES
+from playground.sketch.assign import values_of
+from playground.studio.draw import tooltip_waits
+from playground.studio.panel import rows as panel_rows
+from playground.studio.panel.rows import fitting_path
+from playground.studio.theme import PANEL_WIDTH
+
+from ..sketch_texts import map_of, passes
+from .panel_desk import Bare
+
+TERRAIN = """// terrain.glsl -- hills
+#pragma kernel(output = "height:r32f")
+uniform float level = 0.5; //! slider(0, 1) How high the hills are
+uniform float turn = 0.0; //! angle The way that the hills run
+uniform float rough = 1.0; //! log_slider(0.01, 100) unit("1/m") group("Shape") Waves in a metre
+uniform int count = 3; //! slider(1, 9) group("Shape") How many waves
+uniform vec2 sun = vec2(135.0, 40.0); //! direction group("Shape") Where the sun is
+uniform int kind = 0; //! menu("round", "sharp") group("Shape") What they are like
+uniform float gone = 0.5; //! slider(0, 1) group("A group whose name is longer than there is room for") Gone
+float kernel(ivec2 texel) { return level; }
+"""
+SKETCH = (
+    """format = 1
+title = "Hills, with a title that is longer than any panel has room for in one line"
+size = 33
+"""
+    + passes(height=("./terrain", "set = { level = 0.6 }"))
+    + map_of("height")
+    + """[[preset]]
+name = "high"
+set = { "height.level" = 1.0, "height.count" = 5 }
+"""
+)
+LEVEL, COUNT = "##height.level", "##height.count"
+
+
+FILES = {"terrain.glsl": TERRAIN, "sketch.toml": SKETCH}
+
+
+def value(bare: Bare, name: str) -> object:
+    assert bare.session.sketch is not None
+    return values_of(bare.session.sketch)[f"height.{name}"]
+
+
+def notices_of(bare: Bare) -> str:
+    return "; ".join(notice.text for notice in bare.bench.notices.items)
+
+
+def test_a_drag_sets_a_value_and_is_one_step(bare: Bare) -> None:
+    bare.drag(LEVEL, 0.6, 0.9)
+    moved = value(bare, "level")
+    assert isinstance(moved, float) and 0.8 < moved < 1.0
+    assert len(bare.bench.undo.history.steps) == 1
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    assert value(bare, "level") == 0.6
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.mod_shift, imgui.Key.z)
+    assert value(bare, "level") == moved
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.y)
+    assert value(bare, "level") == moved
+
+
+@pytest.mark.parametrize("by", ["a click with Ctrl", "a double click", "the menu"])
+def test_a_value_is_typed_as_an_expression(bare: Bare, by: str) -> None:
+    if by == "a click with Ctrl":
+        imgui.get_io().add_key_event(imgui.Key.mod_ctrl, True)
+        bare.click(LEVEL, 0.2)
+        imgui.get_io().add_key_event(imgui.Key.mod_ctrl, False)
+    elif by == "a double click":
+        bare.click(LEVEL, 0.2, times=2)
+    else:
+        bare.click(LEVEL, 0.2, button=1)
+        bare.click("Type a value")
+    bare.run_frames(3)
+    assert value(bare, "level") == 0.6, "the click itself has moved nothing"
+    bare.type("1/8 + 1/8")
+    bare.key(imgui.Key.enter)
+    assert value(bare, "level") == 0.25
+    assert [list(s.after.values()) for s in bare.bench.undo.history.steps][-1] == [0.25]
+
+
+def test_an_invalid_value_is_reported_and_escape_leaves_it(bare: Bare) -> None:
+    bare.click(LEVEL, 0.2, times=2)
+    bare.run_frames(3)
+    bare.type("2")
+    bare.key(imgui.Key.enter)
+    assert value(bare, "level") == 0.6 and "outside its range 0 to 1" in notices_of(bare)
+    bare.run_frames(60)
+    bare.click(LEVEL, 0.2, times=2)
+    bare.run_frames(3)
+    bare.type("0.125")
+    bare.key(imgui.Key.escape)
+    assert value(bare, "level") == 0.6
+
+
+def test_resets_of_one_of_a_group_and_of_all(bare: Bare) -> None:
+    def change() -> None:
+        bare.session.drafts.set_all({"height.level": 0.75, "height.count": 5, "height.rough": 2.0})
+        bare.run_frames(2)
+
+    change()
+    bare.click(f"{LEVEL}-reset")
+    assert (value(bare, "level"), value(bare, "count")) == (0.6, 5)
+    change()
+    bare.click("##reset Shape")
+    assert (value(bare, "level"), value(bare, "count"), value(bare, "rough")) == (0.75, 3, 1.0)
+    change()
+    bare.click("##reset height")
+    assert (value(bare, "level"), value(bare, "count"), value(bare, "rough")) == (0.6, 3, 1.0)
+    bare.bench.undo.undo()
+    assert (value(bare, "level"), value(bare, "count"), value(bare, "rough")) == (0.75, 5, 2.0)
+    bare.click("Reset")
+    bare.click("All values and techniques")
+    assert (value(bare, "level"), value(bare, "count"), value(bare, "rough")) == (0.6, 3, 1.0)
+
+
+def test_a_padlock_locks_and_random_values_leave_it(bare: Bare) -> None:
+    bare.point(LEVEL)
+    bare.click("lock height.level")
+    assert bare.session.shown is not None and bare.session.shown.edits.locked == ("height.level",)
+    bare.click("Random")
+    bare.click("Random values")
+    assert "Random, seed 1: 6 parameters" in notices_of(bare)
+    assert value(bare, "level") == 0.6 and value(bare, "rough") != 1.0
+    first = dict(values_of(bare.session.sketch))  # type: ignore[arg-type]
+    bare.click("Mutate")
+    assert "Mutation, seed 2" in notices_of(bare)
+    bare.bench.undo.undo()
+    assert values_of(bare.session.sketch) == first, "random values are one step"  # type: ignore[arg-type]
+
+
+def test_the_search_finds_and_only_changed_ones_show(bare: Bare) -> None:
+    bare.type("/")
+    bare.run_frames(2)
+    bare.type("waves metre")
+    bare.places.clear()
+    bare.run_frames(2)
+    shown = {label for label in bare.places if label.startswith("##height.")}
+    assert shown == {"##height.rough"}
+    bare.key(imgui.Key.escape)
+    bare.run_frames(2)
+    assert bare.panel.memory.filter.search == ""
+    bare.session.drafts.set("height.count", 5)
+    bare.click("Changed##only")
+    bare.places.clear()
+    bare.run_frames(2)
+    assert COUNT in bare.places and LEVEL not in bare.places
+
+
+def test_saved_value_has_fewest_digits_and_belongs_to_file(bare: Bare, folder: Path) -> None:
+    bare.session.drafts.set("height.level", 1 / 3)
+    bare.run_frames(2)
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    bare.run_frames(5)
+    assert "set = { level = 0.33333334 }" in (folder / "sketch.toml").read_text(encoding="utf-8")
+    assert "new value" not in notices_of(bare), "the file says what was set, so nothing gives way"
+    bare.bench.undo.undo()
+    assert value(bare, "level") == 0.6
+
+
+def test_panel_footer_lines_fit_at_any_width(bare: Bare) -> None:
+    for width in (240.0, 330.0, 620.0):
+        bare.panel.width = width
+        bare.run_frames(3)
+        panel = imgui.internal.find_window_by_name("panel")
+        assert panel.content_size.y + 2 * panel.window_padding.y <= panel.size.y + 1, width
+
+
+def test_preset_shows_changes_since_and_new_one_is_saved(bare: Bare, folder: Path) -> None:
+    bare.click("##preset")
+    bare.click("high")
+    assert (value(bare, "level"), value(bare, "count")) == (1.0, 5)
+    assert len(bare.bench.undo.history.steps) == 1
+    bare.click("Save")
+    bare.click("##name")
+    bare.type("mine")
+    bare.click("Save preset")
+    bare.run_frames(5)
+    assert 'name = "mine"' in (folder / "sketch.toml").read_text(encoding="utf-8")
+    assert bare.session.sketch is not None and [p.name for p in bare.session.sketch.presets] == [
+        "high",
+        "mine",
+    ]
+
+
+def test_the_history_lists_every_step_and_goes_there(bare: Bare) -> None:
+    for number in (0.1, 0.2, 0.3):
+        bare.session.drafts.set("height.level", number)
+        bare.run_frames(90)
+    bare.click("History")
+    bare.click("Level: the file's to 0.1##1")
+    assert value(bare, "level") == 0.1 and bare.bench.undo.history.done == 1
+    bare.click("Level: 0.2 to 0.3##3")
+    assert value(bare, "level") == 0.3
+
+
+def test_what_is_set_is_copied(bare: Bare) -> None:
+    bare.session.drafts.set_all({"height.level": 0.25, "height.kind": 1})
+    bare.click("Copy")
+    bare.click("As --set words")
+    assert bare.clipboard == "--set height.level=0.25 --set height.kind=sharp"
+    bare.run_frames(25)
+    bare.click("Copy")
+    bare.click("As TOML")
+    assert 'set = { level = 0.25, kind = "sharp" }' in bare.clipboard
+
+
+def test_ctrl_s_saves(bare: Bare, folder: Path) -> None:
+    bare.session.drafts.set("height.level", 0.25)
+    bare.run_frames(2)
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    assert "set = { level = 0.25 }" in (folder / "sketch.toml").read_text(encoding="utf-8")
+    assert bare.bench.commands.saved_picture is None, "and no picture"
+
+
+def test_pictures_never_replace_one_another(bare: Bare, folder: Path) -> None:
+    names = []
+    for _ in range(3):
+        bare.key(imgui.Key.s)
+        names.append(bare.bench.commands.saved_picture.name)  # type: ignore[union-attr]
+    stem = bare.session.sketch.name  # type: ignore[union-attr]
+    assert names == [f"{stem}.png", f"{stem}-2.png", f"{stem}-3.png"]
+    assert sorted(p.name for p in folder.glob("*.png")) == sorted(names)
+    bare.bench.commands.folder = folder / "none"
+    bare.key(imgui.Key.s)
+    assert "nothing can be written here" in bare.bench.notices.items[-1].text
+    assert bare.bench.commands.saved_picture.name == names[-1]  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(("size", "scale"), [((1280, 720), 1.0), ((800, 600), 1.0), ((2560, 1440), 2.0)])
+def test_nothing_reaches_beyond_the_panel(
+    folder: Path, any_engine: Engine, size: tuple[int, int], scale: float
+) -> None:
+    bare = Bare(any_engine, folder, size, scale)
+    bare.session.drafts.set_all({"height.level": 0.75, "height.count": 5, "height.sun": (90.0, 20.0)})
+    bare.places.clear()
+    bare.run_frames(3)
+    right = PANEL_WIDTH * scale
+    for label, (x, _, wide, _) in bare.places.items():
+        assert 0 <= x and x + wide <= right, label
+    for name, widget in (("level", ""), ("sun", "-elevation")):
+        field, cross = bare.places[f"##height.{name}{widget}"], bare.places[f"##height.{name}-reset"]
+        assert field[0] + field[2] <= cross[0], "the reset is next to its field"
+    bare.close()
+
+
+def test_the_key_map_shows_every_key_and_fits(folder: Path, any_engine: Engine) -> None:
+    for size, scale in (((1280, 720), 1.0), ((800, 600), 1.0), ((1600, 1200), 2.0)):
+        bare = Bare(any_engine, folder, size, scale)
+        bare.type("?")
+        bare.run_frames(3)
+        window = imgui.internal.find_window_by_name("keys")
+        assert window.content_size.y + 2 * window.window_padding.y <= window.size.y + 1, "nothing is cut off"
+        assert 0 <= window.pos.x and window.pos.x + window.size.x <= size[0]
+        assert 0 <= window.pos.y and window.pos.y + window.size.y <= size[1]
+        bare.key(imgui.Key.escape)
+        assert not bare.bench.interface.keymap_shown and not bare.quits
+        bare.key(imgui.Key.f1)
+        assert bare.bench.interface.keymap_shown
+        imgui.get_io().add_mouse_pos_event(5, 5)
+        bare.press(True)
+        bare.press(False)
+        assert not bare.bench.interface.keymap_shown
+        bare.key(imgui.Key.escape)
+        assert not bare.quits and "Ctrl+Q" in notices_of(bare)
+        bare.key(imgui.Key.mod_ctrl, imgui.Key.q)
+        assert bare.quits
+        bare.close()
+
+
+IMAGE = """// terrain.glsl -- a height from an image
+#pragma kernel(output = "height:r32f")
+uniform sampler2D image;  //! file() label("Elevation")
+float kernel(ivec2 texel) { return texelFetch(image, texel % textureSize(image, 0), 0).r; }
+"""
+
+
+def test_an_image_that_is_dropped_is_put_where_a_hand_says(folder: Path, any_engine: Engine) -> None:
+    write_png(folder / "none.png", np.zeros((4, 4, 4), np.uint8))
+    image = folder / "other" / "white.png"
+    image.parent.mkdir()
+    write_png(image, np.full((4, 4, 4), 255, np.uint8))
+    (folder / "terrain.glsl").write_text(IMAGE, encoding="utf-8")
+    text = SKETCH[: SKETCH.index("[[preset]]")].replace("level = 0.6", 'image = "none.png"')
+    (folder / "sketch.toml").write_text(text, encoding="utf-8")
+    bare = Bare(any_engine, folder)
+    bare.drops.take([image, folder / "other" / "notes.txt"])
+    assert "notes.txt is neither a sketch, a shader nor an image" in notices_of(bare)
+    bare.run_frames(3)
+    bare.click("Elevation   height.image##height.image")
+    assert value(bare, "image") == str(image.resolve()) and bare.drops.waiting == []
+    assert bare.session.read_values("height:height").max() == 1.0  # type: ignore[union-attr]
+    bare.bench.undo.undo()
+    assert value(bare, "image") == "none.png"
+    bare.drops.take([image, image])
+    bare.run_frames(3)
+    bare.click("Elevation   height.image##height.image")
+    assert len(bare.drops.waiting) == 1, "and the next one waits for a choice"
+    bare.bench.undo.undo()
+    bare.run_frames(3)
+    imgui.get_io().add_mouse_pos_event(1000, 700)
+    bare.press(True)
+    bare.press(False)
+    bare.run_frames(2)
+    assert bare.drops.waiting == [] and value(bare, "image") == "none.png", "a click outside it cancels"
+    bare.close()
+
+
+def test_a_sketch_that_is_dropped_opens(bare: Bare, folder: Path) -> None:
+    other = folder / "two"
+    other.mkdir()
+    for name in ("terrain.glsl", "sketch.toml"):
+        (other / name).write_bytes((folder / name).read_bytes())
+    bare.session.drafts.set("height.level", 0.25)
+    bare.drops.take([other])
+    bare.run_frames(3)
+    assert bare.session.path == other / "sketch.toml" and value(bare, "level") == 0.6
+    shader = "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(1.0); }\n"
+    (other / "plain.frag").write_text(shader, encoding="utf-8")
+    bare.drops.take([other / "plain.frag"])
+    bare.run_frames(3)
+    assert bare.session.path.name == "plain.frag" and bare.session.error is None
+    assert bare.session.sketch is not None and bare.session.sketch.name == "plain"
+    bare.drops.take([folder / "gone.toml"])
+    assert "gone.toml" in notices_of(bare)
+    bare.drops.take([folder / "picture.png"])
+    assert "picture.png is neither" in notices_of(bare)
+
+
+@pytest.mark.slow
+def test_dropped_dem_opens_alone_and_saves_sketch_beside_it(bare: Bare, folder: Path) -> None:
+    dem = folder / "dem.npy"
+    np.save(dem, np.add.outer(np.arange(9.0), np.arange(7.0)))
+    bare.drops.take([dem])
+    bare.run_frames(3)
+    assert bare.session.path == dem and bare.session.error is None
+    assert bare.session.sketch is not None and bare.session.sketch.title == "dem"
+    # Now a parameter takes one; it may still have a sketch of its own.
+    bare.drops.take([dem])
+    bare.run_frames(3)
+    bare.click("Into a sketch of its own")
+    assert bare.drops.waiting == [] and bare.session.path == dem
+    bare.session.drafts.set("weights.rock_slope", 41.0)
+    before = dem.read_bytes()
+    bare.bench.commands.save_values()
+    assert bare.session.path == folder / "dem.toml" and dem.read_bytes() == before
+    assert "rock_slope = 41" in (folder / "dem.toml").read_text("utf-8")
+    assert 'elevation = "dem.npy"' in (folder / "dem.toml").read_text("utf-8")
+
+
+def test_unopenable_sketch_keeps_title_and_path_of_shown_one(
+    bare: Bare, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = folder / "two"
+    other.mkdir()
+    (other / "sketch.toml").write_text("format = 1\n[view", encoding="utf-8")
+    bare.drops.take([other])
+    paths: list[str] = []
+    monkeypatch.setattr(imgui, "text_disabled", lambda text: paths.append(text))
+    monkeypatch.setattr(imgui, "set_item_tooltip", lambda text: paths.append(text))
+    bare.run_frames()
+    assert bare.session.error is not None and bare.session.drafts.opening
+    assert str(folder / "sketch.toml") in paths and str(other / "sketch.toml") not in paths
+    (other / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+    (other / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
+    bare.session.drafts.reload()
+    bare.run_frames()
+    paths.clear()
+    bare.run_frames()
+    assert str(other / "sketch.toml") in paths
+
+
+def test_a_label_s_tooltip_covers_its_whole_width(bare: Bare, monkeypatch: pytest.MonkeyPatch) -> None:
+    explained: list[str] = []
+    monkeypatch.setattr(panel_rows, "explain", lambda label, note: explained.append(label))
+    bare.run_frames(3)
+    x, y, _, high = bare.places["##height.level"]
+    assert not tooltip_waits()
+    imgui.get_io().add_mouse_pos_event(x - 8, y + high / 2)  # after the label's text, before the slider
+    bare.run_frames(3)
+    waited = 0
+    while not explained:
+        assert tooltip_waits() and (waited := waited + 1) < 60, "a window that sleeps would never show it"
+        bare.run_frames()
+    assert set(explained) == {"Level"}
+    bare.run_frames(60)
+    assert not tooltip_waits(), "the window may sleep"
+    imgui.get_io().add_mouse_pos_event(x + 20, y + high / 2)
+    bare.run_frames()
+    explained.clear()
+    bare.run_frames(60)
+    assert not explained and not tooltip_waits()
+
+
+def test_a_path_that_is_too_long_is_cut_at_its_beginning(bare: Bare) -> None:
+    bare.run_frames()
+    imgui.new_frame()
+    path = "/terrain/of the Alps/lessons/week 3/valleys/dem.tif"
+    whole = imgui.calc_text_size(path).x
+    for width in (whole + 1, whole / 2, whole / 4):
+        text = fitting_path(path, width)
+        assert imgui.calc_text_size(text).x <= width and path.endswith(text.removeprefix("…"))
+        assert (text == path) == (width > whole)
+        assert text.endswith("dem.tif")
+    imgui.end_frame()
+
+
+def test_a_file_field_shows_the_name_its_tooltip_the_path(
+    bare: Bare, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "terrain.glsl").write_text(TERRAIN + 'uniform sampler2D dem; //! file("white.png")\n', "utf-8")
+    write_png(folder / "white.png", np.full((4, 4, 4), 255, np.uint8))
+    bare.session.drafts.reload()
+    flags: list[int] = []
+    tooltips: list[str] = []
+    draw = imgui.input_text
+
+    def noted(label: str, text: str, flag: int = 0, *more: Any) -> Any:
+        flags.extend([flag] if text == "white.png" else [])
+        return draw(label, text, flag, *more)
+
+    monkeypatch.setattr(imgui, "input_text", noted)
+    monkeypatch.setattr(imgui, "set_tooltip", tooltips.append)
+    bare.run_frames(4)
+    bare.point("##height.dem")
+    bare.run_frames(60)
+    assert flags and all(flag & imgui.InputTextFlags_.elide_left for flag in flags)
+    assert set(tooltips) == {str(folder / "white.png")}
+
+
+def test_an_image_has_no_place_where_nothing_takes_a_file(bare: Bare, folder: Path) -> None:
+    write_png(folder / "white.png", np.full((4, 4, 4), 255, np.uint8))
+    bare.drops.take([folder / "white.png"])
+    assert "no parameter of this sketch takes a file" in notices_of(bare) and bare.drops.waiting == []
+
+
+def test_a_sketch_that_cannot_be_saved_is_offered_as_a_copy(tmp_path: Path, any_engine: Engine) -> None:
+    bare = Bare(any_engine, SKETCHES / "white_noise.toml")
+    bare.bench.commands.folder = tmp_path
+    bare.session.drafts.set("height.seed", 4)
+    bare.run_frames(2)
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    bare.run_frames(3)
+    bare.click("Cancel")
+    bare.run_frames(5)
+    assert list(tmp_path.iterdir()) == []
+    bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
+    bare.run_frames(3)
+    bare.click("Save a copy")
+    bare.run_frames(5)
+    assert bare.session.path == tmp_path / "white_noise" / "sketch.toml" and value(bare, "seed") == 4
+    bare.close()
+
+
+def test_keys_that_come_up_within_the_frame_are_heard(bare: Bare) -> None:
+    bare.session.drafts.set("height.level", 0.25)
+    bare.run_frames(2)
+    events = imgui.get_io()
+    events.add_key_event(imgui.Key.mod_ctrl, True)
+    bare.run_frames()
+    events.add_key_event(imgui.Key.z, True)
+    events.add_key_event(imgui.Key.mod_ctrl, False)
+    bare.run_frames()
+    events.add_key_event(imgui.Key.z, False)
+    bare.run_frames(2)
+    assert value(bare, "level") == 0.6
