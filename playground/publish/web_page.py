@@ -63,7 +63,7 @@ def prepare_page(
     size, stops = frame or DEFAULT_PICTURE, dict(steps or {})
     style = read_bundle("page.css")
     at: dict[str, Any] = {"frame": size, "time": time, "steps": stops}
-    data = page_data([sketch], **at, techniques=techniques, packed=True, engine=engine)
+    data = page_data([sketch], **at, techniques=techniques, engine=engine)
     bytes_of_data = bytes_in_page(data["shared"]["blobs"])
     if bytes_of_data > MAX_PAGE_BYTES:
         largest = f"at most {MAX_PAGE_BYTES // 2**20} MiB; a smaller terrain, image or film would do"

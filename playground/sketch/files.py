@@ -137,11 +137,6 @@ def contents(sketch: Sketch) -> tuple[dict[str, Path], str, list[str]]:
     return files, f"{top}/{first}", sorted(shipped)
 
 
-def has_arrays(sketch: Sketch) -> bool:
-    """Return whether a sketch has arrays from Python, which no file of its own has."""
-    return any(isinstance(value, str) and holds_array(value) for _, value in sketch.overrides)
-
-
 def folder_of(sketch: Sketch) -> str:
     """Return the name of the folder that a sketch is packed in."""
     return re.sub(r'[\x00-\x1f<>:"|?*\\/]+', "-", sketch.name).strip(" .") or "sketch"

@@ -14,8 +14,8 @@ import pytest
 
 from playground import cli
 
-from ..publish.web.unpressed import parts_of
 from ..sketch_texts import passes
+from ..publish.web.pages import parts_of
 
 HEIGHT = """// rise.glsl -- A slope that rises to the north.
 #pragma kernel(output = "height:r32f")
@@ -66,7 +66,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def page_in(path: Path) -> dict[str, Any]:
     """Return the data of a page."""
-    result = re.search(r'id="playground-pressed">(.*?)</script>', path.read_text("utf-8"))
+    result = re.search(r'id="playground-packed">(.*?)</script>', path.read_text("utf-8"))
     assert result
     page: dict[str, Any] = json.loads(parts_of(result[1])[1])
     return page

@@ -354,10 +354,9 @@ def test_unknown_input_and_invalid_array_are_refused(adding, tmp_path):
         save_copy(adding, changed, tmp_path)
 
 
-def test_a_web_page_has_the_arrays_and_no_sketch_to_download(engine, sketch):
+def test_a_web_page_has_the_arrays(engine, sketch):
     changed = sketch.with_values({"height.elevation": np.pad(HEIGHTS, 2)})
     lit = changed.with_inputs({"view.light": np.full((8, 9, 3), 0.5)})
     for item in (changed, lit):
-        (result,) = page_data([item], packed=True, engine=engine)["sketches"]
-        assert "pack" not in result and "array" in json.dumps(result)
-    assert "pack" in page_data([sketch], packed=True, engine=engine)["sketches"][0]
+        (result,) = page_data([item], engine=engine)["sketches"]
+        assert "array" in json.dumps(result)

@@ -1,4 +1,4 @@
-"""Hold bytes once each, by a hash of them, as gzip in base64; a page has seven bits a letter (pressed.py)."""
+"""Hold bytes once each, by a hash of them, as gzip in base64."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ def packed_json(data: Any) -> str:
 
 
 def bytes_in_page(texts: Mapping[str, str]) -> int:
-    """Return what such texts take in a page: base64's six bits a letter as seven."""
-    return sum(map(len, texts.values())) * 6 // 7
+    """Return what such texts take in a page."""
+    return sum(map(len, texts.values()))
 
 
 class Blobs:

@@ -1,10 +1,10 @@
 """Make one HTML file of a page's data and the runtime, which opens from disk and asks nothing of a network.
 
-The runtime's style, the data as JSON and the runtime's script are one text, pressed, in an element that no
-browser runs. The loader, a short script, unpacks that; the page's policy names all scripts and
-styles by their hashes, and nothing else may run or be fetched. What people wrote is escaped where it stands
-in the page itself (``markup``), and pressed in the data. The poster is the picture for printing, and for
-browsers that cannot run the rest.
+The runtime's style, the data as JSON and the runtime's script are one text, packed (gzip in base64), in an
+element that no browser runs. The loader, a short script, unpacks that; the page's policy names all scripts
+and styles by their hashes, and nothing else may run or be fetched. What people wrote is escaped where it
+stands in the page itself (``markup``), and packed in the data. The poster is the picture for printing, and
+for browsers that cannot run the rest.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from typing import Any
 
 from playground._version import __version__
 from playground.markup import Markup, tag
+from playground.publish.web.blobs import packed
 from playground.publish.web.bundle import read_bundle
-from playground.publish.web.pressed import dense, pressed
 
 _MARK = "\ufeff"  # that this is UTF-8, whatever a server says
 _ICON = "data:,"  # or a browser would ask for favicon.ico
@@ -29,14 +29,16 @@ _WORDS = {
         "about": "{title}: a terrain shader that runs in this page.",
         "scripts_off": "This picture is alive where scripts may run: allow them for this page, or open it in"
         " a browser.",
-        "too_old": "This browser is too old for the live picture: it cannot unpack it.",
+        "too_old": "This browser has no DecompressionStream, which unpacks the live picture: update it to"
+        " Chrome 80, Firefox 113, Safari 16.4 or later.",
         "damaged": "This file is damaged, so the picture stands still: export or copy it again.",
     },
     "fr": {
         "about": "{title} : un shader de terrain qui s’exécute dans cette page.",
         "scripts_off": "Cette image est vivante là où les scripts sont permis : autorisez-les pour cette"
         " page, ou ouvrez-la dans un navigateur.",
-        "too_old": "Ce navigateur est trop ancien pour l’image vivante : il ne sait pas la décompresser.",
+        "too_old": "Ce navigateur n’a pas DecompressionStream, qui décompresse l’image vivante : mettez-le à"
+        " jour (Chrome 80, Firefox 113, Safari 16.4 ou plus récent).",
         "damaged": "Ce fichier est endommagé, l’image reste donc fixe : exportez-le ou copiez-le de nouveau.",
     },
 }
@@ -63,8 +65,8 @@ def page_html(
     """
     words = _WORDS[language]
     loader = read_bundle("loader.js")
-    data, blobs = page_texts(page)
-    whole = pressed("\0".join((style, data, script)))
+    content = packed("\0".join((style, page_text(page), script)).encode())
+    blobs = page["shared"]["blobs"]
     sketch = page["sketches"][0]
     title = sketch["title"] or sketch["name"]
     width, height = poster.size
@@ -95,9 +97,9 @@ def page_html(
         "\n",
         tag(
             "script",
-            Markup(whole),
+            Markup(content),
             type="text/plain",
-            id="playground-pressed",
+            id="playground-packed",
         ),
         "\n",
         *(tag("script", Markup(text), type="text/plain", data_blob=key) for key, text in blobs.items()),
@@ -108,11 +110,10 @@ def page_html(
     return f"{_MARK}<!doctype html>\n{html}\n"
 
 
-def page_texts(page: Mapping[str, Any]) -> tuple[str, dict[str, str]]:
-    """Return a page's data as JSON, and the bytes that it holds beside by key: see page_file.js."""
+def page_text(page: Mapping[str, Any]) -> str:
+    """Return a page's data as JSON without its blobs, which are elements of their own: see page_file.js."""
     shared = {name: value for name, value in page["shared"].items() if name != "blobs"}
-    text = json.dumps({**page, "shared": shared}, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    return text, {key: f"~{dense(base64.b64decode(blob))}" for key, blob in page["shared"]["blobs"].items()}
+    return json.dumps({**page, "shared": shared}, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
 
 
 def policy_of(loader: str, script: str, style: str) -> str:

@@ -6,13 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from playground.engine.engine import Engine
-from playground.publish.web.kernels import name_of
-from playground.publish.web.packed import pack_data
 from playground.publish.web.plan import FORMAT, sketch_data
 from playground.publish.web.shared import SharedData
 from playground.publish.web.techniques import technique_menus
-from playground.sketch.files import has_arrays
-from playground.sketch.model import DEFAULT_PICTURE, Sketch, kernels_of
+from playground.sketch.model import DEFAULT_PICTURE, Sketch
 
 
 def page_data(
@@ -22,15 +19,14 @@ def page_data(
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
     techniques: Mapping[str, Sequence[str]] | None = None,
-    packed: bool = False,
     engine: Engine | None = None,
 ) -> dict[str, Any]:
     """Return sketches as one page's data: JSON's own types only.
 
     ``frame`` in pixels, ``time`` in seconds, ``steps`` stops repeats early, by path, as in
     ``Engine.render``. ``techniques`` lists by pass what else may fill it in the first sketch (an empty
-    list: all that fits), for a page with menus of them; ``packed``: with what "download my version" needs.
-    ``engine`` draws what sources are made of, as in ``sketch_data``.
+    list: all that fits), for a page with menus of them. ``engine`` draws what sources are made of, as in
+    ``sketch_data``.
     The same sketches give the same data. Raises ``PlaygroundError`` for any mistake in a sketch, and for
     what no page can run.
     """
@@ -43,12 +39,4 @@ def page_data(
     written = [sketch_data(sketch_entry, shared, **at) for sketch_entry in sketches]
     for sketch_entry, choices in zip(written, menus, strict=True):
         sketch_entry["choices"] = choices
-    if packed:
-        for sketch, sketch_entry in zip(sketches, written, strict=True):
-            if has_arrays(sketch):  # no file says them, so there is nothing to download
-                continue
-            # What fast variants replace in a page as well: an edited file that they share is edited in all.
-            for _, kernel in kernels_of(sketch.graph):
-                shared.texts.add(kernel.source, sketch.folder, name_of(kernel))
-            sketch_entry["pack"] = pack_data(sketch, shared.texts.names, shared.blobs)
     return {"format": FORMAT, "sketches": written, "shared": shared.data()}

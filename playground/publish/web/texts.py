@@ -54,11 +54,6 @@ class Texts:
         """Return the name of a file of the library, which need not be among the texts."""
         return self._names.get(str(path)) or _short_name(path, "")
 
-    @property
-    def names(self) -> dict[str, str]:
-        """The names of files by absolute path, and of rewritten texts by what else they are known by."""
-        return dict(self._names)
-
     def _rewritten(self, source: SourceText, folder: str, label: str) -> str:
         text = "\n".join(map(_with_comment, source.lines))
         name_known = f"{source.path}{PART_OF_FILE}{label}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import gzip
 import json
 import shutil
 import subprocess
@@ -90,6 +91,11 @@ class PageError(Exception):
         super().__init__(str(values.get("message")))
         self.message = dict(values)
         self.add_note(str(values.get("stack")))
+
+
+def parts_of(packed: str) -> list[str]:
+    """Return a page's style, its data as JSON and its script."""
+    return gzip.decompress(base64.b64decode(packed)).decode().split("\0")
 
 
 def script_of(folder: Path) -> Path:

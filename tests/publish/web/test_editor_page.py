@@ -144,7 +144,7 @@ def test_what_python_reads_is_said_to_have_no_effect_here(page: Browser):
     page.click(".editor-reset")
     typed(page, "float kernel", "uniform float more = 0.25;\nfloat kernel")
     assert page.run(said) == [
-        "‘more’: has its initial value and no control in this page; the downloaded version has one."
+        "‘more’: has its initial value and no control in this page; the playground has one."
     ]
     page.click(".editor-reset")
     typed(page, "r32f", "r16f")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 from collections.abc import Callable
 from functools import cache
@@ -15,10 +16,9 @@ from playground.engine.plan import LoopStep, Plan, PlanRequest
 from playground.engine.planner import make_plan
 from playground.errors import PlaygroundError
 from playground.paths import GLSL
-from playground.publish.web.page import page_texts
+from playground.publish.web.page import page_text
 from playground.publish.web.page_data import page_data
 from playground.publish.web.plan import KINDS
-from playground.publish.web.pressed import pressed
 from playground.shader import expressions
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.model import Sketch
@@ -72,8 +72,8 @@ def test_it_is_json_and_says_nothing_of_this_machine(name: str, written: Written
 
 @pytest.mark.parametrize("name", slow_but(sorted({*of_each_kind(), *WHOLE_SCENES})))
 def test_its_plan_and_its_texts_are_small(name: str, written: Written):
-    text, _ = page_texts(written(name))
-    assert len(pressed(text).encode()) < (2 if name in WHOLE_SCENES else 1) * ORDINARY
+    text = page_text(written(name))
+    assert len(gzip.compress(text.encode(), 9)) < (2 if name in WHOLE_SCENES else 1) * ORDINARY
 
 
 @pytest.mark.parametrize("name", EACH_KIND)

@@ -35,6 +35,14 @@ export const isTyping = (target) =>
   (target.matches("textarea, select, input:not([type=range]):not([type=checkbox])") ||
     target.isContentEditable);
 
+/** Save a file under a name, as a browser does with what is downloaded.
+ *  @param {Blob} data @param {string} name */
+export function save(data, name) {
+  const href = URL.createObjectURL(data);
+  make("a", { href, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(href), 60_000);
+}
+
 /** Put a text on the clipboard; false where the browser allows none.
  *  @param {string} text */
 export async function copy(text) {

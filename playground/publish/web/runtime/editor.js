@@ -1,7 +1,7 @@
 // editor.js -- the texts of a sketch in a page: typed, compiled at once, their errors at their lines.
 
 import { createCodeField } from "./code_field.js";
-import { button, make } from "./dom.js";
+import { button, copy, make, save } from "./dom.js";
 import { notices } from "./notices.js";
 import { fileGroups } from "./sketch_files.js";
 import { fill } from "./words.js";
@@ -20,9 +20,7 @@ import { fill } from "./words.js";
 /** @typedef {object} EditorOptions
  *  @property {Object<string, string>} words          of the editor
  *  @property {import("./recovery.js").Guard} [guard] keeps what worked over a reload
- *  @property {() => Promise<void>} [shown]           draws the picture, and waits until it is there
- *  @property {(texts: Object<string, string>, broken: boolean) => Promise<string>} [download]
- *                                                    saves a version, and says what became of it */
+ *  @property {() => Promise<void>} [shown]           draws the picture, and waits until it is there */
 
 /** @typedef {ReturnType<typeof createEditor>} Editor */
 
@@ -47,8 +45,8 @@ export function createEditor(host, player, options) {
   const said = make("ul", { className: "editor-notices" });
   const bar = make("div", { className: "editor-bar" }, make("label", {}, words.file, " ", select));
   const resetOne = button(words.resetFile, () => put(original(file)), { className: "editor-reset" });
-  bar.append(resetOne);
-  if (options.download) bar.append(button(words.download, download, { className: "editor-download" }));
+  bar.append(resetOne, button(words.copyFile, copyFile, { className: "editor-copy" }),
+    button(words.saveFile, saveFile, { className: "editor-save" }));
   const root = make("section", { className: "editor" }, bar);
   host.append(root);
   const field = createCodeField(root, { label: "", hint: words.fieldKeys, onInput: typed });
@@ -168,10 +166,16 @@ export function createEditor(host, player, options) {
     if (one.file === file && one.line) field.go(one.line, one.column ?? 0);
   }
 
-  async function download() {
-    settle();
-    await work;
-    status.textContent = (await options.download?.(Object.fromEntries(drafts), all().length > 0)) ?? "";
+  const shortName = () => file.split("/").at(-1) ?? file;
+
+  async function copyFile() {
+    const key = (await copy(textOf(file))) ? "fileCopied" : "fileNotCopied";
+    status.textContent = fill(words[key], { name: shortName() });
+  }
+
+  function saveFile() {
+    save(new Blob([textOf(file)], { type: "text/plain" }), shortName());
+    status.textContent = fill(words.fileSaved, { name: shortName() });
   }
 
   listFiles();

@@ -13,7 +13,11 @@ export const EDITOR_WORDS = {
     field: "Text of {name}",
     fieldKeys: "Tab inserts spaces; press Esc, then Tab, to leave the field. Ctrl+/ makes lines comments.",
     resetFile: "Reset this file",
-    download: "Download my version",
+    copyFile: "Copy the text",
+    saveFile: "Download",
+    fileCopied: "The text of {name} is copied",
+    fileNotCopied: "This browser lets no page copy: select the text, and copy it by hand",
+    fileSaved: "{name} is saved",
     unedited: "As in the sketch. What you type is compiled at once.",
     compilingText: "Compiling",
     compiled: "Compiled and drawn in {time} ms",
@@ -24,19 +28,12 @@ export const EDITOR_WORDS = {
     placeless: "{file}: {message}",
     // what an edit does not do in a page
     header: "What a #pragma says is read by Python: changed, it has no effect in this page, but it has in "
-      + "the version that you download.",
+      + "the file that you save.",
     annotation: "What a //! says is read by Python: changed, it has no effect in this page, but it has in "
-      + "the version that you download.",
-    initial: "{names}: the control holds the value; the new initial value is in the version that you "
-      + "download.",
-    added: "{names}: has its initial value and no control in this page; the downloaded version has one.",
+      + "the file that you save.",
+    initial: "{names}: the control holds the value; the new initial value is in the file that you save.",
+    added: "{names}: has its initial value and no control in this page; the playground has one.",
     removed: "{names}: the control has no effect any more.",
-    // the downloaded version
-    downloaded: "{name} is saved: playground live {name} opens it",
-    withErrors: "{name} is saved with the errors in it: playground live {name} shows them",
-    versionFailed: "The version cannot be written: {reason}",
-    noPack: "This page does not hold what a version needs",
-    valuesAside: "A shader's file holds no settings. What was set in the page is in settings.txt.",
     // when there is no picture
     noWebGL: "This browser offers no WebGL2, so the picture stands still. Update the browser, or allow "
       + "hardware acceleration in its settings.",
@@ -69,7 +66,11 @@ export const EDITOR_WORDS = {
     fieldKeys: "Tab insère des espaces ; Échap puis Tab quitte le champ. Ctrl+/ met des lignes en "
       + "commentaire.",
     resetFile: "Rétablir ce fichier",
-    download: "Télécharger ma version",
+    copyFile: "Copier le texte",
+    saveFile: "Télécharger",
+    fileCopied: "Le texte de {name} est copié",
+    fileNotCopied: "Ce navigateur ne laisse aucune page copier : sélectionnez le texte, et copiez-le à la main",
+    fileSaved: "{name} est enregistré",
     unedited: "Comme dans l’esquisse. Ce que vous tapez est compilé aussitôt.",
     compilingText: "Compilation",
     compiled: "Compilé et dessiné en {time} ms",
@@ -79,19 +80,13 @@ export const EDITOR_WORDS = {
     filePlace: "{file}:{line} : {message}",
     placeless: "{file} : {message}",
     header: "Ce que dit un #pragma est lu par Python : changé, il reste sans effet dans cette page, mais il "
-      + "en a dans la version que vous téléchargez.",
+      + "en a dans le fichier que vous enregistrez.",
     annotation: "Ce que dit un //! est lu par Python : changé, il reste sans effet dans cette page, mais il "
-      + "en a dans la version que vous téléchargez.",
-    initial: "{names} : la valeur est celle du réglage ; la nouvelle valeur initiale est dans la version "
-      + "que vous téléchargez.",
-    added: "{names} : a sa valeur initiale et pas de réglage dans cette page ; la version téléchargée en a "
-      + "un.",
+      + "en a dans le fichier que vous enregistrez.",
+    initial: "{names} : la valeur est celle du réglage ; la nouvelle valeur initiale est dans le fichier "
+      + "que vous enregistrez.",
+    added: "{names} : a sa valeur initiale et pas de réglage dans cette page ; le playground en a un.",
     removed: "{names} : le réglage n’a plus d’effet.",
-    noPack: "Cette page ne contient pas ce qu’il faut pour une version.",
-    downloaded: "{name} est enregistré : playground live {name} l’ouvre",
-    withErrors: "{name} est enregistré avec ses erreurs : playground live {name} les montre",
-    versionFailed: "La version ne peut pas être écrite : {reason}",
-    valuesAside: "Un fichier de shader ne contient pas de réglages. Ceux de la page sont dans settings.txt.",
     noWebGL: "Ce navigateur n’offre pas WebGL2 : l’image reste fixe. Mettez-le à jour, ou permettez "
       + "l’accélération matérielle dans ses réglages.",
     noFloat: "Cet appareil ne peut pas dessiner dans des textures à virgule flottante, qu’il faut pour "

@@ -1,7 +1,7 @@
 // loader.js -- the entry of the one script that a page holds as it is: unpacks its style, its data and its
 // runtime, and runs that. The page's policy names the hashes of all three scripts and styles.
 
-import { unpressed } from "./pressed.js";
+import { unpackedText } from "./packed.js";
 
 const byId = (/** @type {string} */ id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
@@ -10,17 +10,17 @@ function put(kind, text, attributes = {}) {
   document.head.append(Object.assign(document.createElement(kind), { textContent: text, ...attributes }));
 }
 
-/** The style, the data as JSON and the script; throws where the file is damaged. */
-function parts() {
-  const found = unpressed(byId("playground-pressed").textContent ?? "").split("\0");
+/** The style, the data as JSON and the script; rejects where the file is damaged. */
+async function parts() {
+  const found = (await unpackedText(byId("playground-packed").textContent ?? "")).split("\0");
   if (found.length !== 3) throw new Error("three parts were expected");
   return found;
 }
 
-function start() {
-  if (!globalThis.DecompressionStream) return "playground-old"; // images and elevation stay packed
+async function start() {
+  if (!globalThis.DecompressionStream) return "playground-old";
   try {
-    const [style, data, script] = parts();
+    const [style, data, script] = await parts();
     put("style", style);
     put("script", data, { type: "application/json", id: "playground-page" });
     put("script", script);
@@ -30,5 +30,6 @@ function start() {
   }
 }
 
-const sentence = start();
-if (sentence) byId(sentence).hidden = false;
+void start().then((sentence) => {
+  if (sentence) byId(sentence).hidden = false;
+});

@@ -1,11 +1,9 @@
-// page_code.js -- the code of a sketch's page: the editor, what keeps its texts, the version to download.
+// page_code.js -- the code of a sketch's page: the editor, and what keeps its texts.
 
 import { createEditor } from "./editor.js";
 import { createGuard, keyOf } from "./last_good.js";
-import { download, versionFiles } from "./my_version.js";
 import { createRecovery } from "./recovery.js";
 import { finished } from "./waiting.js";
-import { fill } from "./words.js";
 
 /** @typedef {import("./engine.js").Engine} Engine */
 /** @typedef {import("./player.js").Player} Player */
@@ -68,24 +66,6 @@ export function createCode(engine, host, { words, figure }) {
     }
   }
 
-  /** @param {Player} player @param {Object<string, string>} texts @param {boolean} broken */
-  async function saved(player, texts, broken) {
-    const { sketch, shared } = player, { session } = figure(), { pack } = sketch;
-    if (!pack) return words.noPack;
-    const { edits: values, camera, time, steps } = session;
-    const rows = new Map(session.rows().map((row) => [row.path, row]));
-    try {
-      const made = { texts, values, rows, camera, time, steps, frame: sketch.frame };
-      const { files, aside } = await versionFiles(pack, sketch, shared, made);
-      const name = `${pack.folder}-my-version.zip`;
-      await download(files, name);
-      const told = fill(broken ? words.withErrors : words.downloaded, { name });
-      return aside.length ? `${told}. ${words.valuesAside}` : told;
-    } catch (error) {
-      return fill(words.versionFailed, { reason: error instanceof Error ? error.message : String(error) });
-    }
-  }
-
   return {
     /** Before a player's first picture: go on with texts that worked before a reload, and ask where a picture
      *  will take too long.
@@ -100,7 +80,6 @@ export function createCode(engine, host, { words, figure }) {
       editor?.close();
       editor = createEditor(tab, player, {
         words, guard: guardOf(player), shown: () => shown(player),
-        download: player.sketch.pack ? (texts, broken) => saved(player, texts, broken) : undefined,
       });
       return editor;
     },

@@ -181,7 +181,6 @@
  *                                                  for maps
  *  @property {MapView} map
  *  @property {Choice[]} choices                    techniques that may be exchanged
- *  @property {Pack} [pack]
  *  @property {string[]} notes                      what a page does otherwise, or cannot, a sentence each */
 
 /** How any texture is shown from above: the kernel view/map, whose input `shown` is wired when asked for.
@@ -193,28 +192,6 @@
  *  @typedef {{pass: string, label: string, now: string,
  *             others: {use: string, title: string, sketch: number}[]}} Choice
  *  sketch: index in `Page.sketches`. */
-
-/** A part of a TOML text, or what may stand in its place: see playground/publish/web/toml_template.py.
- *  @typedef {string | {path: string, was: string} | {camera: string, was: string}
- *            | {terrain: string, was: string} | {use: string, of: string} | {aside: string}
- *            | {into: string, open: string, join: string, close: string, was: string}} Piece */
-
-/** What "download my version" writes: see playground/publish/web/packed.py.
- *  @typedef {object} Pack
- *  @property {string} folder        of the zip that all files are in
- *  @property {string} main          the file that opens, in the folder
- *  @property {string} manifest      the file in which a zip says what it is
- *  @property {number} format
- *  @property {string} version       of the playground
- *  @property {string[]} shipped     files of the library that it needs
- *  @property {string[]} libraries   named by the user, which are not in it
- *  @property {Object<string, ["file" | "pieces" | "text" | "blob", string]>} files   name in the folder
- *                                   → a key of `Shared.files`, of `techniques`, the text itself, a key of
- *                                   `Shared.blobs`
- *  @property {string[]} leftOut     files of data that are too large for a page
- *  @property {Piece[] | null} toml  the sketch's own; null: it has none
- *  @property {Object<string, Piece[]>} techniques   TOML of several passes, by the page's name of the file
- *  @property {string[]} shots       names that are taken */
 
 /** What sketches share.
  *  @typedef {object} Shared

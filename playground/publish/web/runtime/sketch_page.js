@@ -1,7 +1,7 @@
 // sketch_page.js -- a page about one sketch: the picture, its tools and time, the panel, the code.
 
 import { asToml } from "./address.js";
-import { copy, make } from "./dom.js";
+import { copy, make, save as saveFile } from "./dom.js";
 import { createFigure } from "./figure.js";
 import { iconButton } from "./icons.js";
 import { followKeys, keysDialog } from "./keys.js";
@@ -82,9 +82,7 @@ export function createPage(main, page, engine, options) {
     figure.canvas.toBlob((blob) => {
       if (!blob) return;
       const name = `${session.sketch.name.replace(/[^\w.-]+/g, "_") || "picture"}.png`;
-      const url = URL.createObjectURL(blob);
-      make("a", { href: url, download: name }).click();
-      setTimeout(() => URL.revokeObjectURL(url), STAYS);
+      saveFile(blob, name);
       say(fill(words.saved, { name }));
     });
   }
