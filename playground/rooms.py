@@ -9,6 +9,7 @@ module of a fixed name:
     options     ``live_options`` reads the options that it adds to ``playground live``; ``LIVE_EXAMPLES``
     addition    ``open_addition(host)`` returns what it adds to a window; ``KEYS``, its keys;
                 ``check_request(request)`` refuses a request before a window opens
+    measures    ``MEASURES`` and ``ROWS``: what it adds to ``playground bench``
     table       ``DIALECTS`` reads shaders of other tools (``playground/shader/dialect.py``)
     site        ``PAGES``: the pages that it adds to the documentation, by path; ``HOMES``: files of the
                 checkout that are pages there
@@ -29,9 +30,9 @@ class Room(NamedTuple):
 
 
 ROOMS: dict[str, Room] = {
-    "studio": Room(("commands",)),
+    "studio": Room(("commands", "measures")),
     "publish": Room(("commands", "addition")),
-    "verify": Room(("commands",), needs=("studio", "publish")),
+    "verify": Room(("commands",)),
     "course": Room(("commands", "options", "addition", "site"), needs=("studio", "publish")),
     "dialects": Room(("table",)),
     "flight": Room(("commands",), needs=("studio",)),

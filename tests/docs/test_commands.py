@@ -27,7 +27,6 @@ from playground import cli
 
 from ..elevations import write_geotiff
 from ..studio.screen import ON_LINUX, Program, Screen
-from ..verify.report.browser import MISSING
 from .pages import PAGES, ROOT, blocks_of, files, outside_of_blocks, write_files
 
 TEXTS = ROOT / "playground" / "course" / "texts"
@@ -364,7 +363,6 @@ def run(folder: Path, words: list[str], *, timeout: float = 500) -> subprocess.C
 SMALL = {
     "python tests/truth": ["--size", "25"],
 }
-FRAMES = "python -m tests.verify.benchmarks.page_frames"
 IN_HILLS = [c for c in OTHERS if re.fullmatch(r"(python -m pytest|pytest|\./play test) hills.*", c)]
 EXPORT = "jupyter nbconvert --to terrain_html diamond_square.ipynb"
 OF_PLAY = [c for c in OTHERS if c.startswith("./play test ") and c not in IN_HILLS]
@@ -378,7 +376,7 @@ for command in sys.argv[1:]:  # in one process, which imports all that there is 
 
 
 def test_every_other_program_is_known():
-    assert set(OTHERS) == {*SMALL, FRAMES, *IN_HILLS, *OF_PLAY, EXPORT}
+    assert set(OTHERS) == {*SMALL, *IN_HILLS, *OF_PLAY, EXPORT}
     assert {"pytest hills", UPDATE} <= set(IN_HILLS)
 
 
@@ -394,14 +392,6 @@ def test_the_truth_is_printed():
 def test_a_program_of_the_checkout_runs(command: str):
     done = run(ROOT, [*command.split(), *SMALL[command]])
     assert done.returncode == 0, done.stderr
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(bool(MISSING), reason=MISSING)
-def test_frames_of_a_page_are_compared_with_the_engines():
-    done = run(ROOT, [*FRAMES.split(), "--frames", "1", "--runs", "1", "white_noise"])
-    assert done.returncode == 0, done.stderr
-    assert "white_noise" in done.stdout
 
 
 @pytest.mark.slow

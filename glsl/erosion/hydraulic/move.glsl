@@ -13,8 +13,7 @@
 // What leaves one texel is what another receives, product for product, so water, rock and load
 // are conserved to rounding. Opposite sides are summed first, so that a terrain that is turned or
 // mirrored is worn alike but for what compilers regroup. By four pipes streams still prefer axes a
-// little: on a cone of noise the mean of cos 4a of their directions is 0.17, of all along axes 1
-// (tests/verify/benchmarks/erosion.py).
+// little: on a cone of noise the mean of cos 4a of their directions is 0.17, of all along axes 1.
 #include "erosion/hydraulic/clock.glsl"
 #pragma kernel(output = "state:rgba32f")
 

@@ -22,9 +22,7 @@ from playground.errors import DataError
 from playground.extras import needs
 from playground.files import write_file
 from playground.markup import Markup, joined, tag
-from playground.verify.bench.against import changes
-from playground.verify.bench.results import Figure, Results
-from playground.verify.bench.table import HEADINGS, rows_of
+from playground.verify.bench.results import HEADINGS, Figure, Results, changes, rows_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

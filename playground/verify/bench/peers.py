@@ -1,22 +1,29 @@
 """What else does the same: libraries, NumPy and SciPy, the thesis's C, other methods of our own.
 
 A peer is made by the name in a row's ``peers``; its other keys are its arguments. One whose library is not
-installed is left out, which is said.
+installed is left out, which is said. Peers are timed, and tell nothing about what is right.
 """
 
 from __future__ import annotations
 
+import ctypes
 import importlib
-from collections.abc import Callable, Mapping
+import math
+import shutil
+import subprocess
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.verify.bench import horizon_peers
-from playground.verify.bench.room import Room, changing, processors
-from playground.verify.bench.timing import Run
+from playground.verify.bench.room import Room, Run, changing, processors
+
+HERE = Path(__file__).resolve().parent
+SOURCES = ("thesis.c", "thesis_light.c")
 
 
 @dataclass
@@ -45,6 +52,13 @@ class PeerSetup:
         except ImportError:
             self.missing.append(name.partition(".")[0])
             return None
+
+    def thesis(self) -> Thesis | None:
+        """Return the thesis's own methods; None where there is no compiler, which is said."""
+        thesis = _thesis_in(self.room.folder)
+        if thesis is None:
+            self.room.options.say("no C compiler (cc, gcc, clang) on PATH: the thesis's methods are left out")
+        return thesis
 
     def heights(self, ref: str = "height") -> NDArray[np.float32]:
         """Return the heights of the row's terrain in metres, rows from the south."""
@@ -151,8 +165,72 @@ def _stretched(terrain: NDArray[np.float32]) -> NDArray[np.float32]:
     return stretched
 
 
+# ── the thesis's own methods ─────────────────────────────────────────────────
+
+
+@cache
+def _thesis_in(folder: Path) -> Thesis | None:
+    """Return the thesis's methods, compiled into a folder with -O2; None where there is no compiler."""
+    compiler = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
+    if compiler is None:
+        return None
+    library = folder / "thesis.so"
+    sources = [str(HERE / name) for name in SOURCES]
+    options = ["-O2", "-shared", "-fPIC", "-o", str(library), *sources, "-lm"]
+    subprocess.run([compiler, *options], check=True, capture_output=True)
+    return Thesis(ctypes.CDLL(str(library)))
+
+
+class Thesis:
+    """A library of the thesis's methods, in C as its pseudo-code has them."""
+
+    def __init__(self, library: ctypes.CDLL) -> None:
+        self._library = library
+
+    def terrain(self, function: str, size: int, arguments: Sequence[float | int], seed: Run) -> Run:
+        """Return a run of a method that makes terrain; ``seed`` gives each its seed."""
+        out = np.empty((size, size), np.float32)
+        value = [ctypes.c_float(a) if isinstance(a, float) else ctypes.c_int(a) for a in arguments]
+        called = getattr(self._library, function)
+
+        def run() -> None:
+            called(out.ctypes.data_as(ctypes.c_void_p), size, *value, ctypes.c_uint(seed()))  # type: ignore[arg-type]
+
+        return run
+
+    def light(
+        self, function: str, grey: NDArray[np.float32], elevation: float, more: Sequence[float], down: bool
+    ) -> Run:
+        """Return a run of a method that lights heights in texels, (ny, nx), each time from elsewhere.
+
+        It takes the way to the sun, or the light's way ``down``.
+        """
+        out = np.empty_like(grey)
+        called = getattr(self._library, function)
+        turns = iter(range(10**9))
+        level = math.cos(math.radians(elevation))
+        turned = -1.0 if down else 1.0
+
+        def run() -> None:
+            azimuth = math.radians(20.0 + 137.508 * next(turns))
+            way = (
+                level * math.sin(azimuth),
+                level * math.cos(azimuth),
+                math.sin(math.radians(elevation)),
+            )
+            called(
+                grey.ctypes.data_as(ctypes.c_void_p),
+                out.ctypes.data_as(ctypes.c_void_p),
+                grey.shape[0],
+                *(ctypes.c_float(turned * component) for component in way),
+                *(ctypes.c_float(number) for number in more),
+            )
+
+        return run
+
+
 def _thesis_terrain(to: PeerSetup, function: str, arguments: list[float | int]) -> Peer | None:
-    thesis = to.room.thesis
+    thesis = to.thesis()
     if thesis is None:
         return None
     return Peer("the thesis's C", thesis.terrain(function, to.size, arguments, to.room.seed), alone=True)
@@ -161,7 +239,7 @@ def _thesis_terrain(to: PeerSetup, function: str, arguments: list[float | int]) 
 def _thesis_light(
     to: PeerSetup, function: str, more: tuple[float, ...] = (), down: bool = False
 ) -> Peer | None:
-    thesis = to.room.thesis
+    thesis = to.thesis()
     if thesis is None:
         return None
     grey = np.ascontiguousarray(to.heights() / np.float32(to.row["texel"]), dtype=np.float32)
@@ -169,20 +247,95 @@ def _thesis_light(
     return Peer("the thesis's C", run, alone=True)
 
 
+# ── horizons and the sky over them: a sweep along lines, and topocalc ────────
+
+SHIFT = 16  # a line drifts by whole 65536ths of a texel a row
+
+
+def _sky_view(swept: Any, heights: np.ndarray, spacing: float, directions: int) -> np.ndarray:
+    """Return the cosine-weighted sky-view factor of level surfaces (ny, nx) by one sweep a direction."""
+    total = np.zeros(heights.shape, np.float32)
+    turned = np.ascontiguousarray(heights.T)
+    total_turned = np.zeros(turned.shape, np.float32)
+    for number in range(directions):
+        angle = 2 * math.pi * number / directions
+        east, north = math.sin(angle), math.cos(angle)
+        along_rows = abs(east) >= abs(north) - 1e-12
+        ahead, aside = (east, north) if along_rows else (north, east)
+        swept(
+            heights if along_rows else turned,
+            round(aside / abs(ahead) * (1 << SHIFT)),
+            ahead > 0,
+            np.float32(abs(ahead) / spacing),
+            total if along_rows else total_turned,
+        )
+    return (total + total_turned.T) / directions
+
+
+def _sweep_by(numba: Any) -> Any:
+    """Return the sweep along lines in one direction, compiled."""
+
+    def sweep(heights: Any, drift: int, upwards: bool, steep: Any, total: Any) -> None:
+        """Add the squared cosine of each texel's horizon: lines run along the last axis.
+
+        Each line keeps the upper hull of what it has passed (Timonen and Westerholm 2010).
+        """
+        across, rows = heights.shape
+        half = 1 << (SHIFT - 1)
+        top = ((rows - 1) * abs(drift) + half) >> SHIFT
+        first = -top if drift > 0 else 0
+        end = across + top if drift < 0 else across
+        for line in numba.prange(first, end):
+            tall = np.empty(rows + 1, np.float32)
+            far = np.empty(rows + 1, np.float32)
+            last = -1
+            for row in range(rows - 1, -1, -1):
+                at = line + ((row * drift + half) >> SHIFT)
+                if at < 0 or at >= across:
+                    continue
+                along = row if upwards else rows - 1 - row
+                here = heights[at, along]
+                position = np.float32(row)
+                best = np.float32(-1e30)
+                while last >= 0:
+                    slope = (tall[last] - here) / (far[last] - position)
+                    if slope < best:
+                        break
+                    best = slope
+                    last -= 1
+                if best > np.float32(-1e29):
+                    last += 1
+                last += 1
+                tall[last] = here
+                far[last] = position
+                tangent = max(best, np.float32(0)) * steep
+                total[at, along] += np.float32(1) / (np.float32(1) + tangent * tangent)
+
+    return numba.njit(parallel=True, fastmath=True, error_model="numpy")(sweep)
+
+
 def _numba_horizons(to: PeerSetup, directions: int) -> Peer | None:
-    if horizon_peers.numba is None:
-        to.missing.append("numba")
+    numba = to.library("numba")
+    if numba is None:
         return None
+    swept = _sweep_by(numba)
     heights, texel = to.heights(), float(to.row["texel"])
-    return Peer("Numba sweep", lambda: horizon_peers.numba_sweep(heights, texel, directions))
+    return Peer("Numba sweep", lambda: _sky_view(swept, heights, texel, directions))
 
 
 def _topocalc_horizons(to: PeerSetup, directions: int) -> Peer | None:
-    if horizon_peers.viewf is None or to.size > 2000:
+    topocalc = to.library("topocalc.viewf")
+    if topocalc is None or to.size > 2000:
         return None
-    heights, texel = to.heights(), float(to.row["texel"])
-    run: Run = lambda: horizon_peers.topocalc(heights, texel, directions)  # noqa: E731
+    heights, texel = to.heights().astype(np.float64), float(to.row["texel"])
+
+    def run() -> object:
+        return topocalc.viewf(heights, texel, nangles=directions)[0]
+
     return Peer("topocalc", run, once=True, alone=True)
+
+
+# ── of our own ───────────────────────────────────────────────────────────────
 
 
 def _ours(to: PeerSetup, name: str, **changed: Any) -> Peer:

@@ -1,14 +1,19 @@
-"""Where rows are measured: engines on one context, a folder for sketches, seeds that never come twice."""
+"""Where and how rows are measured: engines on one context, a folder for sketches, new seeds, two clocks.
+
+Runs are timed alternately, so that a load on the machine falls on all of them alike. Every sample has two
+numbers: milliseconds on the clock, and of all processors together, which a load of others does not lengthen.
+"""
 
 from __future__ import annotations
 
 import itertools
 import os
 import shutil
+import statistics
 import tempfile
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import cached_property
+import time
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +22,78 @@ from playground.engine.engine import Engine
 from playground.files import write_file
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
-from playground.verify.bench.thesis import Thesis
+
+# ── clocks ────────────────────────────────────────────────────────────
+
+
+Run = Callable[[], object]
+
+
+@dataclass
+class Samples:
+    """What several runs of the same took, in milliseconds: on the clock, and of processors."""
+
+    wall: list[float] = field(default_factory=list)
+    processor: list[float] = field(default_factory=list)
+
+    def of(self, clock: str) -> list[float]:
+        """Return the samples of a clock, "wall" or "processor"."""
+        return self.processor if clock == "processor" else self.wall
+
+    def median(self, clock: str = "wall") -> float:
+        """Return the median."""
+        return statistics.median(self.of(clock))
+
+    def quartiles(self, clock: str = "wall") -> tuple[float, float]:
+        """Return the first and the third quartile; of fewer than three samples, the least and the most."""
+        return quartiles(self.of(clock))
+
+
+def quartiles(times: Sequence[float]) -> tuple[float, float]:
+    """Return the first and the third quartile; of fewer than three numbers, the least and the most."""
+    if len(times) < 3:
+        return min(times), max(times)
+    low, _, high = statistics.quantiles(times, n=4, method="inclusive")
+    return low, high
+
+
+def alternate(
+    runs: Mapping[str, Run], rounds: int, *, once: Collection[str] = (), unmeasured: int = 1
+) -> dict[str, Samples]:
+    """Return the samples of each run, by name: one of each in turn, ``rounds`` times.
+
+    The first ``unmeasured`` rounds compile and fill caches, and do not count. Those in ``once`` take too
+    long to run more than once.
+    """
+    samples = {name: Samples() for name in runs}
+    for number in range(-unmeasured, rounds):
+        for name, run in runs.items():
+            if name in once and number != 0:
+                continue
+            wall, processor = timed(run)
+            if number >= 0:
+                samples[name].wall.append(wall)
+                samples[name].processor.append(processor)
+    return samples
+
+
+def beyond(whole: Samples, part: Samples) -> Samples:
+    """Return what each run took beyond that of a part of it in the same round."""
+    return Samples(
+        [whole_time - other for whole_time, other in zip(whole.wall, part.wall, strict=True)],
+        [whole_time - other for whole_time, other in zip(whole.processor, part.processor, strict=True)],
+    )
+
+
+def timed(run: Run) -> tuple[float, float]:
+    """Return the milliseconds that a run takes, on the clock and of this process's processors."""
+    start, busy = time.perf_counter(), time.process_time()
+    run()
+    return (time.perf_counter() - start) * 1e3, (time.process_time() - busy) * 1e3
+
+
+# ── engines and sketches ──────────────────────────────────────────────────
+
 
 SUN_TURNS = 137.508  # degrees, by the golden angle: no two suns lie near each other
 
@@ -46,6 +122,11 @@ class Room:
         self.numbers = itertools.count(1)
         self._engines: dict[str, Engine] = {}
 
+    @property
+    def rounds(self) -> int:
+        """How many runs count."""
+        return self.options.rounds
+
     def __enter__(self) -> Room:
         return self
 
@@ -62,14 +143,6 @@ class Room:
         if driver not in self._engines:
             self._engines[driver] = Engine(self._engines["auto"].ctx, driver=driver)
         return self._engines[driver]
-
-    @cached_property
-    def thesis(self) -> Thesis | None:
-        """The thesis's own methods, compiled from C; None where there is no compiler, which is said."""
-        thesis = Thesis.compiled(self.folder)
-        if thesis is None:
-            self.options.say("no C compiler (cc, gcc, clang) on PATH: the thesis's own methods are left out")
-        return thesis
 
     def seed(self) -> int:
         """Return a seed that no run had before."""

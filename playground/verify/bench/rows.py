@@ -1,8 +1,8 @@
-"""What ``playground bench`` measures: the rows of the TOML files in ``rows/``, one file a suite.
+"""What ``playground bench`` measures: the rows of the TOML files in ``rows/``, one a suite, and of rooms.
 
-A row has a ``name``, a message in ``what``, and how it is measured in ``measure``: a module of
-``measures`` by that name. ``goal`` is what it should reach; ``peers`` are what it is compared with. Its other
-keys are its measure's.
+A row has a ``name``, a message in ``what``, and how it is measured in ``measure``: see ``measures``, and
+``MEASURES`` and ``ROWS`` of the modules ``measures`` of rooms. ``goal`` is what it should reach; ``peers``
+are what it is compared with. Its other keys are its measure's.
 """
 
 from __future__ import annotations
@@ -16,10 +16,11 @@ from pathlib import Path
 from typing import Any
 
 from playground.errors import ParameterError, nearest
+from playground.rooms import modules
 
 FOLDER = Path(__file__).resolve().parent / "rows"
 _BESIDE = "beside"  # a peer of a frame, drawn by its measure
-_OWN = {"name", "what", "measure", "goal", "peers", "sizes"}
+_OWN = {"name", "what", "measure", "goal", "peers", "sized"}
 
 
 @dataclass(frozen=True)
@@ -58,26 +59,28 @@ class Row:
 
 @cache
 def suites() -> dict[str, tuple[Row, ...]]:
-    """Return the rows of every suite, by the suite's name."""
-    return {path.stem: tuple(_rows(path)) for path in sorted(FOLDER.glob("*.toml"))}
+    """Return the rows of every suite, by the suite's name; a room's is named after it."""
+    files = {path.stem: path for path in sorted(FOLDER.glob("*.toml"))}
+    files |= {module.__name__.split(".")[1]: module.ROWS for module in modules("measures")}
+    return {suite: tuple(_rows(suite, path)) for suite, path in files.items()}
 
 
-def _rows(path: Path) -> list[Row]:
+def _rows(suite: str, path: Path) -> list[Row]:
     with path.open("rb") as file:
         read = tomllib.load(file)
-    shared = read.get("shared", {})
+    rows = [{**read.get("shared", {}), **each} for each in read["row"]]
     return [
         Row(
-            path.stem,
+            suite,
             each["name"],
             each["what"],
             each["measure"],
             Goal(**each.get("goal", {})),
             tuple(each.get("peers", ())),
             each.get("sized", True),
-            {key: value for key, value in {**shared, **each}.items() if key not in _OWN},
+            {key: value for key, value in each.items() if key not in _OWN},
         )
-        for each in read["row"]
+        for each in rows
     ]
 
 

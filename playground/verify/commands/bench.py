@@ -16,8 +16,7 @@ from playground.shader.parameter import read_whole
 from playground.terminal import note, print_json, print_table, progress
 
 if TYPE_CHECKING:
-    from playground.verify.bench.against import Change
-    from playground.verify.bench.results import Results
+    from playground.verify.bench.results import Change, Results
     from playground.verify.bench.rows import Row
 
 HELP = help_text(
@@ -69,11 +68,10 @@ def bench(
     device: options.Device = None,
 ) -> None:
     """Time techniques, frames, starts and saves next to what else does the same."""
-    from playground.verify.bench.against import changes
-    from playground.verify.bench.results import read, write
+    from playground.verify.bench.measures import planned, run
+    from playground.verify.bench.results import changes, read, write
     from playground.verify.bench.room import Options
     from playground.verify.bench.rows import chosen
-    from playground.verify.bench.suite import planned, run
 
     rows = chosen(names or ())
     if listed:
@@ -127,9 +125,7 @@ def _listed(row: Row) -> tuple[str, ...]:
 
 
 def _print(results: Results, compared: Sequence[Change], sides: Sequence[int], clock: str) -> None:
-    from playground.verify.bench.against import MIN_RATIO
-    from playground.verify.bench.growth import growth
-    from playground.verify.bench.table import HEADINGS, rows_of
+    from playground.verify.bench.results import HEADINGS, MIN_RATIO, growth, rows_of
 
     has = results.machine
     note(f"{has['renderer']}, {has['processors']} processors, load {has['load']:g}; {clock} time, medians")

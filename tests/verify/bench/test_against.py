@@ -5,10 +5,9 @@ from __future__ import annotations
 import pytest
 
 from playground.errors import DataError
-from playground.verify.bench.against import changes
-from playground.verify.bench.results import Figure, Results, read, write
+from playground.verify.bench.results import Figure, Results, changes, read, write
+from playground.verify.bench.room import Samples
 from playground.verify.bench.rows import Goal
-from playground.verify.bench.timing import Samples
 
 NONE = Goal()
 

@@ -7,7 +7,7 @@ import os
 import pytest
 
 from playground.errors import PlaygroundError
-from playground.verify.bench.measures.process import environment_of, spent
+from playground.verify.bench.measures import environment_of, spent
 from playground.verify.bench.room import Options, Room
 
 PAUSE = "import time\ntime.sleep(0.6)\n"

@@ -8,20 +8,19 @@ from dataclasses import replace
 import pytest
 
 from playground.errors import ParameterError
-from playground.verify.bench import measures
-from playground.verify.bench.gl_counts import BYTES, counted, timed_calls
-from playground.verify.bench.measures.engine_cost import unchanging
+from playground.rooms import modules
+from playground.verify.bench.measures import BYTES, MEASURES, counted, run, timed_calls, unchanging
 from playground.verify.bench.peers import PEERS
 from playground.verify.bench.room import Options, Room
-from playground.verify.bench.rows import chosen, suites
-from playground.verify.bench.suite import run
+from playground.verify.bench.rows import FOLDER, chosen, suites
 
 ROWS = {row.name: row for row in chosen(())}
 
 
 def test_row_names_are_unique_and_suites_match_files():
     assert len(ROWS) == sum(len(rows) for rows in suites().values())
-    assert set(suites()) == {"engine", "frames", "generation", "lighting", "terrain"}
+    files = {path.stem for path in FOLDER.glob("*.toml")}
+    assert set(suites()) == files | {module.__name__.split(".")[1] for module in modules("measures")}
 
 
 def test_rows_are_chosen_by_suite_by_name_and_by_pattern():
@@ -38,14 +37,7 @@ def test_rows_are_chosen_by_suite_by_name_and_by_pattern():
 @pytest.mark.parametrize("name", ROWS)
 def test_its_measure_and_its_peers_are_known(name):
     row = ROWS[name]
-    assert (measures.__path__ and row.measure) in {
-        "texture",
-        "frame",
-        "window",
-        "process",
-        "save",
-        "engine_cost",
-    }
+    assert row.measure in {*MEASURES, *(each for room in modules("measures") for each in room.MEASURES)}
     assert {peer["peer"] for peer in row.peers} <= PEERS.keys()
     goal = row.goal
     assert not goal.times or goal.than
@@ -98,6 +90,14 @@ def test_measured_row_has_every_form_and_reports_missing_peer(monkeypatch):
     assert sum("opensimplex is not installed" in each for each in names) == 1
     assert results.notes == names
     assert results.machine["renderer"] and results.machine["processors"] >= 1
+
+
+def test_rows_of_rooms_and_of_python_texts_are_measured():
+    modes = [row for name in ("stroke", "judge_same") if name in ROWS for row in chosen([name])]
+    figures = run(modes, [33], Options(rounds=2)).figures
+    assert {figure.name.partition("-")[0] for figure in figures} == {row.name for row in modes}
+    assert all(len(figure.ours["auto"].wall) == 2 for figure in figures)
+    assert all(figure.ours["auto"].median() > 0.01 for figure in figures), "something is drawn, or compared"
 
 
 def test_calls_are_counted_and_moderngl_is_as_before(engine):

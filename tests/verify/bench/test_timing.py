@@ -7,10 +7,9 @@ import time
 import numpy as np
 import pytest
 
-from playground.verify.bench.growth import growth
-from playground.verify.bench.results import Figure, Results
+from playground.verify.bench.results import Figure, Results, growth
+from playground.verify.bench.room import Samples, alternate, beyond
 from playground.verify.bench.rows import Goal
-from playground.verify.bench.timing import Samples, alternate, beyond
 
 
 def test_runs_take_turns_and_the_first_rounds_do_not_count():
