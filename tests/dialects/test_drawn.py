@@ -22,7 +22,7 @@ from playground.sketch.model import ForeignShader, kernels_of
 from playground.sketch.replace_technique import with_texts
 from playground.sketch.traits import traits_of
 from playground.verify.check import check_file
-from playground.verify.reduce.inline import inline_sketch
+from playground.verify.reduce.case import inline_sketch
 from tests.dialect_texts import TEXTS, with_mistake
 
 SIZE = (32, 18)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from playground.errors import ShaderError
-from playground.verify.reduce.case import copied
-from playground.verify.reduce.inline import inline_sketch
+from playground.verify.reduce.case import copied, inline_sketch
 from tests.isf_texts import TEXTS, VERTEX, with_mistake
 
 from ..loading import load

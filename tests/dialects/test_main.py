@@ -15,7 +15,7 @@ from playground.publish.large import strips
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.model import ForeignShader, kernels_of
 from playground.sketch.replace_technique import with_texts
-from playground.verify.reduce.inline import inline_sketch
+from playground.verify.reduce.case import inline_sketch
 from tests.dialect_texts import with_mistake
 from tests.dialects.test_drawn import DEPRECATED
 from tests.main_dialect_texts import MAIN_TEXTS, STATEFUL

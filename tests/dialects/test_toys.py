@@ -18,7 +18,7 @@ from playground.errors import PlaygroundError, ShaderError
 from playground.publish.large import strips
 from playground.sketch.warnings import warnings_of_sketch
 from playground.studio.channels.channels import with_source
-from playground.verify.reduce.inline import inline_sketch
+from playground.verify.reduce.case import inline_sketch
 from tests.toy_texts import (
     CUBE,
     EXPORTS,

@@ -17,21 +17,22 @@ from playground.engine.frame import Frame
 from playground.errors import DataError, ParameterError, nearest
 from playground.shader.wrap import COMPUTE, FRAGMENT
 from playground.sketch.model import Sketch
-from playground.verify.reduce.candidate_process import LIMIT, CandidateProcess, DrawTask
-from playground.verify.reduce.case import Case
-from playground.verify.reduce.failures import (
+from playground.verify.reduce.candidate import (
+    LIMIT,
+    CandidateProcess,
     Commanded,
     Died,
     Differs,
+    DrawTask,
     FailureKind,
     Finding,
     NotFinite,
     OffReference,
+    Probe,
     Refused,
     Side,
 )
-from playground.verify.reduce.inline import inline_sketch
-from playground.verify.reduce.probe import Probe
+from playground.verify.reduce.case import Case, inline_sketch
 from playground.verify.shots.compare import TOLERANCE
 from playground.verify.shots.suite import ShotCase, check
 

@@ -17,11 +17,18 @@ from playground.paths import shown
 from playground.shader.wrap import wrap
 from playground.sketch.load import load
 from playground.sketch.model import kernels_of
-from playground.verify.reduce.candidate_process import CandidateProcess, DrawTask
+from playground.verify.reduce.candidate import (
+    CandidateProcess,
+    Commanded,
+    Died,
+    DrawTask,
+    FailureKind,
+    Finding,
+    Probe,
+    Refused,
+)
 from playground.verify.reduce.case import SHOT, Case, copied
-from playground.verify.reduce.failures import Commanded, Died, FailureKind, Finding, Refused
 from playground.verify.reduce.initial_case import InitialCase, Question
-from playground.verify.reduce.probe import Probe
 from playground.verify.reduce.search import Search
 
 RECORD = "reduced.json"

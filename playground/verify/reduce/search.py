@@ -4,6 +4,11 @@ From large to small: passes, what is set, sizes, then the texts, by lines and bl
 expressions, by headers. A text that got smaller may free a pass, so it all begins again
 until one whole round changes nothing. The order is always the same, and no candidate is
 tried twice.
+
+Lists are made smaller by delta debugging: ddmin of Zeller and Hildebrandt 2002, "Simplifying and Isolating
+Failure-Inducing Input" (IEEE Transactions on Software Engineering 28), with complements only: a candidate is
+always what is left when one part is taken out. The result is 1-minimal: without any one of its items the
+test no longer passes. That is not the smallest of all, which would take as many tests as there are subsets.
 """
 
 from __future__ import annotations
@@ -11,18 +16,146 @@ from __future__ import annotations
 import hashlib
 import re
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import TypeVar
 
 from playground.memo import TEXTS
 from playground.sketch.model import Camera
-from playground.verify.reduce import blocks, edits
+from playground.verify.reduce import edits
+from playground.verify.reduce.candidate import Finding, Probe
 from playground.verify.reduce.case import Case, Pass, glsl_of
-from playground.verify.reduce.ddmin import ddmin
-from playground.verify.reduce.failures import Finding
-from playground.verify.reduce.probe import Probe
-from playground.verify.reduce.tokens import tidy, tokens_of
+from playground.verify.reduce.edits import tidy, tokens_of
+
+# ── delta debugging ──────────────────────────────────────────────────────────
+
+
+Item = TypeVar("Item")
+
+
+def ddmin(items: Sequence[Item], test: Callable[[list[Item]], bool]) -> list[Item]:
+    """Return a part of ``items``, in their order, that passes and of which no item can be spared.
+
+    ``items`` themselves must pass, which is not tried. The test is tried on the same lists
+    in the same order every time; it should give the same answer to the same list.
+    """
+    left = list(items)
+    if left and test([]):
+        return []
+    parts = min(2, len(left))
+    while len(left) > 1:
+        # From the end: what is later in a text is seldom needed by what is before it.
+        for part in reversed(range(parts)):
+            low, high = part * len(left) // parts, (part + 1) * len(left) // parts
+            rest = left[:low] + left[high:]
+            if rest and test(rest):
+                left, parts = rest, min(max(parts - 1, 2), len(rest))
+                break
+        else:
+            if parts == len(left):
+                break
+            parts = min(2 * parts, len(left))
+    return left
+
+
+# ── a text as a tree of lines and blocks ─────────────────────────────────────
+
+
+Test = Callable[[str], bool]
+"""Says whether a text still fails in the same way."""
+
+Nodes = tuple["Node", ...]
+
+_UNWRAPPED = ("if", "else", "for", "while", "do", "switch", "{")
+
+
+@dataclass(frozen=True)
+class Node:
+    """A line, or a block with its first and last line."""
+
+    head: str
+    body: tuple[Node, ...] | None = None  # None: a single line
+    tail: str = ""
+
+    def lines(self) -> Iterator[str]:
+        """Yield its lines."""
+        yield self.head
+        if self.body is not None:
+            for node in self.body:
+                yield from node.lines()
+            yield self.tail
+
+
+def blocks_of(text: str) -> Nodes:
+    """Return a tidy text's top level."""
+    stack: list[tuple[str, list[Node]]] = [("", [])]
+    for line in filter(str.strip, text.split("\n")):
+        code = line.strip()
+        if code.startswith("}") and len(stack) > 1:
+            head, body = stack.pop()
+            stack[-1][1].append(Node(head, tuple(body), line))
+        elif code.endswith("{") and not code.startswith("#"):
+            stack.append((line, []))
+        else:
+            stack[-1][1].append(Node(line))
+    while len(stack) > 1:  # a brace that is never closed: its lines are single lines
+        head, body = stack.pop()
+        stack[-1][1].extend([Node(head), *body])
+    return tuple(stack[0][1])
+
+
+def text_of_blocks(nodes: Nodes) -> str:
+    """Return the text of a level."""
+    return "".join(f"{line}\n" for node in nodes for line in node.lines())
+
+
+def fewer_lines(text: str, test: Test) -> str:
+    """Return the text with lines and blocks left out at every depth, each level made 1-minimal.
+
+    The whole level goes first, then what is inside each block that stays, so a function
+    that nothing needs costs one try.
+    """
+
+    def holds(nodes: Nodes) -> bool:
+        return test(text_of_blocks(nodes))
+
+    level = tuple(ddmin(blocks_of(text), lambda some: holds(tuple(some))))
+    return text_of_blocks(_inside_each(level, holds))
+
+
+def _inside_each(level: Nodes, holds: Callable[[Nodes], bool]) -> Nodes:
+    """Make each block of a level smaller, one after the other."""
+    index = 0
+    while index < len(level):
+        before, node, after = level[:index], level[index], level[index + 1 :]
+        level = (*before, *_smaller(node, _between(before, after, holds)), *after)
+        index = len(level) - len(after)
+    return level
+
+
+def _between(before: Nodes, after: Nodes, holds: Callable[[Nodes], bool]) -> Callable[[Nodes], bool]:
+    """Return the test of what is between some nodes."""
+    return lambda nodes: holds((*before, *nodes, *after))
+
+
+def _smaller(node: Node, holds: Callable[[Nodes], bool]) -> Nodes:
+    """Return what a block comes down to: what it holds where that does alone, else with less in it."""
+    if node.body is None:
+        return (node,)
+    opening = node.head.strip().split("(")[0].split()[0]
+    if opening in _UNWRAPPED and node.body and holds(node.body):
+        return _inside_each(node.body, holds)
+
+    def filled(body: Nodes) -> bool:
+        return holds((Node(node.head, body, node.tail),))
+
+    body = tuple(ddmin(node.body, lambda some: filled(tuple(some))))
+    return (Node(node.head, _inside_each(body, filled), node.tail),)
+
+
+# ── the search ───────────────────────────────────────────────────────────────
+
 
 _OUTPUTS = re.compile(r'\boutput\s*=\s*"([^"]*)"')
 _UNIFORM = re.compile(r"^\s*uniform\s+(\w+)\s+(\w+)", re.MULTILINE)
@@ -210,7 +343,7 @@ class Search:
             # A body that shrank may free the functions that it called.
             while (text := getattr(self._pass(name), kind)) != before:
                 before = text
-                blocks.fewer_lines(text, partial(self._try_lines, name, kind))
+                fewer_lines(text, partial(self._try_lines, name, kind))
 
     def _expressions(self, name: str) -> None:
         literals = self._probe.failure.literals

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from itertools import combinations
 
-from playground.verify.reduce.ddmin import ddmin
+from playground.verify.reduce.search import ddmin
 
 from ...cases import each
 

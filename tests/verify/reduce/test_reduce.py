@@ -19,12 +19,20 @@ from playground.data.image_files import write_png
 from playground.errors import PlaygroundError, SketchError
 from playground.sketch.variants import NAME
 from playground.verify.reduce import initial_case
-from playground.verify.reduce.candidate_process import CandidateProcess, DrawResult, DrawTask
-from playground.verify.reduce.failures import Differs, FailureKind, NotFinite, OffReference, Refused, Side
-from playground.verify.reduce.inline import inline_sketch
-from playground.verify.reduce.probe import Probe
+from playground.verify.reduce.candidate import (
+    CandidateProcess,
+    Differs,
+    DrawResult,
+    DrawTask,
+    FailureKind,
+    NotFinite,
+    OffReference,
+    Probe,
+    Refused,
+    Side,
+)
+from playground.verify.reduce.case import inline_sketch, record_text
 from playground.verify.reduce.search import Search
-from playground.verify.reduce.variant import record_text
 from playground.verify.shots.references import reference_path
 
 from ...loading import load
@@ -439,7 +447,7 @@ LOOP = "\n    for (int i = 0; i < 65000; i++) x = fract(sin(x) * 43758.5);"
 
 @pytest.mark.slow
 def test_a_crash_of_the_compiler_stays(sketch, worker, tmp_path):
-    from playground.verify.reduce.failures import Died
+    from playground.verify.reduce.candidate import Died
 
     path = sketch(
         f"{HEIGHT}uniform float gain = 1.0;\n{TERMS}\nfloat other(float x) {{ return x * gain; }}\n"
@@ -459,7 +467,7 @@ def test_a_hang_stays(sketch, tmp_path):
 
     The process has answered once before: its first answer may take a minute.
     """
-    from playground.verify.reduce.failures import Died
+    from playground.verify.reduce.candidate import Died
 
     with CandidateProcess(software=True, limit=1.0) as impatient:
         plain = sketch(f"{HEIGHT}float kernel(ivec2 texel) {{ return 1.0; }}\n")

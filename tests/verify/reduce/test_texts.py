@@ -8,9 +8,10 @@ import pytest
 
 from playground.paths import GLSL
 from playground.sketch.techniques import read_kernel
-from playground.verify.reduce import blocks, edits
-from playground.verify.reduce.inline import unwired, written
-from playground.verify.reduce.tokens import print_tokens, tidy, tokens_of
+from playground.verify.reduce import edits
+from playground.verify.reduce.case import unwired, written_out
+from playground.verify.reduce.edits import print_tokens, tidy, tokens_of
+from playground.verify.reduce.search import blocks_of, fewer_lines, text_of_blocks
 
 from ...cases import each
 
@@ -44,7 +45,7 @@ def test_an_annotation_of_several_lines_is_written_on_one(tmp_path: Path):
     (tmp_path / "k.glsl").write_text(text + "float kernel(ivec2 texel) { return gain; }\n")
     kernel = read_kernel(tmp_path / "k.glsl", tmp_path)
     assert kernel is not None
-    assert "uniform float gain;  //! slider(0, 4) How high" in written(kernel).splitlines()
+    assert "uniform float gain;  //! slider(0, 4) How high" in written_out(kernel).splitlines()
 
 
 def test_a_statement_is_a_line():
@@ -59,15 +60,15 @@ def test_a_statement_is_a_line():
 
 def test_blocks_are_read_and_written_whole():
     text = tidy(TEXT)
-    assert blocks.text_of(blocks.parse(text)) == text
-    function = next(n for n in blocks.parse(text) if "kernel" in n.head and n.body is not None)
+    assert text_of_blocks(blocks_of(text)) == text
+    function = next(n for n in blocks_of(text) if "kernel" in n.head and n.body is not None)
     assert [node.head.split()[0] for node in function.body] == ["float", "for", "if", "else", "return"]
 
 
 def test_lines_go_until_none_can():
     """What must stay is named; all else goes, a block's braces with what they hold or without."""
     expected = ["float kernel(ivec2 texel) {", "h -= 1.0;", "return h"]
-    text = blocks.fewer_lines(tidy(TEXT), lambda some: all(word in some for word in expected))
+    text = fewer_lines(tidy(TEXT), lambda some: all(word in some for word in expected))
     assert text.split("\n") == [
         "float kernel(ivec2 texel) {",
         "        h -= 1.0;",  # no longer in its else; tidy moves it back
