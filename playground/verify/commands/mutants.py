@@ -106,8 +106,7 @@ def mutants(
 
 
 def _print(results: Sequence[MutantResult]) -> None:
-    from playground.verify.shots.mutants.suite import kill_rate, survivors
-    from playground.verify.shots.mutants.tiers import TIERS
+    from playground.verify.shots.mutants.suite import TIERS, kill_rate, survivors
 
     rows = [_row(result) for result in results if result.applies and not result.unseen]
     headings: tuple[str, ...] = ("mutant", *_NUMBERS, *TIERS, "broken")
@@ -162,8 +161,7 @@ def _print_again(redrawn: Sequence[Redrawn]) -> None:
 def _as_json(
     sketch: str, renderer: str, results: Sequence[MutantResult], redrawn: Sequence[Redrawn]
 ) -> dict[str, object]:
-    from playground.verify.shots.mutants.suite import kill_rate, survivors
-    from playground.verify.shots.mutants.tiers import TIERS
+    from playground.verify.shots.mutants.suite import TIERS, kill_rate, survivors
 
     tiers = {}
     for number, tier in enumerate(TIERS):

@@ -4,6 +4,11 @@ Nothing passes in silence. A picture that is missing, broken or not the one expe
 test and is shown; one that gives no picture fails in its own word, ``crash``, ``hang`` or
 ``error``; without the expected renderer a test fails where ``CI`` is set and is skipped, with
 the reason, elsewhere. Each check leaves a record in the results folder.
+
+A check of a picture in Python does not end its test, so that one run shows all that differ. Where the test
+then ends well, or is skipped, it fails for them; where something is raised in it, that is shown,
+with a note of them. What is found after the test itself, as in a fixture's clean-up, is an error there.
+A test that ends well and has checked nothing fails, too: it would pass whatever is drawn.
 """
 
 from __future__ import annotations
@@ -11,7 +16,7 @@ from __future__ import annotations
 import os
 import shlex
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NoReturn, TypeVar
@@ -29,21 +34,82 @@ from playground.errors import (
     SandboxTimeout,
 )
 from playground.paths import shown
-from playground.verify.shots import soft_failures
-from playground.verify.shots.claims import Claim, Claims, keeping, writing
-from playground.verify.shots.fallbacks import PIXELS, Fallback, fallback_for, fallbacks_of, read_fallbacks
+from playground.verify.shots.names import Claim, Claims, keeping, writing
 from playground.verify.shots.plugin_constants import (
+    FIXTURE,
     REFERENCE_RENDERER,
     SUMMARY_LINE,
     UNCHANGED,
+    UNCHECKED,
     UNCOMPARED,
     UPDATE_FAILED,
 )
 from playground.verify.shots.recording import Recorder, typed
-from playground.verify.shots.references import accepted, reference_path, write_reference
-from playground.verify.shots.renderer_process import RendererProcess
+from playground.verify.shots.references import (
+    PIXELS,
+    Fallback,
+    accepted,
+    fallback_for,
+    fallbacks_of,
+    read_fallbacks,
+    reference_path,
+    write_reference,
+)
 from playground.verify.shots.results import NEVER_ACCEPTED
-from playground.verify.shots.suite import Outcome, RenderedShot, ShotCase, check
+from playground.verify.shots.suite import Outcome, RenderedShot, RendererProcess, ShotCase, check
+
+# ── failures of a test, told at its end ──────────────────────────────────────
+
+
+_NOTHING_CHECKED = (
+    "this test takes `shot` and checks nothing: expected shot.check(…) or shot.animation(…); "
+    "a test without a reference draws with playground.render"
+)
+_CHECKS: pytest.StashKey[bool] = pytest.StashKey()  # whether there was one; there once a test has the fixture
+_ENDED_WELL: pytest.StashKey[bool] = pytest.StashKey()
+_FAILURES: pytest.StashKey[list[str]] = pytest.StashKey()
+
+
+def add_failure(node: pytest.Item, message: str) -> None:
+    """Record that a picture of a test failed."""
+    node.stash.setdefault(_FAILURES, []).append(message)
+
+
+def expect_check(node: pytest.Item) -> None:
+    """Begin a test that is to check something."""
+    node.stash[_CHECKS] = False
+
+
+def add_check(node: pytest.Item) -> None:
+    """Record that a test has checked something."""
+    node.stash[_CHECKS] = True
+
+
+def fail_for_what_is_left(node: pytest.Item) -> None:
+    """Fail now for the pictures that no one has been told of, or for none where the test ended well."""
+    message = _told(node)
+    if not message and node.stash.get(_ENDED_WELL, False) and not node.stash[_CHECKS]:
+        message = _NOTHING_CHECKED
+    if message:
+        pytest.fail(message, pytrace=False)
+
+
+def _may_be_checked_later(item: pytest.Item) -> bool:
+    """Return whether another fixture of a test takes ``shot``: its clean-up may check a picture."""
+    fixtures = getattr(item, "_fixtureinfo", None)
+    definitions = fixtures.name2fixturedefs if fixtures is not None else {}
+    return any(FIXTURE in each.argnames for several in definitions.values() for each in several)
+
+
+def _told(node: pytest.Item) -> str:
+    """Return the failures of a test, which are then told; "" for none."""
+    failures = node.stash.get(_FAILURES, [])
+    node.stash[_FAILURES] = []
+    return "\n\n".join([f"{len(failures)} pictures of this test fail:", *failures][len(failures) < 2 :])
+
+
+# ── checks ───────────────────────────────────────────────────────────────────
+
 
 Result = TypeVar("Result")
 
@@ -76,7 +142,6 @@ def checker_of(config: pytest.Config) -> Checker:
         checker = config.stash[_CHECKER] = Checker(config)
         config.add_cleanup(checker.close)  # also after Ctrl-C
         config.pluginmanager.register(checker)
-        config.pluginmanager.register(soft_failures)
     return config.stash[_CHECKER]
 
 
@@ -199,6 +264,31 @@ class Checker:
         raised = error if word == "error" else type(error)(f"{word}: {sentence}")
         node.stash[_RAISED] = _Raised(raised, word, sentence, case)
         return raised.with_traceback(None)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_call(self, item: pytest.Item) -> Generator[None, None, None]:
+        """Run the test, then fail it for its pictures."""
+        skipped = ""
+        try:
+            yield
+        except pytest.skip.Exception as reason:
+            if not item.stash.get(_FAILURES, []):
+                raise
+            skipped = f"\n\nthen the test was skipped: {reason}"
+        except Exception as error:
+            if message := _told(item):
+                error.add_note(f"\nBefore that:\n{message}")
+            raise
+        except pytest.fail.Exception as failed:
+            if message := _told(item):
+                failed.msg = f"{failed.msg}\n\nBefore that:\n{message}"
+            raise
+        if message := _told(item):
+            pytest.fail(message + skipped, pytrace=False)
+        if not item.stash.get(_CHECKS, True) and not _may_be_checked_later(item):
+            item.user_properties.append((UNCHECKED, ""))
+            pytest.fail(_NOTHING_CHECKED, pytrace=False)
+        item.stash[_ENDED_WELL] = True
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> None:

@@ -27,14 +27,17 @@ from playground.paths import shown
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import Given, Graph, Shot, Sketch, tolerance_of
-from playground.verify.shots.adapters import Taken, taken
-from playground.verify.shots.checking import checker_of
-from playground.verify.shots.levels import levels_of
-from playground.verify.shots.mask_of_test import MaskOfTest
-from playground.verify.shots.masking import Light
+from playground.verify.shots.checking import (
+    add_check,
+    add_failure,
+    checker_of,
+    expect_check,
+    fail_for_what_is_left,
+)
+from playground.verify.shots.compare import Light
 from playground.verify.shots.names import name_of_test, one_spelling, why_no_name
+from playground.verify.shots.pictures import MaskOfTest, Taken, levels_of, taken
 from playground.verify.shots.plugin_constants import USED
-from playground.verify.shots.soft_failures import add_check, add_failure, expect_check, fail_for_what_is_left
 from playground.verify.shots.suite import RenderedShot, ShotCase, film_of
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@
     another renderer   the perceived difference (FLIP) under two bounds: structural defects alone
                        show by it, and the outcome says so
 
-`playground.verify.shots.fingerprint` says what a build is. What was drawn, and the playground's own
+`playground.verify.shots.references` says what a build is. What was drawn, and the playground's own
 version, never make a comparison less strict. Where one reference was drawn by this very build,
 the others do not loosen it: they count where the picture is theirs to within one level, since
 someone accepted that picture, and for nothing else.
@@ -14,28 +14,129 @@ someone accepted that picture, and for nothing else.
 Some pictures fail before anything is compared, each in its own word: an OpenGL error, a number
 that is not finite in a texture that went into it, a picture of one colour.
 
-A shot may declare a tolerance: a picture that differs from its renderer's reference passes by
-it, under the bounds of `playground.verify.shots.tolerated`. What a mask hides is not compared.
+A shot may declare a tolerance: a picture that differs from its renderer's reference passes by it. It bounds
+how much a pixel may differ, and how many pixels may. By these alone a picture without its shadows could
+pass a wide one. So two bounds hold for every tolerance, whatever it says:
+
+    scattered or unbiased   In each 32 × 32 pixels, either few differ by more than a level (one in
+                            twenty), or what they differ by cancels: the sum of n differences is within
+                            6 times the root of the sum of their squares. For independent noise
+                            that is six standard deviations, of any distribution that is symmetric.
+                            n equal differences reach √n times, more than 6 from 37 pixels on: so a
+                            shadow that is lost, or a hue that shifts, fails however faint it is.
+    not seen                FLIP is below the bounds between renderers: a pattern that is moved,
+                            whose differences cancel too, shows there.
+
+A film is judged frame by frame. Its reference is a contact strip: the frames in rows, from the top left, in a
+grid as near to square as it can be; cells that are left over are transparent black. It is a PNG like any
+other reference, so that a browser, a diff on a web page and `playground shots review` show all of its
+frames at once, where an animated PNG would have to be caught at the right moment. So a tolerance holds in
+each frame, a blank one is seen among good ones, and the first that fails is named, with its time.
 
 It reads no files and draws nothing.
 """
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.errors import DataError
 from playground.sketch.model import Tolerance
-from playground.verify.shots.compare import TOLERANCE, Comparison, compare, worst_window
-from playground.verify.shots.fingerprint import Fingerprint
+from playground.verify.shots.compare import (
+    TOLERANCE,
+    Comparison,
+    Mask,
+    compare,
+    hidden,
+    shown_alone,
+    sums_of_windows,
+    worst_window,
+)
 from playground.verify.shots.flip import TILE, flip
-from playground.verify.shots.masking import Mask, hidden, shown_alone
-from playground.verify.shots.references import Reference
-from playground.verify.shots.tolerated import tolerated
+from playground.verify.shots.references import Fingerprint, Reference
+
+# ── the tolerance that a shot declares ───────────────────────────────────────
+
+
+OUTLIER_WINDOW = 20
+"""One pixel of so many in a window may differ in any way."""
+
+DEVIATIONS = 6.0
+"""[standard deviations] By which the sum of the differences in a window may be off zero."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerated:
+    """Whether a tolerance lets a picture pass."""
+
+    why_not: str  # "" where it does
+    crowded: bool = False  # whether it is for differences that lie together
+
+
+def tolerated(
+    actual: NDArray[np.uint8],
+    expected: NDArray[np.uint8],
+    tolerance: Tolerance,
+    bounds: tuple[float, float],
+    hidden: int = 0,
+) -> Tolerated:
+    """Hold a picture to a tolerance, both uint8 (height, width, 4) and of one size.
+
+    ``bounds`` are of FLIP, on average and in the worst tile; ``hidden`` is how many pixels are masked,
+    which are the same in both.
+    """
+    signed = actual.astype(np.int16) - expected
+    most = int(np.abs(signed).max())
+    if most > tolerance.levels:
+        return Tolerated(f"the tolerance allows {tolerance.levels}")
+    over = (np.abs(signed) > TOLERANCE).any(axis=2)
+    share = np.count_nonzero(over) / (over.size - hidden)
+    if share > tolerance.share:
+        return Tolerated(f"the tolerance allows {100 * tolerance.share:g} %")
+    if corner := _biased(np.where(over[..., None], signed, 0), over):
+        x, y = corner
+        return Tolerated(
+            f"it is no noise: in the {WINDOW} × {WINDOW} pixels at x = {x}, y = {y} from the top left many "
+            "differ, and the same way, which no tolerance lets pass",
+            crowded=True,
+        )
+    seen = flip(actual, expected)
+    tile, (x, y) = seen.worst_tile()
+    if seen.mean > bounds[0] or tile > bounds[1]:
+        return Tolerated(
+            f"an eye sees it: FLIP {seen.mean:.3f} on average, {tile:.3f} at x = {x}, y = {y} from the top "
+            f"left; with any tolerance at most {bounds[0]:g} and {bounds[1]:g} may be"
+        )
+    return Tolerated("")
+
+
+def _biased(signed: NDArray[np.int16], over: NDArray[np.bool_]) -> tuple[int, int] | None:
+    """Return x and y of the window whose differences are the most biased, if that is too much."""
+    counts = sums_of_windows(over, WINDOW)
+    area = min(WINDOW, over.shape[0]) * min(WINDOW, over.shape[1])
+    many = counts > area // OUTLIER_WINDOW
+    if not many.any():
+        return None
+    worst, corner = 0.0, (0, 0)
+    for channel in np.moveaxis(signed.astype(np.float64), 2, 0):
+        sums, squares = sums_of_windows(channel, WINDOW), sums_of_windows(channel * channel, WINDOW)
+        ratio = np.where(many, np.abs(sums) / np.sqrt(np.maximum(squares, 1.0)), 0.0)
+        if float(ratio.max()) > worst:
+            worst = float(ratio.max())
+            y, x = divmod(int(ratio.argmax()), ratio.shape[1])
+            corner = (x, y)
+    return corner if worst > DEVIATIONS else None
+
+
+# ── one picture ──────────────────────────────────────────────────────────────
+
 
 WORDS = (
     "same",  # it passes; all others fail
@@ -340,3 +441,130 @@ def _over(actual: NDArray[np.uint8], expected: NDArray[np.uint8]) -> NDArray[np.
     difference = np.maximum(actual, expected) - np.minimum(actual, expected)
     # The four channels of a pixel as one number: many times faster than any() along an axis of four.
     return np.asarray((difference > TOLERANCE).view(np.uint32)[..., 0] != 0)
+
+
+# ── a film, as a strip of frames ─────────────────────────────────────────────
+
+
+Picture = NDArray[np.uint8]
+
+
+def strip_of(frames: Sequence[Picture]) -> Picture:
+    """Return frames, uint8 (height, width, 4), as one picture; raise ``DataError`` where nothing moves."""
+    if len(frames) < 2:
+        raise DataError(f"an animation is two frames or more; found {len(frames)}")
+    for number, frame in enumerate(frames, 1):
+        if frame.shape != frames[0].shape:
+            sizes = [f"{f.shape[1]} × {f.shape[0]}" for f in (frame, frames[0])]
+            raise DataError(f"frame {number} of {len(frames)} is {sizes[0]} pixels, the first {sizes[1]}")
+    if all(np.array_equal(frame, frames[0]) for frame in frames):
+        raise DataError(f"all {len(frames)} frames are the same picture: nothing moves; check one of them")
+    height, width = frames[0].shape[:2]
+    columns, rows = _grid(len(frames))
+    strip = np.zeros((rows * height, columns * width, 4), np.uint8)
+    for cell, frame in zip(_cells(strip, len(frames)), frames, strict=True):
+        cell[...] = frame
+    return strip
+
+
+def frame_size(strip: Picture, count: int) -> tuple[int, int]:
+    """Return width and height in pixels of each of ``count`` frames of a strip."""
+    columns, rows = _grid(count)
+    return strip.shape[1] // columns, strip.shape[0] // rows
+
+
+def repeated(mask: Mask, count: int) -> Mask:
+    """Return the mask of a frame as that of a strip of ``count`` frames; empty cells are not hidden."""
+    columns, rows = _grid(count)
+    whole = np.tile(mask, (rows, columns))
+    for cell in _all_cells(whole, count)[count:]:
+        cell[...] = False
+    return whole
+
+
+def judge_frames(
+    strip: Picture,
+    fingerprint: Fingerprint,
+    references: Sequence[Reference],
+    others: Sequence[Reference] = (),
+    *,
+    labels: Sequence[str],
+    rule: Rule | None = None,
+    not_finite: str = "",
+    gl_error: str = "",
+) -> tuple[Judgement, Reference | None]:
+    """Judge a strip frame by frame; otherwise as `judge`, which is told what is wrong with the picture.
+
+    ``labels`` name the frames, as "at 0.5 s". ``rule`` is of one frame.
+    """
+    rule, count = rule or Rule(), len(labels)
+    fitting = [r for r in references if r.pixels.shape == strip.shape]
+    alike = [r for r in others if r.pixels.shape == strip.shape]
+    if (references or others) and not (fitting or alike):  # of another size
+        return judge(strip, fingerprint, references, others, not_finite=not_finite, gl_error=gl_error)
+    judged = []
+    for number, cell in enumerate(_cells(strip, count)):
+        own, foreign = (
+            [Reference(r.path, _cells(r.pixels, count)[number], r.text) for r in group]
+            for group in (fitting, alike)
+        )
+        picture = np.ascontiguousarray(cell)
+        judged.append(
+            judge(picture, fingerprint, own, foreign, not_finite=not_finite, gl_error=gl_error, rule=rule)
+        )
+    words = [judgement.word for judgement, _ in judged]
+    # A blank frame comes first, even where the others only miss a reference: it may not be written.
+    worst = next((i for i, word in enumerate(words) if word == "blank"), None)
+    if worst is None:
+        worst = next((i for i, word in enumerate(words) if word != "same"), None)
+    if worst is None:
+        worst = max(range(count), key=lambda i: judged[i][0].comparison.most)
+    judgement, cell_reference = judged[worst]
+    path = cell_reference.path if cell_reference else None
+    reference = next((r for r in (*fitting, *alike) if r.path == path), None)
+    sentence = judgement.sentence
+    if judgement.word not in ("missing", "nan", "gl-error"):  # which are of no frame, or say of which
+        word, _, rest = sentence.partition(": ")
+        whose = f"frame {worst + 1} of {count}{labels[worst] and f', {labels[worst]}'}"
+        sentence = f"{word}: {f'all {count} frames; of ' if judgement.ok else ''}{whose}: {rest}"
+        failed = sum(word != "same" for word in words)
+        sentence += f"; {failed} of the {count} frames fail" if failed > 1 else ""
+    whole = _whole(strip, reference, count, rule)
+    return (
+        replace(
+            judgement,
+            comparison=replace(whole, verdict=judgement.comparison.verdict),
+            sentence=sentence,
+            crowd=None,
+            perceived=None,
+        ),
+        reference,
+    )
+
+
+def _whole(strip: Picture, reference: Reference | None, count: int, rule: Rule) -> Comparison:
+    if reference is None:
+        return compare(strip, None, allow_blank=True)
+    mask = None if rule.mask is None else repeated(rule.mask, count)
+    visible = hidden(strip, reference.pixels, mask)
+    return compare(visible, reference.pixels, allow_blank=True, hidden=rule.hidden * count)
+
+
+def _grid(count: int) -> tuple[int, int]:
+    """Return columns and rows for so many frames."""
+    columns = math.ceil(math.sqrt(count))
+    return columns, math.ceil(count / columns)
+
+
+def _cells(strip: Picture, count: int) -> list[Picture]:
+    return _all_cells(strip, count)[:count]
+
+
+def _all_cells(strip: NDArray[Any], count: int) -> list[NDArray[Any]]:
+    columns, rows = _grid(count)
+    height, width = strip.shape[0] // rows, strip.shape[1] // columns
+    return [
+        strip[y * height : (y + 1) * height, x * width : (x + 1) * width]
+        for y in range(rows)
+        for x in range(columns)
+    ]

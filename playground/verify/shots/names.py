@@ -1,4 +1,4 @@
-"""Name the pictures of tests in Python, so that each name is a file's on every system.
+"""Name the pictures of tests in Python: each name is a file's on every system, and one test's of a run.
 
 A picture without a name of its own is named after its test: ``test_waves[1.0]`` gives
 ``waves-1-0-e775a0``. Characters other than ASCII letters, digits, _ and - become -, and six
@@ -6,13 +6,37 @@ digits of a hash then keep apart what would be one name: ``waves[1.0]`` and ``wa
 do for capitals in parameters, ``waves[a]`` and ``waves[A]``, which are one file on macOS and
 Windows, and for what is long and cut. The name follows from the test's id alone, so it is
 the same whichever tests run.
+
+The first test to check a picture of a name claims it, with a file in the folder of results that
+only one process can make:
+
+    <folder>/<sketch>/.names/<run>/<renderer>.<hash of the name>.json
+
+Names that are one file on macOS or Windows are one name here. Two tests may share a reference
+that both of them name, and name alike; if both write it, the pictures must be the same, and
+none may write it once another has found that it matches. A name that comes from a test's own is
+that test's alone.
 """
 
 from __future__ import annotations
 
 import hashlib
+import json
+import os
 import re
+import secrets
+import shutil
 import unicodedata
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.files import make_folder, write_file
+
+# ── names ────────────────────────────────────────────────────────────────────
+
 
 MAX_NAME = 80
 """[characters] Of a name: with folders and endings a path stays below what Windows takes."""
@@ -56,3 +80,99 @@ def one_spelling(name: str) -> str:
 
 def _reserved(name: str) -> bool:
     return bool(_DEVICES.fullmatch(name)) or name in _OWN
+
+
+# ── claims: each name is one test's in all processes of the run ──────────────
+
+
+_FOLDER = ".names"
+
+KEPT = "kept"
+
+
+@dataclass(frozen=True)
+class Claim:
+    """Who checks which picture under a name."""
+
+    name: str
+    node: str  # pytest's id of the test
+    own: bool  # whether the name is the test's own, and not given
+    # Of the reference: SHA-256 of the picture that is written as it, KEPT where it matches; "" before that.
+    digest: str = ""
+
+
+def writing(name: str, node: str, pixels: NDArray[np.uint8]) -> Claim:
+    """Return the claim of a test that writes a picture as a reference."""
+    digest = hashlib.sha256(str(pixels.shape).encode() + pixels.tobytes()).hexdigest()
+    return Claim(name, node, False, digest)
+
+
+def keeping(name: str, node: str) -> Claim:
+    """Return the claim of a test that leaves the reference as it is, for it matches."""
+    return Claim(name, node, False, KEPT)
+
+
+class Claims:
+    """The names that this process knows of, and those in a folder of results."""
+
+    def __init__(self, run: str) -> None:
+        self._run = run
+        self._known: dict[tuple[str, str, bool], Claim] = {}  # by folder of references, name, whether written
+
+    def refusal(self, claim: Claim, references: Path, folder: Path | None) -> str:
+        """Return why a test may not check, or write, a picture under a name; "" once it has claimed it.
+
+        ``references`` is the folder of the references, one for each renderer; ``folder`` that of the
+        records in the results, None where nothing can be written there.
+        """
+        key = (str(references), one_spelling(claim.name), bool(claim.digest))
+        first = self._known.get(key)
+        if first is None:
+            first = self._known[key] = self._first(claim, references.name, folder)
+        return _refusal(claim, first)
+
+    def _first(self, claim: Claim, renderer: str, folder: Path | None) -> Claim:
+        """Claim a name in all processes, or return the claim that was there before."""
+        if folder is None:
+            return claim
+        key = hashlib.sha256(one_spelling(claim.name).encode()).hexdigest()[:24]
+        file = folder / _FOLDER / self._run / f"{renderer}.{key}{'.written' if claim.digest else ''}.json"
+        draft = file.with_name(f"{secrets.token_hex(8)}.draft")
+        try:
+            make_folder(file.parent)
+            write_file(draft, json.dumps(asdict(claim)))
+            try:
+                os.link(draft, file)  # unlike a renaming, it fails where one is there
+            except FileExistsError:
+                pass
+            except OSError:  # a file system without links
+                if not file.exists():
+                    draft.replace(file)
+            return Claim(**json.loads(file.read_text("utf-8")))
+        except (OSError, ValueError):
+            return claim  # within this process, names are kept apart all the same
+        finally:
+            draft.unlink(missing_ok=True)
+
+
+def _refusal(claim: Claim, first: Claim) -> str:
+    if first.node == claim.node:
+        return ""
+    if first.name != claim.name:
+        return (
+            f"{first.node} has a picture named {first.name!r}, which is the same file as {claim.name!r} on "
+            "macOS and Windows: give one of them another name"
+        )
+    if first.own or claim.own:
+        return f"{first.node} has a picture of that name, {claim.name!r}: give one of them another name"
+    if first.digest != claim.digest and first.digest == KEPT:
+        return f"{first.node} has a picture of that name that matches: give one of them another name"
+    if first.digest != claim.digest:
+        return f"{first.node} has just written another picture of that name"
+    return ""
+
+
+def forget_claims(folder: Path) -> None:
+    """Remove all claims from a folder of results, when its run is over."""
+    for folder_path in folder.glob(f"*/{_FOLDER}"):
+        shutil.rmtree(folder_path, ignore_errors=True)

@@ -16,13 +16,11 @@ from numpy.typing import NDArray
 from playground.errors import DataError
 from playground.paths import SCREENSHOTS, program, shown
 from playground.sketch.find import home_of
-from playground.verify.shots.claims import forget_claims
-from playground.verify.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, STRUCTURE_ONLY
+from playground.verify.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, STRUCTURE_ONLY, frame_size
+from playground.verify.shots.names import forget_claims
 from playground.verify.shots.plugin_constants import CHECKED, STOOD_IN, UNRECORDED
-from playground.verify.shots.properties import properties_of
 from playground.verify.shots.references import accepted, reference_texts
 from playground.verify.shots.report import NAME, write_report
-from playground.verify.shots.result_paths import clean, drop, file_of, place_of, records_in
 from playground.verify.shots.results import (
     FOLDER,
     FRAMES,
@@ -33,11 +31,16 @@ from playground.verify.shots.results import (
     Expected,
     Record,
     Rules,
+    clean,
     digests_of,
+    drop,
+    file_of,
+    place_of,
+    properties_of,
     read_result,
+    records_in,
     write_result,
 )
-from playground.verify.shots.strip import frame_size
 from playground.verify.shots.suite import Outcome, RenderedShot, ShotCase, images_of
 
 _CATCHES = {

@@ -7,7 +7,9 @@
     <folder>/<sketch>/<shot>.flip.png         where an eye would see it
     <folder>/<sketch>/<shot>.masked.png       what is not compared, under stripes, if anything is
 
-A second sketch of that name has a folder of its own next to the first's: see `result_paths`.
+Sketches of one name in several folders, and test files of one name, are several: the first to
+come has the folder of that name, each other one its own, ``hills-1a2b3c4d``. ``.home`` in the
+first says whose it is, so that a later run, and another process, finds the same.
 
 A record is complete: the report, ``review`` and ``accept`` need neither the sketch nor a
 graphics card, so a folder that was made elsewhere (by a continuous integration, say) can be
@@ -15,14 +17,28 @@ looked at and accepted here. Each file is written whole or not at all, so that s
 processes may fill one folder, a shot each.
 
 It judges nothing, and knows no pytest.
+
+A checked shot tells of itself in ``--junitxml``, too: a property each, beginning with ``shot``.
+
+    shot                        the picture's name, "hills/dawn"; what follows it is of that one
+    shot.result                 "same", or why it fails: "differs", "missing", …
+    shot.renderer               what drew it, as the folders of references are named
+    shot.reference              the reference that it was held against
+    shot.stands-in              whose references stood in for that renderer's, if any did
+    shot.score.<number>         what was measured, with its unit, as the report has it
+    shot.picture.<word>         its pictures, unless it passed: actual, expected, difference, flip, masked
+
+Paths are from the folder in which the tests were started where they lie in that.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import os
 import re
-from collections.abc import Callable, Iterable, Mapping
+import secrets
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
@@ -34,7 +50,10 @@ from playground.data.image_files import encode_png
 from playground.errors import DataError
 from playground.files import make_folder, read_regular, write_file
 from playground.json_text import read_json
-from playground.verify.shots.plugin_constants import REPORT
+from playground.verify.shots.plugin_constants import REPORT, SHOT
+
+# ── records ──────────────────────────────────────────────────────────────────
+
 
 FORMAT = 2
 """What a record's ``format`` says; a record of another is refused in words."""
@@ -372,3 +391,112 @@ _TESTS = {key: _TESTS_OF_TYPES[str(f.type)] for key, (_, f) in _fields().items()
 _REQUIRED = {
     key for key, (_, f) in _fields().items() if f.default is MISSING and f.default_factory is MISSING
 }
+
+
+# ── folders of records ───────────────────────────────────────────────────────
+
+
+_CLAIM = ".home"
+
+
+def place_of(folder: Path, sketch: str, home: Path) -> str:
+    """Return the name of the folder, in the results, of a sketch's records.
+
+    ``home`` is the folder of its references. Makes the folder of the sketch's name if it is
+    not there; raises ``DataError`` or ``OSError`` where it cannot.
+    """
+    make_results_folder(folder)
+    try:
+        key = Path(os.path.relpath(home, folder)).as_posix()
+    except ValueError:  # on Windows, another drive
+        key = home.as_posix()
+    (folder / sketch).mkdir(exist_ok=True)
+    claim = folder / sketch / _CLAIM
+    if not claim.is_file():
+        _put(claim, key)
+    return sketch if claim.read_text("utf-8") == key else f"{sketch}-{_digest(key)}"
+
+
+def drop(folder: Path, record: Record) -> None:
+    """Remove a record and its pictures."""
+    folder_path = folder / record.place_name
+    (folder_path / f"{record.shot}.json").unlink(missing_ok=True)
+    for word in PICTURES:
+        (folder_path / f"{record.shot}.{word}.png").unlink(missing_ok=True)
+
+
+def records_in(folder: Path, folder_name: str = "*") -> Iterator[Record]:
+    """Yield the records of one folder of results, or of all; what cannot be read is passed over."""
+    for path in sorted(
+        folder.glob("*/*.json") if folder_name == "*" else (folder / folder_name).glob("*.json")
+    ):
+        try:
+            yield read_result(path)
+        except DataError:
+            continue
+
+
+def file_of(record: Record, root: Path) -> Path:
+    """Return the sketch or the test file that a record is of; ``root`` is where the tests were started."""
+    return Path(os.path.normpath(root / record.run.node.partition("::")[0]))
+
+
+def clean(folder: Path, root: Path, complete: Mapping[Path, Collection[str]]) -> None:
+    """Remove the records of files that are gone, and of pictures that a test file checks no more.
+
+    ``root`` is the folder that the tests were started in: records of others stay. ``complete``
+    has, for test files of which every test ran and passed, what pictures those have checked.
+    Call it when no test runs any more: a folder that is empty then is not in use.
+    """
+    for record in list(records_in(folder)):
+        file = file_of(record, root)
+        if record.run.root != str(root) or not record.run.node:
+            continue
+        if not file.exists() or record.shot not in complete.get(file, (record.shot,)):
+            drop(folder, record)
+            folder_path = folder / record.place_name
+            if [path.name for path in folder_path.iterdir()] in ([], [_CLAIM]):
+                (folder_path / _CLAIM).unlink(missing_ok=True)
+                folder_path.rmdir()
+
+
+def _put(claim: Path, key: str) -> None:
+    """Write a claim, whole, unless another process has been faster."""
+    draft = claim.with_name(f"{_CLAIM}.{secrets.token_hex(6)}")
+    write_file(draft, key)
+    try:
+        os.link(draft, claim)  # unlike a renaming, it fails where one is there
+    except FileExistsError:
+        pass
+    except OSError:  # a file system without links
+        if not claim.exists():
+            draft.replace(claim)
+    finally:
+        draft.unlink(missing_ok=True)
+
+
+def _digest(key: str) -> str:
+    return hashlib.sha256(key.encode()).hexdigest()[:8]
+
+
+# ── properties for --junitxml ────────────────────────────────────────────────
+
+
+def properties_of(folder: Path, record: Record) -> list[tuple[str, object]]:
+    """Return the properties of a record that was written into the results folder ``folder``."""
+    root = Path(record.run.root)
+    properties = {
+        SHOT: f"{record.sketch}/{record.shot}",
+        "shot.result": record.word,
+        "shot.renderer": record.renderer,
+        "shot.reference": record.expected.reference,
+        "shot.stands-in": record.expected.stands_in,
+        **{f"shot.score.{name}": f"{value:.6g}" for name, value in record.numbers.items()},
+        **{
+            f"shot.picture.{word}": (folder.relative_to(root) / name).as_posix()
+            if folder.is_relative_to(root)
+            else str(folder / name)
+            for word, name in record.actual.pictures.items()
+        },
+    }
+    return [(name, value) for name, value in properties.items() if value]

@@ -18,8 +18,7 @@ import pytest
 from playground.data.image_files import read_png
 from playground.errors import DataError
 from playground.markup import Markup, tag
-from playground.verify.shots.page.labels import MEANINGS
-from playground.verify.shots.page.shot import CAPTIONS
+from playground.verify.shots.page.document import CAPTIONS, MEANINGS
 from playground.verify.shots.report import report_html, write_report
 from playground.verify.shots.results import NEVER_ACCEPTED, Actual, Record, flat, read_results, record_of
 

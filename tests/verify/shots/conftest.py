@@ -14,9 +14,8 @@ import pytest
 
 # A run of pytest inside pytest forgets the modules that it imports first, so these are imported here.
 from playground.verify.shots import checking, collect, fixture  # noqa: F401
-from playground.verify.shots.fingerprint import Fingerprint
-from playground.verify.shots.renderer_process import RendererProcess
-from playground.verify.shots.suite import RenderedShot, ShotCase
+from playground.verify.shots.references import Fingerprint
+from playground.verify.shots.suite import RenderedShot, RendererProcess, ShotCase
 
 # What drew a reference, as one build of Mesa says it.
 OURS = Fingerprint(

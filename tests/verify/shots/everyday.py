@@ -34,9 +34,7 @@ from playground.sketch.find import shipped_sketches
 from playground.sketch.model import Shot, Sketch, kernels_of
 from playground.sketch.replace_technique import with_texts
 from playground.verify.shots.compare import compare
-from playground.verify.shots.mutants.breaking import broken
-from playground.verify.shots.mutants.model import DoesNotApply, Rendering
-from playground.verify.shots.mutants.render_mutants import rendering_mutants
+from playground.verify.shots.mutants.rendering import DoesNotApply, Rendering, broken, rendering_mutants
 from playground.verify.shots.mutants.suite import ROUNDING
 from playground.verify.shots.suite import RenderedShot, ShotCase, render_shot, shots_of
 

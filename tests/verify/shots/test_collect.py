@@ -175,7 +175,5 @@ def test_being_installed_costs_next_to_nothing() -> None:
         "playground.verify",
         "playground.verify.shots",
     ]
-    small += [
-        f"playground.verify.shots.{name}" for name in ("plugin", "plugin_constants", "unused_references")
-    ]
+    small += [f"playground.verify.shots.{name}" for name in ("plugin", "plugin_constants")]
     assert done.stdout.strip() == f"[] {small}"

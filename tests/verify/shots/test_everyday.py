@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from playground.sketch.model import Graph, Shot, Sketch
-from playground.verify.shots.mutants.render_mutants import rendering_mutants
+from playground.verify.shots.mutants.rendering import rendering_mutants
 from playground.verify.shots.suite import ShotCase
 
 from .everyday import EACH, changes_of, without_a_place

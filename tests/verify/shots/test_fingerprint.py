@@ -17,8 +17,13 @@ from playground.engine.context import ContextInfo, processor_in
 from playground.engine.engine import Engine
 from playground.engine.renderer import rounded
 from playground.sketch.variants import compiled_text
-from playground.verify.shots.fingerprint import Fingerprint, fingerprint_of, read_fingerprint
-from playground.verify.shots.references import read_reference, write_reference_in
+from playground.verify.shots.references import (
+    Fingerprint,
+    fingerprint_of,
+    read_fingerprint,
+    read_reference,
+    write_reference_in,
+)
 
 from ...loading import load
 from ...sketch_texts import passes

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from playground.verify.shots.fallbacks import Fallback, fallback_for, fallbacks_of, read_fallbacks
-from playground.verify.shots.step_summary import MAX_BYTES, summarise, text_of
+from playground.verify.shots.references import Fallback, fallback_for, fallbacks_of, read_fallbacks
+from playground.verify.shots.report import MAX_BYTES, summarise, text_of
 
 Run = Callable[..., pytest.RunResult]
 Edit = Callable[[str, str, str], None]

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from playground.data.image_files import read_png
-from playground.verify.shots.fingerprint import Fingerprint
 from playground.verify.shots.judge import (
     CROWD,
     OTHER_BUILD,
@@ -22,7 +21,7 @@ from playground.verify.shots.judge import (
     most_crowded,
     unreadable,
 )
-from playground.verify.shots.references import Reference, reference_texts
+from playground.verify.shots.references import Fingerprint, Reference, reference_texts
 
 from .conftest import OURS
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from playground.errors import SandboxCrash, SandboxTimeout
-from playground.verify.shots.result_paths import place_of
+from playground.verify.shots.results import place_of
 
 Run = Callable[..., pytest.RunResult]
 Edit = Callable[[str, str, str], None]

@@ -21,13 +21,26 @@ from playground.sketch.model import Sketch
 from playground.verify.shots import judge
 from playground.verify.shots.compare import compare
 from playground.verify.shots.mutants import repeatability as repeatability_module
-from playground.verify.shots.mutants.breaking import broken
-from playground.verify.shots.mutants.harmless import Drawing, Process, processes
-from playground.verify.shots.mutants.image_mutants import FINISHED
-from playground.verify.shots.mutants.model import DoesNotApply, Edit, Finished, Picture, Rendering
-from playground.verify.shots.mutants.render_mutants import rendering_mutants
-from playground.verify.shots.mutants.repeatability import Redrawn, commented, redraw
+from playground.verify.shots.mutants.finished import FINISHED
+from playground.verify.shots.mutants.rendering import (
+    DoesNotApply,
+    Edit,
+    Finished,
+    Picture,
+    Rendering,
+    broken,
+    rendering_mutants,
+)
+from playground.verify.shots.mutants.repeatability import (
+    Drawing,
+    Process,
+    Redrawn,
+    commented,
+    processes,
+    redraw,
+)
 from playground.verify.shots.mutants.suite import (
+    TIERS,
     MutantResult,
     MutantRunner,
     all_mutants,
@@ -36,7 +49,6 @@ from playground.verify.shots.mutants.suite import (
     shot_of,
     survivors,
 )
-from playground.verify.shots.mutants.tiers import TIERS
 from playground.verify.shots.suite import ShotCase, render_shot
 
 from ...loading import load

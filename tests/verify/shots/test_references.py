@@ -14,9 +14,9 @@ from playground.engine.context import ContextInfo
 from playground.errors import DataError
 from playground.sketch.find import home_of
 from playground.sketch.model import Graph, Shot, Sketch
-from playground.verify.shots.fingerprint import fingerprint_of
 from playground.verify.shots.references import (
     accepted,
+    fingerprint_of,
     read_reference,
     reference_path,
     stale_references,

@@ -19,9 +19,8 @@ import pytest
 from playground.engine.engine import Engine
 from playground.errors import ContextError, ParameterError, SandboxCrash, SandboxTimeout, ShaderError
 from playground.sketch.model import Graph, Shot, Sketch
-from playground.verify.shots import renderer_process as renderer_module
-from playground.verify.shots.renderer_process import RendererProcess
-from playground.verify.shots.suite import ShotCase, render_shot, shots_of
+from playground.verify.shots import suite as renderer_module
+from playground.verify.shots.suite import RendererProcess, ShotCase, render_shot, shots_of
 
 from ...sketch_texts import map_of_height
 
@@ -198,11 +197,11 @@ pipe = os.open("lives", os.O_WRONLY) if Path("lives").exists() else None  # clos
 """
 
 PARENT = """
-from playground.verify.shots import renderer_process
+from playground.verify.shots import suite
 from playground.verify.shots.suite import ShotCase
 from playground.sketch.model import Graph, Shot, Sketch
-renderer_process.HANDLER = "fake_handler"
-process = renderer_process.RendererProcess()
+suite.HANDLER = "fake_handler"
+process = suite.RendererProcess()
 process.render(ShotCase(Sketch("hills", "", "", Graph("", "", ())), Shot("hang")))
 """
 

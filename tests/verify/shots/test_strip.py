@@ -10,8 +10,8 @@ import pytest
 
 from playground.data.image_files import read_png
 from playground.errors import DataError
+from playground.verify.shots.judge import frame_size, repeated, strip_of
 from playground.verify.shots.results import FRAMES, read_result
-from playground.verify.shots.strip import frame_size, repeated, strip_of
 
 Run = Callable[..., pytest.RunResult]
 Edit = Callable[[str, str, str], None]

@@ -15,9 +15,8 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import ContextError, OpenGLFault
 from playground.sketch.model import Graph, Shot, Sketch
-from playground.verify.shots.fingerprint import fingerprint_of
 from playground.verify.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, WORDS
-from playground.verify.shots.references import read_reference, reference_path, write_reference
+from playground.verify.shots.references import fingerprint_of, read_reference, reference_path, write_reference
 from playground.verify.shots.suite import (
     Outcome,
     RenderedShot,

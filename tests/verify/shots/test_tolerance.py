@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from playground.data.image_files import read_png, write_png
 from playground.errors import DataError, SketchError
 from playground.sketch.model import TIERS, Tolerance, tolerance_of
+from playground.verify.shots.compare import Light, mask_of
 from playground.verify.shots.judge import Judgement, Rule, judge
-from playground.verify.shots.masking import Light, mask_of
 from playground.verify.shots.references import Reference
 from playground.verify.shots.results import read_result
 
@@ -269,4 +269,4 @@ def test_unknown_mask_pass_in_test_is_one_error_at_test_line(run: Run, pytester:
     result = run("--shots-update", "test_sea.py::test_drawn")
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["*SketchError: mask: no pass 'hieght' *; did you mean 'height'?"])
-    result.stdout.no_fnmatch_line("*renderer_process.py*")
+    result.stdout.no_fnmatch_line("*suite.py*")

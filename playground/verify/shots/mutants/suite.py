@@ -10,19 +10,66 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
+from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
 from playground.errors import ContextError, SketchError, nearest
 from playground.sketch.model import Shot, Sketch
 from playground.verify.shots.compare import Comparison, compare
-from playground.verify.shots.judge import Judgement, Perceived
-from playground.verify.shots.mutants.breaking import broken
-from playground.verify.shots.mutants.image_mutants import FINISHED
-from playground.verify.shots.mutants.model import DoesNotApply, Mutant, Picture, Rendering
-from playground.verify.shots.mutants.render_mutants import rendering_mutants
-from playground.verify.shots.mutants.tiers import TIERS, judged
+from playground.verify.shots.judge import (
+    OTHER_BUILD,
+    OTHER_RENDERER,
+    SAME_BUILD,
+    Judgement,
+    Perceived,
+    Rule,
+    judge,
+)
+from playground.verify.shots.mutants.finished import FINISHED
+from playground.verify.shots.mutants.rendering import (
+    DoesNotApply,
+    Mutant,
+    Picture,
+    Rendering,
+    broken,
+    rendering_mutants,
+)
+from playground.verify.shots.references import Reference, fingerprint_of
 from playground.verify.shots.suite import RenderedShot, ShotCase, render_shot, rule_of
+
+# ── a picture in every tier ──────────────────────────────────────────────────
+
+
+TIERS = (SAME_BUILD, OTHER_BUILD, OTHER_RENDERER)
+"""The tiers, the strictest first."""
+
+
+def judged(
+    actual: RenderedShot, expected: RenderedShot, renderer: ContextInfo, rule: Rule | None = None
+) -> tuple[Judgement, ...]:
+    """Return the judgement of each of `TIERS` of a picture and the one that it should be.
+
+    The same ``renderer`` drew both. The pixels are the same in all three tiers: what other
+    builds and renderers would draw differently by themselves comes on top. ``rule`` is what the shot
+    says of its comparison.
+    """
+    judgements = []
+    fingerprint = fingerprint_of(renderer, actual.size, actual.drawn)
+    wrong = {"not_finite": actual.not_finite, "gl_error": actual.gl_error}
+    for tier in TIERS:
+        origin = fingerprint_of(renderer, expected.size, expected.drawn)
+        if tier != SAME_BUILD:
+            origin = replace(origin, version=f"{origin.version}, {tier}")
+        reference = Reference(Path(), expected.array, origin.texts())
+        own, others = ((), (reference,)) if tier == OTHER_RENDERER else ((reference,), ())
+        judgements.append(judge(actual.array, fingerprint, own, others, **wrong, rule=rule)[0])
+    return tuple(judgements)
+
+
+# ── mutants ──────────────────────────────────────────────────────────────────
+
 
 ROUNDING = 1
 """[levels of 255] What rounding the other way may change; a defect of that size cannot be detected."""

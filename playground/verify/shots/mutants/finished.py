@@ -2,6 +2,7 @@
 
 Each is one function from a picture to a broken copy. Random numbers are seeded, so that a mutant is
 the same at every run.
+
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from playground.verify.shots.mutants.model import Finished, Picture
+from playground.verify.shots.mutants.rendering import Finished, Picture
 
 _SEED = 20101
 _COLOURS = np.s_[..., :3]  # without alpha

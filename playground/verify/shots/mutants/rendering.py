@@ -1,17 +1,22 @@
-"""Break a sketch as a mutant says: texts, values, wiring, camera, samples.
+"""Mutants that the engine draws: their table, read, and a sketch broken as one says.
 
-Nothing is written: edited texts are parsed in place of the files', and what they declare
-takes the place of the kernels that were made of those files.
+A mutant breaks texts, values, wiring, camera, samples. Nothing is written: edited texts are parsed in place
+of the files', and what they declare takes the place of the kernels that were made of those files.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import fields, replace
+import tomllib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from playground.errors import DataError, ParameterError
+from playground.memo import INTERFACE
 from playground.paths import GLSL, shown
 from playground.shader.expressions import follows_time
 from playground.shader.reserved_names import PLAIN_UNIFORMS
@@ -29,7 +34,110 @@ from playground.sketch.model import (
 )
 from playground.sketch.replace_technique import with_texts
 from playground.sketch.wiring import input_names
-from playground.verify.shots.mutants.model import DoesNotApply, Edit, Rendering
+
+# ── what a mutant is ─────────────────────────────────────────────────────────
+
+
+Picture = NDArray[np.uint8]
+"""A picture, (height, width, 4), top row first, sRGB and alpha."""
+
+
+class DoesNotApply(Exception):
+    """A mutant breaks something that a sketch does not have; the message says what."""
+
+
+@dataclass(frozen=True)
+class Edit:
+    """A change of one text."""
+
+    file: str  # in ``glsl/``, or "./x.glsl" in the sketch's folder
+    find: str  # occurs there exactly once
+    put: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rendering:
+    """A mutant that the engine draws: something is broken in the sketch."""
+
+    name: str
+    broke: str  # one message
+    edits: tuple[Edit, ...] = ()
+    values: tuple[tuple[str, object], ...] = ()  # parameter path → value
+    plus: tuple[tuple[str, object], ...] = ()  # path of a parameter or "camera.…" → what is added
+    times: tuple[tuple[str, float], ...] = ()  # likewise → what it is multiplied with
+    wires: tuple[tuple[str, str], ...] = ()  # path of an input → the pass that it is wired to
+    samples: int | None = None
+    later: float = 0.0  # [s] it is drawn so much later
+    steps: int = 0  # added to the iterations of what repeats
+    shot: str = ""  # the shot that shows it, if the sketch has one of that name
+
+    kind = "rendering"
+    exempt = False
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A mutant that is made of the finished picture: something is broken on its way out."""
+
+    name: str
+    broke: str  # one message
+    change: Callable[[Picture], Picture]
+    exempt: bool = False  # it is no defect: the same build must let it pass
+
+    kind = "picture"
+    later = 0.0
+    shot = ""
+
+
+Mutant = Rendering | Finished
+
+
+# ── the table ────────────────────────────────────────────────────────────────
+
+
+TABLE = Path(__file__).with_name("rendering.toml")
+
+_KEYS = {"name", "broke", "edit", "set", "plus", "times", "wire", "samples", "later", "steps", "shot"}
+
+
+@INTERFACE.cached()
+def rendering_mutants(table: Path = TABLE) -> tuple[Rendering, ...]:
+    """Return the mutants of a table; raise ``DataError`` for a key or a name that is wrong in it."""
+    with table.open("rb") as file:
+        renderings = tuple(_mutant(entry, table) for entry in tomllib.load(file)["mutant"])
+    names = [mutant.name for mutant in renderings]
+    for name in names:
+        if names.count(name) > 1:
+            raise DataError(f"two mutants are called '{name}'", file=table)
+    return renderings
+
+
+def _mutant(entry: dict[str, Any], table: Path) -> Rendering:
+    name = entry.get("name", "")
+    if not name or not entry.get("broke", "").endswith("."):
+        raise DataError(f"mutant '{name}': it needs a name, and a sentence as `broke`", file=table)
+    if unknown := entry.keys() - _KEYS:
+        raise DataError(f"mutant '{name}': no key '{min(unknown)}'; there are {sorted(_KEYS)}", file=table)
+    mutant = Rendering(
+        name=name,
+        broke=entry["broke"],
+        edits=tuple(Edit(edit["file"], edit["find"], edit["put"]) for edit in entry.get("edit", ())),
+        values=tuple(entry.get("set", {}).items()),
+        plus=tuple(entry.get("plus", {}).items()),
+        times=tuple(entry.get("times", {}).items()),
+        wires=tuple(entry.get("wire", {}).items()),
+        samples=entry.get("samples"),
+        later=entry.get("later", 0.0),
+        steps=entry.get("steps", 0),
+        shot=entry.get("shot", ""),
+    )
+    if mutant == Rendering(name=name, broke=mutant.broke, shot=mutant.shot):
+        raise DataError(f"mutant '{name}' breaks nothing", file=table)
+    return mutant
+
+
+# ── breaking a sketch ────────────────────────────────────────────────────────
+
 
 _CAMERA = "camera."
 
