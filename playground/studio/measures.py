@@ -21,8 +21,7 @@ from playground.sketch.model import Kernel, Sketch
 from playground.studio.paint.brush import TOOLS, Brush
 from playground.studio.paint.erode_tool import STAMP
 from playground.studio.paint.painting import Painting
-from playground.studio.reload.reload import Follower
-from playground.studio.reload.watcher import Watcher
+from playground.studio.reload.watcher import Follower, Watcher
 from playground.studio.session import Session
 
 ROWS = Path(__file__).with_suffix(".toml")
