@@ -27,8 +27,8 @@ from playground.terminal import complain, note, painted, print_json, print_rows,
 
 if TYPE_CHECKING:
     from playground.course.grading.entries import Submission
-    from playground.course.grading.marks import Graded
-    from playground.course.handout.exercise_files import Assignment
+    from playground.course.grading.report import Graded
+    from playground.course.handout import Assignment
     from playground.course.model import Lesson
     from playground.course.read import Summary
     from playground.engine.engine import Engine
@@ -62,7 +62,7 @@ def handout(
     software: options.Software = False,
 ) -> None:
     """Write the exercises of lessons as a zip for students."""
-    from playground.course.handout.pack import count_tasks, read_wheel, write_handout
+    from playground.course.handout import count_tasks, read_wheel, write_handout
     from playground.course.read import read_lesson
 
     output = output.expanduser()
@@ -118,7 +118,7 @@ def grade(
     from playground.course.grading.grade import count_works, grade, read_all
     from playground.course.grading.judges import Judges, Options
     from playground.course.grading.report import check_folder, write_report
-    from playground.course.handout.exercise_files import assignments_of
+    from playground.course.handout import assignments_of
     from playground.course.read import read_lesson
 
     language, folder, output = read_language(lang), folder.expanduser(), output.expanduser()
@@ -184,7 +184,7 @@ def _as_json(graded: Graded) -> dict[str, object]:
 
 def _print(graded: Sequence[Graded], assignments: Sequence[Assignment]) -> None:
     from playground.course.grading.entries import printable
-    from playground.course.grading.marks import spelled_points
+    from playground.course.grading.report import spelled_points
 
     headings = ["student", *(graded.name for graded in assignments), "total", "of"]
     rows = [
@@ -393,8 +393,7 @@ def _lesson_read_last() -> str:
 def status(as_json: options.Json = False) -> None:
     """List the translations that are out of date."""
     from playground.course.library import LANGUAGES, SOURCE
-    from playground.course.read import summaries
-    from playground.course.translate import status_of
+    from playground.course.read import status_of, summaries
 
     names = [summary.name for summary in summaries(SOURCE)]
     statuses = [status_of(name, code) for code in LANGUAGES if code != SOURCE for name in names]
@@ -448,8 +447,8 @@ def pictures(
     software: options.Software = False,
 ) -> None:
     """Draw every picture of a lesson into a folder."""
-    from playground.course.figure_renders import draw, pictures_of
     from playground.course.read import read_lesson
+    from playground.course.scenes import draw, pictures_of
     from playground.data.image_files import write_png
 
     result = pictures_of(read_lesson(name))
@@ -481,8 +480,8 @@ def build(
     software: options.Software = False,
 ) -> None:
     """Build the lessons as a book, or as notebooks."""
-    from playground.course.book.blocks import ANSWERS
     from playground.course.book.build import prepare, write_book
+    from playground.course.book.html import ANSWERS
     from playground.course.library import LANGUAGES
     from playground.course.read import read_lessons
 
@@ -509,8 +508,7 @@ def translated(
     """Mark a translation as up to date with today's English."""
     from playground.course.document import read_document
     from playground.course.library import SOURCE, lesson_file
-    from playground.course.read import read_lesson
-    from playground.course.translate import mark
+    from playground.course.read import mark, read_lesson
     from playground.paths import shown
 
     if not lang or lang == SOURCE:
@@ -521,7 +519,7 @@ def translated(
 
 
 def _write_notebooks(folder: Path, lessons: dict[str, list[Lesson]], engine: Engine) -> None:
-    from playground.course.measuring import numbers_of
+    from playground.course.measures import numbers_of
     from playground.course.notebook.build import notebook_text
     from playground.files import write_file
 

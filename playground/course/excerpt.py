@@ -9,8 +9,8 @@ import re
 import textwrap
 from dataclasses import dataclass
 
-from playground.course.figure_renders import with_bug
 from playground.course.model import Break
+from playground.course.scenes import with_bug
 from playground.errors import SketchError, nearest
 from playground.paths import GLSL
 from playground.shader.source import read_text

@@ -11,8 +11,8 @@ import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
 
+from playground.course.document import links
 from playground.course.library import HERE
-from playground.course.markdown import links
 from playground.course.model import Lesson, Markdown
 from playground.memo import INTERFACE
 

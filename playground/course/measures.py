@@ -1,19 +1,26 @@
-"""What lessons measure: numbers of a texture, each a pure function of its values.
-
-A function receives ``values``, float64 (ny, nx), row 0 in the south, of a texture's first
-channel, and the ``Grid`` that they are on. Lessons name it in ``what``, and give the rest
-of its arguments in ``with``; it raises ``ValueError`` for one that does not fit the texture.
-"""
+"""Measure textures and pictures: the numbers of lessons, by the names that these use."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+import re
+import time
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from inspect import signature
 from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from playground.course.model import Lesson, Markdown, Measure, Scene
+from playground.errors import SketchError
+from playground.sketch.model import TexelKernel
+
+if TYPE_CHECKING:
+    from playground.engine.engine import Engine
+    from playground.engine.plan import LoopStep, Plan, Step
 
 Values = NDArray[np.float64]
 """(ny, nx), row 0 in the south."""
@@ -289,3 +296,132 @@ MEASURES: dict[str, OfTexture | OfRun] = {
     "milliseconds": OfRun(),  # to compute ``of`` again: the best of three
 }
 """Every measure, by the name that lessons use."""
+
+
+_PLACEHOLDER = re.compile(r"\{\{\s*([a-z0-9-]+)\s*\}\}")
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """The value of a measure."""
+
+    value: float
+    text: str  # to its digits, with its unit; a point for the decimals
+
+
+class NoNumberError(SketchError):
+    """A measure is not finite for the texture that there is."""
+
+
+def measured(engine: Engine, measure: Measure) -> Number:
+    """Return the number of a measure; raise ``SketchError`` naming it where there is none.
+
+    It is a ``NoNumberError`` where the value is not finite.
+    """
+    assert measure.scene is not None
+    value = _value(engine, measure, measure.scene)
+    if measure.over is not None:
+        below = _value(engine, measure, measure.over)
+        value = value / below if below else math.nan
+    value *= 100.0 if measure.unit == "%" else 1.0
+    if not math.isfinite(value):
+        raise NoNumberError(f"measure '{measure.name}': {value} is not a number to show", line=measure.line)
+    return Number(value, spelled(value, measure.digits, measure.unit))
+
+
+def numbers_of(engine: Engine, lesson: Lesson) -> dict[str, Number]:
+    """Return all numbers of a lesson, by their names."""
+    return {measure.name: measured(engine, measure) for measure in lesson.measures}
+
+
+def filled(markdown: Markdown, numbers: Mapping[str, Number], comma: bool = False) -> Markdown:
+    """Replace the places that name measures by their numbers; one that is not computed yet is "…".
+
+    ``comma`` writes decimals behind a comma, as French does.
+    """
+
+    def text(match: re.Match[str]) -> str:
+        number = numbers.get(match[1])
+        number_text = number.text if number else "…"
+        return number_text.replace(".", ",") if comma else number_text
+
+    return _PLACEHOLDER.sub(text, markdown)
+
+
+def named_in(markdown: Markdown) -> list[str]:
+    """List the measures that a text names."""
+    return _PLACEHOLDER.findall(markdown)
+
+
+def spelled(value: float, digits: int, unit: str = "") -> str:
+    """Write a number to significant digits, never as a power of ten; thousands separated by narrow spaces."""
+    rounded = float(f"{value:.{digits - 1}e}")
+    power = math.floor(math.log10(abs(rounded))) if rounded else 0
+    # What was counted has no decimals: 1 summit, not 1.00.
+    decimals = 0 if value == int(value) else max(digits - 1 - power, 0)
+    text = f"{rounded:,.{decimals}f}".replace(",", "\u202f").replace("-", "−")
+    if unit in ("%", "°"):
+        return f"{text}\u202f%" if unit == "%" else f"{text}°"
+    return f"{text}\u202f{unit}" if unit else text
+
+
+def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
+    at: dict[str, Any] = {"size": scene.pixels, "time": scene.time, "steps": dict(scene.steps)}
+    value = MEASURES[measure.what]
+    if isinstance(value, OfTexture):
+        values = engine.read(scene.sketch, measure.of, **at)
+        first = values if values.ndim == 2 else values[..., 0]
+        grid = _grid(engine.record.plan, first.shape)
+        try:
+            return value.function(first.astype(np.float64), grid, **dict(measure.arguments))
+        except ValueError as error:
+            raise SketchError(f"measure '{measure.name}': {error}", line=measure.line) from None
+    if measure.what == "triangles":
+        engine.cache.clear()
+        engine.draw(scene.sketch, **at)
+        return float(engine.record.triangles)
+    if measure.what == "milliseconds":
+        return min(_seconds(engine, measure, scene, at) for _ in range(3)) * 1e3
+    if measure.what == "texture_bytes":
+        texture = engine.texture(scene.sketch, measure.of, **at)
+        width, height = texture.size
+        bytes_a_channel = {"f1": 1, "f2": 2, "f4": 4}[texture.dtype]
+        return float(width * height * texture.components * bytes_a_channel)
+    from playground.engine.plan import PlanRequest, every_version, needed
+    from playground.engine.planner import make_plan  # reading a lesson needs neither
+
+    # Of the plain form: a fast variant has other iterations than the text that the lesson shows.
+    plan = make_plan(
+        scene.sketch,
+        PlanRequest(frame_size=scene.pixels, time=scene.time, steps=at["steps"], ref=measure.of),
+    )
+    nodes = needed(plan.nodes, plan.flat.ref(measure.of, scene.sketch.name))
+    if measure.what == "iterations":
+        return float(max((node.repeat for node in every_version(tuple(nodes))), default=0))
+    return float(sum(_texels(node) for node in nodes))
+
+
+def _texels(node: Step | LoopStep) -> int:
+    from playground.engine.plan import Step
+
+    if isinstance(node, Step):
+        return node.size[0] * node.size[1] * node.repeat if isinstance(node.kernel, TexelKernel) else 0
+    if len(node.bodies) == 1:
+        return node.repeat * sum(_texels(inner) for inner in node.body)
+    return sum(_texels(inner) for number in range(node.repeat) for inner in node.body_of(number))
+
+
+def _seconds(engine: Engine, measure: Measure, scene: Scene, at: dict[str, Any]) -> float:
+    engine.cache.clear()
+    engine.ctx.finish()
+    started = time.perf_counter()
+    engine.texture(scene.sketch, measure.of, **at)
+    engine.ctx.finish()
+    return time.perf_counter() - started
+
+
+def _grid(plan: Plan | None, shape: tuple[int, ...]) -> Grid:
+    assert plan is not None
+    east, north = plan.terrain.extent or (1.0, 1.0)
+    spacing = (east / max(shape[1] - 1, 1), north / max(shape[0] - 1, 1))
+    return Grid(spacing, plan.terrain.relief or 1.0)

@@ -1,24 +1,288 @@
-"""Read lessons, in their own language or in a translation, and how long that takes a reader."""
+"""Read lessons, in English or a translation: how long each takes a reader, what of a translation is stale.
+
+A translation records which English it was made from: ``source`` in its front matter holds a hash of each
+English block. Where the English has changed since, the translated text is still shown, and ``status_of``
+names the block.
+"""
 
 from __future__ import annotations
 
+import difflib
+import hashlib
 import math
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from playground.course.document import Document, prose_of, read_document, texts_in
+from playground.course.document import Document, Fence, Piece, prose_of, read_document, texts_in
 from playground.course.fences import READERS, open_fence, read_fence
 from playground.course.library import SOURCE, lesson_file, lesson_names, number_of, parts
-from playground.course.markdown import Piece
-from playground.course.model import Block, Lesson
+from playground.course.model import Block, Lesson, Named, Prose, key_of, translated_fields
 from playground.course.scenes import Sketches
-from playground.course.translate import translated
-from playground.errors import SketchError
+from playground.errors import SketchError, counted
+from playground.files import write_file
 from playground.sketch.find import shipped_sketches
+
+_TRANSLATED_FRONT = ("title", "goal", "source")
+_SOURCE = re.compile(r"^source\s*=\s*\[.*?\]", re.MULTILINE | re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class Stale:
+    """What a translation lacks of today's English."""
+
+    changed: tuple[int, ...] = ()  # indices of English blocks whose text is another now
+    added: tuple[int, ...] = ()  # indices of English blocks that were not there
+    removed: int = 0  # how many are there no more
+
+    @property
+    def any(self) -> bool:
+        """Whether there is anything to translate."""
+        return bool(self.changed or self.added or self.removed)
+
+
+def hashes(text: Document) -> list[str]:
+    """Return the hash of each block of an English file; the first is that of title and goal."""
+    front = "\n".join(str(text.front.table.get(key, "")) for key in ("title", "goal"))
+    return [_hash(front), *(_hash(piece.text) for piece in text.pieces)]
+
+
+def stale(english: Document, other: Document) -> Stale:
+    """Compare what a translation was made from with what the English says now; index 0 is the front.
+
+    Raises ``SketchError`` where the translation has other blocks than it was marked with.
+    """
+    return _matched(_source(other), hashes(english))[1]
+
+
+def translated(lesson: Lesson, english: Document, other: Document, language: str) -> Lesson:
+    """Return a lesson with the texts of a translation.
+
+    Raises ``SketchError`` where the translation has other blocks than the English had when it
+    was made, sets more than texts, or lacks some. Of a stale translation, the English blocks
+    that are new, or that its texts no longer fit, stay in English.
+    """
+    front = other.front
+    front.only(front.table, _TRANSLATED_FRONT)
+    if then := _source(other):
+        pairs, lost = _matched(then, hashes(english))
+    else:
+        pairs, lost = dict(enumerate(range(len(other.pieces)))), Stale()
+        if len(other.pieces) != len(lesson.blocks):
+            raise _other_shape(lesson, other)
+    sketches = Sketches()
+    changed = {index - 1 for index in lost.changed}
+    blocks = []
+    for index, block in enumerate(lesson.blocks):
+        try:
+            put = index in pairs
+            blocks.append(_put(block, other.pieces[pairs[index]], other, sketches) if put else block)
+        except SketchError:
+            if index not in changed:
+                raise
+            blocks.append(block)  # its English has become something else altogether
+    return replace(
+        lesson,
+        language=language,
+        title=front.take(front.table, "title", str, lesson.title),
+        goal=front.take(front.table, "goal", str, lesson.goal),
+        blocks=tuple(blocks),
+        stale=tuple(index - 1 for index in (*lost.changed, *lost.added)),
+    )
+
+
+def mark(lesson: Lesson, english: Document, other: Document, language: str) -> None:
+    """Write the hashes into a translation whose texts all fit today's English; raise as ``translated``.
+
+    Nothing is written where it raises.
+    """
+    unmarked = copy(other.front)
+    unmarked.table = {key: value for key, value in other.front.table.items() if key != "source"}
+    translated(lesson, english, replace(other, front=unmarked), language)
+    write_hashes(english, other)
+
+
+def write_hashes(english: Document, other: Document) -> None:
+    """Write the hashes of today's English into a translation; the file is replaced whole.
+
+    Raises ``SketchError`` where it has not as many blocks.
+    """
+    if len(other.pieces) != len(english.pieces):
+        raise _other_shape(english, other)
+    text = other.path.read_text(encoding="utf-8")
+    rows = [f'    "{digest}",' for digest in hashes(english)]
+    line = "\n".join(["source = [", *rows, "]"])
+    edge = text.index("\n+++", 3)
+    front, rest = text[:edge], text[edge:]
+    front = _SOURCE.sub(line, front, count=1) if _SOURCE.search(front) else f"{front}\n{line}"
+    tomllib.loads(front.removeprefix("+++"))  # what is written can be read
+    write_file(other.path, front + rest)
+
+
+def _source(other: Document) -> tuple[str, ...]:
+    """Return the hashes that a translation holds, none where it was not marked yet."""
+    texts = texts_in(other.front, "source")
+    if texts and len(texts) != len(other.pieces) + 1:
+        message = f"{len(other.pieces)} blocks, but source names {len(texts) - 1}"
+        raise other.front.error(message, "source")
+    return texts
+
+
+def _matched(then: Sequence[str], now: Sequence[str]) -> tuple[dict[int, int], Stale]:
+    """Map English blocks to those of a translation, equal or replaced; say what it lacks of the English.
+
+    The map counts blocks without the front, ``Stale`` with it.
+    """
+    matches: dict[int, int] = {}
+    changed: list[int] = []
+    added: list[int] = []
+    removed = 0
+    for tag, low, high, first, last in difflib.SequenceMatcher(None, then, now, False).get_opcodes():
+        both = min(high - low, last - first)
+        matches |= dict(zip(range(first, first + both), range(low, low + both), strict=True))
+        if tag != "equal":
+            changed += range(first, first + both)
+            added += range(first + both, last)
+            removed += high - low - both
+    pairs = {new - 1: old - 1 for new, old in matches.items() if new and old}
+    return pairs, Stale(tuple(changed), tuple(added), removed)
+
+
+def _put(block: Block, piece: Piece, other: Document, sketches: Sketches) -> Block:
+    if isinstance(block, Prose):
+        if block.kind != (prose_block := prose_of(piece)).kind or block.level != prose_block.level:
+            message = (
+                f"a {prose_block.kind} is here, where the English has a {block.kind} (line {block.line})"
+            )
+            raise SketchError(message, file=other.path, line=piece.line)
+        return replace(block, markdown=prose_block.markdown)
+    assert isinstance(block, Named)
+    kind = block.text.split(maxsplit=1)[0].lstrip("`~")
+    head = f"{kind} {block.name}"
+    if piece.kind != "fence" or piece.info != head:
+        found_head = piece.info if piece.kind == "fence" else f"a {piece.kind}"
+        message = f"expected the block '{head}' here, found {found_head}"
+        raise SketchError(message, file=other.path, line=piece.line)
+    return replace(block, **_texts(block, open_fence(piece, other.path, piece.line, sketches)))
+
+
+def _texts(block: Named, fence: Fence) -> dict[str, Any]:
+    """Return the texts of a translated block, by field; raise ``SketchError`` where they do not fit."""
+    texts = translated_fields(type(block))
+    keys = [key_of(text) for text in texts]
+    for key in fence.file.table:
+        if key not in keys:
+            message = f"'{key}' is not for a translation, which sets only {', '.join(keys)}"
+            raise fence.error(message, key)
+    plan: dict[str, Any] = {}
+    for text in texts:
+        key, there = key_of(text), getattr(block, text.name)
+        listed = "listed" in text.metadata
+        texts_given: Any = fence.texts(key) if listed else fence.markdown(key, needed=bool(there))
+        if listed and len(texts_given) != len(there):
+            raise fence.error(f"{key}: {len(texts_given)} here, {len(there)} in English", key)
+        if texts_given and not there:
+            raise fence.error(f"{key}: the English has none", key)
+        plan[text.name] = texts_given
+    return plan
+
+
+def _other_shape(english: Lesson | Document, other: Document) -> SketchError:
+    """Name the first block that is not what the English has in its place."""
+    theirs: tuple[Block | Piece, ...] = english.blocks if isinstance(english, Lesson) else english.pieces
+    for here, there in zip(other.pieces, theirs, strict=False):
+        kind = _kind(there)
+        if here.kind != kind or (here.kind == "fence" and here.info.split() != _head(there)):
+            message = f"a {here.kind} is here, where the English has a {kind} (line {there.line})"
+            return SketchError(message, file=other.path, line=here.line)
+    message = f"{len(other.pieces)} blocks, where the English has {len(theirs)}"
+    return SketchError(message, file=other.path, line=other.pieces[-1].line if other.pieces else 1)
+
+
+def _kind(block: Block | Piece) -> str:
+    if isinstance(block, Piece):
+        return block.kind
+    return block.kind if isinstance(block, Prose) and block.kind != "code" else "fence"
+
+
+def _head(block: Block | Piece) -> list[str]:
+    if isinstance(block, Piece):
+        return block.info.split()
+    return block.text.split("\n", 1)[0].lstrip("`~").split()
+
+
+def _hash(text: str) -> str:
+    """Hash a text: where its lines are broken does not matter."""
+    return hashlib.sha256(" ".join(text.split()).encode()).hexdigest()[:8]
+
+
+@dataclass(frozen=True)
+class Status:
+    """The state of a translation."""
+
+    name: str
+    language: str
+    state: str  # missing | unmarked | stale | current
+    changed: tuple[int, ...] = ()  # lines of the English file
+    added: tuple[int, ...] = ()
+    removed: int = 0  # blocks
+
+    @property
+    def sentences(self) -> list[str]:
+        """What there is to do, in English."""
+        sentences_found = []
+        if self.state == "unmarked":
+            sentences_found.append(f"playground lesson translated {self.name} --lang {self.language}")
+        for change, lines in (("changed", self.changed), ("new", self.added)):
+            if lines:
+                sentences_found.append(
+                    f"{change}: line{'s' if len(lines) > 1 else ''} {', '.join(map(str, lines))}"
+                )
+        if self.removed:
+            sentences_found.append(f"{counted(self.removed, 'block')} of it no longer in English")
+        return sentences_found
+
+    def as_json(self) -> dict[str, Any]:
+        """Return it as JSON takes it."""
+        return {
+            "lesson": self.name,
+            "language": self.language,
+            "state": self.state,
+            "changed_lines": list(self.changed),
+            "new_lines": list(self.added),
+            "removed_blocks": self.removed,
+        }
+
+
+def status_of(name: str, language: str) -> Status:
+    """Return the state of a translation; raise ``SketchError`` for one that cannot be read."""
+    path = lesson_file(name, language)
+    if not path.is_file():
+        return Status(name, language, "missing")
+    english, other = read_document(lesson_file(name)), read_document(path)
+    if not other.front.table.get("source"):
+        return Status(name, language, "unmarked")
+    lost = stale(english, other)
+    if not lost.any:
+        return Status(name, language, "current")
+    return Status(
+        name,
+        language,
+        "stale",
+        _lines(english, lost.changed),
+        _lines(english, lost.added),
+        lost.removed,
+    )
+
+
+def _lines(english: Document, indices: Sequence[int]) -> tuple[int, ...]:
+    """Return the lines of blocks; the first index is that of title and goal."""
+    return tuple(english.pieces[index - 1].line if index else 1 for index in indices)
+
 
 WORDS_A_MINUTE = 200
 

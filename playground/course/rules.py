@@ -8,17 +8,15 @@ import numpy as np
 from latex2mathml.converter import convert
 
 from playground.course import model
+from playground.course.document import formulas, images, links
 from playground.course.excerpt import excerpt
-from playground.course.figure_renders import broken, draw
 from playground.course.glossary import terms
+from playground.course.judge import Wanted, answers, compare, judge, sentence_of, sentences, small
 from playground.course.library import lesson_files
-from playground.course.markdown import formulas, images, links
-from playground.course.measuring import measured, named_in
+from playground.course.measures import measured, named_in
 from playground.course.model import Challenge, Check, Exercise
-from playground.course.tasks.judge import Wanted, answers, compare, judge, small
-from playground.course.tasks.sentences import sentence_of, sentences
-from playground.course.tasks.verdict import score
-from playground.course.tasks.work import answer, scene_of, starter, tasks_of, wanted_scene
+from playground.course.scenes import broken, draw
+from playground.course.tasks import answer, scene_of, score, starter, tasks_of, wanted_scene
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import PlaygroundError, nearest

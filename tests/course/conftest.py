@@ -9,9 +9,8 @@ import pytest
 
 from playground.course.document import read_document
 from playground.course.model import Lesson
-from playground.course.read import read_file
+from playground.course.read import read_file, translated, write_hashes
 from playground.course.scenes import Sketches
-from playground.course.translate import translated, write_hashes
 from playground.engine.engine import Engine
 
 from ..publish.web.conftest import node as node

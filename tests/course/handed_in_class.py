@@ -13,10 +13,9 @@ import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from playground.course.handout.exercise_files import Assignment, assignments_of
-from playground.course.handout.pack import student_files
+from playground.course.handout import Assignment, assignments_of, student_files
 from playground.course.read import read_lesson
-from playground.course.tasks.work import answer_text, starter_text
+from playground.course.tasks import answer_text, starter_text
 from playground.sketch.save import written_value
 from playground.sketch.toml_text import put
 

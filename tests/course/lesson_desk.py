@@ -10,8 +10,8 @@ from imgui_bundle import imgui
 from playground.course import library
 from playground.course.addition import Lessons
 from playground.course.document import read_document
+from playground.course.read import write_hashes
 from playground.course.scenes import Sketches
-from playground.course.translate import write_hashes
 from playground.course.window.reader import Reader
 from playground.engine.engine import Engine
 from playground.paths import GLSL

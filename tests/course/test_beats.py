@@ -8,8 +8,7 @@ from itertools import pairwise
 import pytest
 
 from playground.course.excerpt import excerpt
-from playground.course.language import labels
-from playground.course.library import LANGUAGES
+from playground.course.library import LANGUAGES, labels
 from playground.course.model import (
     Break,
     Challenge,
@@ -25,15 +24,20 @@ from playground.course.model import (
 )
 from playground.course.read import read_lesson, summaries
 from playground.course.scenes import Sketches
-from playground.course.talk.beat import BOTH, Beat, Still, scene_of
-from playground.course.talk.beats import beats_of, first_of_page
-from playground.course.talk.block_beats import BOARD_WORDS, CODE_LINES
-from playground.course.talk.spoken import (
+from playground.course.talk.beats import (
+    BOARD_WORDS,
+    BOTH,
+    CODE_LINES,
     LETTERS,
     MAX_WORDS,
     MIN_SECONDS,
+    Beat,
+    Still,
+    beats_of,
     cues_of,
+    first_of_page,
     plain_text,
+    scene_of,
     seconds_of,
     sentences,
     shown_of,

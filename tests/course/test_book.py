@@ -15,17 +15,16 @@ from PIL import Image
 
 from playground.course.book import build
 from playground.course.book import build as pictures
-from playground.course.book.blocks import LessonContext, block_html
 from playground.course.book.build import is_diagram, larger, prepare, write_book
-from playground.course.book.html import MAX_INDENT, formula, line, plain, prose
+from playground.course.book.html import MAX_INDENT, LessonContext, block_html, formula, line, plain, prose
 from playground.course.book.live import LiveBook
-from playground.course.figure_renders import draw, pictures_of
 from playground.course.figures import thesis_figures
 from playground.course.glossary import terms
-from playground.course.language import labels
-from playground.course.measuring import numbers_of
+from playground.course.library import labels
+from playground.course.measures import numbers_of
 from playground.course.model import Break, Exercise, Question
 from playground.course.notebook.build import notebook_text
+from playground.course.scenes import draw, pictures_of
 from playground.errors import DataError
 
 VOID = {"img", "input", "br", "meta", "link", "hr", "source"}

@@ -9,7 +9,7 @@ import pytest
 from playground.course.book import build
 from playground.course.book.build import prepare, write_book
 from playground.course.book.live import LiveBook
-from playground.course.measuring import Number
+from playground.course.measures import Number
 from playground.course.read import read_lessons
 
 from ..verify.report.browser import MISSING, Browser

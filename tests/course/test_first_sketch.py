@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from pathlib import Path
 
-from playground.course.tasks.work import EXERCISES
+from playground.course.tasks import EXERCISES
 from playground.engine.engine import Engine
 from playground.paths import SKETCHES
 from playground.sketch.load import load

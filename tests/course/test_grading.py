@@ -23,14 +23,24 @@ from playground.course.grading import judges as handler
 from playground.course.grading.entries import _TOO_MANY, find_submissions
 from playground.course.grading.grade import alike, lessons_in, read_all, read_submission
 from playground.course.grading.judges import values_in_toml
-from playground.course.grading.marks import GRADED, MISSING, REFUSED, STOPPED, Graded, Mark, Pair
-from playground.course.grading.report import ReportContext, page, table_bytes, write_report
-from playground.course.handout.exercise_files import assignments_of, normalised
-from playground.course.language import in_language, patterns
-from playground.course.library import HERE
+from playground.course.grading.report import (
+    GRADED,
+    MISSING,
+    REFUSED,
+    STOPPED,
+    Graded,
+    Mark,
+    Pair,
+    ReportContext,
+    page,
+    table_bytes,
+    write_report,
+)
+from playground.course.handout import assignments_of, normalised
+from playground.course.library import HERE, in_language, patterns
 from playground.course.model import Challenge
 from playground.course.read import read_lesson
-from playground.course.tasks.work import answer_text
+from playground.course.tasks import answer_text
 from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.errors import DataError
@@ -366,7 +376,7 @@ def test_grading_problems_are_french_in_french_report(tmp_path):
 def test_every_grading_message_has_french_with_same_placeholders():
     names = patterns("fr")
     used = set()
-    for path in (HERE / "grading").glob("*.py"), (HERE / "tasks").glob("*.py"):
+    for path in (HERE.rglob("*.py"),):
         for node in (node for file in path for node in ast.walk(ast.parse(file.read_text("utf-8")))):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Said":
                 (said,) = node.args

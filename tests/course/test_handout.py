@@ -11,10 +11,9 @@ import numpy as np
 import pytest
 
 from playground.cli import main
-from playground.course.handout.exercise_files import assignments_of
-from playground.course.handout.pack import student_files
+from playground.course.handout import assignments_of, student_files
 from playground.course.read import read_lesson, read_lessons
-from playground.course.tasks.work import Work, answer_text, scene_of
+from playground.course.tasks import Work, answer_text, scene_of
 from playground.sketch.find import unpacked_beside
 
 from ..loading import load

@@ -8,13 +8,12 @@ import imgui_bundle
 import pytest
 from imgui_bundle import imgui
 
+from playground.course.document import formulas
 from playground.course.library import LANGUAGES, TEXTS, lesson_files
-from playground.course.markdown import formulas
 from playground.course.model import Break, Compare, Exercise, Figure, Slider, Steps
 from playground.course.read import read_lesson
-from playground.course.typeset import INSTEAD
+from playground.course.typeset import INSTEAD, set_formula
 from playground.course.window.figure_view import edits_of, map_of, steps_of
-from playground.course.window.formulas import set_formula
 from playground.studio.edits.edits import Draft
 
 from ..loading import load

@@ -8,7 +8,7 @@ import pytest
 
 from playground.course import library
 from playground.course.addition import Lessons
-from playground.course.tasks.work import answer_text
+from playground.course.tasks import answer_text
 from playground.course.window.page import Page
 from playground.course.window.progress import (
     Attempt,

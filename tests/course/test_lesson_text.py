@@ -15,9 +15,8 @@ import moderngl
 import numpy as np
 import pytest
 
-from playground.course.language import labels
-from playground.course.typeset import Extent, Run, broken, parts_of, plain
-from playground.course.window.formulas import Formulas, can_set, set_formula
+from playground.course.library import labels
+from playground.course.typeset import Extent, Formulas, Run, broken, can_set, parts_of, plain, set_formula
 from playground.course.window.progress import (
     MIN_WIDTH,
     Attempt,
@@ -181,7 +180,7 @@ def test_textures_are_made_once_and_given_back(ctx: moderngl.Context):
 def test_formulas_need_no_american_locale(locale):
     if not any((Path("/usr/lib/locale") / name).is_dir() for name in ("C.utf8", "C.UTF-8")):
         pytest.skip("no plain locale of Unicode here")
-    program = "from playground.course.window.formulas import *; import os;"
+    program = "from playground.course.typeset import *; import os;"
     program += (
         "print(can_set(), set_formula('a+b', 20, 255, display=False) is not None, 'LOCPATH' in os.environ)"
     )

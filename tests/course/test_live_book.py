@@ -10,8 +10,8 @@ import re
 import pytest
 
 from playground.course import model
-from playground.course.book.blocks import LessonContext
 from playground.course.book.build import prepare, write_book
+from playground.course.book.html import LessonContext
 from playground.course.book.live import (
     MAX_INLINE_LETTERS,
     Library,
@@ -22,10 +22,9 @@ from playground.course.book.live import (
     live_book,
 )
 from playground.course.excerpt import bug_region
-from playground.course.figure_renders import pictures_in
-from playground.course.language import labels
+from playground.course.library import labels
 from playground.course.read import read_lesson
-from playground.course.scenes import spelled_value
+from playground.course.scenes import pictures_in, spelled_value
 from playground.publish.web.blobs import packed_json
 from playground.publish.web.plan import sketch_data
 from playground.publish.web.shared import SharedData

@@ -18,12 +18,10 @@ from PIL import Image
 from playground.course.book.build import prepare, write_book
 from playground.course.document import read_document
 from playground.course.excerpt import bug_region
-from playground.course.figure_renders import broken, draw
-from playground.course.language import labels
-from playground.course.read import read_file
-from playground.course.scenes import with_value
-from playground.course.tasks.work import EXERCISES
-from playground.course.translate import translated, write_hashes
+from playground.course.library import labels
+from playground.course.read import read_file, translated, write_hashes
+from playground.course.scenes import broken, draw, with_value
+from playground.course.tasks import EXERCISES
 from playground.engine.engine import Engine
 
 from ..verify.report.browser import MISSING, Browser

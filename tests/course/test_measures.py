@@ -9,8 +9,16 @@ import pytest
 import scipy.ndimage
 
 from playground.course import measures
-from playground.course.measures import MEASURES, Grid, OfTexture
-from playground.course.measuring import filled, measured, named_in, numbers_of, spelled
+from playground.course.measures import (
+    MEASURES,
+    Grid,
+    OfTexture,
+    filled,
+    measured,
+    named_in,
+    numbers_of,
+    spelled,
+)
 from playground.errors import SketchError
 
 GRID = Grid((10.0, 10.0), 100.0)

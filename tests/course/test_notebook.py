@@ -19,17 +19,15 @@ from PIL import Image
 
 from playground.course.book.live import widget_page
 from playground.course.excerpt import BugRegion
-from playground.course.figure_renders import broken, draw
 from playground.course.glossary import terms
-from playground.course.language import labels
-from playground.course.library import lesson_files
-from playground.course.measuring import numbers_of
+from playground.course.library import labels, lesson_files
+from playground.course.measures import numbers_of
 from playground.course.model import Figure, Prose
 from playground.course.notebook import lesson as notebook_lesson
 from playground.course.notebook.build import notebook_text
-from playground.course.notebook.controls import controls_of, scene_at
-from playground.course.notebook.lesson import NotebookLesson
+from playground.course.notebook.lesson import NotebookLesson, controls_of, scene_at
 from playground.course.read import read_lesson
+from playground.course.scenes import broken, draw
 from playground.errors import SketchError
 from playground.publish.notebook.engine_thread import release_engine
 

@@ -11,10 +11,9 @@ from threading import Thread
 import numpy as np
 import pytest
 
-from playground.course.figure_renders import draw
 from playground.course.notebook import lesson as notebook_lesson
 from playground.course.notebook.lesson import NotebookLesson
-from playground.course.scenes import with_value
+from playground.course.scenes import draw, with_value
 
 from ..verify.report.browser import MISSING, Browser
 from .test_live_book_in_a_browser import LLVMPIPE, RIGHT, Recorder, drawn, picture

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import pytest
 
-from playground.course.figure_renders import pictures_in, pictures_of
 from playground.course.read import read_lesson, summaries
+from playground.course.scenes import pictures_in, pictures_of
 
 LESSONS = [summary.name for summary in summaries()]
 

@@ -10,8 +10,8 @@ import pytest
 
 from playground.cli import main
 from playground.course.read import read_lesson
+from playground.course.talk.beats import seconds_of
 from playground.course.talk.film import FPS, film_of, write_presentation
-from playground.course.talk.spoken import seconds_of
 from playground.engine.engine import Engine
 
 from .lesson_desk import shelved

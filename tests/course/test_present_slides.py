@@ -11,10 +11,10 @@ import pytest
 from playground.course.library import LANGUAGES
 from playground.course.read import read_lesson, summaries
 from playground.course.scenes import Sketches
-from playground.course.talk.beat import Beat, Listing
-from playground.course.talk.beats import beats_of
+from playground.course.talk.beats import Beat, Listing, beats_of
 from playground.course.talk.slide import (
     MIN_LETTER_HEIGHT,
+    Face,
     Gauge,
     Sizes,
     board_of,
@@ -25,7 +25,6 @@ from playground.course.talk.slide import (
     gauges_of,
     strip_of,
 )
-from playground.course.talk.slide_text import Face
 
 FULL_HD = Sizes(1920, 1080)
 

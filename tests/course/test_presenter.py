@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from playground.course.talk import presenter as module
-from playground.course.talk.beat import Beat
+from playground.course.talk.beats import Beat
 from playground.course.talk.presenter import TYPED, Presenter
 
 

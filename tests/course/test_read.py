@@ -50,7 +50,7 @@ def test_variants_stand_over_what_the_block_sets(make_lesson):
 
 def test_a_texture_from_above(make_lesson, engine):
     """Its greys are the texture's values between the ends of the range."""
-    from playground.course.figure_renders import draw
+    from playground.course.scenes import draw
 
     lesson = make_lesson(
         ('pixels    = [96, 96]\ncaption   = "Smoother', 'pixels = [20, 20]\ncaption = "Smoother'),

@@ -9,15 +9,23 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from playground.course.language import labels
+from playground.course import tasks as task_module
+from playground.course.judge import Wanted, answers, compare, judge, points_of, sentences
+from playground.course.library import labels
 from playground.course.measures import MEASURES
 from playground.course.model import Check
 from playground.course.rules import wrong_pictures
-from playground.course.tasks import work as work_module
-from playground.course.tasks.judge import Wanted, answers, compare, judge
-from playground.course.tasks.sentences import points_of, sentences
-from playground.course.tasks.verdict import LEVELS, SHARE, score, share_differing
-from playground.course.tasks.work import Work, answer, scene_of, starter, tasks_of
+from playground.course.tasks import (
+    LEVELS,
+    SHARE,
+    Work,
+    answer,
+    scene_of,
+    score,
+    share_differing,
+    starter,
+    tasks_of,
+)
 from playground.errors import SketchError
 from playground.paths import GLSL
 from playground.shader.source import read_text
@@ -67,8 +75,8 @@ def _starters(tmp_path, monkeypatch):
     folder = tmp_path / "exercises"
     (folder / "small").mkdir(parents=True)
     (folder / "small/start.glsl").write_text(RAW.replace(FORMULA, "0.0"), encoding="utf-8")
-    monkeypatch.setattr(work_module, "EXERCISES", folder)
-    monkeypatch.setattr("playground.course.task_fences.EXERCISES", folder)
+    monkeypatch.setattr(task_module, "EXERCISES", folder)
+    monkeypatch.setattr("playground.course.fences.EXERCISES", folder)
 
 
 @pytest.fixture
@@ -263,7 +271,7 @@ def test_a_measure_is_of_the_scenes_own_pixels(task, engine, monkeypatch):
         seen.append(measure.scene.pixels)
         return SimpleNamespace(value=0.82)
 
-    monkeypatch.setattr("playground.course.tasks.judge.measured", measured)
+    monkeypatch.setattr("playground.course.judge.measured", measured)
     block = task(KERNEL, "exercise", ("[96, 96]", "[480, 270]")).block
     verdict, _ = results(engine, block, RAW)
     assert verdict.results[2].passed and seen == [(480, 270)]

@@ -6,11 +6,11 @@ import json
 
 import pytest
 
+from playground.course.judging import JudgeProcess
 from playground.course.notebook import lesson as notebook_lesson
 from playground.course.notebook.build import notebook_text
 from playground.course.notebook.lesson import NotebookLesson
-from playground.course.tasks.judge_process import JudgeProcess
-from playground.course.tasks.work import Work, answer, starter_text
+from playground.course.tasks import Work, answer, starter_text
 from playground.errors import SketchError
 
 from .test_tasks import CHALLENGE, FORMULA, KERNEL, RAW, VALUES, _starters, task

@@ -6,8 +6,7 @@ import pytest
 
 from playground.course import library
 from playground.course.document import read_document
-from playground.course.read import read_file
-from playground.course.translate import mark, stale, status_of, translated, write_hashes
+from playground.course.read import mark, read_file, stale, status_of, translated, write_hashes
 from playground.errors import SketchError
 
 

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from playground.course import model
-from playground.course.book.blocks import LessonContext, picture_image
+from playground.course.book.html import LessonContext, picture_image
 from playground.course.book.live import LiveBook, live_book
 from playground.course.book.page import (
     FIGURES,
@@ -38,14 +38,13 @@ from playground.course.book.page import (
     lesson_page,
     section_id,
 )
-from playground.course.figure_renders import Picture, draw, pictures_of
+from playground.course.document import every_token, parser
 from playground.course.figures import FigurePicture, Hero, ThesisFigure, hero_of, thesis_figures
 from playground.course.glossary import alphabetical
-from playground.course.language import labels
-from playground.course.markdown import every_token, parser
-from playground.course.measuring import Number, numbers_of
+from playground.course.library import labels
+from playground.course.measures import Number, numbers_of
 from playground.course.model import Lesson, Scene
-from playground.course.scenes import Sketches
+from playground.course.scenes import Picture, Sketches, draw, pictures_of
 from playground.engine.context import context_info
 from playground.engine.engine import Engine
 from playground.errors import DataError

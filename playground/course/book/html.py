@@ -1,15 +1,26 @@
-"""Write Markdown, formulas and code as HTML."""
+"""Write the blocks of a lesson as HTML: Markdown, formulas, code, and each kind of block.
+
+Everything is there without a script: all pictures of a series side by side, both of a comparison, answers
+to be unfolded. The script turns them into sliders and swipes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 from latex2mathml.converter import convert
 from markdown_it.renderer import RendererHTML
 from markdown_it.token import Token
 
-from playground.course.markdown import parser
+from playground.course import model
+from playground.course.document import parser
+from playground.course.excerpt import bug_region, excerpt
+from playground.course.library import SOURCE, Labels
+from playground.course.measures import Number, filled
+from playground.course.scenes import Picture, pictures_in, spelled_value
+from playground.course.tasks import starter_text
 from playground.markup import Markup, joined, tag
 from playground.memo import INTERFACE
 
@@ -115,3 +126,304 @@ def _rendered(markdown: str, anchor: Anchor, *, inline: bool) -> str:
     parser_.renderer = _Renderer(parser_)
     env: dict[str, Any] = {"anchor": anchor}
     return str(parser_.renderInline(markdown, env) if inline else parser_.render(markdown, env))
+
+
+_MAX_QUESTION = 120  # characters of a question that are repeated over its answer
+
+ANSWERS = ("inline", "end", "none")
+"""Where answers are: folded away under their questions, and on paper at the end; at the end; nowhere."""
+
+
+def picture_image(picture: Picture, source: str, alt: str, *, lazy: bool) -> Markup:
+    """Return a picture as an element with its size."""
+    width, height = picture.scene.pixels
+    loading = "lazy" if lazy else None
+    return tag("img", src=source, alt=alt, width=width, height=height, loading=loading, decoding="async")
+
+
+@dataclass(frozen=True)
+class LessonContext:
+    """What the blocks of one lesson are written with."""
+
+    lesson: model.Lesson
+    label: Labels  # around the lesson, in its language
+    numbers: Mapping[str, Number]
+    source: Callable[[Picture], str]  # address of a picture
+    anchor: Anchor
+    live: Collection[str] = ()  # names of the blocks that a page can run
+    blank: Callable[[Picture], bool] = lambda picture: False  # whether a picture shows next to nothing
+    answers: str = "inline"  # one of ANSWERS
+    at_end: list[Markup] = field(default_factory=list)  # answers, for the end of the page
+
+    def line(self, markdown: str) -> Markup:
+        """Return a text within a line, with the numbers in it."""
+        return line(self.filled(markdown), self.anchor)
+
+    def prose(self, markdown: str) -> Markup:
+        """Return a text as paragraphs, with the numbers in it."""
+        return prose(self.filled(markdown), self.anchor)
+
+    def image(self, picture: Picture, *, lazy: bool = True, alt: str | None = None) -> Markup:
+        """Return a picture as an element with its size, so that nothing jumps when it is loaded."""
+        text = plain(self.filled(picture.alt)) if alt is None else alt
+        return picture_image(picture, self.source(picture), text, lazy=lazy)
+
+    def still(self, *inside: Markup | None) -> Markup:
+        """Return what a live block replaces where a reader starts it."""
+        return tag("div", *inside, class_="still")
+
+    def started(self, block: model.Named) -> dict[str, str | None]:
+        """Return the attribute of an element whose pictures can be started."""
+        return {"data_block": block.name if block.name in self.live else None}
+
+    def folded(self, key: str, *inside: Markup | None) -> Markup:
+        """Return what is unfolded by its label."""
+        return tag("details", tag("summary", self.label(key)), tag("div", *inside))
+
+    def answer(
+        self, block: model.Named, key: str, title: str, ask: str, *inside: Markup | None
+    ) -> Markup | None:
+        """Return an answer as it is under its question: folded away, or a link to it, or nothing."""
+        if self.answers == "none":
+            return None
+        if self.answers == "inline":
+            summary = tag("summary", self.label(key))
+            return tag("details", summary, tag("div", *inside), class_="answer", data_title=title)
+        text = f"answer-{block.name}"
+        asked = plain(self.filled(ask)).split("\n")[0]
+        heading = tag("h3", tag("a", title, href=f"#{block.name}"))
+        short = asked if len(asked) <= _MAX_QUESTION else f"{asked[:_MAX_QUESTION].rsplit(' ', 1)[0]} …"
+        self.at_end.append(tag("section", heading, tag("p", short, class_="asked"), *inside, id=text))
+        return tag("p", tag("a", self.label("answer_below"), href=f"#{text}"), class_="to-answer")
+
+    def titled(
+        self, block: model.Named, title: str, *inside: Markup | None, **attributes: str | None
+    ) -> Markup:
+        """Return the section of a block, under a heading."""
+        heading, kind = tag("h3", title, id=f"{block.name}-title"), type(block).__name__.lower()
+        return tag("section", heading, *inside, id=block.name, class_=kind, **attributes)
+
+    def filled(self, markdown: str) -> str:
+        """Return a text with the numbers in it."""
+        return filled(markdown, self.numbers, comma=self.lesson.language == "fr")
+
+
+def block_html(block: model.Block, setting: LessonContext, *, first: bool = False) -> Markup:
+    """Return a block as HTML; the first picture of a page is loaded at once."""
+    if isinstance(block, model.Figure):
+        return _figure(block, setting, first)
+    return _WRITERS[type(block)](block, setting)
+
+
+def open_command(lesson: model.Lesson) -> str:
+    """Return the command that opens a lesson in the window."""
+    language = "" if lesson.language == SOURCE else f" --lang {lesson.language}"
+    return f"playground lesson open {lesson.name}{language}"
+
+
+def _prose(block: model.Prose, setting: LessonContext) -> Markup:
+    return setting.prose(block.text if block.kind in ("heading", "code") else block.markdown)
+
+
+def _figure(block: model.Figure, setting: LessonContext, first: bool) -> Markup:
+    (picture,) = pictures_in(block)
+    dragged = None
+    if block.sliders and block.name not in setting.live:
+        label, command = setting.label, tag("code", open_command(setting.lesson))
+        dragged = tag("small", label("in_window"), label("colon"), command, class_="in-window")
+    caption = tag("figcaption", setting.line(block.caption), dragged)
+    image = setting.still(setting.image(picture, lazy=not first))
+    return tag("figure", image, caption, id=block.name, **setting.started(block))
+
+
+def _series(
+    block: model.Steps | model.Slider, setting: LessonContext, labels: list[str], name: str, opens: int
+) -> Markup:
+    frames = []
+    captions = block.captions if isinstance(block, model.Steps) and block.captions else [""] * len(labels)
+    for picture, label, caption in zip(pictures_in(block), labels, captions, strict=True):
+        # The pictures of a series differ by their labels; what they show is written once, above.
+        written = tag("span", setting.line(caption)) if caption else None
+        below = tag("p", tag("b", label), Markup(" "), written)
+        frames.append(tag("li", setting.image(picture, alt=f"{name}: {label}"), below))
+    return tag(
+        "figure",
+        tag("p", plain(block.alt), class_="visually-hidden"),
+        setting.still(
+            tag("ol", *frames, class_="frames", data_name=name, tabindex=0, aria_label=plain(block.caption))
+        ),
+        tag("figcaption", setting.line(block.caption)),
+        id=block.name,
+        class_="series",
+        data_kind="step" if isinstance(block, model.Steps) else "slider",
+        data_opens=str(opens),
+        **setting.started(block),
+    )
+
+
+def _steps(block: model.Steps, setting: LessonContext) -> Markup:
+    count = len(block.iterations)
+    labels = [setting.label("step_of", n=index + 1, m=count) for index in range(count)]
+    pictures = list(pictures_in(block))
+    opens = next((index for index, picture in enumerate(pictures) if not setting.blank(picture)), count - 1)
+    return _series(block, setting, labels, setting.label("step"), opens)
+
+
+def _slider(block: model.Slider, setting: LessonContext) -> Markup:
+    name = block.label or block.parameter
+    labels = [spelled_value(block, value, setting.lesson.language) for value in block.values]
+    # A sweep opens in its middle, where there is something to drag towards on both sides.
+    return _series(block, setting, labels, plain(name), len(labels) // 2)
+
+
+def _compare(block: model.Compare, setting: LessonContext) -> Markup:
+    shown = []
+    for picture, label in zip(pictures_in(block), block.labels, strict=True):
+        below = tag("p", tag("b", setting.line(label)))
+        shown.append(tag("li", setting.image(picture, alt=plain(label)), below))
+    return tag(
+        "figure",
+        tag("p", plain(block.alt), class_="visually-hidden"),
+        setting.still(tag("ul", *shown, class_="variants", data_swipe=setting.label("swipe"))),
+        tag("figcaption", setting.line(block.caption)),
+        id=block.name,
+        class_="compare",
+        **setting.started(block),
+    )
+
+
+def _code(block: model.Code, setting: LessonContext) -> Markup:
+    title = setting.label("code_of", file=f"glsl/{block.file}")
+    caption = setting.line(block.caption) if block.caption else None
+    return tag(
+        "figure",
+        code_block(excerpt(block.file, block.anchor).text, title),
+        tag("figcaption", caption, Markup(" "), tag("small", title)),
+        id=block.name,
+        class_="listing",
+    )
+
+
+def _break(block: model.Break, setting: LessonContext) -> Markup:
+    label, lines = setting.label, bug_region(block)
+    correct, broken = pictures_in(block)
+    caption = setting.line(block.caption) if block.caption else None
+    file = tag("small", label("code_of", file=f"glsl/{block.file}"))
+    fixed = tag(
+        "figure",
+        setting.image(correct, alt=label("correct")),
+        tag("figcaption", tag("b", label("correct"))),
+    )
+    return setting.titled(
+        block,
+        label("bug"),
+        setting.prose(block.ask),
+        setting.still(
+            tag(
+                "figure",
+                setting.image(broken),
+                tag("figcaption", tag("b", label("broken")), Markup(" "), caption),
+            ),
+            tag("p", label("broken_code"), Markup(" "), file),
+            code_block(lines.broken, label("broken_code")),
+        ),
+        setting.folded("hint", setting.prose(block.hint)),
+        setting.answer(
+            block,
+            "fix",
+            label("bug"),
+            block.ask,
+            setting.prose(block.fix),
+            tag("p", label("fixed_code")),
+            code_block(lines.correct, label("fixed_code")),
+            fixed,
+        ),
+        **setting.started(block),
+    )
+
+
+def _choice(block: model.Question, index: int, setting: LessonContext) -> Markup:
+    right = "yes" if index == block.right else "no"
+    button = tag("input", type="radio", name=block.name, value=index, data_right=right)
+    return tag("label", button, Markup(" "), tag("span", setting.line(block.choices[index])))
+
+
+def _question(block: model.Question, setting: LessonContext) -> Markup:
+    label, choices = setting.label, None
+    if block.choices:
+        choices = tag(
+            "fieldset",
+            tag("legend", label("question"), class_="visually-hidden"),
+            *(_choice(block, index, setting) for index in range(len(block.choices))),
+            tag("p", class_="verdict", role="status"),
+            data_right=label("right"),
+            data_wrong=label("wrong"),
+        )
+    answer = setting.answer(block, "answer", label("question"), block.ask, setting.prose(block.answer))
+    return setting.titled(block, label("question"), setting.prose(block.ask), choices, answer)
+
+
+def _exercise(block: model.Exercise, setting: LessonContext) -> Markup:
+    pictures = [tag("figure", setting.image(picture)) for picture in pictures_in(block)]
+    live = block.name in setting.live
+    room = setting.still() if live else None  # only what can be started has one
+    title = f"{setting.label('exercise')} {setting.lesson.number_of(block)}"
+    elsewhere = block.checks and not (live and any(check.measure is None for check in block.checks))
+    return setting.titled(
+        block,
+        title,
+        setting.prose(block.ask),
+        _starter(block, setting),
+        room,
+        tag("p", tag("small", setting.line(setting.label("checked_elsewhere")))) if elsewhere else None,
+        setting.folded("hint", setting.prose(block.hint)) if block.hint else None,
+        setting.answer(block, "solution", title, block.ask, setting.prose(block.solution), *pictures),
+        **setting.started(block),
+    )
+
+
+def _challenge(block: model.Challenge, setting: LessonContext) -> Markup:
+    (target,) = pictures_in(block)
+    title, solution = setting.label("challenge"), None
+    if block.solution:
+        solution = setting.answer(block, "solution", title, block.ask, setting.prose(block.solution))
+    caption = setting.line(block.caption) if block.caption else setting.label("target")
+    return setting.titled(
+        block,
+        title,
+        setting.prose(block.ask),
+        _starter(block, setting),
+        setting.still(tag("figure", setting.image(target), tag("figcaption", caption))),
+        setting.folded("hint", setting.prose(block.hint)) if block.hint else None,
+        solution,
+        **setting.started(block),
+    )
+
+
+def _starter(task: model.Task, setting: LessonContext) -> Markup | None:
+    """Return the text that a reader begins from, folded away."""
+    if not task.file:
+        return None
+    title = setting.label("code_of", file=f"glsl/{task.file}")
+    return setting.folded("starter", code_block(starter_text(task), title))
+
+
+def _measure(block: model.Measure, setting: LessonContext) -> Markup:
+    if not block.sentence:
+        return joined()
+    chip = tag("b", setting.label("measured"), class_="chip")
+    return tag("p", chip, Markup(" "), setting.line(block.sentence), id=block.name, class_="measure")
+
+
+_WRITERS: dict[type[model.Block], Callable[[Any, LessonContext], Markup]] = {
+    model.Prose: _prose,
+    model.Steps: _steps,
+    model.Slider: _slider,
+    model.Compare: _compare,
+    model.Code: _code,
+    model.Break: _break,
+    model.Question: _question,
+    model.Exercise: _exercise,
+    model.Challenge: _challenge,
+    model.Measure: _measure,
+}

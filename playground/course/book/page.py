@@ -8,12 +8,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from playground._version import __version__
-from playground.course.book.blocks import LessonContext, block_html, open_command
-from playground.course.book.html import Anchor, line, plain
+from playground.course.book.html import Anchor, LessonContext, block_html, line, open_command, plain
 from playground.course.figures import HERO, FigurePicture, ThesisFigure
 from playground.course.glossary import Term, alphabetical, linked_term, terms_of
-from playground.course.language import Labels
-from playground.course.library import LANGUAGES, THESIS, parts
+from playground.course.library import LANGUAGES, THESIS, Labels, parts
 from playground.course.model import Lesson, Section
 from playground.markup import Markup, joined, tag
 

@@ -1,1 +1,1 @@
-"""Grade what a class has handed in: each submission in a worker process, a table and a contact sheet."""
+"""Grade what a class has handed in: submissions are read, judged in worker processes, and reported."""

@@ -18,7 +18,7 @@ from itertools import count
 from pathlib import Path
 
 from playground.course.grading.report import is_report
-from playground.course.language import Said
+from playground.course.library import Said
 from playground.errors import DataError
 from playground.paths import shown
 

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from playground.course.grading.entries import Entry, Submission, entries_of, printable
 from playground.course.grading.judges import Judges, Request, Result, Stopped, no_mark
-from playground.course.grading.marks import MISSING, REFUSED, STOPPED, Graded, Mark, spelled_points
-from playground.course.handout.exercise_files import Assignment, normalised
-from playground.course.language import Said, in_language, labels
+from playground.course.grading.report import MISSING, REFUSED, STOPPED, Graded, Mark, spelled_points
+from playground.course.handout import Assignment, normalised
+from playground.course.library import Said, in_language, labels
 from playground.errors import DataError, SketchError, counted
 
 

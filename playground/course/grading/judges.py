@@ -19,17 +19,15 @@ import numpy as np
 from PIL import Image
 
 from playground.allowed_files import is_absolute, leads_outside
-from playground.course.figure_renders import draw
 from playground.course.grading.entries import printable
-from playground.course.grading.marks import GRADED, REFUSED, Mark, Pair
-from playground.course.handout.exercise_files import Assignment, assignments_of
-from playground.course.language import Said, in_language
+from playground.course.grading.report import GRADED, REFUSED, Mark, Pair
+from playground.course.handout import Assignment, assignments_of
+from playground.course.judge import Ends, Wanted, answers, ends_of, judge, match, score_of, sentences, small
+from playground.course.library import Said, in_language
 from playground.course.model import Challenge, Exercise
 from playground.course.read import read_lesson
-from playground.course.tasks.judge import Ends, Wanted, answers, ends_of, judge, match, small
-from playground.course.tasks.sentences import score_of, sentences
-from playground.course.tasks.verdict import Picture, Verdict
-from playground.course.tasks.work import Work, answer, path_of, scene_of, wanted_scene
+from playground.course.scenes import draw
+from playground.course.tasks import Picture, Verdict, Work, answer, path_of, scene_of, wanted_scene
 from playground.engine.context import ContextInfo
 from playground.engine.engine import Engine, open_engine
 from playground.engine.plain_forms import silent

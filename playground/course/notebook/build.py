@@ -9,10 +9,9 @@ from typing import Any
 from playground.course import model
 from playground.course.excerpt import bug_region, excerpt
 from playground.course.glossary import linked_term, terms_of
-from playground.course.language import labels
-from playground.course.library import SOURCE, THESIS
-from playground.course.measuring import Number, filled
-from playground.course.tasks.work import checks_itself, starter_text
+from playground.course.library import SOURCE, THESIS, labels
+from playground.course.measures import Number, filled
+from playground.course.tasks import checks_itself, starter_text
 from playground.errors import DataError
 from playground.extras import needs
 from playground.sketch.assign import value_of, values_of

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
+from typing import Any
 
 import traitlets
 
-from playground.course.notebook.controls import Control
 from playground.errors import PlaygroundError
 from playground.publish.notebook.widget import BROWSER, LiveWidget
 
@@ -26,7 +25,7 @@ class PictureWidget(LiveWidget):
     def __init__(
         self,
         draw: Callable[[Mapping[str, float]], bytes],
-        controls: Sequence[Control],
+        controls: Sequence[Mapping[str, Any]],
         alt: str = "",
         *,
         page: str = "",
@@ -34,11 +33,11 @@ class PictureWidget(LiveWidget):
         language: str = "en",
     ) -> None:
         self._draw = draw
-        values = {control.key: control.value for control in controls}
+        values = {control["key"]: control["value"] for control in controls}
         super().__init__(
             picture=draw(values),
             alt=alt,
-            controls=[asdict(control) for control in controls],
+            controls=list(controls),
             values=values,
             page=page,
             labels=list(labels),

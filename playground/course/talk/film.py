@@ -15,15 +15,22 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from playground.course.figure_renders import broken
-from playground.course.measuring import Number, filled, measured, named_in
+from playground.course.measures import Number, filled, measured, named_in
 from playground.course.model import Break, Compare, Lesson, Scene, Slider
-from playground.course.scenes import with_value
-from playground.course.talk.beat import BOTH, Beat, scene_of, texts_of_beat, with_texts
-from playground.course.talk.beats import beats_of
-from playground.course.talk.presented_pictures import Row
+from playground.course.scenes import broken, with_value
+from playground.course.talk.beats import (
+    BOTH,
+    Beat,
+    beats_of,
+    cues_of,
+    scene_of,
+    seconds_of,
+    srt,
+    texts_of_beat,
+    with_texts,
+)
 from playground.course.talk.slide import Gauge, Sizes, board_of, gauges_of, strip_of
-from playground.course.talk.spoken import cues_of, seconds_of, srt
+from playground.course.talk.stage import Row
 from playground.engine.engine import Engine
 from playground.files import write_file
 from playground.publish.video import QUALITY, Video, check_video

@@ -5,8 +5,8 @@
     POST /TOKEN/do        {"go": "next"}, "back", "first", "last" or a number from 1;
                           {"cover": "black"}; {"clock": "pause"} or "reset"
 
-Python's own server does: one reader asks now and then. Nothing here touches the session: what is asked
-is done between two frames (see ``calls``), and what is told was made by the window.
+Python's own server does: one reader asks now and then. Nothing here touches the session: what is asked is
+done between two frames (see ``calls``), and what the page receives was made by the window.
 """
 
 from __future__ import annotations
@@ -18,12 +18,66 @@ from functools import partial
 from importlib.resources import files
 from typing import Any
 
-from playground.course.talk.beat import Beat
+from playground.course.library import labels
+from playground.course.talk.beats import Beat
 from playground.course.talk.presenter import Presenter
 from playground.errors import DataError, ParameterError
 from playground.json_text import read_json
 from playground.local_server import CSS, HTML, JSON, SCRIPT, Answer, LocalServer, Request, as_json, refused
 from playground.studio.remote.calls import Busy, Calls
+
+_LABELS = ("notes", "following", "over", "pause", "go_on", "reset", "back", "next", "black", "lost")
+
+
+def notes_message(presenter: Presenter, beat: Beat, following: Beat | None, language: str) -> dict[str, Any]:
+    """Return what is on, with the beat's and the next one's texts; numbers are in them already."""
+    from playground.course.typeset import plain
+
+    clock, say = presenter.clock, labels("talk", language)
+    return {
+        "on": presenter.on,
+        "language": language,
+        "labels": {key: say[key] for key in _LABELS},
+        "lesson": presenter.lesson.title if presenter.lesson else "",
+        "at": presenter.at + 1,
+        "count": len(presenter.beats),
+        "heading": plain(beat.heading),
+        "label": beat.label,
+        "notes": html_of(beat),
+        "aside": _html(beat.aside),
+        "coming": _coming(following),
+        "blank": presenter.blank,
+        "elapsed": round(clock.elapsed, 1),
+        "running": clock.running,
+    }
+
+
+def html_of(beat: Beat) -> str:
+    """Return all that is notified of a beat, and what stands over its picture, as HTML."""
+    parts = []
+    if beat.choices and beat.board:
+        parts.append(_html(beat.board))
+    parts.append(_html(beat.notes or beat.shown))
+    if beat.code is not None:
+        from playground.course.book.html import code_block
+
+        parts.append(str(code_block(beat.code.text, beat.code.file or "code")))
+    return "".join(parts)
+
+
+def _coming(beat: Beat | None) -> str:
+    if beat is None:
+        return ""
+    label = f"**{beat.label}.** " if beat.label else ""
+    file = beat.code.file if beat.code is not None else ""
+    return _html(f"{label}{beat.shown or beat.board or file}")
+
+
+def _html(words: str) -> str:
+    from playground.course.book.html import prose
+
+    return str(prose(words, lambda to: {"class": "term"})) if words else ""
+
 
 MAX_REQUEST_BYTES = 2**12
 """[bytes] of what a page may send."""
@@ -163,8 +217,6 @@ class NotesLink:
         coming = self._filled(presenter.following) if presenter.following is not None else None
         key = presenter.on, presenter.at, beat, presenter.blank, clock.running, clock.started_at
         if key != self._told:
-            from playground.course.talk.told import notes_message
-
             self._told = key
             self.notes.tell(notes_message(presenter, beat, coming, language))
 

@@ -10,8 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from playground.course.model import Lesson
-from playground.course.talk.beat import Beat
-from playground.course.talk.beats import beats_of, first_of_page
+from playground.course.talk.beats import Beat, beats_of, first_of_page
 
 TYPED = 3.0
 """[s] after its last digit that a typed number is forgotten."""

@@ -12,9 +12,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from playground.course.excerpt import Excerpt, excerpt
-from playground.course.figure_renders import Picture, draw, with_bug
 from playground.course.model import Break, Code, Scene
-from playground.course.tasks.verdict import SHARE, share_differing
+from playground.course.scenes import Picture, draw, with_bug
+from playground.course.tasks import SHARE, share_differing
 from playground.course.window.figure_view import FigureView
 from playground.errors import PlaygroundError
 from playground.paths import GLSL, shown

@@ -11,9 +11,18 @@ import numpy as np
 from imgui_bundle import ImVec2, imgui
 
 from playground.course.model import Lesson, Markdown
-from playground.course.tasks.verdict import Picture
-from playground.course.typeset import FORMULA_SIZE, Extent, Layout, Placed, Run, Spacing, laid_out, written
-from playground.course.window.formulas import Formulas
+from playground.course.tasks import Picture
+from playground.course.typeset import (
+    FORMULA_SIZE,
+    Extent,
+    Formulas,
+    Layout,
+    Placed,
+    Run,
+    Spacing,
+    laid_out,
+    written,
+)
 from playground.course.window.reader import Reader
 from playground.studio import theme
 from playground.studio.draw import button, inked, pushed_id, styled

@@ -11,9 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.course.language import labels
-from playground.course.library import LANGUAGES, SOURCE, preferred_language
-from playground.course.measuring import Number, filled, measured, named_in
+from playground.course.library import LANGUAGES, SOURCE, labels, preferred_language
+from playground.course.measures import Number, filled, measured, named_in
 from playground.course.model import (
     Block,
     Challenge,
@@ -30,7 +29,7 @@ from playground.course.model import (
     texts_of,
 )
 from playground.course.scenes import Sketches, comparable
-from playground.course.tasks.work import answer_text, path_of
+from playground.course.tasks import answer_text, path_of
 from playground.course.window.bugs import Bugs, Copies
 from playground.course.window.figure_view import FigureView, steps_of
 from playground.course.window.progress import Progress, progress_file, write_progress

@@ -13,12 +13,11 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from playground.course.judge import Ends, Match, match
+from playground.course.judging import JudgeProcess
 from playground.course.model import Block, Challenge, Exercise, Scene
 from playground.course.scenes import with_value
-from playground.course.tasks.judge import Ends, Match, match
-from playground.course.tasks.judge_process import JudgeProcess
-from playground.course.tasks.verdict import Picture, Verdict
-from playground.course.tasks.work import Work, path_of, scene_of, starter, starter_text
+from playground.course.tasks import Picture, Verdict, Work, path_of, scene_of, starter, starter_text
 from playground.course.window.bugs import Copies, Copy, line_of
 from playground.course.window.figure_view import FigureView
 from playground.course.window.progress import Attempt, Progress

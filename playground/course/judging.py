@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from playground.course.judge import SIDE, Ends, Match, Wanted, answers, ends_of, judge, match
 from playground.course.model import Challenge, Exercise
-from playground.course.tasks.judge import SIDE, Ends, Match, Wanted, answers, ends_of, judge, match
-from playground.course.tasks.verdict import Verdict
-from playground.course.tasks.work import Work, answer_text
+from playground.course.tasks import Verdict, Work, answer_text
 from playground.engine.engine import Engine, open_engine
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Step
