@@ -11,8 +11,6 @@ The same lessons give the same bytes, on the same renderer: names are sorted and
 
 from __future__ import annotations
 
-import base64
-import hashlib
 import io
 import json
 import re
@@ -38,8 +36,9 @@ from playground.engine.engine import Engine
 from playground.errors import DataError, PlaygroundError, SketchError
 from playground.extras import DISTRIBUTION
 from playground.files import checked_file, reading, reason, replacing, write_file
-from playground.markup import Markup, joined, tag
+from playground.markup import Markup, data_url, document, joined, tag
 from playground.paths import GLSL, SKETCHES
+from playground.publish.pack import zip_entry
 from playground.shader.header import parse_kernel
 from playground.shader.source import read_source, read_text
 from playground.sketch.find import FORMAT, MANIFEST
@@ -337,8 +336,7 @@ class _PageContext:
         array = draw(self.engine, replace(scene, pixels=(width, height))).array
         stream = io.BytesIO()
         Image.fromarray(np.ascontiguousarray(array[..., :3])).save(stream, "WEBP", quality=_QUALITY, method=4)
-        source = f"data:image/webp;base64,{base64.b64encode(stream.getvalue()).decode()}"
-        image = tag("img", src=source, alt=alt, width=width, height=height)
+        image = tag("img", src=data_url("image/webp", stream.getvalue()), alt=alt, width=width, height=height)
         return tag("figure", image, tag("figcaption", caption))
 
 
@@ -357,32 +355,26 @@ def handout_page(
     """
     label = labels("handout", lessons[0].language)
     by_place = {(assignment.lesson.name, assignment.task.name): assignment for assignment in assignments}
-    body = [
+    sections = [
         tag("h1", label["title"]),
         tag("p", label["name_line"], label["colon"], tag("span", Markup("&nbsp;")), class_="name"),
     ]
     for lesson in lessons:
         setting = _PageContext(lesson, label, numbers[lesson.name], engine, hints)
-        body.append(tag("h2", f"{label('lesson', n=lesson.number)}{label['colon']}{lesson.title}"))
+        sections.append(tag("h2", f"{label('lesson', n=lesson.number)}{label['colon']}{lesson.title}"))
         for block in lesson.blocks:
             if isinstance(block, Task):
-                body.append(_task(block, by_place.get((lesson.name, block.name)), setting))
+                sections.append(_task(block, by_place.get((lesson.name, block.name)), setting))
                 advance()
     style = (Path(__file__).resolve().parent / "handout.css").read_text(encoding="utf-8")
-    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
-    policy = (
-        f"default-src 'none'; img-src data:; style-src 'sha256-{digest}'; base-uri 'none'; form-action 'none'"
-    )
-    head = joined(
-        Markup('<meta charset="utf-8">'),
-        tag("meta", http_equiv="Content-Security-Policy", content=policy),
-        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        tag("title", f"{label['title']}{label['colon']}{', '.join(lesson.title for lesson in lessons)}"),
-        tag("style", Markup(style)),
-    )
-    footer = tag("footer", tag("p", label("made_by", version=__version__)))
-    whole = tag("html", tag("head", head), tag("body", tag("main", *body), footer), lang=lessons[0].language)
-    return f"<!doctype html>\n{whole}\n"
+    body = tag("body", tag("main", *sections), tag("footer", tag("p", label("made_by", version=__version__))))
+    policy = "default-src 'none'; img-src data:"
+    return document(lessons[0].language, _title(lessons), body, policy=policy, style=style)
+
+
+def _title(lessons: Sequence[Lesson]) -> str:
+    label = labels("handout", lessons[0].language)
+    return f"{label['title']}{label['colon']}{', '.join(lesson.title for lesson in lessons)}"
 
 
 def _task(task: Task, assignment: Assignment | None, setting: _PageContext) -> Markup:
@@ -446,9 +438,6 @@ def _pictures(task: Task, setting: _PageContext) -> list[Markup]:
     return figures
 
 
-_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can say
-_PLAIN_FILE = 0o100644 << 16
-_UNIX = 3
 _WHEEL_NAME = DISTRIBUTION.replace("-", "_")
 _WHEEL = re.compile(rf"{_WHEEL_NAME}-[^-]+(-\d[^-]*)?(-[^-]+){{3}}\.whl")
 _NOT_IN_A_NAME = re.compile(r"[^\w.-]+")
@@ -501,7 +490,7 @@ def write_handout(
     files[MANIFEST] = (json.dumps(manifest, indent=1) + "\n").encode()
     with replacing(path) as handle, zipfile.ZipFile(handle, "w") as archive:
         for name in sorted(files):
-            archive.writestr(_entry(name), files[name], zipfile.ZIP_DEFLATED, 9)
+            archive.writestr(zip_entry(name), files[name], zipfile.ZIP_DEFLATED, 9)
     return assignments
 
 
@@ -534,21 +523,13 @@ def _readme(lessons: Sequence[Lesson], assignments: Sequence[Assignment], instal
         lines = label("install_wheel", wheel=wheel).strip().splitlines() if wheel else [label("install_open")]
     elif wheel:
         lines.append(label("wheel_here", wheel=wheel))
-    title = f"{label['title']}{label['colon']}{', '.join(lesson.title for lesson in lessons)}"
     return (
         label(
             "readme",
-            title=title,
+            title=_title(lessons),
             install="\n".join([lines[0], *(f"   {line.strip()}".rstrip() for line in lines[1:])]),
             commands="\n".join(f"   playground live {assignment.opens}" for assignment in assignments),
             files="\n".join(f"   {assignment.name}/{assignment.file}" for assignment in assignments),
         ).strip()
         + "\n"
     )
-
-
-def _entry(name: str) -> zipfile.ZipInfo:
-    entry = zipfile.ZipInfo(name, _DATE)
-    entry.create_system, entry.external_attr = _UNIX, _PLAIN_FILE
-    entry.compress_type = zipfile.ZIP_DEFLATED
-    return entry

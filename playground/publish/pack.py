@@ -59,13 +59,14 @@ def pack(sketch: Sketch, path: str | Path, further: Iterable[tuple[Path, str]] =
                 made[f"{folder_of(sketch)}/sketch.toml"] = b""
             for name in sorted({*files, *made}):
                 data = read_regular(files[name]) if name in files else made[name]
-                archive.writestr(_entry(name), data, zipfile.ZIP_DEFLATED, 9)
+                archive.writestr(zip_entry(name), data, zipfile.ZIP_DEFLATED, 9)
     except OSError as error:
         raise DataError(f"cannot be packed: {reason(error)}", file=error.filename or path) from None
     return Path(path)
 
 
-def _entry(name: str) -> zipfile.ZipInfo:
+def zip_entry(name: str) -> zipfile.ZipInfo:
+    """Return the entry of a plain file, with a fixed date: the same files give the same bytes."""
     entry = zipfile.ZipInfo(name, _DATE)
     entry.create_system, entry.external_attr = _UNIX, _PLAIN_FILE
     entry.compress_type = zipfile.ZIP_DEFLATED

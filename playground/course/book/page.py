@@ -13,15 +13,12 @@ from playground.course.figures import HERO, FigurePicture, ThesisFigure
 from playground.course.glossary import Term, alphabetical, linked_term, terms_of
 from playground.course.library import LANGUAGES, THESIS, Labels, parts
 from playground.course.model import Lesson, Section
-from playground.markup import Markup, joined, tag
+from playground.markup import Markup, document, joined, tag
 
 FIGURES = "figures"
 """The name of the gallery's page."""
 
-POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; font-src 'self'; "
-    "base-uri 'none'; form-action 'none'"
-)
+POLICY = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; font-src 'self'"
 """What a page may load: files of the book. Of pages opened from disk, browsers take those for 'self'."""
 
 GLOSSARY = "glossary"
@@ -202,7 +199,7 @@ def cover_page(books: Sequence[Book], hero: Markup) -> str:
         tag("p", first.label("source", thesis=THESIS), class_="more"),
         class_="cover",
     )
-    return _document(first.language, _head(first.label("book"), folder=""), tag("body", body))
+    return _document(first.language, first.label("book"), tag("body", body), folder="")
 
 
 def _way_in(book: Book, heading: str) -> Markup:
@@ -229,20 +226,13 @@ def slug(text: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", letters).strip("-")
 
 
-def _document(language: str, head: Markup, body: Markup) -> str:
-    return f"<!doctype html>\n{tag('html', tag('head', head), body, lang=language)}\n"
-
-
-def _head(title: str, folder: str = "../") -> Markup:
-    return joined(
-        Markup('<meta charset="utf-8">'),
-        tag("meta", http_equiv="Content-Security-Policy", content=POLICY),
-        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
+def _document(language: str, title: str, body: Markup, folder: str = "../") -> str:
+    head = joined(
         tag("meta", name="color-scheme", content="light dark"),
-        tag("title", title),
         tag("link", rel="stylesheet", href=f"{folder}book.css"),
         tag("script", src=f"{folder}book.js", defer=True),
     )
+    return document(language, title, body, policy=POLICY, head=head)
 
 
 def _page(
@@ -285,7 +275,7 @@ def _page(
         **{f"data_{key}": label[key] for key in scripted},
     )
     whole_title = f"{title} — {label('book')}" if name != "index" else title
-    return _document(book.language, _head(whole_title), page)
+    return _document(book.language, whole_title, page)
 
 
 def _play(book: Book, lesson: Lesson) -> Markup:

@@ -7,7 +7,6 @@ pictures/     named after their bytes: equal ones share a file
 
 from __future__ import annotations
 
-import base64
 import csv
 import hashlib
 import io
@@ -24,7 +23,7 @@ from playground._version import __version__
 from playground.course.library import Labels, labels
 from playground.errors import DataError
 from playground.files import write_file
-from playground.markup import Markup, joined, tag
+from playground.markup import Markup, document, joined, policy_hash, tag, with_code
 from playground.paths import shown
 
 GRADED, MISSING, REFUSED, STOPPED = "graded", "missing", "refused", "stopped"
@@ -146,35 +145,19 @@ def page(graded: Sequence[Graded], titles: dict[str, str], setting: ReportContex
     mean = sum(graded_submission.points for graded_submission in graded) / max(len(graded), 1)
     count = label("students", n=len(graded)) if len(graded) != 1 else label("student")
     of = graded[0].of if graded else 0
-    policy = (
-        f"default-src 'none'; img-src 'self'; style-src '{_policy_hash(style)}';"
-        f" script-src '{_policy_hash(script)}'; base-uri 'none'; form-action 'none'"
-    )
-    head = joined(
-        Markup('<meta charset="utf-8">'),
-        tag("meta", http_equiv="Content-Security-Policy", content=policy),
-        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        tag("meta", name=_HASH_NAME, content=setting.table_hash) if setting.table_hash else None,
-        tag("title", label["title"]),
-        tag("style", Markup(style)),
-    )
+    policy = f"default-src 'none'; img-src 'self'; script-src '{policy_hash(script)}'"
+    table = tag("meta", name=_HASH_NAME, content=setting.table_hash) if setting.table_hash else None
     summary = f"{count} · {label('mean', mean=setting.number(round(mean, 2)), of=of)}"
-    body = joined(
+    students = (_student(graded_submission, titles, setting) for graded_submission in graded)
+    body = tag(
+        "body",
         tag("header", tag("h1", label["title"]), tag("p", summary)),
         _tools(label),
-        tag(
-            "main",
-            tag(
-                "ul",
-                *(_student(graded_submission, titles, setting) for graded_submission in graded),
-                class_="students",
-            ),
-        ),
+        tag("main", tag("ul", *students, class_="students")),
         tag("footer", tag("p", label("made_by", version=__version__, renderer=setting.renderer))),
         tag("script", Markup(script)),
     )
-    whole = tag("html", tag("head", head), tag("body", body), lang=setting.language)
-    return f"<!doctype html>\n{whole}\n"
+    return document(setting.language, label["title"], body, policy=policy, head=table, style=style)
 
 
 def table_hash_of(text: str) -> str:
@@ -260,9 +243,7 @@ def _mark(name: str, title: str, mark: Mark, setting: ReportContext) -> Markup:
 def _with_code(sentence: str) -> Markup:
     """Return a message, escaped, what is between backticks as code, and what follows its first line too."""
     first, line_end, quoted = sentence.partition("\n")
-    first = _DRIVER_QUOTES.sub(r"`\1`", first)
-    parts = [tag("code", part) if odd % 2 else joined(part) for odd, part in enumerate(first.split("`"))]
-    return joined(*parts, tag("pre", quoted) if line_end else None)
+    return joined(with_code(_DRIVER_QUOTES.sub(r"`\1`", first)), tag("pre", quoted) if line_end else None)
 
 
 def _in_list(names: Sequence[str], most: int = 6) -> str:
@@ -295,10 +276,6 @@ def _figure(title: str, text: str, data: bytes, setting: ReportContext) -> Marku
 
 def _read(name: str) -> str:
     return (_HERE / name).read_text(encoding="utf-8")
-
-
-def _policy_hash(text: str) -> str:
-    return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}"
 
 
 TABLE, PAGE, PICTURES = "grades.csv", "index.html", "pictures"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from base64 import b64encode
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cache
@@ -35,7 +34,7 @@ from playground.course.tasks import (
 )
 from playground.engine.frame import Frame
 from playground.errors import SketchError, nearest
-from playground.markup import Markup, joined, tag
+from playground.markup import Markup, data_url, joined, tag, with_code
 from playground.paths import GLSL
 from playground.publish.notebook.engine_thread import on_engine
 from playground.shader.parameter import is_whole
@@ -157,7 +156,7 @@ class Checked:
     def _repr_html_(self) -> str:
         drawn = bool(self.verdict.results)
         style = "list-style:none" if drawn else _COMPILERS
-        lines = [tag("li", _line(line) if drawn else line, style=style) for line in self.lines]
+        lines = [tag("li", with_code(line) if drawn else line, style=style) for line in self.lines]
         wrong = [result for result in self.verdict.visible if not result.passed]
         return joined(
             tag("p", tag("b", points_of(self.verdict, self.language))),
@@ -188,11 +187,6 @@ class Matched:
         return joined(tag("p", str(self)), tag("div", *shown))
 
 
-def _line(text: str) -> Markup:
-    """Return a line in which what stands between backquotes is code."""
-    return joined(*(tag("code", part) if odd % 2 else part for odd, part in enumerate(text.split("`"))))
-
-
 def _compared(result: CheckResult, language: str) -> Markup:
     label = labels("tasks", language)
     mine, expected = result.mine, result.expected
@@ -206,8 +200,7 @@ def _compared(result: CheckResult, language: str) -> Markup:
 def _picture(picture: Picture, name: str) -> Markup:
     stream = io.BytesIO()
     Image.fromarray(picture).save(stream, "PNG")
-    source = f"data:image/png;base64,{b64encode(stream.getvalue()).decode()}"
-    image = tag("img", src=source, alt=name, width=_WIDE)
+    image = tag("img", src=data_url("image/png", stream.getvalue()), alt=name, width=_WIDE)
     style = "display:inline-block;margin:0 .5em 0 0;text-align:center"
     return tag("figure", image, tag("figcaption", name), style=style)
 
@@ -237,7 +230,7 @@ class Fixed(Frame):
     verdict: str = ""
 
     def _repr_html_(self) -> str:
-        source = f"data:image/png;base64,{b64encode(self._repr_png_()).decode()}"
+        source = data_url("image/png", self._repr_png_())
         return tag("p", self.verdict) + tag("img", src=source, alt=self.verdict)
 
 
