@@ -149,7 +149,7 @@ def grade(
     for requests in ([(submission.name, None) for submission in assignments], _texts(read)):
         named = [((name, text), Request(name, text)) for name, text in requests]
         for key, outcome in judges.judge_all(named):
-            judged[key] = outcome  # type: ignore[index]
+            judged[key] = outcome
             advance()
         _check_answers(judged, assignments)
     same = {

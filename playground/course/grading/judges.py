@@ -13,7 +13,7 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath, PureWindowsPath
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from PIL import Image
@@ -21,8 +21,9 @@ from PIL import Image
 from playground.allowed_files import is_absolute, leads_outside
 from playground.course.grading.entries import printable
 from playground.course.grading.report import GRADED, REFUSED, Mark, Pair
-from playground.course.handout import Assignment, assignments_of
-from playground.course.judge import Ends, Wanted, answers, ends_of, judge, match, score_of, sentences, small
+from playground.course.handout import assignments_of
+from playground.course.judge import Match, score_of, sentences, small
+from playground.course.judging import LIMIT_BYTES, Judge, cause_of
 from playground.course.library import Said, in_language
 from playground.course.model import Challenge, Exercise
 from playground.course.read import read_lesson
@@ -34,8 +35,7 @@ from playground.engine.plain_forms import silent
 from playground.engine.process.child import Outcome
 from playground.engine.process.pool import Limits, Pool, PoolOwner
 from playground.engine.process.worker import Parent, Service
-from playground.engine.textures import is_lost
-from playground.errors import ContextError, DataError, PlaygroundError, SandboxCrash
+from playground.errors import ContextError, DataError, PlaygroundError
 from playground.paths import GLSL, shown
 from playground.sketch.model import Sketch, Value, kernels_of
 
@@ -136,9 +136,6 @@ LIMIT = 10.0
 TIMES_ANSWER = 10.0
 """A work may take so many times as long as the model answer, if that is more."""
 
-MEMORY = 4 * 2**30
-"""[bytes] that a process may take."""
-
 _ANSWER = 300.0  # [s] that drawing a model answer may take, which is not the student's time
 _MAX_WORKS = 80  # of a process: a driver never forgets a shader
 
@@ -152,13 +149,14 @@ class Stopped:
 
 
 Result = Mark | Stopped
+K = TypeVar("K")
 
 
 class Judges(PoolOwner):
     """Worker processes that judge; use it with ``with``, or call ``close()``."""
 
     def __init__(
-        self, options: Options, workers: int = WORKERS, limit: float = LIMIT, memory_bytes: int = MEMORY
+        self, options: Options, workers: int = WORKERS, limit: float = LIMIT, memory_bytes: int = LIMIT_BYTES
     ) -> None:
         self._limit = limit
         self._limits: dict[str, float] = {}  # [s] by exercise
@@ -172,7 +170,7 @@ class Judges(PoolOwner):
             environment={"LP_NUM_THREADS": "1"} if workers > 1 else {},
         )
 
-    def judge_all(self, requests: Iterable[tuple[object, Request]]) -> Iterator[tuple[object, Result]]:
+    def judge_all(self, requests: Iterable[tuple[K, Request]]) -> Iterator[tuple[K, Result]]:
         """Yield what comes of each request, with its key, in their order.
 
         Raises ``PlaygroundError`` where it is nobody's work: no renderer, a model answer that fails.
@@ -197,7 +195,7 @@ class Judges(PoolOwner):
         if outcome.kind == "hang":
             return Stopped(took_too_long=True)
         if outcome.kind == "crash":
-            return Stopped(cause=outcome.cause() if outcome.error is None else _cause(outcome.error))
+            return Stopped(cause=cause_of(outcome))
         mark = outcome.get("judging")
         assert isinstance(mark, Mark) and isinstance(outcome.info, ContextInfo)
         self.renderer = outcome.info.renderer
@@ -206,14 +204,6 @@ class Judges(PoolOwner):
             longest = min(max(self._limit, TIMES_ANSWER * outcome.seconds), _ANSWER)
             self._limits[request.exercise] = float(round(longest))
         return mark
-
-
-def _cause(error: Exception) -> str:
-    if isinstance(error, MemoryError):
-        return Said("ran out of memory")
-    if isinstance(error, SandboxCrash):
-        return error.diagnostics[0].message
-    return Said("could not be judged: {why}", why=error.args[0])
 
 
 # ── in the worker ────────────────────────────────────────────────────────────
@@ -252,92 +242,57 @@ def open_service(parent: Parent, options: Options) -> Service:
     engine = open_engine(software=options.software, device=options.device, cache_bytes=_CACHE, notice=silent)
     engine.runner.pool.clears = True  # a text that gets around writing a texel shows nobody else's there
     lessons = [read_lesson(name, options.language) for name in options.lessons]
-    return Service(_Handler(parent, engine, options, assignments_of(lessons)).answer, engine.info)
+    tasks = {assignment.name: assignment.task for assignment in assignments_of(lessons)}
+    judge = Judge(engine)
 
-
-class _Handler:
-    """Judges with one engine; what the model answers give is drawn once."""
-
-    def __init__(
-        self, parent: Parent, engine: Engine, options: Options, assignments: Sequence[Assignment]
-    ) -> None:
-        self._parent, self._engine, self._language = parent, engine, options.language
-        self._tasks = {assignment.name: assignment.task for assignment in assignments}
-        self._wanted: dict[str, tuple[Wanted, ...] | Ends] = {}
-
-    def answer(self, request: Request) -> Mark:
-        """Return the mark of a work.
-
-        Raises ``PlaygroundError`` where the model answer cannot be drawn or has not all points, and
-        ``SandboxCrash`` where the context was lost.
-        """
-        task = self._tasks[request.exercise]
-        if request.exercise not in self._wanted:
-            self._parent.report(PREPARING)
-            draw_wanted = ends_of if isinstance(task, Challenge) else answers
-            self._wanted[request.exercise] = draw_wanted(self._engine, task)  # type: ignore[arg-type]
+    def answer_request(request: Request) -> Mark:
+        task = tasks[request.exercise]
+        parent.report(PREPARING)
+        _ = judge.ends(task) if isinstance(task, Challenge) else judge.answers(task)
         if request.text is None:
-            return self._judged(task, request.exercise, answer(task))
-        self._parent.report(JUDGING)
+            return _mark(judge, options.language, task, request.exercise, answer(task))
+        parent.report(JUDGING)
         try:
             work = _work_of(task, request.text)
-            mark = self._judged(task, request.exercise, work)
+            return _mark(judge, options.language, task, request.exercise, work)
         except (ContextError, DataError) as error:  # or a texture larger than there is room for
-            said = (_short(in_language(error.diagnostics[0].message, self._language)),)
-            mark = replace(no_mark(task), outcome=REFUSED, sentences=said)
-        if is_lost(self._engine.ctx):
-            raise SandboxCrash("made the driver reset itself")
-        return mark
+            said = (_short(in_language(error.diagnostics[0].message, options.language)),)
+            return replace(no_mark(task), outcome=REFUSED, sentences=said)
 
-    def _judged(self, task: Exercise | Challenge, name: str, work: Work) -> Mark:
-        ends = self._wanted[name]
-        if isinstance(task, Challenge):
-            assert isinstance(ends, Ends)
-            match_found = match(self._engine, task, work, ends)
-            shown_pairs = (
-                () if match_found.mine is None else (Pair(_webp(match_found.mine), _webp(ends.target)),)
-            )
-            said = [*map(str, match_found.diagnostics)] or [score_of(match_found, self._language)]
-            return replace(
-                no_mark(task),
-                sentences=self._said(task, name, said),
-                pairs=shown_pairs,
-                score=match_found.score,
-            )
-        assert not isinstance(ends, Ends)
-        verdict = judge(self._engine, task, work, ends)
-        return Mark(
-            verdict.points,
-            verdict.of,
-            GRADED,
-            self._said(task, name, sentences(verdict, self._language)),
-            self._pairs(task, work, verdict),
-        )
+    return Service(answer_request, engine.info)
 
-    def _said(self, task: Exercise | Challenge, name: str, said: Sequence[str]) -> tuple[str, ...]:
-        """Return sentences as they are shown.
 
-        Where a text was read from is the student's own file, not the one that it takes the place of.
-        """
-        path_text, own = shown(path_of(task)) if task.file else "", f"{name}.glsl"
-        return tuple(_short(s.replace(path_text, own) if path_text else s) for s in said[:_MAX_MESSAGES])
+def _mark(judge: Judge, language: str, task: Exercise | Challenge, name: str, work: Work) -> Mark:
+    """Return the mark of a work; raise as ``Judge.judge``, and where the model answer cannot be drawn."""
+    result = judge.judge(task, work)
+    # Where a text was read from is the student's own file, not the one that it takes the place of.
+    path_text, own = shown(path_of(task)) if task.file else "", f"{name}.glsl"
 
-    def _pairs(self, exercise: Exercise, work: Work, verdict: Verdict) -> tuple[Pair, ...]:
-        """Return the pictures to compare: those that failed first, of measures one of all that is drawn."""
-        if verdict.diagnostics:
-            return ()
-        shown = [
-            result for result in verdict.results if result.mine is not None and result.expected is not None
-        ]
-        pairs = []
-        for result in sorted(shown, key=lambda result: result.passed)[:_MAX_PAIRS]:
-            assert result.mine is not None and result.expected is not None
-            pairs.append(Pair(_webp(result.mine), _webp(result.expected)))
-        if not pairs:
-            scenes = scene_of(exercise, work), wanted_scene(exercise)
-            mine, expected = (_webp(draw(self._engine, small(scene)).array) for scene in scenes)
-            pairs.append(Pair(mine, expected))
-        return tuple(pairs)
+    def said(texts: Iterable[str]) -> tuple[str, ...]:
+        return tuple(_short(s.replace(path_text, own) if path_text else s) for s in texts)[:_MAX_MESSAGES]
+
+    if isinstance(result, Match):
+        texts = [*map(str, result.diagnostics)] or [score_of(result, language)]
+        both = result.mine, result.target
+        pair = () if both[0] is None or both[1] is None else (_pair(both[0], both[1]),)
+        return replace(no_mark(task), sentences=said(texts), pairs=pair, score=result.score)
+    assert isinstance(task, Exercise)
+    pairs = () if result.diagnostics else _pairs(judge.engine, task, work, result)
+    return Mark(result.points, result.of, GRADED, said(sentences(result, language)), pairs)
+
+
+def _pairs(engine: Engine, exercise: Exercise, work: Work, verdict: Verdict) -> tuple[Pair, ...]:
+    """Return the pictures to compare: those that failed first, of measures one of all that is drawn."""
+    results = sorted(verdict.results, key=lambda result: result.passed)
+    both = [(r.mine, r.expected) for r in results if r.mine is not None and r.expected is not None]
+    if both:
+        return tuple(_pair(mine, expected) for mine, expected in both[:_MAX_PAIRS])
+    scenes = scene_of(exercise, work), wanted_scene(exercise)
+    return (_pair(*(draw(engine, small(scene)).array for scene in scenes)),)
+
+
+def _pair(mine: Picture, expected: Picture) -> Pair:
+    return Pair(_webp(mine), _webp(expected))
 
 
 def no_mark(task: Exercise | Challenge) -> Mark:

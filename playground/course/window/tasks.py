@@ -12,15 +12,17 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import cast
 
 from playground.course.judge import Ends, Match, match
-from playground.course.judging import JudgeProcess
+from playground.course.judging import JudgeProcess, Request, judgement
 from playground.course.model import Block, Challenge, Exercise, Scene
 from playground.course.scenes import with_value
 from playground.course.tasks import Picture, Verdict, Work, path_of, scene_of, starter, starter_text
 from playground.course.window.bugs import Copies, Copy, line_of
 from playground.course.window.figure_view import FigureView
 from playground.course.window.progress import Attempt, Progress
+from playground.engine.process.pool import Task as Future
 from playground.errors import PlaygroundError
 from playground.sketch.assign import value_of, values_of
 from playground.sketch.model import Sketch, Value, kernels_of
@@ -102,10 +104,9 @@ class Judging:
     ends: dict[str, Ends] = field(default_factory=dict)  # by challenge: what its score lies between
     judged: dict[str, Work] = field(default_factory=dict)  # by block: what its verdict is on
     at: str = ""  # the exercise whose work is judged, or is to be
-    _work: tuple[Exercise, Work] | None = None  # that is still to be sent
+    _work: Request | None = None  # that is still to be sent
     _wanted: list[Challenge] = field(default_factory=list)
-    _sent: str = ""  # the block that the process is at
-    _at_work: Work = field(default_factory=Work)  # the work that it is at, or was last
+    _sent: Future | None = None  # of what the process is at
 
     @property
     def busy(self) -> bool:
@@ -114,7 +115,7 @@ class Judging:
 
     def check(self, block: Exercise, work: Work) -> None:
         """Have a work judged; ``update`` receives the verdict."""
-        self.at, self._work = block.name, (block, work)
+        self.at, self._work = block.name, Request(block, work)
 
     def want(self, blocks: tuple[Block, ...]) -> None:
         """Have the pictures to match of a page drawn, while the picture in view rests."""
@@ -127,53 +128,46 @@ class Judging:
 
     def update(self) -> bool:
         """Receive what has come, and send what comes next; return whether anything has come."""
-        came = self._receive()
-        self._send()
+        came = self._sent is not None and self._sent.done()
+        if self._sent is not None and came:
+            self._receive(self._sent)
+        if self._sent is None and self._work is None and self._wanted and self.is_idle():
+            self._work = Request(self._wanted.pop(0), None, SIDE)
+        if self._sent is None and self._work is not None:
+            self._sent, self._work = self.process.submit(self._work), None
         return came
 
     def forget(self) -> None:
         """Forget all, and expect nothing more of the process."""
-        self.at, self._sent, self._work = "", "", None
+        self._withdraw()
         for table in (self.verdicts, self.judged, self.ends, self._wanted):
             table.clear()
 
     def close(self) -> None:
         """End the process; it starts again where it is needed."""
-        self.at, self._sent, self._work = "", "", None
+        self._withdraw()
         self.process.close()
 
-    def _send(self) -> None:
-        if self._sent:
-            return
-        if self._work is not None:
-            (block, work), self._work = self._work, None
-            self._sent, self._at_work = block.name, work
-            self.process.submit(block, work)
-        elif self._wanted and self.is_idle():
-            challenge = self._wanted.pop(0)
-            self._sent = challenge.name
-            self.process.submit(challenge, None, SIDE)
+    def _withdraw(self) -> None:
+        if self._sent is not None:
+            self._sent.cancel(0.0)
+        self.at, self._sent, self._work = "", None, None
 
-    def _receive(self) -> bool:
-        name, answer = self._sent, None
-        if not name:
-            return False
-        try:
-            answer = self.process.poll()
-        except PlaygroundError as error:
-            self.notices.say(str(error))
-        else:
-            if answer is None:
-                return False
-        self._sent = ""
+    def _receive(self, sent: Future) -> None:
+        request, self._sent = cast(Request, sent.request), None
+        name = request.task.name
         if name == self.at and self._work is None:
             self.at = ""
+        try:
+            answer = judgement(request, sent.result())
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+            return
         if isinstance(answer, Ends):
             self.ends[name] = answer
-        elif isinstance(answer, Verdict):
-            self.verdicts[name], self.judged[name] = answer, self._at_work
+        elif isinstance(answer, Verdict) and request.work is not None:
+            self.verdicts[name], self.judged[name] = answer, request.work
             self.received(name, answer)
-        return True
 
 
 Task = Exercise | Challenge
