@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import imgui_bundle
 import numpy as np
@@ -27,9 +27,6 @@ from numpy.typing import NDArray
 
 from playground.course.document import parser
 from playground.memo import INTERFACE
-
-if TYPE_CHECKING:
-    import moderngl
 
 
 @dataclass(frozen=True)
@@ -459,8 +456,6 @@ def _shared(values: list[float], room: float) -> list[float]:
 
 
 _PROBE = "a+b"  # what MicroTeX looks at through a locale
-_MAX_TEXTURES = 300
-"""Textures that are cached; beyond, all are released and made again where they are visible."""
 
 
 @dataclass(frozen=True)
@@ -471,45 +466,7 @@ class TypesetFormula:
     baseline: int  # rows from the top
 
 
-@dataclass
-class Formulas:
-    """The textures of one context."""
-
-    ctx: moderngl.Context
-
-    def __post_init__(self) -> None:
-        self._known: dict[tuple[str, int, int, bool], tuple[moderngl.Texture, int] | None] = {}
-
-    def get(
-        self, latex: str, size: float, colour: int, *, display: bool
-    ) -> tuple[moderngl.Texture, int] | None:
-        """Return a formula's texture, top row first, and its baseline [pixels from the top].
-
-        ``size`` of its font [pixels]; ``colour`` as imgui packs it. None for one that cannot be set.
-        """
-        key = (latex, round(size), colour, display)
-        if key not in self._known:
-            if len(self._known) >= _MAX_TEXTURES:
-                self.release()
-            formula = set_formula(latex, round(size), colour, display=display)
-            self._known[key] = None if formula is None else (self._texture(formula.pixels), formula.baseline)
-        return self._known[key]
-
-    def release(self) -> None:
-        """Release all textures."""
-        cached, self._known = self._known, {}
-        for formula in cached.values():
-            if formula is not None:
-                formula[0].release()
-
-    def _texture(self, pixels: NDArray[np.uint8]) -> moderngl.Texture:
-        height, width, _ = pixels.shape
-        texture = self.ctx.texture((width, height), 4, np.ascontiguousarray(pixels).tobytes(), alignment=1)
-        texture.filter = (self.ctx.LINEAR, self.ctx.LINEAR)
-        texture.repeat_x = texture.repeat_y = False
-        return texture
-
-
+@INTERFACE.cached(weight=32)
 def set_formula(latex: str, size: int, colour: int, *, display: bool) -> TypesetFormula | None:
     """Return a formula's picture; None for one that MicroTeX cannot read.
 

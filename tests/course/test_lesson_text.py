@@ -16,7 +16,8 @@ import numpy as np
 import pytest
 
 from playground.course.library import labels
-from playground.course.typeset import Extent, Formulas, Run, broken, can_set, parts_of, plain, set_formula
+from playground.course.typeset import Extent, Run, broken, can_set, parts_of, plain, set_formula
+from playground.course.window.page import Textures
 from playground.course.window.progress import (
     MIN_WIDTH,
     Attempt,
@@ -163,16 +164,16 @@ def test_what_lessons_write_can_be_set(latex):
 
 
 def test_textures_are_made_once_and_given_back(ctx: moderngl.Context):
-    formulas = Formulas(ctx)
-    first = formulas.get("a^2", 20.0, INK, display=False)
-    assert first is not None and formulas.get("a^2", 20.2, INK, display=False) is first
-    assert formulas.get("a^2", 40.0, INK, display=False) is not first
-    rows = np.frombuffer(first[0].read(alignment=1), np.uint8).reshape(first[0].height, -1, 4)
-    setting = set_formula("a^2", 20, INK, display=False)
-    assert setting is not None
-    np.testing.assert_array_equal(rows, setting.pixels)
-    formulas.release()
-    assert not formulas._known
+    textures, pixels = Textures(ctx, most=2), np.arange(24, dtype=np.uint8).reshape(2, 3, 4)
+    first = textures.get("a", lambda: pixels)
+    assert first is not None and textures.get("a", lambda: pixels) is first
+    rows = np.frombuffer(first.read(alignment=1), np.uint8).reshape(2, 3, 4)
+    np.testing.assert_array_equal(rows, pixels)
+    again = textures.get("a", lambda: pixels, key="other")
+    assert again is not first and isinstance(first.mglo, moderngl.InvalidObject)
+    assert textures.get("b", lambda: None) is None
+    textures.get("c", lambda: pixels)
+    assert again is not None and isinstance(again.mglo, moderngl.InvalidObject), "more than two"
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="locales have other homes elsewhere")

@@ -6,9 +6,11 @@ What typesets slides is imported with the first of them: most windows show none.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
 from imgui_bundle import ImVec2, imgui
 
 from playground.course.library import labels
@@ -37,6 +39,7 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
     from playground.course.talk.slide import Sizes
+    from playground.course.window.page import Pixels, Textures
 
 _PARTS = 40
 """Presses of an arrow from one end of a slider to the other."""
@@ -170,43 +173,6 @@ def _step(parameter: Parameter) -> float:
     return 1 / _PARTS
 
 
-@dataclass
-class Overlays:
-    """The images of one context, by name."""
-
-    _known: dict[str, tuple[object, moderngl.Texture | None]] = field(default_factory=dict)
-
-    def knows(self, name: str, key: object) -> bool:
-        """Return whether the image of that name is the one for a key."""
-        return name in self._known and self._known[name][0] == key
-
-    def put(self, name: str, key: object, image: Image | None, ctx: moderngl.Context) -> None:
-        """Take an image for a key, in place of the one before; None: nothing is shown."""
-        before = self._known.get(name, (None, None))[1]
-        if before is not None:
-            before.release()
-        texture = None
-        if image is not None:
-            texture = ctx.texture(image.size, 4, image.tobytes(), alignment=1)
-            texture.filter = (ctx.LINEAR, ctx.LINEAR)
-        self._known[name] = key, texture
-
-    def draw(self, name: str, position: tuple[float, float], density: float) -> None:
-        """Draw an image with its upper left corner at a place, in the window's units."""
-        texture = self._known.get(name, (None, None))[1]
-        if texture is not None:
-            low = ImVec2(*position)
-            high = ImVec2(low.x + texture.size[0] / density, low.y + texture.size[1] / density)
-            imgui.get_background_draw_list().add_image(imgui.ImTextureRef(texture.glo), low, high)
-
-    def release(self) -> None:
-        """Release all; they are made again where they are needed."""
-        cached, self._known = self._known, {}
-        for _, texture in cached.values():
-            if texture is not None:
-                texture.release()
-
-
 _INK = 0xFF3CC8FF  # a warm yellow, as imgui packs it
 _EDGE = 0xB0101010
 _SPOT = 0xFF2020FF
@@ -281,7 +247,7 @@ class Stage:
         self.pictures = PresentedPictures(reader)
         self.presenter: Presenter = Presenter(self._show, self._left, bench.notices.now)
         self.notes = NotesLink(self.presenter, self._filled, wake)
-        self._overlays = Overlays()
+        self._textures: Textures | None = None
         self._pen = Pen()
         self._was_full = False
         self._moved = 0.0  # when the mouse moved last [s]
@@ -340,7 +306,8 @@ class Stage:
 
     def release(self) -> None:
         """Release what was made in the session's context."""
-        self._overlays.release()
+        if self._textures is not None:
+            self._textures.release()
 
     def close(self) -> None:
         """Close the page of notes."""
@@ -402,21 +369,26 @@ class Stage:
             return
         draw = imgui.get_background_draw_list()
         rows = self.pictures.sliders(presenter.beat)
-        self._write(sizes, rows)
+        images = self._images(sizes, rows)
+
+        def put(name: str, x: float, y: float) -> None:
+            if (texture := images[name]) is not None:
+                high = ImVec2(x + texture.size[0] / density, y + texture.size[1] / density)
+                draw.add_image(imgui.ImTextureRef(texture.glo), ImVec2(x, y), high)
+
         line = self._line(area)
         if line is not None:
             top, bottom = ImVec2(line, area[1]), ImVec2(line, area[1] + area[3])
             draw.add_line(top, bottom, 0xE0FFFFFF, 3 * sizes.scale / density)
         margin = 24 * sizes.scale / density
-        self._overlays.draw("board", (area[0], area[1]), density)
+        put("board", area[0], area[1])
         self._pen.draw(presenter, area, sizes.scale / density)
         offers = presenter.beat.kind in ("figure", "sweep") or presenter.slider >= 0
         if offers and not presenter.beat.has_board:
-            self._overlays.draw("gauges", (area[0] + margin, area[1] + margin), density)
-        self._overlays.draw("strip", (area[0], area[1] + area[3]), density)
-        if presenter.helps:
-            self._overlays.draw("help", (area[0], area[1]), density)
-        self._overlays.draw("typed", (area[0] + margin, area[1] + area[3] / 2), density)
+            put("gauges", area[0] + margin, area[1] + margin)
+        put("strip", area[0], area[1] + area[3])
+        put("help", area[0], area[1])
+        put("typed", area[0] + margin, area[1] + area[3] / 2)
         if presenter.laser and not presenter.blank:
             self._pen.draw_spot(sizes.scale / density)
         if presenter.blank:
@@ -425,28 +397,33 @@ class Stage:
             imgui.get_foreground_draw_list().add_rect_filled(ImVec2(0, 0), ImVec2(room.x, room.y), colour)
         self.notes.tell(self.reader.language)
 
-    def _write(self, sizes: Sizes, rows: list[Row]) -> None:
-        """Have images of what is written, where another is due."""
+    def _images(self, sizes: Sizes, rows: list[Row]) -> dict[str, moderngl.Texture | None]:
+        """Return the images of what is written, by name; made where another is due."""
         from playground.course.talk.slide import Gauge, board_of, gauges_of, help_of, plate_of, strip_of
+        from playground.course.window.page import Textures
 
-        presenter, ctx, overlays = self.presenter, self.bench.session.engine.ctx, self._overlays
+        presenter, ctx = self.presenter, self.bench.session.engine.ctx
+        if self._textures is None or self._textures.ctx is not ctx:
+            self._textures = Textures(ctx)
         beat = self._filled(presenter.beat)
         position = presenter.at + 1, len(presenter.beats)
-        if not overlays.knows("strip", (ctx, beat, position, sizes)):
-            overlays.put("strip", (ctx, beat, position, sizes), strip_of(beat, position, sizes), ctx)
-            overlays.put("board", None, board_of(beat, sizes), ctx)
         gauges = tuple(
             Gauge(n + 1, row.title, row.text, row.share, n == presenter.slider) for n, row in enumerate(rows)
         )
-        if not overlays.knows("gauges", (ctx, gauges, sizes)):
-            overlays.put("gauges", (ctx, gauges, sizes), gauges_of(gauges, sizes), ctx)
-        if presenter.helps and not overlays.knows("help", (ctx, sizes)):
-            rows_of_help = help_rows(self.reader.language)
-            overlays.put("help", (ctx, sizes), help_of(rows_of_help, sizes), ctx)
+        keys = help_rows(self.reader.language)
         prepares = self._say("prepares") if presenter.at == 0 and self.reader.numbers.pending else ""
         says = f"→ {presenter.typed}" if presenter.typed else presenter.notice or prepares
-        if not overlays.knows("typed", (ctx, says, sizes)):
-            overlays.put("typed", (ctx, says, sizes), plate_of(says, sizes), ctx)
+        images: dict[str, tuple[object, Callable[[], Image | None]]] = {
+            "strip": ((beat, position), lambda: strip_of(beat, position, sizes)),
+            "board": (beat, lambda: board_of(beat, sizes)),
+            "gauges": (gauges, lambda: gauges_of(gauges, sizes)),
+            "help": (presenter.helps, lambda: help_of(keys, sizes) if presenter.helps else None),
+            "typed": (says, lambda: plate_of(says, sizes)),
+        }
+        return {
+            name: self._textures.get(name, partial(_pixels, make), (key, sizes))
+            for name, (key, make) in images.items()
+        }
 
     def _filled(self, beat: Beat) -> Beat:
         """Return a beat with the numbers that are measured by now in its texts."""
@@ -538,6 +515,11 @@ class Stage:
 
     def _say(self, key: str, *arguments: object) -> str:
         return labels("talk", self.reader.language)(key, *arguments)
+
+
+def _pixels(make: Callable[[], Image | None]) -> Pixels | None:
+    image = make()
+    return None if image is None else np.asarray(image)
 
 
 _K = imgui.Key

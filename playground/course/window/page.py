@@ -9,18 +9,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from imgui_bundle import ImVec2, imgui
+from numpy.typing import NDArray
 
 from playground.course.model import Lesson, Markdown
 from playground.course.tasks import Picture
 from playground.course.typeset import (
     FORMULA_SIZE,
     Extent,
-    Formulas,
     Layout,
     Placed,
     Run,
     Spacing,
     laid_out,
+    set_formula,
     written,
 )
 from playground.course.window.reader import Reader
@@ -32,6 +33,8 @@ from playground.studio.theme import Theme
 
 if TYPE_CHECKING:
     import moderngl
+
+Pixels = NDArray[np.uint8]
 
 _SPACING = Spacing(
     gap=9.0,
@@ -54,13 +57,63 @@ _CACHED = 400
 
 
 @dataclass
+class Textures:
+    """Pictures as textures of one context, top row first: one by each name, made again for another key.
+
+    Beyond ``most`` all are released, and made again where they are drawn.
+    """
+
+    ctx: moderngl.Context
+    most: int = 300
+    _known: dict[object, tuple[object, Callable[[], Pixels | None], moderngl.Texture | None]] = field(
+        default_factory=dict
+    )
+
+    def get(
+        self, name: object, make: Callable[[], Pixels | None], key: object = None
+    ) -> moderngl.Texture | None:
+        """Return the texture of what ``make`` returns, (h, w, 3 or 4) of uint8; None where that is None."""
+        if name not in self._known or self._known[name][0] != key:
+            if len(self._known) >= self.most:
+                self.release()
+            if (before := self._known.pop(name, (None, make, None))[2]) is not None:
+                before.release()
+            pixels = make()
+            self._known[name] = key, make, None if pixels is None else self._texture(pixels)
+        return self._known[name][2]
+
+    def release(self) -> None:
+        """Release all textures."""
+        cached, self._known = self._known, {}
+        for _, _, texture in cached.values():
+            if texture is not None:
+                texture.release()
+
+    def _texture(self, pixels: Pixels) -> moderngl.Texture:
+        height, width, channels = pixels.shape
+        data = np.ascontiguousarray(pixels).tobytes()
+        texture = self.ctx.texture((width, height), channels, data, alignment=1)
+        texture.filter = (self.ctx.LINEAR, self.ctx.LINEAR)
+        texture.repeat_x = texture.repeat_y = False
+        return texture
+
+
+def draw_picture(textures: Textures, picture: Picture, wide: float) -> None:
+    """Draw a picture (h, w, 3), top row first, so many pixels wide."""
+    texture = textures.get(id(picture), lambda: picture)  # it is kept with the texture: so is its id
+    assert texture is not None
+    height, width, _ = picture.shape
+    imgui.image(imgui.ImTextureRef(texture.glo), ImVec2(wide, wide * height / width))
+
+
+@dataclass
 class Prose:
     """Draws texts.
 
     ``follow`` receives the address of a link that is clicked on; ``describe`` returns the tooltip of one.
     """
 
-    formulas: Callable[[], Formulas]
+    textures: Callable[[], Textures]
     follow: Callable[[str], None]
     describe: Callable[[str], str]
     _layouts: dict[object, Layout] = field(default_factory=dict)
@@ -123,13 +176,14 @@ class Prose:
     ) -> tuple[float, float, float, imgui.ImTextureRef] | None:
         """Return a formula's width, height and baseline in the window's units, and its texture."""
         density = imgui.get_io().display_framebuffer_scale.x or 1.0
-        letters = size * look.scale * density * FORMULA_SIZE
-        formula = self.formulas().get(run.text, letters, ink, display=run.alone)
+        letters = round(size * look.scale * density * FORMULA_SIZE)
+        formula = set_formula(run.text, letters, ink, display=run.alone)
         if formula is None:
             return None
-        texture, baseline = formula
+        texture = self.textures().get((run.text, letters, ink, run.alone), lambda: formula.pixels)
+        assert texture is not None
         wide, high = texture.size
-        return wide / density, high / density, baseline / density, imgui.ImTextureRef(texture.glo)
+        return wide / density, high / density, formula.baseline / density, imgui.ImTextureRef(texture.glo)
 
     # ── drawing ──────────────────────────────────────────────────────────────
 
@@ -173,40 +227,6 @@ def _font(run: Run, size: float, look: Theme) -> tuple[imgui.ImFont, float]:
     return (look.bold if run.bold else look.italic if run.italic else look.text), size
 
 
-_MAX_TEXTURES = 24  # textures that are kept; beyond, all are released and made again where they are drawn
-
-
-@dataclass
-class SmallPictures:
-    """The textures of one context."""
-
-    ctx: moderngl.Context
-    _known: dict[int, tuple[Picture, moderngl.Texture]] = field(default_factory=dict)
-
-    def draw(self, picture: Picture, wide: float) -> None:
-        """Draw a picture (h, w, 3), top row first, so many pixels wide."""
-        if id(picture) not in self._known:
-            if len(self._known) >= _MAX_TEXTURES:
-                self.release()
-            self._known[id(picture)] = picture, self._texture(picture)
-        height, width, _ = picture.shape
-        imgui.image(imgui.ImTextureRef(self._known[id(picture)][1].glo), ImVec2(wide, wide * height / width))
-
-    def release(self) -> None:
-        """Release all textures."""
-        cached, self._known = self._known, {}
-        for _, texture in cached.values():
-            texture.release()
-
-    def _texture(self, picture: Picture) -> moderngl.Texture:
-        height, width, _ = picture.shape
-        data = np.ascontiguousarray(picture).tobytes()
-        texture = self.ctx.texture((width, height), 3, data, alignment=1)
-        texture.filter = (self.ctx.LINEAR, self.ctx.LINEAR)
-        texture.repeat_x = texture.repeat_y = False
-        return texture
-
-
 TEXT = theme.TEXT_SIZE + 1.0
 """Of a lesson's text: it is read at length."""
 
@@ -220,7 +240,7 @@ class Page:
     look: Theme
     prose: Prose
     memory: Memory  # of the parameters' rows
-    pictures: SmallPictures
+    textures: Textures
     present: Callable[[], None]  # begins a presentation of the lesson
 
     def say(self, key: str, *arguments: object) -> str:

@@ -34,10 +34,10 @@ from playground.course.model import (
 )
 from playground.course.scenes import comparable
 from playground.course.tasks import CheckResult, Picture, Verdict, checks_itself, difference_map, path_of
-from playground.course.typeset import Formulas, plain, written
+from playground.course.typeset import plain, written
 from playground.course.window.bugs import BROKEN, FIXED, SHOWN
 from playground.course.window.figure_view import sketch_path
-from playground.course.window.page import Page, SmallPictures
+from playground.course.window.page import Page, Textures, draw_picture
 from playground.course.window.page import Prose as Texts
 from playground.course.window.progress import MAX_WIDTH, MIN_WIDTH
 from playground.course.window.reader import BOTH, Reader
@@ -283,7 +283,7 @@ def draw_challenge(block: Challenge, page: Page) -> None:
         page.text(block.ask)
         target = tasks.judging.target(block)
         if target is not None:
-            page.pictures.draw(target, _WIDE * page.look.scale)
+            draw_picture(page.textures, target, _WIDE * page.look.scale)
             imgui.set_item_tooltip(written(block.alt))
             imgui.same_line()
         imgui.begin_group()
@@ -418,7 +418,7 @@ def _difference(result: CheckResult, page: Page) -> None:
         if number:
             imgui.same_line()
         imgui.begin_group()
-        page.pictures.draw(picture, wide)
+        draw_picture(page.textures, picture, wide)
         with page.look.font(page.look.text, theme.SMALL):
             imgui.text_disabled(page.say(key))
         imgui.end_group()
@@ -567,9 +567,8 @@ class LessonPanel:
     """The panel's own memory."""
 
     memory: Memory = field(default_factory=Memory)
-    _formulas: Formulas | None = None
     _texts: Texts | None = None
-    _pictures: SmallPictures | None = None
+    _textures: Textures | None = None
 
     def draw(self, reader: Reader, look: Theme, present: Callable[[], None]) -> float:
         """Draw the panel at the window's left side; return the width it takes, 0 while it is hidden.
@@ -581,7 +580,7 @@ class LessonPanel:
             return 0.0
         if self._texts is None:
             self._texts = Texts(
-                lambda: self._formulas_of(reader),
+                lambda: self._textures_of(reader),
                 lambda to: follow(reader, to),
                 lambda to: link_text(reader, to),
             )
@@ -594,7 +593,7 @@ class LessonPanel:
             ImVec2(min(MIN_WIDTH * scale, widest), room.y), ImVec2(min(MAX_WIDTH * scale, widest), room.y)
         )
         with window("lesson", SIDE_PANEL, ground=theme.colour((0.110, 0.119, 0.127))):
-            page = Page(reader, lesson, look, self._texts, self.memory, self._pictures_of(reader), present)
+            page = Page(reader, lesson, look, self._texts, self.memory, self._textures_of(reader), present)
             _head(page)
             scrolls = imgui.WindowFlags_.always_vertical_scrollbar
             imgui.begin_child("page", ImVec2(0, -_foot_height()), 0, scrolls)
@@ -611,23 +610,15 @@ class LessonPanel:
 
     def release(self) -> None:
         """Release what was made in the session's context; it is made again where it is needed."""
-        if self._formulas is not None:
-            self._formulas.release()
-        if self._pictures is not None:
-            self._pictures.release()
-        self._formulas = self._pictures = None
+        if self._textures is not None:
+            self._textures.release()
+        self._textures = None
 
-    def _pictures_of(self, reader: Reader) -> SmallPictures:
+    def _textures_of(self, reader: Reader) -> Textures:
         ctx = reader.bench.session.engine.ctx
-        if self._pictures is None or self._pictures.ctx is not ctx:
-            self._pictures = SmallPictures(ctx)  # those before went with a context that was lost
-        return self._pictures
-
-    def _formulas_of(self, reader: Reader) -> Formulas:
-        ctx = reader.bench.session.engine.ctx
-        if self._formulas is None or self._formulas.ctx is not ctx:
-            self._formulas = Formulas(ctx)  # those before went with a context that was lost
-        return self._formulas
+        if self._textures is None or self._textures.ctx is not ctx:
+            self._textures = Textures(ctx)  # those before went with a context that was lost
+        return self._textures
 
 
 def _head(page: Page) -> None:
