@@ -14,8 +14,8 @@ import pytest
 
 from playground import cli
 
-from ..sketch_texts import passes
 from ..publish.web.pages import parts_of
+from ..sketch_texts import passes
 
 HEIGHT = """// rise.glsl -- A slope that rises to the north.
 #pragma kernel(output = "height:r32f")
