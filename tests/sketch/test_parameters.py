@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from playground.verify.reduce.inline import inline_sketch
 
 from playground.commands.entries import Choice
 from playground.engine.sketch_warnings import unread
@@ -30,6 +29,7 @@ from playground.sketch.model import Kernel
 from playground.sketch.replace_technique import with_technique
 from playground.sketch.save import save, saved_text
 from playground.studio.panel.randomise import at_random, mutated
+from playground.verify.reduce.case import inline_sketch
 
 from ..cases import each
 from ..loading import load
