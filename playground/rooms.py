@@ -8,7 +8,8 @@ module of a fixed name:
                 without a command, where it can
     options     ``live_options`` reads the options that it adds to ``playground live``; ``LIVE_EXAMPLES``
     addition    ``open_addition(host)`` returns what it adds to a window; ``KEYS``, its keys;
-                ``check_request(request)`` refuses a request before a window opens
+                ``check_request(request)`` refuses a request before a window opens. It and the folder
+                ``window`` may import the studio, whether the room needs it or not: nothing else imports them
     measures    ``MEASURES`` and ``ROWS``: what it adds to ``playground bench``
     table       ``DIALECTS`` reads shaders of other tools (``playground/shader/dialect.py``)
     site        ``PAGES``: the pages that it adds to the documentation, by path; ``HOMES``: files of the

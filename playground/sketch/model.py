@@ -10,7 +10,7 @@ Tiers of tolerance have names:
     edges      any number of levels, at 0.5 % of the pixels: single pixels that fall the other way
     noise      8 levels at any pixel: grain and dithering that are different in each run
 
-How they are applied, and what no tolerance lets pass, is in `playground.verify.shots.judge`.
+How they are applied, and what no tolerance lets pass, is up to the room ``verify``.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
 """Measure the session as a window has it: saves, moving pictures, strokes of a brush.
 
-For ``playground bench``: see `playground.verify.bench.measures` for what a measure is. ``measures.toml``
-has the rows.
+For ``playground bench``, which says what a measure is. ``measures.toml`` has the rows.
 """
 
 from __future__ import annotations

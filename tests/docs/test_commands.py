@@ -57,7 +57,6 @@ NOT_RUN = {
     r"playground bench": "takes minutes: tests/verify/bench run small parts of it",
     r"playground lesson translated": "names the command; tests/course have a translation to give it",
     r"playground variants renew": "writes this checkout's record; that of a folder is written",
-    r"playground (live|render) diamond_square-my-version\.zip.*": "saved by a browser: web/test_my_version",
     r"pytest|pip": "names the program",
 }
 

@@ -27,6 +27,7 @@ from playground.paths import shown
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import Given, Graph, Shot, Sketch, tolerance_of
+from playground.verify.shots.adapters import MaskOfTest, Taken, levels_of, taken
 from playground.verify.shots.checking import (
     add_check,
     add_failure,
@@ -36,7 +37,6 @@ from playground.verify.shots.checking import (
 )
 from playground.verify.shots.compare import Light
 from playground.verify.shots.names import name_of_test, one_spelling, why_no_name
-from playground.verify.shots.pictures import MaskOfTest, Taken, levels_of, taken
 from playground.verify.shots.plugin_constants import USED
 from playground.verify.shots.suite import RenderedShot, ShotCase, film_of
 

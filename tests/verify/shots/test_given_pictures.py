@@ -14,8 +14,8 @@ import pytest
 from playground.api import headless
 from playground.data.image_files import read_png
 from playground.errors import DataError
+from playground.verify.shots.adapters import levels_of, taken
 from playground.verify.shots.names import MAX_NAME, name_of_test, one_spelling, why_no_name
-from playground.verify.shots.pictures import levels_of, taken
 
 Run = Callable[..., pytest.RunResult]
 
