@@ -32,7 +32,7 @@ CORE_TESTS = (
     "sketch/test_load.py",
     "sketch/test_pasted.py",
     "shader/test_outline.py",
-    "data/test_resample.py",
+    "data/test_files.py",
 )
 ROOM_TESTS = {
     "studio": ("test_escape_layers.py", "test_keys.py"),  # a panel of a window, without a screen
