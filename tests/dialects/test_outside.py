@@ -8,11 +8,13 @@ import pytest
 
 from playground.errors import PlaygroundError, ShaderError, SketchError
 from playground.sketch.load import load
-from tests.toy_texts import IMAGE, PLAIN
+
+from ..foreign_cases import TEXTS
 
 ISF = '/*{"ISFVSN": "2", "INPUTS": []}*/\nvoid main() { gl_FragColor = vec4(1.0); }\n'
 LEVEL = "float level() { return 0.25; }\n"
 READS_ABOVE = '#include "{}"\nvoid main() {{ gl_FragColor = vec4(level()); }}\n'
+IMAGE, PLAIN = TEXTS["image"], TEXTS["plain"]
 SECRET = "not_for_strangers\nvoid mainImage(out vec4 c, in vec2 p) { c = vec4(1.0); }\n"
 _opened: list[str] | None = None
 

@@ -8,14 +8,11 @@ import numpy as np
 import pytest
 from scipy.ndimage import distance_transform_edt
 
-from playground.engine.plan import PlanRequest
-from playground.engine.plan_warnings import source_warnings
-from playground.engine.planner import make_plan
 from playground.engine.sketch_warnings import warnings_of_kernel
-from playground.errors import ShaderError
 from playground.sketch.warnings import warnings_of_sketch
 
 from ..loading import load
+from .drawing import notes
 
 HEAD = "uniform vec2 u_resolution;\n"
 PASSES = """void main() {{
@@ -31,10 +28,6 @@ PASSES = """void main() {{
 
 def text_of(define, value, picture, head=""):
     return HEAD + head + PASSES.format(define=define, value=value, picture=picture)
-
-
-def passes_of(sketch):
-    return [spec.name for spec in sketch.graph.find("view").technique.passes]
 
 
 @pytest.fixture
@@ -58,71 +51,6 @@ def picture(any_engine, folder):
 
 
 # ── buffers ──────────────────────────────────────────────────────────────────
-
-
-def test_buffer_is_text_with_its_macro_and_feeds_its_sampler(picture):
-    text = text_of("BUFFER_0", "vec4(st, 0.25, 1.0)", "texture2D(u_buffer0, st).grba")
-    result = picture(text)
-    centres = (np.arange(24) + 0.5) / 24, (np.arange(16) + 0.5) / 16
-    np.testing.assert_allclose(result[..., 1], np.broadcast_to(centres[0], (16, 24)), atol=1 / 255)
-    np.testing.assert_allclose(result[..., 0], np.broadcast_to(centres[1][:, None], (16, 24)), atol=1 / 255)
-
-
-@pytest.mark.parametrize(
-    ("comment", "size"),
-    [
-        ("", (24, 16)),
-        ("// 0.5", (12, 8)),
-        ("// 32x8", (32, 8)),
-        ("//0.25x1.0", (6, 16)),
-        ("// the first", (24, 16)),
-    ],
-)
-def test_buffer_size_comes_from_comment_and_sets_its_resolution(picture, comment, size):
-    head = f"uniform sampler2D u_buffer0; {comment}\n"
-    text = text_of("BUFFER_0", "vec4(u_resolution / 64.0, 0.0, 1.0)", "texture2D(u_buffer0, st)", head)
-    expected = [size[0] / 64, size[1] / 64]
-    np.testing.assert_allclose(picture(text)[3, 3, :2], expected, atol=1 / 255)
-
-
-def test_a_buffer_holds_numbers_beyond_one(picture):
-    text = text_of(
-        "BUFFER_0", "vec4(-1000.0, 1e6, 0.0, 1.0)", "abs(texture2D(u_buffer0, st)) * vec4(1e-3, 1e-6, 0, 1)"
-    )
-    np.testing.assert_allclose(picture(text)[0, 0], [1, 1, 0, 1])
-
-
-def test_buffers_run_in_number_order_and_read_each_other(picture):
-    text = """uniform sampler2D u_buffer0, u_buffer1, u_buffer2;
-void main() {
-#ifdef BUFFER_1
-    gl_FragColor = texture2D(u_buffer0, vec2(0.5)) * 0.5;
-#elif defined(BUFFER_0)
-    gl_FragColor = vec4(0.8);
-#elif defined(BUFFER_2) && !defined(NEVER)
-    gl_FragColor = texture2D(u_buffer1, vec2(0.5)) * 0.5;
-#else
-    gl_FragColor = texture2D(u_buffer2, vec2(0.5));
-#endif
-}
-"""
-    np.testing.assert_allclose(picture(text)[0, 0], 0.2, atol=1 / 255)
-
-
-def test_only_what_the_macro_changes_is_a_pass(read):
-    text = """#if 0
-#ifdef BUFFER_0
-#endif
-#endif
-#ifdef BUFFER_2
-float a;
-#else
-float b;
-#endif
-// #ifdef BUFFER_3
-void main() { gl_FragColor = vec4(gl_FragCoord.xy / 64.0, 0.0, 1.0); }
-"""
-    assert passes_of(read(text, "")) == ["buffer2", "view"]
 
 
 def test_a_buffer_that_no_pass_writes_reads_black_and_is_named(read, picture):
@@ -161,51 +89,7 @@ def test_a_parameter_of_several_passes_is_one(read):
     assert any("nothing reads 'gain'" in w.message for _, kernel in none for w in warnings_of_kernel(kernel))
 
 
-@pytest.mark.parametrize("define", ["BUFFER_0", "PYRAMID_0", "FLOOD_0", "POSTPROCESSING"])
-def test_a_mistake_in_a_pass_is_at_its_own_line(any_engine, folder, define):
-    sampler = {"BUFFER_0": "u_buffer0", "PYRAMID_0": "u_pyramid0", "FLOOD_0": "u_flood0"}.get(
-        define, "u_tex0"
-    )
-    text = f"{HEAD}void main() {{\n#ifdef {define}\n    gl_FragColor = vec4(not_declared);\n#else\n"
-    text += f"    gl_FragColor = texture2D({sampler}, vec2(0.5));\n#endif\n}}\n"
-    with pytest.raises(ShaderError) as caught:
-        any_engine.render(load(folder.write("t.frag", text)), size=(8, 8))
-    diagnostic = caught.value.diagnostics[0]
-    assert (diagnostic.line, "not_declared" in diagnostic.message) == (4, True)
-
-
-def test_a_mistake_in_the_picture_and_in_an_include_of_a_pass(any_engine, folder):
-    folder.write("inc.glsl", "vec4 inc() {\n    return vec4(not_declared);\n}\n")
-    text = '#ifdef BUFFER_0\n#include "inc.glsl"\nvoid main() { gl_FragColor = inc(); }\n#else\n'
-    path = folder.write(
-        "t.frag", f"{text}void main() {{ gl_FragColor = texture2D(u_buffer0, vec2(0.5)); }}\n#endif\n"
-    )
-    with pytest.raises(ShaderError) as caught:
-        any_engine.render(load(path), size=(8, 8))
-    diagnostic = caught.value.diagnostics[0]
-    assert (diagnostic.line, diagnostic.file.endswith("inc.glsl")) == (2, True)
-
-
-def test_an_absurd_size_is_one_sentence(any_engine, folder):
-    text = text_of(
-        "BUFFER_0", "vec4(1.0)", "texture2D(u_buffer0, st)", "uniform sampler2D u_buffer0; // 99999x99999\n"
-    )
-    from playground.errors import PlaygroundError
-
-    with pytest.raises(PlaygroundError) as caught:
-        any_engine.render(load(folder.write("t.frag", text)), size=(8, 8))
-    assert "99999" in str(caught.value) and "\n" not in str(caught.value)
-
-
 # ── post-processing and background ───────────────────────────────────────────
-
-
-def test_post_processing_reads_the_picture(picture):
-    text = text_of(
-        "POSTPROCESSING", "1.0 - texture2D(u_scene, st)", "vec4(st, 0.0, 0.0)", "uniform sampler2D u_scene;\n"
-    )
-    result = picture(text)
-    np.testing.assert_allclose(result[2, 5, :3], [1 - 5.5 / 24, 1 - 2.5 / 16, 1.0], atol=1.5 / 255)
 
 
 @pytest.mark.parametrize("frames", [1, 2, 5])
@@ -232,21 +116,6 @@ void main() {{
         kept = 0.75 * kept + 0.25 * before if define.startswith("D") else before
     result = picture(text, time=(frames - 0.5) / 60)[..., :2]
     np.testing.assert_allclose(result, kept, atol=1.01 / 255)
-
-
-def test_the_background_is_of_the_picture_alone(picture):
-    text = """uniform sampler2D u_scene;
-void main() {
-#if defined(BACKGROUND)
-    gl_FragColor = vec4(0.2, 0.4, 0.6, 1.0);
-#elif defined(POSTPROCESSING)
-    gl_FragColor = texture2D(u_scene, vec2(0.5)).bgra;
-#else
-    gl_FragColor = vec4(1.0);
-#endif
-}
-"""
-    np.testing.assert_allclose(picture(text)[0, 0], [0.6, 0.4, 0.2, 1.0], atol=1 / 255)
 
 
 SHADOWS = """uniform vec2 u_resolution;
@@ -487,8 +356,7 @@ def test_sampler_of_algorithm_pass_is_not_unfed_elsewhere(folder):
 """
     sketch = load(folder.write("t.frag", HEAD + head + body))
     messages = [w.message for _, kernel in sketch.graph.kernels for w in warnings_of_kernel(kernel)]
-    plan = make_plan(sketch, PlanRequest(frame_size=(32, 18)))
-    assert [*messages, *(w.message for w in source_warnings(plan))] == []
+    assert [*messages, *notes(sketch)] == []
     lonely = load(folder.write("t.frag", HEAD + head + "uniform bool u_idle;\n" + body))
     messages = {w.message for _, kernel in lonely.graph.kernels for w in warnings_of_kernel(kernel)}
     assert messages == {"nothing reads 'u_idle', so it has no effect"}

@@ -14,7 +14,6 @@ import pytest
 from playground.engine.engine import Engine
 from playground.engine.plan import LoopStep, Plan, PlanRequest
 from playground.engine.planner import make_plan
-from playground.errors import PlaygroundError
 from playground.paths import GLSL
 from playground.publish.web.page import page_text
 from playground.publish.web.page_data import page_data
@@ -23,7 +22,7 @@ from playground.shader import expressions
 from playground.shader.wrap import FRAGMENT, wrap
 from playground.sketch.model import Sketch
 
-from ... import dialect_texts, isf_texts
+from ...foreign_cases import EVERY, Case
 from ...loading import load
 from ...shipped import EACH_KIND, of_each_kind, slow_but
 from .node import Node
@@ -97,19 +96,11 @@ def check_stages(node: Node, page: dict[str, Any], plan: Plan) -> None:
 
 
 @pytest.mark.room("dialects")
-@pytest.mark.parametrize("name", [*dialect_texts.TEXTS, *isf_texts.TEXTS])
-def test_a_page_makes_the_stages_of_other_tools_shaders(node: Node, tmp_path: Path, name: str):
+@pytest.mark.parametrize("case", [case for case in EVERY if case.family != "shadertoy"], ids=str)
+def test_a_page_makes_the_stages_of_other_tools_shaders(node: Node, tmp_path: Path, case: Case):
     folder = tmp_path / "here"
     folder.mkdir()
-    is_isf = name not in dialect_texts.TEXTS
-    path = folder / f"{name}.{'fs' if is_isf else 'frag'}"
-    path.write_text((isf_texts if is_isf else dialect_texts).TEXTS[name], encoding="utf-8")
-    if name in isf_texts.VERTEX:
-        path.with_suffix(".vs").write_text(isf_texts.VERTEX[name], encoding="utf-8")
-    try:
-        sketch = load(path)
-    except PlaygroundError:
-        pytest.skip("needs files of its own")
+    sketch = load(case.write(folder))
     page = page_data([sketch])
     assert str(tmp_path) not in json.dumps(page)
     check_stages(node, page, plan_of(sketch))

@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundWarning
 from playground.paths import SKETCHES
 from playground.publish.web.page_data import page_data
 
-from ...dialect_texts import TEXTS
-from ...isf_texts import TEXTS as ISF
-from ...isf_texts import VERTEX
+from ...foreign_cases import EVERY, Case
 from ...loading import load
-from ...main_dialect_texts import MAIN_TEXTS
 from ...sketch_texts import map_of_height
-from ...toy_texts import EXPORTS, FOLDERS, VSCODE
 from .pages import PageError, Pages
 
 SIZE = (96, 54)
@@ -29,11 +23,11 @@ TIME = 0.4
 SHIPPED = ("channels", "film_terrain", "flood", "fluid", "from_elsewhere", "life", "reaction_diffusion")
 ALONE = ("nearest_stone.frag", "tiles.frag")
 EVERYDAY = {
-    "dialect inputs",
-    "dialect pack_420",
+    "main inputs",
+    "main pack_420",
     "main bonzomatic_previous",
     "isf with_vertex",
-    "export cube",
+    "shadertoy cube",
 }
 
 pytestmark = [
@@ -42,25 +36,10 @@ pytestmark = [
 ]
 
 
-def every_text() -> Iterator[tuple[str, dict[str, str], str]]:
-    """Yield each shader of another tool: its name, its files, and the one that is opened; "" the folder."""
-    for family, texts in (("dialect", TEXTS), ("main", MAIN_TEXTS)):
-        for name, text in texts.items():
-            yield f"{family} {name}", {f"{name}.frag": text}, f"{name}.frag"
-    for name, text in ISF.items():
-        files = {f"{name}.fs": text, "waves.glsl": "float wave(float x) { return sin(x); }\n"}
-        if name in VERTEX:
-            files[f"{name}.vs"] = VERTEX[name]
-        yield f"isf {name}", files, f"{name}.fs"
-    for family, toys in (("export", EXPORTS), ("folder", FOLDERS), ("vscode", VSCODE)):
-        for name, toy in toys.items():
-            yield f"{family} {name}", toy.files, toy.opens
-
-
 def params() -> list[Any]:
     return [
-        pytest.param(files, opens, id=name, marks=[] if name in EVERYDAY else [pytest.mark.slow])
-        for name, files, opens in every_text()
+        pytest.param(case, id=str(case), marks=[] if str(case) in EVERYDAY else [pytest.mark.slow])
+        for case in EVERY
     ]
 
 
@@ -76,17 +55,11 @@ def agree(pages: Pages, drawn: Engine, sketch: Any, *times: float, size: tuple[i
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("files", "opens"), params())
+@pytest.mark.parametrize("case", params())
 def test_another_tools_shader_is_drawn_with_the_engines_bits(
-    pages: Pages, drawn: Engine, tmp_path: Path, files: dict[str, str], opens: str
+    pages: Pages, drawn: Engine, tmp_path: Path, case: Case
 ):
-    for name, text in files.items():
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(text, "utf-8")
-    pixels = np.random.default_rng(5).integers(0, 256, (8, 8, 4), dtype=np.uint8)
-    pixels[..., 3] = 255
-    write_png(tmp_path / "photo.png", pixels)
-    agree(pages, drawn, load(tmp_path / opens), TIME)
+    agree(pages, drawn, load(case.write(tmp_path)), TIME)
 
 
 @pytest.mark.slow
