@@ -131,6 +131,12 @@ def test_an_export_reads_nothing_outside_its_folder(folder, any_engine):
     drawn(any_engine, load(folder.write("own/b.json", export(one("Image", IMAGE, value)))))
 
 
+def test_an_export_that_is_nested_too_deep_is_refused(folder):
+    path = folder.write("a.json", '{"renderpass": ' + "[" * 200_000)
+    with pytest.raises(PlaygroundError, match="damaged JSON: it is nested deeper than 64 levels"):
+        load(path)
+
+
 # ── folders ──────────────────────────────────────────────────────────────────
 
 
