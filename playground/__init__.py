@@ -44,8 +44,8 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.publish.large import write_large as write_large
     from playground.publish.notebook.show import compare as compare
     from playground.publish.notebook.show import widget as widget
-    from playground.publish.sequence import render_sequence as render_sequence
-    from playground.publish.sheet import render_sweep as render_sweep
+    from playground.publish.series import render_sequence as render_sequence
+    from playground.publish.series import render_sweep as render_sweep
     from playground.publish.sweep_data import sweep as sweep
     from playground.publish.video import render_video as render_video
     from playground.shader.parameter import Parameter as Parameter
@@ -60,8 +60,7 @@ _NAMES = {
     "playground.api": "headless render parameters",
     "playground.publish.export": "export",
     "playground.publish.large": "write_large",
-    "playground.publish.sequence": "render_sequence",
-    "playground.publish.sheet": "render_sweep",
+    "playground.publish.series": "render_sequence render_sweep",
     "playground.publish.sweep_data": "sweep",
     "playground.publish.video": "render_video",
     "playground.engine.engine": "Engine",

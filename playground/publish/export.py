@@ -9,7 +9,7 @@ be refused is refused before a texel is computed.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextlib import nullcontext
+from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -23,10 +23,8 @@ from playground.data.place import Georeference
 from playground.engine.engine import Engine
 from playground.engine.plan import Plan, view_input
 from playground.errors import DataError, SketchError
-from playground.publish.atomic_group import write_together
-from playground.publish.export_options import Form, bits_for, check, sidecar_paths
-from playground.publish.export_textures import height_of, is_light, kind_of
-from playground.publish.extensions import (
+from playground.files import replacing
+from playground.publish.export_form import (
     COLOUR,
     DEFAULT_GRID,
     HEIGHT,
@@ -36,13 +34,17 @@ from playground.publish.extensions import (
     PICTURES,
     RAW,
     SHADERS,
+    Form,
+    bits_for,
+    check,
+    height_of,
+    is_light,
+    kind_of,
+    sidecar_paths,
     whole_numbers,
 )
-from playground.publish.gltf import encode_glb
-from playground.publish.mesh import sampled, terrain_mesh
-from playground.publish.obj import encode_mtl, encode_obj
-from playground.publish.shader_export.es_check import check_es
-from playground.publish.shader_export.export import ShaderFiles, shader_files
+from playground.publish.mesh import encode_glb, encode_mtl, encode_obj, sampled, terrain_mesh
+from playground.publish.shader_export.export import ShaderFiles, check_es, shader_files
 from playground.publish.values import (
     SOFTWARE,
     Encoded,
@@ -349,3 +351,16 @@ def _three(values: NDArray[np.float32]) -> NDArray[np.float32]:
     if values.shape[2] == 2:
         return np.concatenate([values, np.zeros_like(values[..., :1])], axis=2)
     return values[..., :3]
+
+
+def write_together(files: Mapping[Path, bytes]) -> None:
+    """Write files that belong together; when one fails, none of them takes its name.
+
+    Raises:
+        DataError: a missing folder, no permission, a full disk.
+    """
+    with ExitStack() as stack:
+        handles = [(stack.enter_context(replacing(path)), data) for path, data in files.items()]
+        for handle, data in handles:
+            handle.write(data)
+            handle.flush()  # a full disk shows here, before any file has its name

@@ -25,9 +25,7 @@ from playground.engine.process.worker import Cancelled, Parent, Service, summary
 from playground.errors import DataError, PlaygroundError
 from playground.files import new_name, reason
 from playground.publish.large import save_picture
-from playground.publish.sequence import NumberedFiles
-from playground.publish.series import Series, Sink, write_series
-from playground.publish.sheet import Sheet
+from playground.publish.series import NumberedFiles, Series, Sheet, Sink, write_series
 from playground.publish.video import QUALITY, VideoFile
 from playground.sketch.model import Sketch
 

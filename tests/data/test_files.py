@@ -33,7 +33,7 @@ from playground.data.values import write_values
 from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.files import new_name
-from playground.publish.png_strips import PngStrips
+from playground.publish.large import PngStrips
 
 RNG = np.random.default_rng(5)
 KINDS = {1: 0, 2: 4, 3: 2, 4: 6}

@@ -33,11 +33,11 @@ from playground.errors import (
     ShaderError,
     SketchError,
 )
-from playground.publish.extensions import DEFAULT_GRID, ENDINGS, KINDS, PIPED
+from playground.publish.export_form import DEFAULT_GRID, ENDINGS, KINDS, PIPED
 from playground.terminal import busy, complain, note
 
 if TYPE_CHECKING:
-    from playground.publish.export_options import Form
+    from playground.publish.export_form import Form
 
 
 HELP = help_text(
@@ -158,7 +158,7 @@ def export(
     device: options.Device = None,
 ) -> None:
     """Write the terrain or a texture to files, and print the files' paths."""
-    from playground.publish.export_options import Form
+    from playground.publish.export_form import Form
     from playground.sketch.load import load
 
     form = Form(
@@ -194,7 +194,7 @@ def _write_piped(
 ) -> None:
     """Write one file to standard output, by way of a folder that is removed."""
     from playground.publish.export import prepare, run
-    from playground.publish.export_options import check
+    from playground.publish.export_form import check
 
     if len(names) > 1:
         raise ParameterError("--to - writes one file to standard output; leave the other --to out")
@@ -218,7 +218,7 @@ def _write_piped(
 def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: Renderer) -> None:
     from playground.files import new_name
     from playground.publish.export import ExportJob, prepare, run
-    from playground.publish.export_options import check
+    from playground.publish.export_form import check
 
     sketch = moment.sketch
     with ExitStack() as stack:
@@ -276,7 +276,7 @@ def _read_format(text: str) -> str:
 
 
 def _refuse_twins(paths: list[Path]) -> None:
-    from playground.publish.export_options import sidecar_paths
+    from playground.publish.export_form import sidecar_paths
 
     taken: set[Path] = set()
     for path in paths:

@@ -113,8 +113,7 @@ class SeriesJob:
     @contextmanager
     def _sink(self, series: Series) -> Iterator[Sink]:
         """Return what the series is written into; refuse what could not be written."""
-        from playground.publish.sequence import NumberedFiles, check_pattern
-        from playground.publish.sheet import Sheet
+        from playground.publish.series import NumberedFiles, Sheet, check_pattern
         from playground.publish.video import QUALITY, VideoFile
 
         options, name = self.options, self.moment.sketch.name

@@ -13,7 +13,7 @@ from playground.sketch.load import opened
 from playground.sketch.model import Sketch
 
 if TYPE_CHECKING:
-    from playground.publish.notebook.sketch_widget import CompareWidget, SketchWidget
+    from playground.publish.notebook.widget import CompareWidget, SketchWidget
 
 _MAX_VALUES = 2  # values that name a picture
 
@@ -39,7 +39,7 @@ def widget(
     Raises ``PlaygroundError`` for any mistake in the sketch, ``DataError`` without the extra ``notebook``.
     """
     try:
-        from playground.publish.notebook.sketch_widget import SketchWidget
+        from playground.publish.notebook.widget import SketchWidget
     except ModuleNotFoundError as error:
         raise _needed(error) from None
     sketches = [opened(sketch)]
@@ -73,7 +73,7 @@ def compare(
     Raises as ``widget``.
     """
     try:
-        from playground.publish.notebook.sketch_widget import CompareWidget
+        from playground.publish.notebook.widget import CompareWidget
     except ModuleNotFoundError as error:
         raise _needed(error) from None
     sketches = [

@@ -13,6 +13,7 @@ from functools import cached_property
 
 from playground.shader.preprocessor import without_guards
 from playground.shader.source import Line
+from playground.sketch.model import Parameter, Value
 
 _DIRECTIVE = re.compile(r"\s*#\s*(\w+)\s*(\w*)")
 _UNIFORM = re.compile(r"\s*(?:layout\s*\([^)]*\)\s*)?uniform\b")
@@ -285,3 +286,46 @@ def _may_share(
         return True
     without = (declarations for declarations in passes if not any(name in d.names for d in declarations))
     return not any(d.reads(name) for declarations in without for d in declarations)
+
+
+# ── numbers as GLSL ────────────────────────────────────────────────────────────
+
+
+def literal(kind: str, value: Value) -> str:
+    """Return a value of a GLSL type as a constant expression."""
+    if isinstance(value, tuple | list):
+        scalar = {"i": "int", "u": "uint"}.get(kind[0], "float")
+        return f"{kind}({', '.join(literal(scalar, number) for number in value)})"
+    if kind == "bool":
+        return "true" if value else "false"
+    if kind == "float":
+        return number(float(value))
+    return f"{int(value)}u" if kind == "uint" else str(int(value))
+
+
+def number(value: float) -> str:
+    """Return a float that no compiler takes for a whole number."""
+    text = repr(float(value))
+    return text if any(mark in text for mark in ".e") else f"{text}.0"
+
+
+def vector(values: Sequence[float]) -> str:
+    """Return a vec2 to vec4."""
+    return f"vec{len(values)}({', '.join(map(number, values))})"
+
+
+def meaning(parameter: Parameter) -> str:
+    """Return what a parameter may be, and is for, as a comment says it."""
+    widget = parameter.widget
+    parts = []
+    if widget.choices:
+        parts.append(", ".join(f"{index} {choice}" for index, choice in enumerate(widget.choices)))
+    elif widget.low is not None and widget.high is not None:
+        parts.append(f"{widget.low:g} to {widget.high:g}")
+    elif widget.kind == "direction":
+        parts.append("azimuth, elevation in degrees")
+    elif widget.kind == "colour":
+        parts.append("linear light")
+    if parameter.unit and widget.kind != "direction":
+        parts.append(parameter.unit)
+    return ": ".join(filter(None, [" ".join(parts), parameter.tooltip]))

@@ -10,8 +10,13 @@ import json
 from collections.abc import Sequence
 
 from playground.errors import Diagnostic, SketchError
-from playground.publish.shader_export.declarations import Declaration, declaration_of, with_common
-from playground.publish.shader_export.literals import literal, meaning
+from playground.publish.shader_export.declarations import (
+    Declaration,
+    declaration_of,
+    literal,
+    meaning,
+    with_common,
+)
 from playground.publish.shader_export.passes import ShaderPass
 from playground.publish.shader_export.texts import (
     Host,

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from playground.errors import SketchError
-from playground.publish.shader_export.declarations import Declaration, declaration_of
-from playground.publish.shader_export.literals import literal
+from playground.publish.shader_export.declarations import Declaration, declaration_of, literal
 from playground.publish.shader_export.passes import ShaderPass
 from playground.publish.shader_export.shadertoy import blocks
 from playground.publish.shader_export.texts import Host, PassText, towards

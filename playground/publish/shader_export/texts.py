@@ -7,9 +7,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from playground.engine.camera import unit_vector
-from playground.publish.extensions import COLOUR
-from playground.publish.shader_export.declarations import Declaration, declaration_of, declarations_of
-from playground.publish.shader_export.literals import number, vector
+from playground.publish.export_form import COLOUR
+from playground.publish.shader_export.declarations import (
+    Declaration,
+    declaration_of,
+    declarations_of,
+    number,
+    vector,
+)
 from playground.publish.shader_export.passes import ExportPlan, ShaderPass, Wire
 from playground.shader.parameter import AS_IT_IS, Sampling
 from playground.shader.reserved_names import MATCHES, TOWARDS, WIRED

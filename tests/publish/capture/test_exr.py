@@ -8,7 +8,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from playground.publish.exr import encode_exr
+from playground.publish.values import encode_exr
 
 
 @pytest.mark.parametrize("dtype", [np.float16, np.float32])

@@ -18,8 +18,7 @@ from playground.data.image_files import read_png, write_png
 from playground.engine.engine import Engine
 from playground.errors import ContextError, DataError, ParameterError, PlaygroundWarning
 from playground.extras import install_command
-from playground.publish.sequence import NumberedFiles, render_sequence
-from playground.publish.series import Series, write_series
+from playground.publish.series import NumberedFiles, Series, render_sequence, write_series
 from playground.publish.video import QUALITIES, Stopped, Video, VideoFile, count_pictures, render_video
 
 from ...loading import load

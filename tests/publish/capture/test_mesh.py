@@ -15,9 +15,7 @@ import playground
 from playground import Sketch
 from playground.data.grid import fitted
 from playground.engine.engine import Engine
-from playground.publish.gltf import encode_glb
-from playground.publish.mesh import sampled, terrain_mesh
-from playground.publish.obj import encode_obj
+from playground.publish.mesh import encode_glb, encode_obj, sampled, terrain_mesh
 
 from .conftest import metres
 

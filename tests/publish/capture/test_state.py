@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.publish.sequence import NumberedFiles
-from playground.publish.series import Series, write_series
+from playground.publish.series import NumberedFiles, Series, write_series
 from playground.publish.video import Video, VideoFile
 from playground.verify.shots.suite import render_shot, shots_of
 

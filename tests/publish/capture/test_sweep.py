@@ -11,8 +11,7 @@ import pytest
 from playground.data.image_files import read_png
 from playground.engine.engine import Engine
 from playground.errors import ParameterError
-from playground.publish.series import Series, write_series
-from playground.publish.sheet import Paper, Sheet, render_sweep
+from playground.publish.series import Paper, Series, Sheet, render_sweep, write_series
 from playground.publish.sweep import columns_of, read_sweep
 
 from ...loading import load

@@ -12,7 +12,7 @@ import pytest
 import playground
 from playground import DataError, Sketch
 from playground.engine.engine import Engine
-from playground.publish.atomic_group import write_together
+from playground.publish.export import write_together
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -30,7 +30,7 @@ def test_all_take_their_names_or_none(tmp_path: Path):
 FULL = """
 import resource, signal, sys
 from pathlib import Path
-from playground.publish.atomic_group import write_together
+from playground.publish.export import write_together
 from playground.errors import DataError
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))

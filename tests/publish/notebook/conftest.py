@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from playground.engine.engine import Engine
-from playground.publish.notebook import sketch_widget
+from playground.publish.notebook import widget as widgets
 
 KERNEL = """// slope.glsl -- ground that rises to the north-east.
 #pragma kernel(output = "height:r32f")
@@ -42,8 +42,8 @@ def slope(tmp_path: Path) -> Path:
 def engine(any_engine: Engine, monkeypatch: pytest.MonkeyPatch) -> Iterator[Engine]:
     """Give one engine, which draws the widgets as well; all are closed at the end."""
     on_engine: Callable[[Callable[[Engine], object]], object] = lambda work: work(any_engine)  # noqa: E731
-    monkeypatch.setattr(sketch_widget, "on_engine", on_engine)
-    monkeypatch.setattr(sketch_widget, "release_engine", lambda: None)
+    monkeypatch.setattr(widgets, "on_engine", on_engine)
+    monkeypatch.setattr(widgets, "release_engine", lambda: None)
     yield any_engine
-    for widget in list(sketch_widget._open):
+    for widget in list(widgets._open):
         widget.close()

@@ -17,7 +17,8 @@ from PIL import Image
 import playground
 from playground.errors import DataError, ParameterError
 from playground.extras import install_command
-from playground.publish.notebook import engine_thread, sketch_widget
+from playground.publish.notebook import engine_thread
+from playground.publish.notebook import widget as widgets
 from playground.sketch.model import Camera
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
@@ -152,7 +153,7 @@ def test_what_cannot_be_drawn_is_answered_as_well(widget, answers, monkeypatch):
     for wrong in ({"values": {"height.rise": "x"}}, {"time": NAN}, {"camera": {**VIEW, "distance": INF}}):
         ((answer, buffers),) = answers(widget, **wrong)
         assert re.search("height.rise|time = nan|distance = inf", answer["error"]) and buffers == []
-    monkeypatch.setattr(sketch_widget, "on_engine", lambda _: 1 / 0)
+    monkeypatch.setattr(widgets, "on_engine", lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         answers(widget)
 
@@ -279,14 +280,8 @@ def test_any_thread_may_set_a_sketch(slope):
 
 
 def test_without_anywidget_one_sentence_names_the_extra(monkeypatch):
-    for name in (
-        "anywidget",
-        "playground.publish.notebook.sketch_widget",
-        "playground.publish.notebook.widget",
-    ):
-        monkeypatch.setitem(sys.modules, name, None) if name == "anywidget" else monkeypatch.delitem(
-            sys.modules, name
-        )
+    monkeypatch.setitem(sys.modules, "anywidget", None)
+    monkeypatch.delitem(sys.modules, "playground.publish.notebook.widget")
     for call in (playground.widget, lambda: playground.compare("jacksboro", "jacksboro")):
         with pytest.raises(DataError, match=f"needs anywidget: {re.escape(install_command('notebook'))}"):
             call()

@@ -8,7 +8,7 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.publish.export import prepare, run
-from playground.publish.export_options import Form
+from playground.publish.export_form import Form
 from playground.sketch.model import Sketch
 
 from ...loading import load

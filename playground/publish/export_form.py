@@ -1,4 +1,4 @@
-"""Define what is exported and how, and refuse what no sketch could give."""
+"""The form of an export: what each kind of file holds, what is asked for, and what no sketch could give."""
 
 from __future__ import annotations
 
@@ -7,24 +7,89 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from playground.errors import DataError, ParameterError, nearest
+from playground.engine.plan import Plan, view_height
+from playground.errors import DataError, ParameterError, SketchError, nearest
+from playground.files import open_regular, reason
 from playground.paths import shown
-from playground.publish.atomic_group import refuse_foreign_files
-from playground.publish.extensions import (
-    COLOUR,
-    ENDINGS,
-    HEIGHT,
-    KINDS,
-    MESHES,
-    NUMBERS,
-    OTHERS,
-    PAGES,
-    RAW,
-    SHADERS,
-    VALUES,
-    whole_numbers,
-)
 from playground.publish.web.page import LANGUAGES
+
+# ── kinds of files ─────────────────────────────────────────────────────────────
+
+
+HEIGHT, COLOUR, NUMBERS = "height", "colour", "numbers"
+KINDS = (HEIGHT, COLOUR, NUMBERS)
+"""Metres above sea level; linear light, encoded as sRGB where a format expects that; numbers as they are."""
+
+VALUES: dict[str, dict[str, tuple[int, ...]]] = {
+    ".png": {HEIGHT: (16,), COLOUR: (8, 16), NUMBERS: (16, 8)},
+    ".tif": {HEIGHT: (32, 16), COLOUR: (32,), NUMBERS: (32, 16)},
+    ".tiff": {HEIGHT: (32, 16), COLOUR: (32,), NUMBERS: (32, 16)},
+    ".exr": {HEIGHT: (32,), COLOUR: (32, 16), NUMBERS: (32, 16)},
+    ".npy": {HEIGHT: (32,), COLOUR: (32,), NUMBERS: (32,)},
+    ".r16": {HEIGHT: (16,), NUMBERS: (16,)},
+    ".raw": {HEIGHT: (16,), NUMBERS: (16,)},
+    ".r32": {HEIGHT: (32,), NUMBERS: (32,)},
+    ".webp": {COLOUR: (8,)},
+    ".jpg": {COLOUR: (8,)},
+    ".jpeg": {COLOUR: (8,)},
+}
+"""Ending → kind → bits a number may have, the usual first. 8 and 16 are whole numbers, but
+that 16 in an EXR, like 32 everywhere, are floats."""
+
+RAW = (".r16", ".raw", ".r32")
+"""Numbers and nothing else: a JSON file next to it says what they are."""
+
+PICTURES = (".webp", ".jpg", ".jpeg")
+"""Colours and nothing else."""
+
+MESHES: dict[str, int] = {".glb": 2049, ".obj": 1025}
+"""Ending → vertices that the longer side of a mesh may have; OBJ is text, six times as long."""
+
+DEFAULT_GRID = 513
+"""Vertices of the longer side unless another number is given."""
+
+ISF, SHADERTOY_TEXT, SHADERTOY_EXPORT, STANDALONE = SHADERS = (".fs", ".frag", ".json", ".glsl")
+"""Shaders of other tools: ISF, one Shadertoy pass, a Shadertoy export, a fragment shader of its own."""
+
+PAGES = (".html",)
+"""A web page: one file in which the sketch runs."""
+
+ENDINGS = (*VALUES, *MESHES, *SHADERS, *PAGES)
+
+OTHERS = {
+    f"a mesh is {' or '.join(MESHES)}": (
+        ".3ds .3mf .abc .blend .c4d .dae .fbx .iges .lwo .ma .max .mb .off .ply .skp .step .stl .stp .usd"
+        " .usda .usdc .usdz .vrm .wrl .x3d"
+    ),
+    "heights are .tif, .npy, .exr, .png, .r16 or .r32": (
+        ".adf .asc .bil .csv .dem .flt .grd .h5 .hdf5 .hdr .hgt .img .las .laz .mat .nc .npz"
+        " .pfm .ter .vrt .xyz"
+    ),
+    "a picture is .png, .webp or .jpg": (
+        ".avif .bmp .dds .heic .ico .jp2 .jxl .ktx .ktx2 .pbm .pgm .ppm .psd .svg .tga"
+    ),
+    f"a shader is {', '.join(SHADERS[:-1])} or {SHADERS[-1]}": (
+        ".cg .comp .fx .hlsl .metal .osl .shader .spv .vert .wgsl"
+    ),
+    "a sketch is packed by playground pack": ".toml",
+    "a video is what playground render --video writes": ".apng .avi .gif .mkv .mov .mp4 .webm",
+}
+"""What each kind of file is exported as → endings of that kind that nothing is exported as."""
+
+PIPED = tuple(ending for ending in ENDINGS if ending not in (*RAW, ".obj"))
+"""What is one file, and so can go to standard output."""
+
+
+def whole_numbers(ending: str, bits: int) -> bool:
+    """Return whether numbers of so many bits are whole ones in a file of that ending."""
+    return bits < 32 and ending != ".exr"
+
+
+# ── what is exported and how ───────────────────────────────────────────────────
+
+
+_MARK = b"terrain shader playground"
+_LOOKED_AT = 4096  # bytes, within which an export says who made it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -175,6 +240,57 @@ def sidecar_paths(path: Path) -> list[Path]:
     return []
 
 
+def refuse_foreign_files(path: Path, sidecars: list[Path]) -> None:
+    """Raise ``DataError`` where a file that goes with ``path`` would replace one that is no export."""
+    for other in sidecars:
+        try:
+            if not other.exists():
+                continue
+            with open_regular(other) as handle:
+                ours = _MARK in handle.read(_LOOKED_AT)
+        except OSError as error:
+            raise DataError(f"cannot be read: {reason(error)}", file=other) from error
+        if not ours:
+            raise DataError(
+                f"{other.name} is there already, and no export wrote it; choose another name", file=path
+            )
+
+
 def one_word(name: str) -> str:
     """Return a name without spaces."""
     return "_".join(name.split()) or "land"
+
+
+# ── textures and what they hold ────────────────────────────────────────────────
+
+
+def height_of(plan: Plan) -> str:
+    """Return the heights that the picture shows; raise ``SketchError`` where there are none."""
+    height = view_height(plan)
+    if not height:
+        there = ", ".join(spec.name for spec in plan.sketch.graph.passes if spec.name != "view")
+        hint = f"; its textures are {there}" if there else ""
+        raise SketchError(f"sketch {plan.sketch.name} has no height to export{hint}")
+    return height
+
+
+def kind_of(plan: Plan, texture: str) -> str:
+    """Return what a texture holds, by the name of the output and, if it is not named, of the pass."""
+    for name in _names(plan, texture):
+        if name == HEIGHT:
+            return HEIGHT
+        if name in (COLOUR, "light"):
+            return COLOUR
+    return NUMBERS
+
+
+def is_light(plan: Plan, texture: str) -> bool:
+    """Return whether a texture holds light, by the same names."""
+    return next((name for name in _names(plan, texture) if name in (HEIGHT, COLOUR, "light")), "") == "light"
+
+
+def _names(plan: Plan, texture: str) -> list[str]:
+    path, _, output = texture.partition(":")
+    last = path.rpartition(".")[2]
+    outputs = plan.flat.outputs[path]
+    return [output] if output else [last, last if last in outputs else next(iter(outputs))]

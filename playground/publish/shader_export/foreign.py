@@ -12,8 +12,7 @@ from dataclasses import replace
 
 from playground.errors import SketchError
 from playground.publish.shader_export.declarations import Declaration, declaration_of, declarations_of
-from playground.publish.shader_export.foreign_given import neutral
-from playground.publish.shader_export.passes import ShaderPass
+from playground.publish.shader_export.passes import ShaderPass, neutral
 from playground.publish.shader_export.texts import Host, PassText, Sampled, variable_of, without_unwired
 from playground.shader.declarations import uniforms
 from playground.shader.reserved_names import NEUTRAL, SIZES
