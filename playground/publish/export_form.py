@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -107,6 +107,23 @@ class Form:
     language: str = ""  # of a web page's interface: en or fr; "": English
 
 
+_OF_TEXTURES = ((*VALUES, *MESHES, *SHADERS), "a file of values, a mesh or a shader")
+_OF_MESHES = (MESHES, f"a mesh: {' or '.join(MESHES)}")
+_OF_VALUES = (VALUES, "a file of values, as .png and .tif")
+_OF_PAGES = (PAGES, f"a web page: {PAGES[0]}")
+_OPTIONS: tuple[tuple[str, str, Collection[str], str], ...] = (
+    ("texture", "one texture is", *_OF_TEXTURES),
+    ("kind", "a kind of data is", *_OF_TEXTURES),
+    ("grid", "a grid is", *_OF_MESHES),
+    ("light", "light baked in is", *_OF_MESHES),
+    ("bits", "bits are", *_OF_VALUES),
+    ("span", "a range is", *_OF_VALUES),
+    ("techniques", "menus of techniques are", *_OF_PAGES),
+    ("language", "a language is", *_OF_PAGES),
+)
+"""Field of ``Form`` → what it is in a message, and the endings that take it."""
+
+
 def check(path: Path, form: Form) -> None:
     """Raise ``PlaygroundError`` for what is wrong with any sketch."""
     ending = path.suffix.lower()
@@ -122,20 +139,17 @@ def check(path: Path, form: Form) -> None:
         low, high = form.span
         if not (math.isfinite(low) and math.isfinite(high) and low < high):
             raise ParameterError(f"a range from {low:g} to {high:g}; expected two numbers, the lower first")
-    if form.techniques and ending not in PAGES:
-        raise DataError("menus of techniques are for a web page: .html", file=path)
     if form.language and form.language not in LANGUAGES:
         raise ParameterError(f"no page is in '{form.language}'; expected {' or '.join(LANGUAGES)}")
-    if form.language and ending not in PAGES:
-        raise DataError("a language is for a web page: .html", file=path)
-    if ending in PAGES:
-        _check_page(path, form)
-    elif ending in SHADERS:
-        _check_shader(path, form)
-    elif ending in MESHES:
-        _check_mesh(path, form)
-    else:
-        _check_values(path, form)
+    for name, what, endings, target in _OPTIONS:
+        if getattr(form, name) and ending not in endings:
+            raise DataError(f"{what} for {target}", file=path)
+    if form.grid and not 2 <= form.grid <= MESHES[ending]:
+        raise ParameterError(f"a grid of {form.grid} vertices a side: {ending} takes 2 to {MESHES[ending]}")
+    if ending in SHADERS and form.kind and not form.texture:
+        raise DataError("the kind of data is an option of --texture; a picture is shown as it is", file=path)
+    if ending in VALUES:
+        _check_bits(path, form)
     refuse_foreign_files(path, sidecar_paths(path))
 
 
@@ -160,43 +174,8 @@ def _no_ending(ending: str) -> str:
     return f"nothing is exported as '{ending}'{listed}"
 
 
-def _check_mesh(path: Path, form: Form) -> None:
+def _check_bits(path: Path, form: Form) -> None:
     ending = path.suffix.lower()
-    most = MESHES[ending]
-    if form.grid and not 2 <= form.grid <= most:
-        raise ParameterError(f"a grid of {form.grid} vertices a side: {ending} takes 2 to {most}")
-    if form.bits or form.span:
-        raise DataError("a mesh has no bits and no range to choose; its heights are floats", file=path)
-
-
-def _check_page(path: Path, form: Form) -> None:
-    for name, value in (
-        ("one texture", form.texture or form.kind),
-        ("a grid", form.grid),
-        ("light baked in", form.light),
-        ("bits", form.bits),
-        ("a range", form.span),
-    ):
-        if value:
-            raise DataError(
-                f"a web page has the whole sketch; {name} is nothing it could be given", file=path
-            )
-
-
-def _check_shader(path: Path, form: Form) -> None:
-    if form.grid or form.light or form.bits or form.span:
-        options = {"a grid": form.grid, "light baked in": form.light, "bits": form.bits, "a range": form.span}
-        what = next(name for name, value in options.items() if value)
-        raise DataError(f"{what} is nothing that a shader's text has", file=path)
-    if form.kind and not form.texture:
-        raise DataError("the kind of data is an option of --texture; a picture is shown as it is", file=path)
-
-
-def _check_values(path: Path, form: Form) -> None:
-    ending = path.suffix.lower()
-    if form.grid or form.light:
-        what = "a grid" if form.grid else "light baked in"
-        raise DataError(f"{what} is for a mesh: {' or '.join(MESHES)}", file=path)
     kind = form.kind or ("" if form.texture else HEIGHT)
     if kind:
         bits_for(path, kind, form)
