@@ -50,7 +50,6 @@ from playground.verify.shots.compare import Light, Rectangle
 if TYPE_CHECKING:
     import moderngl
 
-
 # ── adapters ─────────────────────────────────────────────────────────────────
 
 
