@@ -69,22 +69,6 @@ def test_json_has_every_sample(capsys):
     assert len(result["figures"][0]["ours"]["auto"]["wall"]) == 2
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["fourrier"], "no suite or row 'fourrier'"),
-        (["--size", "9"], "--size 9: expected texels a side, 17 to 8193, as 1025"),
-        (["--size", "big"], "--size big: expected texels a side"),
-        (["--rounds", "0"], "--rounds 0: expected a whole number from 1 to 1000"),
-        (["--fail"], "--fail compares with earlier results: name them by --against FILE"),
-        (["--against", "none.json"], "no such file"),
-    ],
-)
-def test_bad_arguments_are_a_sentence_before_anything_runs(capsys, arguments, words):
-    status, out, err = ran(capsys, "bench", *arguments)
-    assert status == 2 and out == "" and words in err
-
-
 def test_page_without_matplotlib_is_refused_before_any_run(capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)

@@ -347,11 +347,6 @@ def test_a_port_that_is_taken_is_reported(leave) -> None:
         Review(RESULTS, first.server.guard.port)
 
 
-def test_folder_without_results_is_refused_before_listening(leave, capsys) -> None:
-    assert main(["shots", "review", "nowhere", "--no-open"]) == 2
-    assert "nowhere: there is no such folder" in capsys.readouterr().err
-
-
 def test_review_prints_address_and_accepted_shots_at_end(
     leave, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

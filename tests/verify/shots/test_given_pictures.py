@@ -5,7 +5,6 @@ from __future__ import annotations
 import gc
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import PIL.Image
@@ -13,7 +12,6 @@ import pytest
 
 from playground.api import headless
 from playground.data.image_files import read_png
-from playground.errors import DataError
 from playground.verify.shots.adapters import levels_of, taken
 from playground.verify.shots.names import MAX_NAME, name_of_test, one_spelling, why_no_name
 
@@ -34,14 +32,6 @@ def test_grey_alpha_and_wide_integers_round_to_nearest_level() -> None:
     assert levels_of(wide)[0][0, :, 0].tolist() == expected[0].tolist()
 
 
-@pytest.mark.parametrize("beyond", [1.1, -0.1, 40.0])
-def test_out_of_range_floats_are_refused_not_clamped(beyond: float) -> None:
-    picture = np.full((2, 3, 3), 0.5, np.float32)
-    picture[1, 1, 1] = beyond
-    with pytest.raises(DataError, match=r"from 0 to 1, and this one from .*; say what they mean with tone="):
-        levels_of(picture)
-
-
 def test_floats_that_round_to_the_last_level_are_that_level() -> None:
     edge = np.array([[1.0 + 0.4 / 255, -0.4 / 255, 1.0]])
     assert levels_of(edge)[0][0, :, 0].tolist() == [255, 0, 255]
@@ -58,25 +48,6 @@ def test_a_tone_follows_its_stated_rule_and_leaves_alpha_alone() -> None:
     assert reinhard[0, 1, 0] == encoded(4 / 5) and reinhard[0, 0, 2] == encoded(1 / 2)
     assert clip[0, :, 0].tolist() == [0, 255]
     assert all(shown[0, :, 3].tolist() == [128, 255] for shown in (srgb, reinhard, clip))
-
-
-@pytest.mark.parametrize(
-    ("values", "tone", "message"),
-    [
-        (np.zeros((3, 40, 50)), "", r"an array \(height, width, 3 or 4\), or grey; found \(3, 40, 50\)"),
-        (
-            np.zeros((2, 2), np.int64),
-            "",
-            "floats from 0 to 1, of uint16 or bool; found int64",
-        ),
-        (np.zeros((2, 2), np.uint8), "srgb", "tone = 'srgb' is for floats; this picture is of uint8"),
-        (np.zeros((2, 2)), "reinhart", "one of clip, srgb, reinhard; did you mean 'reinhard'"),
-        (np.full((2, 2, 4), 2.0), "srgb", "from 2 to 2: that is alpha"),
-    ],
-)
-def test_what_is_no_picture_is_refused_in_a_sentence(values: np.ndarray, tone: str, message: str) -> None:
-    with pytest.raises(DataError, match=message):
-        levels_of(values, tone)
 
 
 # ── adapters ─────────────────────────────────────────────────────────────────
@@ -111,12 +82,6 @@ def test_images_of_pillow_of_any_mode() -> None:
     wide = PIL.Image.fromarray(PIXELS[..., 0].astype(np.uint16) * 257)
     assert taken(wide).values.dtype == np.uint16
     assert levels_of(taken(wide).values)[0][..., 0].tolist() == PIXELS[..., 0].tolist()
-
-
-@pytest.mark.parametrize("thing", [object(), [[1, 2], [3]], SimpleNamespace(), None])
-def test_what_holds_none_is_refused(thing: object) -> None:
-    with pytest.raises(DataError, match=r"there is no picture in a \w+: expected a frame, an array"):
-        taken(thing)
 
 
 @pytest.fixture

@@ -263,25 +263,6 @@ def test_mutant_names_are_unique_and_descriptions_are_sentences():
     assert all(m.broke[0].isupper() and m.broke.endswith(".") for m in all_mutants())
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ('name = "a"\nbroke = "It is."\nsett = {}', "no key 'sett'"),
-        ('name = "a"\nbroke = "It is"\nsamples = 1', "needs a name, and a sentence"),
-        ('name = "a"\nbroke = "It is."', "breaks nothing"),
-        (
-            'name = "a"\nbroke = "A."\nsamples = 1\n[[mutant]]\nname = "a"\nbroke = "A."\nsamples = 1',
-            "two mutants are called 'a'",
-        ),
-    ],
-)
-def test_a_mistake_in_the_table_is_reported(text: str, message: str, tmp_path: Path):
-    table = tmp_path / "table.toml"
-    table.write_text(f"[[mutant]]\n{text}\n")
-    with pytest.raises(DataError, match=message):
-        rendering_mutants(table)
-
-
 # ── finished pictures ────────────────────────────────────────────────────────
 
 
@@ -434,21 +415,6 @@ def test_the_command_fails_where_a_defect_passes(
     result = json.loads(capsys.readouterr().out)
     assert result["tiers"]["same build"] == {"caught": 1, "of": 2, "passed": ["noise-of-two"]}
     assert [entry["tiers"]["same build"]["caught"] for entry in result["mutants"]] == [False, True]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--mutant", "no-shadows"], "no mutant 'no-shadows'; did you mean 'no-shadow'?"),
-        (["--shot", "mornin"], "no shot 'mornin' in sketch jacksboro; did you mean 'morning'?"),
-        (["--size", "12"], "--size 12: expected width and height"),
-        (["--again", "-1"], "--again -1: expected a whole number"),
-    ],
-)
-def test_a_mistake_is_one_sentence(arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]):
-    assert cli.main(["shots", "mutants", *arguments]) == 2
-    out, error = capsys.readouterr()
-    assert out == "" and message in error and len(error.splitlines()) == 1
 
 
 def test_every_mutant_can_be_chosen_by_name():
