@@ -35,6 +35,9 @@ CARD = ContextInfo(460, "NVIDIA H200/PCIe/SSE2", "NVIDIA Corporation", "4.6.0 NV
 OTHER_CARD = ContextInfo(460, "AMD Radeon RX 6800 (radeonsi, navi21)", "AMD", "4.6 Mesa 24.0.2", 8)
 
 
+UPSIDE_DOWN = -1  # in place of a number of levels
+
+
 @pytest.fixture
 def case(tmp_path: Path) -> ShotCase:
     file = tmp_path / "hills.toml"
@@ -49,8 +52,8 @@ def smooth(by: int = 0) -> np.ndarray:
     array[..., 0] = np.arange(80) * 2
     array[..., 1] = (np.arange(60) * 3)[:, None]
     array[..., 2], array[..., 3] = 60, 255
-    array[30, 40, :3] += by
-    return array
+    array[30, 40, :3] += by if by != UPSIDE_DOWN else 0
+    return np.ascontiguousarray(array[::-1]) if by == UPSIDE_DOWN else array
 
 
 def taken(pixels: np.ndarray, **more: str) -> RenderedShot:
@@ -65,72 +68,76 @@ def checked(case: ShotCase, pixels: np.ndarray, renderer: ContextInfo, **more: s
     return outcome
 
 
-def test_missing_reference_reports_its_expected_path(case: ShotCase) -> None:
-    for renderer in (LLVMPIPE, CARD):
-        result = checked(case, smooth(), renderer)
-        assert (result.word, result.reference) == ("missing", None)
-        assert result.path == result.own_path == reference_path(case.sketch, "dawn", renderer.slug)
+CHANGED = "the drawn content has changed: the sketch, its shot, a kernel, a value or a file"
+VERSIONS = "OpenGL version: 4.5 Mesa 25.0.7; the reference's: 4.5 Mesa 22.3.6"
+VERDICTS = [  # the references: who drew them, and pixels; who draws, and pixels; word, tier; whose one judged
+    ([], LLVMPIPE, 0, "missing", "", None),
+    ([], CARD, 0, "missing", "", None),
+    ([(LLVMPIPE, 0)], LLVMPIPE, 1, "same", SAME_BUILD, LLVMPIPE),
+    ([(LLVMPIPE, 0)], LLVMPIPE, 2, "differs", SAME_BUILD, LLVMPIPE),
+    ([(LLVMPIPE, 0)], NEWER, 3, "same", OTHER_BUILD, LLVMPIPE),
+    ([(LLVMPIPE, 0)], NEWER, 4, "differs", OTHER_BUILD, LLVMPIPE),
+    ([(LLVMPIPE, 0)], CARD, 40, "same", OTHER_RENDERER, LLVMPIPE),
+    ([(LLVMPIPE, 0)], CARD, UPSIDE_DOWN, "structure", OTHER_RENDERER, LLVMPIPE),
+    ([(LLVMPIPE, 0), (CARD, 40)], CARD, 40, "same", SAME_BUILD, CARD),
+    ([(LLVMPIPE, 0), (CARD, 40)], CARD, 0, "differs", SAME_BUILD, CARD),
+    ([(LLVMPIPE, 0), (CARD, 40)], LLVMPIPE, 0, "same", SAME_BUILD, LLVMPIPE),
+    ([(CARD, 0)], LLVMPIPE, 0, "missing", "", None),
+    ([(CARD, 0)], OTHER_CARD, 0, "missing", "", None),
+]
 
 
-def test_a_reference_says_what_it_comes_from_and_is_found_again(case: ShotCase) -> None:
-    path, _ = write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
-    assert read_reference(path).fingerprint == fingerprint_of(LLVMPIPE, (80, 60), "ab12")
-    result = checked(case, smooth(1), LLVMPIPE)
-    assert (result.word, result.tier, result.differences, result.path) == ("same", SAME_BUILD, (), path)
-    assert result.reference is not None and result.reference.fingerprint == result.fingerprint
-    assert checked(case, smooth(2), LLVMPIPE).word == "differs"
+@pytest.mark.parametrize(("references", "renderer", "by", "word", "tier", "judged"), VERDICTS)
+def test_a_picture_is_judged_by_its_renderers_references(
+    case: ShotCase,
+    references: list[tuple[ContextInfo, int]],
+    renderer: ContextInfo,
+    by: int,
+    word: str,
+    tier: str,
+    judged: ContextInfo | None,
+) -> None:
+    """Without one, by those of the reference renderer, which no other renderer's replace."""
+    for drawn_by, there in references:
+        write_reference(case.sketch, "dawn", drawn_by, smooth(there), "ab12")
+    result = checked(case, smooth(by), renderer)
+    assert (result.word, result.tier, result.reference is None) == (word, tier, judged is None)
+    assert result.own_path == reference_path(case.sketch, "dawn", renderer.slug)
+    assert result.path == reference_path(case.sketch, "dawn", (judged or renderer).slug)
+    assert (VERSIONS in result.differences) is (renderer is NEWER)
+    assert result.differences or renderer is not CARD or judged is not LLVMPIPE
 
 
-def test_another_build_is_less_strict_and_says_which(case: ShotCase) -> None:
-    write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
-    result = checked(case, smooth(3), NEWER)
-    assert (result.word, result.tier) == ("same", OTHER_BUILD)
-    assert any("4.5 Mesa 25.0.7; the reference's: 4.5 Mesa 22.3.6" in line for line in result.differences)
-    assert checked(case, smooth(4), NEWER).word == "differs"
-
-
-def test_what_was_drawn_is_reported_and_excuses_nothing(case: ShotCase) -> None:
-    write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "cd34")
-    result = checked(case, smooth(2), LLVMPIPE)
-    assert (result.word, result.tier) == ("differs", SAME_BUILD)
-    assert result.differences == (
-        "the drawn content has changed: the sketch, its shot, a kernel, a value or a file",
-    )
-
-
-def test_other_renderer_is_judged_by_reference_renderer_picture(case: ShotCase) -> None:
-    path, _ = write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
-    result = checked(case, smooth(40), CARD)
-    assert (result.word, result.tier, result.path) == ("same", OTHER_RENDERER, path)
-    assert result.own_path == reference_path(case.sketch, "dawn", "nvidia-h200")
-    upside_down = checked(case, np.ascontiguousarray(smooth()[::-1]), CARD)
-    assert (upside_down.word, upside_down.tier) == ("structure", OTHER_RENDERER)
-
-
-def test_other_renderer_with_own_reference_is_held_to_it(case: ShotCase) -> None:
-    write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
-    own, _ = write_reference(case.sketch, "dawn", CARD, smooth(40), "ab12")
-    assert own.parent.name == "nvidia-h200"
-    assert (checked(case, smooth(40), CARD).tier, checked(case, smooth(40), CARD).path) == (SAME_BUILD, own)
-    assert checked(case, smooth(), CARD).word == "differs"
-    assert checked(case, smooth(), LLVMPIPE).ok
-
-
-def test_other_picture_is_no_reference_for_reference_renderer(case: ShotCase) -> None:
+def test_the_reference_renderer_is_an_option(case: ShotCase) -> None:
     write_reference(case.sketch, "dawn", CARD, smooth(), "ab12")
-    assert checked(case, smooth(), LLVMPIPE).word == "missing"
-    assert checked(case, smooth(), OTHER_CARD).word == "missing"
     result = check(case, taken(smooth()), LLVMPIPE, reference_renderer="nvidia-h200")
     assert (result.word, result.tier) == ("same", OTHER_RENDERER)
 
 
-def test_any_accepted_one_may_match(case: ShotCase) -> None:
-    path, _ = write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
-    second = path.with_name("dawn.2.png")
-    write_png(second, smooth(90))
+def test_origin_errors_and_what_there_is_to_look_at(case: ShotCase) -> None:
+    """What was drawn excuses nothing; a further reference may match; a frame from elsewhere is judged too."""
+    path, _ = write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "cd34")
+    assert read_reference(path).fingerprint == fingerprint_of(LLVMPIPE, (80, 60), "cd34")
+    result = checked(case, smooth(2), LLVMPIPE)
+    assert (result.word, result.tier, result.differences) == ("differs", SAME_BUILD, (CHANGED,))
+    for what, word in (("not_finite", "nan"), ("gl_error", "gl-error")):
+        broken = checked(case, smooth(), LLVMPIPE, **{what: "GL_INVALID_VALUE"})
+        assert broken.word == word and broken.reference is not None  # there is something to look at
+    elsewhere = check(case, Frame(smooth()), LLVMPIPE)
+    assert (elsewhere.ok, elsewhere.fingerprint.drawn, elsewhere.differences) == (True, "", ())
+    images = images_of(checked(case, smooth(90), LLVMPIPE))
+    assert list(images) == ["actual", "expected", "difference", "flip"]
+    np.testing.assert_array_equal(images["actual"], smooth(90))
+    assert images["flip"].shape == smooth().shape
+    assert images["flip"][30, 40, 0] > 20 and tuple(images["flip"][5, 5]) == (0, 0, 4, 255)
+    smaller = images_of(checked(case, np.ascontiguousarray(smooth()[:-1]), LLVMPIPE))
+    assert list(smaller) == ["actual", "expected", "difference"]
+    write_png(path.with_name("dawn.2.png"), smooth(90))
     result = checked(case, smooth(90), LLVMPIPE)
-    assert (result.ok, result.path) == (True, second)
-    assert checked(case, smooth(45), LLVMPIPE).word == "differs"
+    assert (result.ok, result.path) == (True, path.with_name("dawn.2.png"))
+    path.unlink()
+    path.with_name("dawn.2.png").unlink()
+    assert list(images_of(checked(case, smooth(), LLVMPIPE))) == ["actual"]
 
 
 @pytest.mark.parametrize("damaged", ["dawn.png", "dawn.2.png"])
@@ -143,35 +150,6 @@ def test_one_that_cannot_be_read_is_never_passed_over(
     result = checked(case, smooth(), renderer)
     assert (result.word, result.path.name, result.reference) == ("unreadable", damaged, None)
     assert damaged in result.sentence
-
-
-@pytest.mark.parametrize(("what", "word"), [("not_finite", "nan"), ("gl_error", "gl-error")])
-def test_drawing_fault_fails_even_identical_picture(case: ShotCase, what: str, word: str) -> None:
-    write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
-    result = checked(case, smooth(), LLVMPIPE, **{what: "GL_INVALID_VALUE"})
-    assert result.word == word
-    assert result.reference is not None  # there is something to look at
-
-
-def test_a_frame_from_elsewhere_is_judged_too(case: ShotCase) -> None:
-    write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
-    result = check(case, Frame(smooth()), LLVMPIPE)
-    assert (result.ok, result.fingerprint.drawn, result.differences) == (True, "", ())
-
-
-def test_images_to_look_at(case: ShotCase) -> None:
-    write_reference(case.sketch, "dawn", LLVMPIPE, smooth(), "ab12")
-    images = images_of(checked(case, smooth(90), LLVMPIPE))
-    assert list(images) == ["actual", "expected", "difference", "flip"]
-    np.testing.assert_array_equal(images["actual"], smooth(90))
-    assert images["flip"].shape == smooth().shape
-    assert images["flip"][30, 40, 0] > 20 and tuple(images["flip"][5, 5]) == (0, 0, 4, 255)
-
-
-def test_without_a_like_reference_there_is_no_flip_image(case: ShotCase) -> None:
-    assert list(images_of(checked(case, smooth(), LLVMPIPE))) == ["actual"]
-    write_reference(case.sketch, "dawn", LLVMPIPE, smooth()[:-1], "ab12")
-    assert list(images_of(checked(case, smooth(), LLVMPIPE))) == ["actual", "expected", "difference"]
 
 
 # ── taking ───────────────────────────────────────────────────────────────────
