@@ -25,6 +25,7 @@ from playground.verify.shots.references import (
     write_reference_in,
 )
 
+from ...cases import each
 from ...loading import load
 from ...sketch_texts import passes
 from .conftest import OURS
@@ -81,48 +82,34 @@ def test_the_processor_is_read_from_linux(text: str, vendor: str, simd: str) -> 
     assert processor_in(text) == (vendor, simd)
 
 
-def test_the_processor_counts_only_where_it_draws() -> None:
-    assert fingerprint_of(NVIDIA, (8, 4)).cpu == fingerprint_of(NVIDIA, (8, 4)).simd == ""
-    card = replace(OURS, renderer=NVIDIA.renderer, version=NVIDIA.version)
-    assert card.same_build(replace(card, cpu="AuthenticAMD", simd="none"))
-    assert not OURS.same_build(replace(OURS, cpu="AuthenticAMD"))
+CARD = replace(OURS, renderer=NVIDIA.renderer, version=NVIDIA.version)
 
 
-@pytest.mark.parametrize(
-    ("part", "text"),
+@each(
+    ("ours", "changes", "same_build", "said"),
     [
-        ("renderer", "llvmpipe (LLVM 15.0.6, 128 bits)"),
-        ("version", "4.5 Mesa 22.3.7"),
-        ("cpu", "AuthenticAMD"),
-        ("simd", "avx"),
+        (OURS, {}, True, []),
+        (OURS, {"renderer": "llvmpipe (LLVM 15.0.6, 128 bits)"}, False, ["renderer: "]),
+        (OURS, {"version": "4.5 Mesa 22.3.7"}, False, ["OpenGL version: "]),
+        (OURS, {"cpu": "AuthenticAMD"}, False, ["processor: "]),
+        (OURS, {"simd": "avx"}, False, ["processor's instructions: "]),
+        *((OURS, {part: "something else"}, True, [""]) for part in ("vendor", "drawn", "size", "tool")),
+        (OURS, {"cpu": "", "simd": "", "drawn": ""}, True, ["the reference does not say its processor"]),
+        (CARD, {"cpu": "AuthenticAMD", "simd": "none"}, True, []),  # the processor counts where it draws
     ],
+    ids=lambda case: case[1],
 )
-def test_another_build_is_known_by_each_of_its_parts(part: str, text: str) -> None:
-    other = replace(OURS, **{part: text})
-    assert not OURS.same_build(other)
-    assert not other.same_build(OURS)
-    (line,) = OURS.differences(other)
-    assert text in line
-    assert getattr(OURS, part) in line
-
-
-@pytest.mark.parametrize("part", ["vendor", "drawn", "size", "tool"])
-def test_what_was_drawn_and_by_which_tool_makes_no_other_build(part: str) -> None:
-    other = replace(OURS, **{part: "something else"})
-    assert OURS.same_build(other)
-    assert len(OURS.differences(other)) == 1
-
-
-def test_equal_ones_differ_in_nothing() -> None:
-    assert OURS.differences(replace(OURS)) == ()
-
-
-def test_silence_is_no_excuse_but_is_reported() -> None:
-    assert OURS.same_build(Fingerprint())
-    assert OURS.same_build(replace(OURS, cpu="", simd="", drawn=""))
-    (line,) = OURS.differences(replace(OURS, cpu="", simd="", drawn=""))
-    assert "does not say its processor" in line
-    assert OURS.differences(Fingerprint())
+def test_another_build_is_known_by_its_parts_and_silence_is_no_excuse(
+    ours: Fingerprint, changes: dict[str, str], same_build: bool, said: list[str]
+) -> None:
+    other = replace(ours, **changes)
+    assert ours.same_build(other) is other.same_build(ours) is same_build
+    lines = ours.differences(other)
+    assert len(lines) == len(said) and all(map(str.startswith, lines, said))
+    for part, text in changes.items():
+        assert same_build or (text in lines[0] and getattr(ours, part) in lines[0])
+    assert OURS.same_build(Fingerprint()) and OURS.differences(Fingerprint())
+    assert fingerprint_of(NVIDIA, (8, 4)).cpu == fingerprint_of(NVIDIA, (8, 4)).simd == ""
 
 
 def test_png_fingerprint_round_trips_and_file_is_reproducible(tmp_path: Path) -> None:
@@ -208,10 +195,6 @@ def edited(folder: Path, file: str, old: str, new: str) -> Path:
     return folder
 
 
-def test_nothing_drawn_has_no_hash(drawing: Engine) -> None:
-    assert drawing.drawn() == ""
-
-
 @pytest.mark.parametrize(
     ("file", "old", "new"),
     [
@@ -236,11 +219,15 @@ def test_what_changes_no_picture_changes_no_hash(
     assert drawn(drawing, edited(folder, file, old, new)) == before
 
 
-def test_moved_files_change_no_hash(drawing: Engine, folder: Path, tmp_path: Path) -> None:
+def test_moved_files_and_another_engine_change_no_hash(
+    drawing: Engine, folder: Path, tmp_path: Path, ctx: moderngl.Context
+) -> None:
+    assert drawing.drawn() == "", "nothing is drawn yet"
     before = drawn(drawing, folder)
+    with Engine(ctx) as other:
+        assert drawn(other, folder) == before
     moved = tmp_path / "elsewhere"
     shutil.copytree(folder, moved)
-    assert drawn(drawing, moved) == before
     (moved / "deeper").mkdir()
     for name in ("terrain.glsl", "hash.glsl"):
         (moved / name).rename(moved / "deeper" / name)
@@ -248,11 +235,6 @@ def test_moved_files_change_no_hash(drawing: Engine, folder: Path, tmp_path: Pat
     edited(moved, "hills.toml", "./terrain", "./deeper/terrain")
     edited(moved, "hills.toml", "stones.png", "pebbles.png")
     assert drawn(drawing, moved) == before
-
-
-def test_another_engine_gives_the_same_hash(drawing: Engine, folder: Path, ctx: moderngl.Context) -> None:
-    with Engine(ctx) as other:
-        assert drawn(other, folder) == drawn(drawing, folder)
 
 
 @pytest.mark.parametrize(

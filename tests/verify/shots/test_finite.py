@@ -141,53 +141,34 @@ def test_what_is_finite_is_no_alarm(drawing: Engine, folder: Path) -> None:
     assert drawing._finite.looked_at == 4  # three textures of floats, and the picture of bytes beneath
 
 
-@pytest.mark.parametrize(
-    ("value", "name"), [(NAN, "NaN"), (INFINITY, "infinity"), (f"-{INFINITY}", "-infinity")]
-)
+NAMES = {NAN: "NaN", INFINITY: "infinity", f"-{INFINITY}": "-infinity"}
+
+
+@pytest.mark.parametrize("output", ["middle:r32f", "middle:r16f", "middle:r8", "middle:r16"])
+@pytest.mark.parametrize("value", [*NAMES, "1e9"])
 def test_the_first_pass_in_running_order_is_named(
-    drawing: Engine, folder: Path, value: str, name: str
+    drawing: Engine, folder: Path, value: str, output: str
 ) -> None:
-    write(folder, "middle:r32f", ILL, value)
+    """Half floats too, and what a texture of bytes hides, beneath which large numbers are finite."""
+    write(folder, output, ILL, value)
     result = found_in(drawing, folder)
-    assert result == NotFinite("middle", "middle", (5, 3), name, 1, (16, 16))
+    if value == "1e9":
+        assert result is None or output == "middle:r16f", "drivers round it to infinity, or to the largest"
+        return
+    assert result == NotFinite("middle", "middle", (5, 3), NAMES[value], 1, (16, 16))
     assert str(result) == (
-        f"pass 'middle', output 'middle': {name} at texel (5, 3) from the south-west corner; "
+        f"pass 'middle', output 'middle': {NAMES[value]} at texel (5, 3) from the south-west corner; "
         "1 of 256 texels are not finite"
     )
 
 
 def test_the_second_output_is_named(drawing: Engine, folder: Path) -> None:
+    assert drawing.not_finite() is None, "nothing is drawn yet"
     write(folder, "even:r32f, odd:rgba32f", PAIR, NAN)
     (folder / "chain.toml").write_text(SKETCH.replace('shown = "middle"', 'shown = "middle:even"'))
     result = found_in(drawing, folder)
     assert result is not None
     assert (result.path, result.output, result.texel) == ("middle", "odd", (5, 3))
-
-
-def test_half_floats_are_looked_at(drawing: Engine, folder: Path) -> None:
-    write(folder, "middle:r16f", ILL, INFINITY)
-    result = found_in(drawing, folder)
-    assert result is not None
-    assert (result.path, result.value) == ("middle", "infinity")
-
-
-@pytest.mark.parametrize("form", ["r8", "r16"])
-@pytest.mark.parametrize(("value", "name"), [(NAN, "NaN"), (INFINITY, "infinity")])
-def test_what_a_texture_of_bytes_hides_is_found(
-    drawing: Engine, folder: Path, form: str, value: str, name: str
-) -> None:
-    write(folder, f"middle:{form}", ILL, value)
-    result = found_in(drawing, folder)
-    assert result is not None
-    assert (result.path, result.texel, result.value) == ("middle", (5, 3), name)
-
-
-@pytest.mark.parametrize("form", ["r8", "r16"])
-def test_what_is_too_large_for_a_half_is_finite_beneath_bytes(
-    drawing: Engine, folder: Path, form: str
-) -> None:
-    write(folder, f"middle:{form}", ILL, "1e9")
-    assert found_in(drawing, folder) is None
 
 
 def test_large_textures_are_looked_at_in_bands(
@@ -257,11 +238,6 @@ def test_steps_that_continue_in_place_are_looked_at_again(ctx: moderngl.Context,
             not_finite = engine.not_finite()
             assert (not_finite is not None) is ill, steps
             assert not_finite is None or (not_finite.path, not_finite.texel) == ("height", (2, 0))
-
-
-def test_nothing_drawn_is_no_alarm(ctx: moderngl.Context) -> None:
-    with Engine(ctx) as engine:
-        assert engine.not_finite() is None
 
 
 def test_gaps_that_a_source_fills_are_no_alarm(ctx: moderngl.Context, tmp_path: Path) -> None:
