@@ -398,9 +398,9 @@ def status(as_json: options.Json = False) -> None:
     names = [summary.name for summary in summaries(SOURCE)]
     statuses = [status_of(name, code) for code in LANGUAGES if code != SOURCE for name in names]
     if as_json:
-        print_json([item.as_json() for item in statuses])
+        print_json([asdict(item) for item in statuses])
     else:
-        rows = [(item.name, item.language, item.state, "; ".join(item.sentences)) for item in statuses]
+        rows = [(item.lesson, item.language, item.state, "; ".join(item.sentences)) for item in statuses]
         print_table("Translations", ("lesson", "language", "state", "what"), rows)
     if any(item.state != "current" for item in statuses):
         raise typer.Exit(FAILED)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
@@ -16,8 +17,8 @@ from mdit_py_plugins.dollarmath import dollarmath_plugin
 from playground.course import model
 from playground.course.measures import MEASURES
 from playground.course.model import Prose
-from playground.course.scenes import PICTURE, STATE, Sketches, read_scene
-from playground.errors import PlaygroundError, SketchError, nearest
+from playground.course.scenes import PICTURE, STATE, Sketches, located, read_scene
+from playground.errors import SketchError, nearest
 from playground.paths import GLSL
 from playground.shader.parameter import spell
 from playground.shader.source import read_text
@@ -202,6 +203,10 @@ class Fence:
         """Return an error at a place in the block."""
         return self.file.error(message, *key_path)
 
+    def located(self, *key_path: str | int) -> AbstractContextManager[None]:
+        """Give an error inside the place of a key."""
+        return located(self.file, *key_path)
+
 
 def measure_of(
     fence: Fence, table: Mapping[str, Any], *key_path: str | int
@@ -236,12 +241,10 @@ def shader(fence: Fence) -> str:
     return file
 
 
-def check_path(fence: Fence, scene: model.Scene, path: str, key: str) -> None:
+def check_path(fence: Fence, scene: model.Scene, path: str, *key_path: str) -> None:
     """Raise ``SketchError`` where a key names no parameter of a picture."""
-    try:
+    with fence.located(*key_path):
         resolve(scene.sketch.graph, path)
-    except PlaygroundError as error:
-        raise fence.error(error.diagnostics[0].message, key) from None
 
 
 def _between(fence: Fence, table: Mapping[str, Any], *key_path: str | int) -> tuple[float, float] | None:

@@ -12,7 +12,7 @@ from playground.course import model
 from playground.course.document import Fence, Piece, check_path, measure_of, shader
 from playground.course.scenes import FRAME, STATE, Sketches, read_scene, with_steps, with_value
 from playground.course.tasks import EXERCISES, SHARE, answer_text, path_of, starter_text
-from playground.errors import DataError, PlaygroundError, ShaderError, SketchError, nearest
+from playground.errors import DataError, ShaderError, SketchError, nearest
 from playground.paths import GLSL
 from playground.shader.parameter import spell
 from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve
@@ -57,11 +57,9 @@ def _steps(fence: Fence) -> model.Steps:
     passes = fence.texts("passes")
     if not passes:
         raise fence.error('a step block needs passes = ["…"]: the repeated passes that it stops')
-    try:
+    with fence.located("passes"):
         repeated = [repeated_in(scene.sketch, path) for path in passes]
         most = min(repeats_of(scene.sketch, frame_size=scene.pixels, time=scene.time)[p] for p in repeated)
-    except PlaygroundError as error:
-        raise fence.error(error.diagnostics[0].message, "passes") from None
     iterations = fence.take("iterations", list, list(range(most + 1)))
     if not iterations or not all(type(picture) is int and 0 <= picture <= most for picture in iterations):
         message = f"iterations = {spell(iterations)}: expected whole numbers from 0 to {most}"
@@ -95,10 +93,8 @@ def _swept(fence: Fence, scene: model.Scene, parameter: str) -> tuple[Value, ...
         values = [round(v) if whole else float(f"{v:.6g}") for v in values]
     if len(values) < 2:
         raise fence.error("values: a slider has two or more", "values")
-    try:
+    with fence.located("values"):
         return tuple(check_value(scene.sketch, parameter, value) for value in values)
-    except PlaygroundError as error:
-        raise fence.error(error.diagnostics[0].message, "values") from None
 
 
 def _compare(fence: Fence) -> model.Compare:
@@ -274,10 +270,8 @@ def _check(fence: Fence, task: model.Exercise, index: int) -> model.Check:
     file.only(table, [*_CHECK, "of", *(_MEASURE if measures else ())], *key_path)
     of = file.take(table, "of", str, "height" if measures else "", *key_path)
     if of:
-        try:
+        with fence.located(*key_path, "of"):
             flatten(scene.sketch).ref(of, scene.sketch.name)
-        except PlaygroundError as error:
-            raise fence.error(error.diagnostics[0].message, *key_path, "of") from None
     at = _at(fence, task, file.take(table, "at", dict, {}, *key_path), *key_path, "at")
     hidden = file.take(table, "hidden", bool, False, *key_path)
     if hidden and not at:
@@ -323,10 +317,8 @@ def _at(
     own = () if task.file else task.sliders
     values = []
     for path, value in arguments.items():
-        try:
+        with fence.located(*slot, path):
             values.append((path, check_value(task.scene.sketch, path, value)))
-        except PlaygroundError as error:
-            raise fence.error(error.diagnostics[0].message, *slot, path) from None
         if path in own:
             raise fence.error(f"at: '{path}' is what the student sets", *slot, path)
     return tuple(values)
@@ -345,13 +337,9 @@ def _check_text(fence: Fence, key: str, name: str, file: str) -> None:
 
 
 def _check_task_path(fence: Fence, scene: model.Scene, path: str, *location: str) -> None:
-    """Raise ``SketchError`` where the picture has no such parameter."""
-    if path in TERRAIN_KEYS:
-        return
-    try:
-        resolve(scene.sketch.graph, path)
-    except PlaygroundError as error:
-        raise fence.error(error.diagnostics[0].message, *location) from None
+    """Raise ``SketchError`` where the picture has no such parameter, and the terrain none either."""
+    if path not in TERRAIN_KEYS:
+        check_path(fence, scene, path, *location)
 
 
 READERS: dict[str, Callable[[Fence], model.Named]] = {

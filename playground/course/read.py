@@ -224,38 +224,25 @@ def _hash(text: str) -> str:
 class Status:
     """The state of a translation."""
 
-    name: str
+    lesson: str
     language: str
     state: str  # missing | unmarked | stale | current
-    changed: tuple[int, ...] = ()  # lines of the English file
-    added: tuple[int, ...] = ()
-    removed: int = 0  # blocks
+    changed_lines: tuple[int, ...] = ()  # of the English file
+    new_lines: tuple[int, ...] = ()
+    removed_blocks: int = 0
 
     @property
     def sentences(self) -> list[str]:
         """What there is to do, in English."""
-        sentences_found = []
+        listed = []
         if self.state == "unmarked":
-            sentences_found.append(f"playground lesson translated {self.name} --lang {self.language}")
-        for change, lines in (("changed", self.changed), ("new", self.added)):
+            listed.append(f"playground lesson translated {self.lesson} --lang {self.language}")
+        for change, lines in (("changed", self.changed_lines), ("new", self.new_lines)):
             if lines:
-                sentences_found.append(
-                    f"{change}: line{'s' if len(lines) > 1 else ''} {', '.join(map(str, lines))}"
-                )
-        if self.removed:
-            sentences_found.append(f"{counted(self.removed, 'block')} of it no longer in English")
-        return sentences_found
-
-    def as_json(self) -> dict[str, Any]:
-        """Return it as JSON takes it."""
-        return {
-            "lesson": self.name,
-            "language": self.language,
-            "state": self.state,
-            "changed_lines": list(self.changed),
-            "new_lines": list(self.added),
-            "removed_blocks": self.removed,
-        }
+                listed.append(f"{change}: line{'s' if len(lines) > 1 else ''} {', '.join(map(str, lines))}")
+        if self.removed_blocks:
+            listed.append(f"{counted(self.removed_blocks, 'block')} of it no longer in English")
+        return listed
 
 
 def status_of(name: str, language: str) -> Status:

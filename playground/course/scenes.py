@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from playground.course import model
 from playground.course.model import Scene, Slider
-from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
+from playground.errors import PlaygroundError, SketchError, nearest
 from playground.memo import INTERFACE
 from playground.paths import GLSL, SKETCHES
 from playground.shader.parameter import spell, write
@@ -105,11 +106,9 @@ def read_scene(
     values = read_set(file, sketch, whole, key_path, "this picture")
     steps = dict(shot.steps) | dict(read_steps(file, sketch, whole, key_path))
     for_shot = sketch.for_shot(shot)
-    try:
+    with located(file, *key_path, "preset" if preset else "set"):
         made = for_shot.with_preset(preset) if preset else for_shot
         made = replace(made.with_values(dict(values)), warnings=(*made.warnings, *file.warnings))
-    except PlaygroundError as error:
-        raise file.error(error.diagnostics[0].message, *key_path, "preset" if preset else "set") from None
     if "camera" in whole:
         made = made.with_camera(read_camera(file, whole, for_shot.camera, key_path))
     view = file.take(whole, "view", str, "", *key_path)
@@ -143,18 +142,24 @@ def _joined(
     return whole
 
 
+@contextmanager
+def located(file: TomlFile, *key_path: str | int) -> Iterator[None]:
+    """Give an error inside the place of a key in a file."""
+    try:
+        yield
+    except PlaygroundError as error:
+        raise file.error(error.diagnostics[0].message, *key_path) from None
+
+
 def _check_steps(file: TomlFile, key_path: KeyPath, scene: Scene) -> None:
     """Raise ``SketchError`` where a pass cannot be stopped at the iteration that is named."""
     from playground.engine.plan import PlanRequest
     from playground.engine.planner import make_plan  # it needs what is loaded by then only
 
-    try:
-        if scene.steps:
-            make_plan(
-                scene.sketch, PlanRequest(frame_size=scene.pixels, time=scene.time, steps=dict(scene.steps))
-            )
-    except ParameterError as error:
-        raise file.error(error.diagnostics[0].message, *key_path, "steps") from None
+    if scene.steps:
+        with located(file, *key_path, "steps"):
+            request = PlanRequest(frame_size=scene.pixels, time=scene.time, steps=dict(scene.steps))
+            make_plan(scene.sketch, request)
 
 
 def comparable(first: Scene, second: Scene) -> bool:
@@ -190,10 +195,8 @@ def _shot(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, sketch: S
     name = file.take(table, "shot", str, "", *key_path)
     if not name:
         return Shot("")
-    try:
+    with located(file, *key_path, "shot"):
         return sketch.shot(name)
-    except PlaygroundError as error:
-        raise file.error(error.diagnostics[0].message, *key_path, "shot") from None
 
 
 def _pixels(
@@ -215,10 +218,8 @@ def _range(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath) -> tuple
 def _from_above(file: TomlFile, table: Mapping[str, Any], key_path: KeyPath, sketch: Sketch) -> Sketch:
     ref = table["view"]
     flat = flatten(sketch)
-    try:
+    with located(file, *key_path, "view"):
         ref_found = flat.ref(ref, sketch.name)
-    except PlaygroundError as error:
-        raise file.error(error.diagnostics[0].message, *key_path, "view") from None
     kernels = {leaf.path: leaf.kernel for leaf in leaves_of(flat.nodes)}
     output = next(o for o in kernels[ref_found.path].outputs if o.name == ref_found.output)
     lowest, highest = _range(file, table, key_path)

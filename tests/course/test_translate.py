@@ -144,7 +144,7 @@ def test_the_status_of_a_folder_of_lessons(pair, write_lesson, tmp_path, monkeyp
     (tmp_path / "en" / "small.md").write_text(text.replace("A picture first.", "Two."), encoding="utf-8")
     result = status_of("small", "fr")
     line = text.split("\n").index("A picture first.") + 1
-    assert (result.state, result.changed) == ("stale", (line,))
+    assert (result.state, result.changed_lines) == ("stale", (line,))
     assert result.sentences == [f"changed: line {line}"]
     (tmp_path / "fr" / "small.md").unlink()
     assert status_of("small", "fr").state == "missing"

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from playground.course import model
-from playground.course.book.html import LessonContext, picture_image
+from playground.course.book.html import LessonContext, image
 from playground.course.book.live import LiveBook, live_book
 from playground.course.book.page import (
     FIGURES,
@@ -34,12 +34,11 @@ from playground.course.book.page import (
     gallery_html,
     gallery_page,
     glossary_page,
-    hero_image,
     lesson_page,
     section_id,
 )
 from playground.course.document import every_token, parser
-from playground.course.figures import FigurePicture, Hero, ThesisFigure, hero_of, thesis_figures
+from playground.course.figures import HERO, FigurePicture, Hero, ThesisFigure, hero_of, thesis_figures
 from playground.course.glossary import alphabetical
 from playground.course.library import labels
 from playground.course.measures import Number, numbers_of
@@ -319,7 +318,7 @@ def _pages(
         hero = None
         if hero_picture := build.heroes.get(lesson.name):
             file, item = hero_picture
-            hero = hero_image(f"../{PICTURES}/{file}", item.alt[lesson.language])
+            hero = image(f"../{PICTURES}/{file}", item.alt[lesson.language], HERO)
         covers[lesson.name] = _cover(build, lesson, f"../{PICTURES}", lazy=True)
         yield f"{lesson.name}.html", lesson_page(book, lesson, setting, hero)
     yield "index.html", contents_page(book, covers)
@@ -336,10 +335,10 @@ def _pages(
 def _cover(build: Build, lesson: Lesson, folder: str, *, lazy: bool = False) -> Markup:
     """Return a lesson's hero, or else its first picture, without a text: its title is next to it."""
     if hero_picture := build.heroes.get(lesson.name):
-        return hero_image(f"{folder}/{hero_picture[0]}", "", lazy=lazy)
+        return image(f"{folder}/{hero_picture[0]}", "", HERO, lazy=lazy)
     picture = pictures_of(lesson)[0]
     source = of_picture(build.files[lesson.name], folder)(picture)
-    return picture_image(picture, source, "", lazy=lazy)
+    return image(source, "", picture.scene.pixels, lazy=lazy)
 
 
 def _write(path: Path, data: bytes) -> None:

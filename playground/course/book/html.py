@@ -134,11 +134,10 @@ ANSWERS = ("inline", "end", "none")
 """Where answers are: folded away under their questions, and on paper at the end; at the end; nowhere."""
 
 
-def picture_image(picture: Picture, source: str, alt: str, *, lazy: bool) -> Markup:
-    """Return a picture as an element with its size."""
-    width, height = picture.scene.pixels
+def image(source: str, alt: str, size: tuple[int, int], *, lazy: bool = False) -> Markup:
+    """Return a picture as an element with its size, so that nothing jumps when it is loaded."""
     loading = "lazy" if lazy else None
-    return tag("img", src=source, alt=alt, width=width, height=height, loading=loading, decoding="async")
+    return tag("img", src=source, alt=alt, width=size[0], height=size[1], loading=loading, decoding="async")
 
 
 @dataclass(frozen=True)
@@ -164,9 +163,9 @@ class LessonContext:
         return prose(self.filled(markdown), self.anchor)
 
     def image(self, picture: Picture, *, lazy: bool = True, alt: str | None = None) -> Markup:
-        """Return a picture as an element with its size, so that nothing jumps when it is loaded."""
+        """Return a picture as an element, with its own description or another."""
         text = plain(self.filled(picture.alt)) if alt is None else alt
-        return picture_image(picture, self.source(picture), text, lazy=lazy)
+        return image(self.source(picture), text, picture.scene.pixels, lazy=lazy)
 
     def still(self, *inside: Markup | None) -> Markup:
         """Return what a live block replaces where a reader starts it."""

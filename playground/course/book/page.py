@@ -8,8 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from playground._version import __version__
-from playground.course.book.html import Anchor, LessonContext, block_html, line, open_command, plain
-from playground.course.figures import HERO, FigurePicture, ThesisFigure
+from playground.course.book.html import Anchor, LessonContext, block_html, image, line, open_command, plain
+from playground.course.figures import FigurePicture, ThesisFigure
 from playground.course.glossary import Term, alphabetical, linked_term, terms_of
 from playground.course.library import LANGUAGES, THESIS, Labels, parts
 from playground.course.model import Lesson, Section
@@ -112,13 +112,6 @@ def _contents_of(book: Book, lesson: Lesson, setting: LessonContext) -> Markup:
     title = book.label("on_this_page")
     inside = tag("details", tag("summary", title), tag("ol", *rows))
     return tag("nav", inside, class_="toc", aria_label=title)
-
-
-def hero_image(source: str, alt: str, *, lazy: bool = False) -> Markup:
-    """Return a hero as an element with its size."""
-    width, height = HERO
-    loading = "lazy" if lazy else None
-    return tag("img", src=source, alt=alt, width=width, height=height, loading=loading, decoding="async")
 
 
 def contents_page(book: Book, covers: Mapping[str, Markup]) -> str:
@@ -370,17 +363,9 @@ def _caption(book: Book, figure: ThesisFigure) -> Markup:
 
 
 def _picture(book: Book, number: str, picture: FigurePicture, source: Source) -> Markup:
-    width, height = picture.scene.pixels
-    image = tag(
-        "img",
-        src=source(picture),
-        # The caption describes what the thesis shows; this identifies the picture.
-        alt=f"{number}, {picture.sketch}: {picture.scene.sketch.title}",
-        width=width,
-        height=height,
-        loading="lazy",
-        decoding="async",
-    )
+    # The caption describes what the thesis shows; this identifies the picture.
+    alt = f"{number}, {picture.sketch}: {picture.scene.sketch.title}"
+    shown = image(source(picture), alt, picture.scene.pixels, lazy=True)
     rows = (each for row in picture.parameters for each in (tag("dt", row[0]), tag("dd", row[1])))
     parameters = tag("details", tag("summary", book.label("parameters")), tag("dl", *rows))
-    return tag("figure", image, parameters, command_line(picture.command))
+    return tag("figure", shown, parameters, command_line(picture.command))

@@ -6,11 +6,14 @@ Keys, clickers and the page of notes all end here. Pictures are shown by who own
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
 
 from playground.course.model import Lesson
 from playground.course.talk.beats import Beat, beats_of, first_of_page
+from playground.errors import ParameterError
 
 TYPED = 3.0
 """[s] after its last digit that a typed number is forgotten."""
@@ -151,6 +154,28 @@ class Presenter:
         else:
             self.end()
 
+    def obey(self, wishes: Mapping[str, Any]) -> None:
+        """Do what the page of notes asks for; raise ``ParameterError`` for what nobody knows."""
+        if not self.on:
+            raise ParameterError("the presentation is over")
+        acts: dict[tuple[str, object], Callable[[], None]] = {
+            ("go", "next"): self.next,
+            ("go", "back"): self.back,
+            ("go", "first"): partial(self.go, 0),
+            ("go", "last"): partial(self.go, len(self.beats) - 1),
+            ("cover", "black"): partial(self.cover, "black"),
+            ("cover", "white"): partial(self.cover, "white"),
+            ("clock", "pause"): self.clock.toggle,
+            ("clock", "reset"): self.clock.reset,
+        }
+        for key in ("go", "cover", "clock"):
+            wish = wishes.get(key)
+            if key == "go" and type(wish) is int:
+                return self.go(wish - 1)
+            if isinstance(wish, str) and (key, wish) in acts:
+                return acts[key, wish]()
+        raise ParameterError('expected {"go": "next"}, {"cover": "black"} or {"clock": "pause"}')
+
     # ── numbers ──────────────────────────────────────────────────────────────
 
     def type(self, digit: str) -> None:
@@ -188,6 +213,10 @@ class Presenter:
     def toggle_laser(self) -> None:
         """Show a spot at the mouse, or no longer."""
         self.laser, self.pen = not self.laser, False
+
+    def toggle_help(self) -> None:
+        """Show the keys, or no longer."""
+        self.helps = not self.helps
 
     def toggle_pen(self) -> None:
         """Take the pen, or put it down."""

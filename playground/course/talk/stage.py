@@ -17,13 +17,13 @@ from playground.course.library import labels
 from playground.course.model import Break, Compare, Exercise, Slider, Steps
 from playground.course.scenes import with_bug
 from playground.course.talk.beats import Beat, Still, texts_of_beat, with_texts
-from playground.course.talk.notes import NotesLink
+from playground.course.talk.notes import Notes, notes_message
 from playground.course.talk.presenter import Point, Presenter
 from playground.course.tasks import path_of, starter_text
 from playground.course.window.bugs import file_of
 from playground.course.window.reader import Reader
 from playground.course.window.tasks import BEGUN
-from playground.errors import ParameterError, PlaygroundError
+from playground.errors import DataError, ParameterError, PlaygroundError
 from playground.shader.parameter import is_whole, write
 from playground.sketch.assign import range_of, resolve
 from playground.sketch.model import Parameter, Value
@@ -246,7 +246,9 @@ class Stage:
         self.bench, self.reader = bench, reader
         self.pictures = PresentedPictures(reader)
         self.presenter: Presenter = Presenter(self._show, self._left, bench.notices.now)
-        self.notes = NotesLink(self.presenter, self._filled, wake)
+        self.notes: Notes | None = None
+        self._wake = wake
+        self._told: object = None  # what the page of notes was told last
         self._textures: Textures | None = None
         self._pen = Pen()
         self._was_full = False
@@ -285,10 +287,12 @@ class Stage:
             notices.say(str(error))
             return
         if options.beat > len(self.presenter.beats):
-            self._note(self._say("no_beat", options.beat, len(self.presenter.beats)))
-        if options.notes and (why := self.notes.open()):
-            self._note(self._say("no_notes", why))
-        if self.notes.url:
+            self.note("no_beat", options.beat, len(self.presenter.beats))
+        try:
+            self.notes = self.notes or (Notes(self.presenter.obey, self._wake) if options.notes else None)
+        except DataError as error:
+            self.note("no_notes", error)
+        if self.notes is not None:
             options.say(self._say("notes_at", self.notes.url))
         self._was_full = self.bench.window.is_full()
         if not self._was_full:
@@ -302,7 +306,7 @@ class Stage:
         self.reader.go(beat.page, show=False)
         if self.reader.figure.scene is not None and beat.kind in ("broken", "hint"):
             self.reader.figure.set_texts({})
-        self.notes.tell(self.reader.language)
+        self._tell()
 
     def release(self) -> None:
         """Release what was made in the session's context."""
@@ -311,14 +315,28 @@ class Stage:
 
     def close(self) -> None:
         """Close the page of notes."""
-        self.notes.close()
+        if self.notes is not None:
+            self.notes.close()
+            self.notes = None
+
+    def _tell(self) -> None:
+        """Tell the page of notes what is on, where that is new."""
+        presenter = self.presenter
+        if self.notes is None or presenter.lesson is None or not presenter.beats:
+            return
+        clock, beat = presenter.clock, self._filled(presenter.beat)
+        coming = self._filled(presenter.following) if presenter.following is not None else None
+        key = presenter.on, presenter.at, beat, presenter.blank, clock.running, clock.started_at
+        if key != self._told:
+            self._told = key
+            self.notes.tell(notes_message(presenter, beat, coming, self.reader.language))
 
     # ── frames ───────────────────────────────────────────────────────────────
 
     @property
     def patience(self) -> float:
         """How long nothing needs to be done here [s]."""
-        if self.notes.waits or self._due is not None:
+        if (self.notes is not None and self.notes.waits) or self._due is not None:
             return 0.0
         if not self.on:
             return 1.0
@@ -331,7 +349,8 @@ class Stage:
 
     def take(self) -> None:
         """Do what the page of notes asked for."""
-        self.notes.take()
+        if self.notes is not None:
+            self.notes.take()
 
     def area(self, pixels: tuple[int, int]) -> tuple[int, int, int, int]:
         """Return where the picture is: x, y from below, width, height [pixels]."""
@@ -395,7 +414,7 @@ class Stage:
             room = imgui.get_main_viewport().size
             colour = 0xFF000000 if presenter.blank == "black" else 0xFFFFFFFF
             imgui.get_foreground_draw_list().add_rect_filled(ImVec2(0, 0), ImVec2(room.x, room.y), colour)
-        self.notes.tell(self.reader.language)
+        self._tell()
 
     def _images(self, sizes: Sizes, rows: list[Row]) -> dict[str, moderngl.Texture | None]:
         """Return the images of what is written, by name; made where another is due."""
@@ -448,15 +467,11 @@ class Stage:
 
     # ── what keys do ─────────────────────────────────────────────────────────
 
-    def quit(self) -> None:
-        """Quit the program."""
-        self.bench.window.quit()
-
     def enter(self) -> None:
         """Go to the beat whose number was typed."""
         number = self.presenter.typed
         if why := self.presenter.enter():
-            self._note(self._say(why, number, len(self.presenter.beats)))
+            self.note(why, number, len(self.presenter.beats))
 
     def type(self, digit: str) -> None:
         """Take a digit, of a beat's number or of a slider."""
@@ -481,26 +496,16 @@ class Stage:
     def toggle_laser(self) -> None:
         """Show a spot at the mouse, or no longer."""
         self.presenter.toggle_laser()
-        self._note(self._say("laser_on") if self.presenter.laser else "")
+        self.note("laser_on" if self.presenter.laser else "")
 
     def toggle_pen(self) -> None:
         """Take the pen, or put it down."""
         self.presenter.toggle_pen()
-        self._note(self._say("pen_on") if self.presenter.pen else "")
+        self.note("pen_on" if self.presenter.pen else "")
 
-    def toggle_full(self) -> None:
-        """Fill the screen, or no longer."""
-        self.bench.window.toggle_full()
-
-    def toggle_help(self) -> None:
-        """Show the keys, or no longer."""
-        self.presenter.helps = not self.presenter.helps
-
-    def say_address(self) -> None:
-        """Show where the notes are."""
-        self._note(self._say("notes_at", self.notes.url or "–"))
-
-    def _note(self, sentence: str) -> None:
+    def note(self, key: str, *values: object) -> None:
+        """Show a label as a notice, or no longer where it is shown already."""
+        sentence = self._say(key, *values) if key else ""
         self.presenter.notice = "" if sentence == self.presenter.notice else sentence
 
     def _show(self, beat: Beat) -> None:
@@ -549,9 +554,11 @@ KEYS: tuple[PresentKey, ...] = (
     PresentKey("laser", (_K.p,), lambda stage: stage.toggle_laser()),
     PresentKey("pen", (_K.d,), lambda stage: stage.toggle_pen()),
     PresentKey("erase", (_K.e,), lambda stage: stage.presenter.erase()),
-    PresentKey("notes", (_K.n,), lambda stage: stage.say_address()),
-    PresentKey("full", (_K.f, _K.f11), lambda stage: stage.toggle_full()),
-    PresentKey("help", (_K.h,), lambda stage: stage.toggle_help(), typed="?"),
+    PresentKey(
+        "notes", (_K.n,), lambda stage: stage.note("notes_at", stage.notes.url if stage.notes else "–")
+    ),
+    PresentKey("full", (_K.f, _K.f11), lambda stage: stage.bench.window.toggle_full()),
+    PresentKey("help", (_K.h,), lambda stage: stage.presenter.toggle_help(), typed="?"),
     PresentKey("leave", (_K.escape,), lambda stage: stage.presenter.escape()),
 )
 
@@ -566,7 +573,7 @@ def act_on_presentation_keys(stage: Stage) -> None:
     """Act on the keys pressed since the last frame."""
     io = imgui.get_io()
     if (io.key_ctrl or io.key_super) and imgui.is_key_pressed(_K.q, repeat=False):
-        stage.quit()
+        stage.bench.window.quit()
         return
     if io.key_ctrl or io.key_alt or io.key_super:
         return

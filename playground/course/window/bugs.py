@@ -107,13 +107,14 @@ class Copies:
         return copy.base if copy is not None else None
 
 
-def line_of(text: str, part: str) -> int:
-    """Return the line, from 1, that a part of a text begins on; 1 where it is not in it."""
-    at = text.find(part)
-    return text.count("\n", 0, at) + 1 if at >= 0 else 1
-
-
 _KERNEL = re.compile(r"^\w+ kernel\(.*$", re.MULTILINE)
+
+
+def kernel_line(text: str) -> int:
+    """Return the line, from 1, that a text's kernel begins on; 1 where there is none."""
+    begins = _KERNEL.search(text)
+    return text.count("\n", 0, begins.start()) + 1 if begins else 1
+
 
 WHOLE, BROKEN, FIXED, SHOWN = "", "broken", "fixed", "shown"
 """How far a bug has come: SHOWN where the lesson has fixed it."""
@@ -158,9 +159,7 @@ class Bugs:
         except PlaygroundError as error:
             self.notices.say(str(error))
             return
-        begins = _KERNEL.search(text)
-        line = line_of(text, begins[0]) if begins else 1  # the bug itself is to be found
-        self._open(block, path, text, line)
+        self._open(block, path, text, kernel_line(text))  # the bug itself is to be found
         self._on, self.state[block.name] = block, BROKEN
         self.figure.show(block.scene, (block.name, 1), self.texts)
         self._to_check = text != with_bug(block)

@@ -7,7 +7,6 @@ the best score are remembered from one start to the next.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -19,7 +18,7 @@ from playground.course.judging import JudgeProcess, Request, judgement
 from playground.course.model import Block, Challenge, Exercise, Scene
 from playground.course.scenes import with_value
 from playground.course.tasks import Picture, Verdict, Work, path_of, scene_of, starter, starter_text
-from playground.course.window.bugs import Copies, Copy, line_of
+from playground.course.window.bugs import Copies, Copy, kernel_line
 from playground.course.window.figure_view import FigureView
 from playground.course.window.progress import Attempt, Progress
 from playground.engine.process.pool import Task as Future
@@ -175,7 +174,6 @@ Task = Exercise | Challenge
 BEGUN = 1
 """Which picture of a task is the student's own; 0 is that of the solution."""
 
-_KERNEL = re.compile(r"^\w+ kernel\(.*$", re.MULTILINE)
 _POLL = 0.05  # [s] between two looks at what is judged
 _STORE = 2.0  # [s] after which what is typed is remembered
 
@@ -219,8 +217,7 @@ class Tasks:
         texts: Mapping[str, str] = {}
         if block.file:
             path, text = path_of(block), attempt.text or starter_text(block)
-            begins = _KERNEL.search(text)
-            self._open(block, path, text, line_of(text, begins[0]) if begins else 1)
+            self._open(block, path, text, kernel_line(text))
             texts = {str(path): text}
         for slider, value in attempt.values.items():
             if slider in block.sliders:
