@@ -26,8 +26,8 @@ from playground.studio.commands import check_display, open_window
 from playground.terminal import complain, note, painted, print_json, print_rows, print_table, progress
 
 if TYPE_CHECKING:
-    from playground.course.grading.entries import Submission
     from playground.course.grading.report import Graded
+    from playground.course.grading.submissions import Submission
     from playground.course.handout import Assignment
     from playground.course.model import Lesson
     from playground.course.read import Summary
@@ -114,10 +114,9 @@ def grade(
     software: options.Software = False,
 ) -> None:
     """Grade a folder of submissions."""
-    from playground.course.grading.entries import find_submissions
-    from playground.course.grading.grade import count_works, grade, read_all
-    from playground.course.grading.judges import Judges, Options
+    from playground.course.grading.grade import Judges, Options, count_works, grade, read_all
     from playground.course.grading.report import check_folder, write_report
+    from playground.course.grading.submissions import find_submissions
     from playground.course.handout import assignments_of
     from playground.course.read import read_lesson
 
@@ -152,7 +151,7 @@ def grade(
 
 def _lessons_handed_in(submissions: Sequence[Submission]) -> list[str]:
     """Return the lessons of which anything was handed in; raise ``SketchError`` for none."""
-    from playground.course.grading.grade import lessons_in
+    from playground.course.grading.submissions import lessons_in
     from playground.course.library import lesson_names
 
     lessons = lesson_names()
@@ -183,8 +182,8 @@ def _as_json(graded: Graded) -> dict[str, object]:
 
 
 def _print(graded: Sequence[Graded], assignments: Sequence[Assignment]) -> None:
-    from playground.course.grading.entries import printable
     from playground.course.grading.report import spelled_points
+    from playground.course.grading.submissions import printable
 
     headings = ["student", *(graded.name for graded in assignments), "total", "of"]
     rows = [

@@ -6,10 +6,21 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from playground.course.judge import SIDE, Ends, Match, Wanted, answers, ends_of, judge, match
 from playground.course.library import Said
 from playground.course.model import Challenge, Exercise
-from playground.course.tasks import Verdict, Work, answer_text
+from playground.course.tasks import (
+    SIDE,
+    Ends,
+    Match,
+    Verdict,
+    Wanted,
+    Work,
+    answer_text,
+    answers,
+    ends_of,
+    judge,
+    match,
+)
 from playground.engine.engine import Engine, open_engine
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Step

@@ -9,14 +9,26 @@ from latex2mathml.converter import convert
 
 from playground.course import model
 from playground.course.document import formulas, images, links
-from playground.course.excerpt import excerpt
 from playground.course.glossary import terms
-from playground.course.judge import Wanted, answers, compare, judge, sentence_of, sentences, small
 from playground.course.library import lesson_files
 from playground.course.measures import measured, named_in
 from playground.course.model import Challenge, Check, Exercise
-from playground.course.scenes import broken, draw
-from playground.course.tasks import answer, scene_of, score, starter, tasks_of, wanted_scene
+from playground.course.scenes import broken, draw, excerpt
+from playground.course.tasks import (
+    Wanted,
+    answer,
+    answers,
+    compare,
+    judge,
+    scene_of,
+    score,
+    sentence_of,
+    sentences,
+    small,
+    starter,
+    tasks_of,
+    wanted_scene,
+)
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import PlaygroundError, nearest

@@ -7,7 +7,6 @@ from itertools import pairwise
 
 import pytest
 
-from playground.course.excerpt import excerpt
 from playground.course.library import LANGUAGES, labels
 from playground.course.model import (
     Break,
@@ -23,7 +22,7 @@ from playground.course.model import (
     Steps,
 )
 from playground.course.read import read_lesson, summaries
-from playground.course.scenes import Sketches
+from playground.course.scenes import Sketches, excerpt
 from playground.course.talk.beats import (
     BOARD_WORDS,
     BOTH,

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from playground.course.excerpt import anchors, bug_region, excerpt
-from playground.course.scenes import with_bug
+from playground.course.scenes import anchors, bug_region, excerpt, with_bug
 from playground.errors import SketchError
 from playground.paths import GLSL
 

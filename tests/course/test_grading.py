@@ -19,10 +19,8 @@ import numpy as np
 import pytest
 
 from playground.cli import main
-from playground.course.grading import judges as handler
-from playground.course.grading.entries import _TOO_MANY, find_submissions
-from playground.course.grading.grade import alike, lessons_in, read_all, read_submission
-from playground.course.grading.judges import values_in_toml
+from playground.course.grading import grade as handler
+from playground.course.grading.grade import alike, read_all, values_in_toml
 from playground.course.grading.report import (
     GRADED,
     MISSING,
@@ -36,6 +34,7 @@ from playground.course.grading.report import (
     table_bytes,
     write_report,
 )
+from playground.course.grading.submissions import _TOO_MANY, find_submissions, lessons_in, read_submission
 from playground.course.handout import assignments_of, normalised
 from playground.course.library import HERE, in_language, patterns
 from playground.course.model import Challenge

@@ -6,14 +6,13 @@ import re
 
 import pytest
 
-from playground.course.excerpt import bug_region
 from playground.course.glossary import terms_of
 from playground.course.library import LANGUAGES, SOURCE, TEXTS, lesson_files, lesson_names
 from playground.course.measures import Number, filled
 from playground.course.model import Break, Prose
 from playground.course.read import read_lesson, read_lessons, status_of, summaries
 from playground.course.rules import MAX_MINUTES, broken_rules, wrong_pictures
-from playground.course.scenes import pictures_of, with_bug
+from playground.course.scenes import bug_region, pictures_of, with_bug
 from playground.paths import GLSL
 from playground.shader.source import read_text
 

@@ -21,10 +21,9 @@ from playground.course.book.live import (
     lesson_data,
     live_book,
 )
-from playground.course.excerpt import bug_region
 from playground.course.library import labels
 from playground.course.read import read_lesson
-from playground.course.scenes import pictures_in, spelled_value
+from playground.course.scenes import bug_region, pictures_in, spelled_value
 from playground.publish.web.blobs import packed_json
 from playground.publish.web.plan import sketch_data
 from playground.publish.web.shared import SharedData

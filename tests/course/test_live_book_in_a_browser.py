@@ -17,10 +17,9 @@ from PIL import Image
 
 from playground.course.book.build import prepare, write_book
 from playground.course.document import read_document
-from playground.course.excerpt import bug_region
 from playground.course.library import labels
 from playground.course.read import read_file, translated, write_hashes
-from playground.course.scenes import broken, draw, with_value
+from playground.course.scenes import broken, bug_region, draw, with_value
 from playground.course.tasks import EXERCISES
 from playground.engine.engine import Engine
 

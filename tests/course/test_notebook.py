@@ -18,7 +18,6 @@ import pytest
 from PIL import Image
 
 from playground.course.book.live import widget_page
-from playground.course.excerpt import BugRegion
 from playground.course.glossary import terms
 from playground.course.library import labels, lesson_files
 from playground.course.measures import numbers_of
@@ -27,7 +26,7 @@ from playground.course.notebook import lesson as notebook_lesson
 from playground.course.notebook.build import notebook_text
 from playground.course.notebook.lesson import NotebookLesson, controls_of, scene_at
 from playground.course.read import read_lesson
-from playground.course.scenes import broken, draw
+from playground.course.scenes import BugRegion, broken, draw
 from playground.errors import SketchError
 from playground.publish.notebook.engine_thread import release_engine
 
@@ -170,7 +169,7 @@ def test_a_saved_notebook_shows_the_picture(opened, lesson, engine):
 
 
 def test_fixing_the_lines_makes_the_correct_picture(opened, lesson, engine):
-    from playground.course.excerpt import bug_region
+    from playground.course.scenes import bug_region
 
     block = lesson.named["fault"]
     region = bug_region(block)

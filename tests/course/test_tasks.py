@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from playground.course import tasks as task_module
-from playground.course.judge import Wanted, answers, compare, judge, points_of, sentences
 from playground.course.library import labels
 from playground.course.measures import MEASURES
 from playground.course.model import Check
@@ -18,10 +17,16 @@ from playground.course.rules import wrong_pictures
 from playground.course.tasks import (
     LEVELS,
     SHARE,
+    Wanted,
     Work,
     answer,
+    answers,
+    compare,
+    judge,
+    points_of,
     scene_of,
     score,
+    sentences,
     share_differing,
     starter,
     tasks_of,
@@ -271,7 +276,7 @@ def test_a_measure_is_of_the_scenes_own_pixels(task, engine, monkeypatch):
         seen.append(measure.scene.pixels)
         return SimpleNamespace(value=0.82)
 
-    monkeypatch.setattr("playground.course.judge.measured", measured)
+    monkeypatch.setattr("playground.course.tasks.measured", measured)
     block = task(KERNEL, "exercise", ("[96, 96]", "[480, 270]")).block
     verdict, _ = results(engine, block, RAW)
     assert verdict.results[2].passed and seen == [(480, 270)]

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from playground.course.judge import Wanted, compare, sentence_of
 from playground.course.library import LANGUAGES, labels
 from playground.course.model import Check
+from playground.course.tasks import Wanted, compare, sentence_of
 
 from ..publish.web.node import MISSING, Node
 

@@ -16,10 +16,9 @@ from markdown_it.token import Token
 
 from playground.course import model
 from playground.course.document import parser
-from playground.course.excerpt import bug_region, excerpt
 from playground.course.library import SOURCE, Labels
 from playground.course.measures import Number, filled
-from playground.course.scenes import Picture, pictures_in, spelled_value
+from playground.course.scenes import Picture, bug_region, excerpt, pictures_in, spelled_value
 from playground.course.tasks import starter_text
 from playground.markup import Markup, joined, tag
 from playground.memo import INTERFACE

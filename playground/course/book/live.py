@@ -12,10 +12,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from playground.course import model
-from playground.course.excerpt import bug_region
 from playground.course.library import LANGUAGES, labels
 from playground.course.model import Lesson, Named, Scene
-from playground.course.scenes import spelled_at
+from playground.course.scenes import bug_region, spelled_at
 from playground.course.tasks import answer_text, path_of, starter_text, wanted_scene
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError

@@ -7,10 +7,10 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from playground.course import model
-from playground.course.excerpt import bug_region, excerpt
 from playground.course.glossary import linked_term, terms_of
 from playground.course.library import SOURCE, THESIS, labels
 from playground.course.measures import Number, filled
+from playground.course.scenes import bug_region, excerpt
 from playground.course.tasks import checks_itself, starter_text
 from playground.errors import DataError
 from playground.extras import needs

@@ -12,23 +12,24 @@ from PIL import Image
 
 from playground.course import model
 from playground.course.book.live import widget_page
-from playground.course.excerpt import bug_region
-from playground.course.judge import Match, points_of, sentences
 from playground.course.judging import JudgeProcess
 from playground.course.library import SOURCE, Labels, labels
 from playground.course.measures import measured
 from playground.course.model import Compare, Figure, Scene, Slider, Steps
 from playground.course.read import read_lesson
-from playground.course.scenes import broken, draw, spelled_value, with_value
+from playground.course.scenes import broken, bug_region, draw, spelled_value, with_value
 from playground.course.tasks import (
     SHARE,
     CheckResult,
+    Match,
     Picture,
     Verdict,
     Work,
     checks_itself,
     difference_map,
+    points_of,
     scene_of,
+    sentences,
     share_differing,
     starter,
 )

@@ -15,7 +15,6 @@ import textwrap
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from playground.course.excerpt import excerpt
 from playground.course.library import labels
 from playground.course.model import (
     Block,
@@ -34,7 +33,7 @@ from playground.course.model import (
     Slider,
     Steps,
 )
-from playground.course.scenes import comparable
+from playground.course.scenes import comparable, excerpt
 from playground.course.tasks import scene_of as begun
 from playground.course.tasks import starter
 

@@ -11,9 +11,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from playground.course.excerpt import Excerpt, excerpt
 from playground.course.model import Break, Code, Scene
-from playground.course.scenes import Picture, draw, with_bug
+from playground.course.scenes import Excerpt, Picture, draw, excerpt, with_bug
 from playground.course.tasks import SHARE, share_differing
 from playground.course.window.figure_view import FigureView
 from playground.errors import PlaygroundError

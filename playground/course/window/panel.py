@@ -14,7 +14,6 @@ from typing import Any
 from imgui_bundle import ImVec2, imgui
 
 from playground.course.glossary import linked_term
-from playground.course.judge import points_of, sentence_of
 from playground.course.library import LANGUAGES, labels
 from playground.course.measures import named_in
 from playground.course.model import (
@@ -33,7 +32,16 @@ from playground.course.model import (
     Steps,
 )
 from playground.course.scenes import comparable
-from playground.course.tasks import CheckResult, Picture, Verdict, checks_itself, difference_map, path_of
+from playground.course.tasks import (
+    CheckResult,
+    Picture,
+    Verdict,
+    checks_itself,
+    difference_map,
+    path_of,
+    points_of,
+    sentence_of,
+)
 from playground.course.typeset import plain, written
 from playground.course.window.bugs import BROKEN, FIXED, SHOWN
 from playground.course.window.figure_view import sketch_path

@@ -13,11 +13,21 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import cast
 
-from playground.course.judge import Ends, Match, match
 from playground.course.judging import JudgeProcess, Request, judgement
 from playground.course.model import Block, Challenge, Exercise, Scene
 from playground.course.scenes import with_value
-from playground.course.tasks import Picture, Verdict, Work, path_of, scene_of, starter, starter_text
+from playground.course.tasks import (
+    Ends,
+    Match,
+    Picture,
+    Verdict,
+    Work,
+    match,
+    path_of,
+    scene_of,
+    starter,
+    starter_text,
+)
 from playground.course.window.bugs import Copies, Copy, kernel_line
 from playground.course.window.figure_view import FigureView
 from playground.course.window.progress import Attempt, Progress

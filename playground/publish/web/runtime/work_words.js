@@ -1,4 +1,4 @@
-// work_words.js -- what is said of a work that was checked, as playground/course/judge.py does.
+// work_words.js -- what is said of a work that was checked, as playground/course/tasks.py does.
 //
 // The words are those of [tasks] in course/labels, which a book's scripts hold.
 
