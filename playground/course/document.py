@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -94,6 +94,23 @@ def images(text: str) -> Iterator[str]:
     for token in every_token(parser().parse(text)):
         if token.type == "image":
             yield str(token.attrs["src"])
+
+
+_ENDS = ("softbreak", "hardbreak", "paragraph_close", "heading_close", "td_close", "th_close")
+_BLANKS = re.compile(r"[ \n]+")  # a no-break space stays
+
+
+def plain(text: str, formula: Callable[[str], str] = str) -> str:
+    """Return Markdown as plain text on one line, formulas as ``formula`` writes their LaTeX."""
+    parts = []
+    for token in every_token(parser().parse(text)):
+        if token.type in _ENDS:
+            parts.append(" ")
+        elif token.type in ("math_inline", "math_block"):
+            parts.append(formula(token.content))
+        elif token.type in ("text", "code_inline", "fence", "code_block"):
+            parts.append(token.content)
+    return _BLANKS.sub(" ", "".join(parts)).strip()
 
 
 def every_token(tokens: list[Token]) -> Iterator[Token]:

@@ -25,7 +25,8 @@ import numpy as np
 from PIL import Image
 
 from playground._version import __version__
-from playground.course.book.html import plain, prose
+from playground.course.book.html import prose
+from playground.course.document import plain
 from playground.course.glossary import linked_term
 from playground.course.library import SOURCE, Labels, labels
 from playground.course.measures import Number, filled, numbers_of
@@ -321,7 +322,11 @@ class _PageContext:
 
     def text(self, markdown: str) -> Markup:
         """Return a text as paragraphs, with the numbers in it."""
-        return prose(filled(markdown, self.numbers, comma=self.lesson.language == "fr"), self.anchor)
+        return prose(self.filled(markdown), self.anchor)
+
+    def filled(self, markdown: str) -> str:
+        """Return a text with the numbers in it."""
+        return filled(markdown, self.numbers, self.lesson.language)
 
     def anchor(self, link: str) -> dict[str, str]:
         """Return the attributes of a link: the page has no other page to lead to."""
@@ -433,7 +438,7 @@ def _pictures(task: Task, setting: _PageContext) -> list[Markup]:
     figures = [setting.picture(scene_of(task, starter(task)), label["begin"], label["begin"])]
     # Where only a measure is judged, many pictures are right.
     if isinstance(task, Challenge) or any(check.measure is None for check in getattr(task, "checks", ())):
-        alt = plain(filled(getattr(task, "alt", ""), setting.numbers))
+        alt = plain(setting.filled(getattr(task, "alt", "")))
         figures.append(setting.picture(task.scene, alt or label["wanted"], label["wanted"]))
     return figures
 

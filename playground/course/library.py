@@ -168,6 +168,11 @@ def in_language(text: str, language: str) -> str:
     return patterns(language).get(text.pattern, text.pattern).format(**values)
 
 
+def decimal(number: str, language: str) -> str:
+    """Return a number as a language writes it: in French, decimals follow a comma."""
+    return number.replace(".", ",") if language == "fr" else number
+
+
 def patterns(language: str) -> dict[str, str]:
     """Return the patterns of a language by their English ones; none for English."""
     return dict(_catalogue(language).get("said", {}))

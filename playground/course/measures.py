@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.course.library import decimal
 from playground.course.model import Lesson, Markdown, Measure, Scene
 from playground.errors import SketchError
 from playground.sketch.model import TexelKernel
@@ -334,18 +335,11 @@ def numbers_of(engine: Engine, lesson: Lesson) -> dict[str, Number]:
     return {measure.name: measured(engine, measure) for measure in lesson.measures}
 
 
-def filled(markdown: Markdown, numbers: Mapping[str, Number], comma: bool = False) -> Markdown:
-    """Replace the places that name measures by their numbers; one that is not computed yet is "…".
-
-    ``comma`` writes decimals behind a comma, as French does.
-    """
-
-    def text(match: re.Match[str]) -> str:
-        number = numbers.get(match[1])
-        number_text = number.text if number else "…"
-        return number_text.replace(".", ",") if comma else number_text
-
-    return _PLACEHOLDER.sub(text, markdown)
+def filled(markdown: Markdown, numbers: Mapping[str, Number], language: str) -> Markdown:
+    """Replace the places that name measures by their numbers; one that is not computed yet is "…"."""
+    return _PLACEHOLDER.sub(
+        lambda match: decimal(numbers[match[1]].text, language) if match[1] in numbers else "…", markdown
+    )
 
 
 def named_in(markdown: Markdown) -> list[str]:

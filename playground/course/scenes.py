@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from playground.course import model
+from playground.course.library import decimal
 from playground.course.model import Break, Scene, Slider
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.memo import INTERFACE
@@ -49,12 +50,11 @@ def spelled_value(slider: Slider, value: Value, language: str) -> str:
     text = write(parameter, value)
     if kind in ("menu", "file") or isinstance(value, str):
         return text
-    comma = language == "fr"
     degrees = kind in ("angle", "direction") or parameter.unit in ("°", "degrees")
-    parts = [part.replace(".", ",") if comma else part for part in text.split(",")]
+    parts = [decimal(part, language) for part in text.split(",")]
     if degrees:
         return ", ".join(f"{part}°" for part in parts)
-    joined = ("\u00a0; " if comma else ", ").join(parts)
+    joined = ("\u00a0; " if language == "fr" else ", ").join(parts)
     return f"{joined}\u202f{parameter.unit}" if parameter.unit else joined
 
 

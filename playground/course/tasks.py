@@ -16,7 +16,7 @@ from typing import Any, TypeGuard
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.course.library import HERE, Labels, Said, in_language, labels
+from playground.course.library import HERE, Labels, Said, decimal, in_language, labels
 from playground.course.measures import NoNumberError, measured, spelled
 from playground.course.model import Block, Challenge, Check, Exercise, Lesson, Scene, Task
 from playground.course.scenes import draw
@@ -477,7 +477,7 @@ def score_of(match: Match, language: str) -> str:
 def sentence_of(result: CheckResult, language: str) -> str:
     """Return what comes of one check as a sentence."""
     say, check = labels("tasks", language), result.check
-    settings = ", ".join(f"{path} = {_local(spell(value), language)}" for path, value in check.at)
+    settings = ", ".join(f"{path} = {decimal(spell(value), language)}" for path, value in check.at)
     where = say["hidden"] if check.hidden else say("at", at=settings) if check.at else ""
     message = _found(result, say, language)
     return f"{where}{message}" if where else f"{message[0].upper()}{message[1:]}"
@@ -504,7 +504,7 @@ def _found(result: CheckResult, say: Labels, language: str) -> str:
     more = "more" if result.bias > 0 else "less"
     bias = say[f"bias_{kind}_{more}"] if abs(result.bias) > least else ""
     by, tolerance = (_number(value, language) for value in (result.difference, check.tolerance))
-    share = _local(spelled(100.0 * result.difference, 2, "%"), language)
+    share = decimal(spelled(100.0 * result.difference, 2, "%"), language)
     return say(f"wrong_{kind}", of=of, share=share, by=by, tolerance=tolerance, place=region, bias=bias)
 
 
@@ -515,7 +515,8 @@ def _of_measure(result: CheckResult, say: Labels, language: str) -> str:
     if not math.isfinite(result.difference):
         return say("no_value", what=what, of=f"`{check.of}`")
     low, high, value = (
-        _local(spelled(number, 3, measure.unit), language) for number in (*measure.between, result.difference)
+        decimal(spelled(number, 3, measure.unit), language)
+        for number in (*measure.between, result.difference)
     )
     hidden = "hidden_" if check.hidden else ""
     key = f"{hidden}{'right' if result.passed else 'wrong'}_measure"
@@ -529,8 +530,4 @@ def _size_text(size: tuple[int, ...], say: Labels) -> str:
 
 
 def _number(value: float, language: str) -> str:
-    return _local(f"{value:.3g}", language)
-
-
-def _local(text: str, language: str) -> str:
-    return text.replace(".", ",") if language == "fr" else text
+    return decimal(f"{value:.3g}", language)

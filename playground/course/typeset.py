@@ -25,7 +25,7 @@ from imgui_bundle import imgui_microtex as microtex
 from markdown_it.token import Token
 from numpy.typing import NDArray
 
-from playground.course.document import parser
+from playground.course.document import parser, plain
 from playground.memo import INTERFACE
 
 
@@ -74,13 +74,9 @@ def written(text: str) -> str:
     return text.translate(INSTEAD)
 
 
-def plain(words: str) -> str:
-    """Return a text without its marks, on one line."""
-    texts = []
-    for part in parts_of(words):
-        runs = [*part.runs, *(run for row in part.rows for cell in row for run in cell)]
-        texts.append("".join(run.text or " " for run in runs))
-    return written(" ".join(" ".join(texts).split()))
+def label_text(words: str) -> str:
+    """Return a text without its marks, on one line, as the font can show it."""
+    return written(plain(words))
 
 
 def _parts(tokens: list[Token]) -> Iterator[TextBlock]:

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import pytest
 
+from playground.course.document import plain
 from playground.course.library import LANGUAGES, labels
 from playground.course.model import (
     Break,
@@ -35,7 +36,7 @@ from playground.course.talk.beats import (
     beats_of,
     cues_of,
     first_of_page,
-    plain_text,
+    plain_formula,
     scene_of,
     seconds_of,
     sentences,
@@ -223,7 +224,7 @@ def test_subtitles_say_the_notes_over_the_whole_beat() -> None:
     assert all(first.end == other.begin for first, other in pairwise(cues))
     lines = [line for cue in cues for line in cue.text.split("\n")]
     assert max(map(len, lines)) <= LETTERS and all(cue.text.count("\n") < 2 for cue in cues)
-    assert " ".join(lines) == plain_text(text).replace("\\", "")
+    assert " ".join(lines) == plain(text, plain_formula)
     assert lines[0].startswith("A texel has a/b of it.")
     assert srt(cues).startswith("1\n00:00:07,000 --> 00:00:")
     assert seconds_of(Beat("text", 0, "", shown="Short.")) == MIN_SECONDS

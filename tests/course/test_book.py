@@ -16,8 +16,9 @@ from PIL import Image
 from playground.course.book import build
 from playground.course.book import build as pictures
 from playground.course.book.build import is_diagram, larger, prepare, write_book
-from playground.course.book.html import MAX_INDENT, LessonContext, block_html, formula, line, plain, prose
+from playground.course.book.html import MAX_INDENT, LessonContext, block_html, formula, line, prose
 from playground.course.book.live import LiveBook
+from playground.course.document import plain
 from playground.course.figures import thesis_figures
 from playground.course.glossary import terms
 from playground.course.library import labels
@@ -368,6 +369,7 @@ def test_html_in_a_lesson_is_text():
 
 def test_plain_words():
     assert plain("a *b* `c` $d^2$ [e](lesson:f)") == "a b c d^2 e"
+    assert plain("a line\nand another\n\nand more") == "a line and another and more"
 
 
 def test_both_languages_have_the_same_words():

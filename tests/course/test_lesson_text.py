@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from playground.course.library import labels
-from playground.course.typeset import Extent, Run, broken, can_set, parts_of, plain, set_formula
+from playground.course.typeset import Extent, Run, broken, can_set, label_text, parts_of, set_formula
 from playground.course.window.page import Textures
 from playground.course.window.progress import (
     MIN_WIDTH,
@@ -63,7 +63,7 @@ def test_styles_links_and_formulas_are_runs_of_their_own():
 
 def test_lists_are_marked_and_indented_by_their_depth():
     parts = parts_of("1. one\n2. two\n   - inner\n\nafter")
-    result = [(part.mark, part.indent, plain("".join(run.text for run in part.runs))) for part in parts]
+    result = [(part.mark, part.indent, label_text("".join(run.text for run in part.runs))) for part in parts]
     assert result == [("1.", 1, "one"), ("2.", 1, "two"), ("•", 2, "inner"), ("", 0, "after")]
 
 

@@ -134,8 +134,8 @@ def test_numbers_go_where_words_name_them(lesson, engine):
     words = "It is {{spread}}; {{ spread }}, not {{other}}."
     assert named_in(words) == ["spread", "spread", "other"]
     text = numbers["spread"].text
-    assert filled(words, numbers) == f"It is {text}; {text}, not …."
-    assert filled("{{spread}}", numbers, comma=True) == text.replace(".", ",")
+    assert filled(words, numbers, "en") == f"It is {text}; {text}, not …."
+    assert filled("{{spread}}", numbers, "fr") == text.replace(".", ",")
 
 
 def test_a_quotient_of_two_terrains(make_lesson, engine):

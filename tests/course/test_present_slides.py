@@ -12,10 +12,10 @@ from playground.course.library import LANGUAGES
 from playground.course.read import read_lesson, summaries
 from playground.course.scenes import Sketches
 from playground.course.talk.beats import Beat, Listing, beats_of
+from playground.course.talk.presenter import Row
 from playground.course.talk.slide import (
     MIN_LETTER_HEIGHT,
     Face,
-    Gauge,
     Sizes,
     board_of,
     board_text,
@@ -25,6 +25,8 @@ from playground.course.talk.slide import (
     gauges_of,
     strip_of,
 )
+from playground.sketch.assign import resolve
+from playground.sketch.load import load
 
 FULL_HD = Sizes(1920, 1080)
 
@@ -93,8 +95,10 @@ def test_the_right_choice_is_marked_in_the_answer_only() -> None:
 
 
 def test_a_gauge_shows_where_its_value_is() -> None:
+    parameter = resolve(load("diamond_square_steps").graph, "height.smoothing")[0].parameter
+
     def right_end(share: float) -> int:
-        image = gauges_of([Gauge(1, "Height", "3 m", share)], FULL_HD)
+        image = gauges_of([Row("a.height", "Height", parameter, share)], 0, FULL_HD)
         assert image is not None
         bar = np.asarray(image.convert("L"), int)[image.height // 2, :280]  # without the name
         return int(np.flatnonzero(bar > 150)[-1])

@@ -37,7 +37,7 @@ from playground.course.book.page import (
     lesson_page,
     section_id,
 )
-from playground.course.document import every_token, parser
+from playground.course.document import plain
 from playground.course.figures import HERO, FigurePicture, Hero, ThesisFigure, hero_of, thesis_figures
 from playground.course.glossary import alphabetical
 from playground.course.library import labels
@@ -149,9 +149,6 @@ _HIDDEN = {"answer", "fix", "hint", "solution"}
 """Fields of blocks that are folded away: a search does not give them away."""
 
 
-_ENDS = ("softbreak", "paragraph_close", "heading_close", "td_close", "th_close")
-
-
 def lesson_entries(lesson: model.Lesson, setting: LessonContext) -> Iterator[Entry]:
     """Yield the sections of a lesson; what stands before the first is its page."""
     for number, section in enumerate(lesson.sections):
@@ -176,6 +173,8 @@ def words_script(entries: list[Entry]) -> str:
 
 
 def _texts(block: model.Block) -> Iterator[str]:
+    if isinstance(block, model.Prose) and block.kind == "formula":
+        return
     for each in model.translated_fields(type(block)):
         if each.name not in _HIDDEN and each.name != "alt":
             value = getattr(block, each.name)
@@ -184,19 +183,8 @@ def _texts(block: model.Block) -> Iterator[str]:
 
 def _words(*texts: str) -> str:
     """Return Markdown as its words, code too; of formulas those within a line, signs by their names."""
-    return " ".join(" ".join(map(_plain, texts)).split())
-
-
-def _plain(text: str) -> str:
-    parts = []
-    for token in every_token(parser().parse(text)):
-        if token.type in _ENDS:
-            parts.append(" ")
-        elif token.type == "math_inline":
-            parts.append(re.sub(r"[\\{}]", "", token.content))
-        elif token.type in ("text", "code_inline", "fence", "code_block"):
-            parts.append(token.content)
-    return "".join(parts)
+    words = (plain(text, lambda latex: re.sub(r"[\\{}]", "", latex)) for text in texts)
+    return " ".join(" ".join(words).split())
 
 
 MANIFEST = "book.json"

@@ -15,7 +15,7 @@ from markdown_it.renderer import RendererHTML
 from markdown_it.token import Token
 
 from playground.course import model
-from playground.course.document import parser
+from playground.course.document import parser, plain
 from playground.course.library import SOURCE, Labels
 from playground.course.measures import Number, filled
 from playground.course.scenes import Picture, bug_region, excerpt, pictures_in, spelled_value
@@ -40,14 +40,6 @@ def line(markdown: str, anchor: Anchor) -> Markup:
     if "\n\n" in markdown:
         return prose(markdown, anchor)
     return Markup(_rendered(markdown, anchor, inline=True))
-
-
-def plain(markdown: str) -> str:
-    """Return Markdown within a line as plain text, formulas as they are written."""
-    tokens = parser().parseInline(markdown)[0].children or []
-    return "".join(
-        token.content for token in tokens if token.type in ("text", "code_inline", "math_inline", "softbreak")
-    )
 
 
 def formula(latex: str, *, alone: bool = False) -> Markup:
@@ -188,7 +180,7 @@ class LessonContext:
             summary = tag("summary", self.label(key))
             return tag("details", summary, tag("div", *inside), class_="answer", data_title=title)
         text = f"answer-{block.name}"
-        asked = plain(self.filled(ask)).split("\n")[0]
+        asked = plain(self.filled(ask).split("\n\n")[0])
         heading = tag("h3", tag("a", title, href=f"#{block.name}"))
         short = asked if len(asked) <= _MAX_QUESTION else f"{asked[:_MAX_QUESTION].rsplit(' ', 1)[0]} …"
         self.at_end.append(tag("section", heading, tag("p", short, class_="asked"), *inside, id=text))
@@ -203,7 +195,7 @@ class LessonContext:
 
     def filled(self, markdown: str) -> str:
         """Return a text with the numbers in it."""
-        return filled(markdown, self.numbers, comma=self.lesson.language == "fr")
+        return filled(markdown, self.numbers, self.lesson.language)
 
 
 def block_html(block: model.Block, setting: LessonContext, *, first: bool = False) -> Markup:

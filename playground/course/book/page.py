@@ -8,7 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from playground._version import __version__
-from playground.course.book.html import Anchor, LessonContext, block_html, image, line, open_command, plain
+from playground.course.book.html import Anchor, LessonContext, block_html, image, line, open_command
+from playground.course.document import plain
 from playground.course.figures import FigurePicture, ThesisFigure
 from playground.course.glossary import Term, alphabetical, linked_term, terms_of
 from playground.course.library import LANGUAGES, THESIS, Labels, parts

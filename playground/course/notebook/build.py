@@ -132,7 +132,7 @@ class _Writer:
 
     def text(self, markdown: str) -> str:
         """Return a text with its numbers, and with links that a notebook can follow."""
-        return _LINK.sub(self.linked, filled(markdown, self.numbers, comma=self.lesson.language == "fr"))
+        return _LINK.sub(self.linked, filled(markdown, self.numbers, self.lesson.language))
 
     def linked(self, link: re.Match[str]) -> str:
         """Return a link that a notebook can follow: of a term, to the list at its end."""

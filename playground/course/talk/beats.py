@@ -215,21 +215,14 @@ def srt(cues: Iterable[Cue]) -> str:
     return "\n".join(rows)
 
 
-def plain_text(text: Markdown) -> str:
-    """Return Markdown as plain text; formulas as nearly as letters say them."""
-    plain_markdown = re.sub(r"\$\$?([^$]*)\$\$?", lambda match: _plain_formula(match[1]), text)
-    plain_markdown = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", plain_markdown)
-    plain_markdown = re.sub(r"(?m)^\s*(?:[-*]|\d+\.)\s+", "", plain_markdown)
-    plain_markdown = re.sub(r"\*\*|`|(?<!\w)\*|\*(?!\w)|\\(?=[*_])", "", plain_markdown)
-    return " ".join(plain_markdown.split())
-
-
 def _spoken(beat: Beat) -> Sequence[str]:
     text = beat.notes
     if text.lstrip().startswith("|"):
         return []  # a table is read on the picture
     paragraphs = [part for part in re.split(r"\n\s*\n|\n(?=\s*[-*] )", text) if part.strip()]
-    return [plain_text(sentence) for part in paragraphs for sentence in sentences(part)]
+    from playground.course.document import plain
+
+    return [plain(sentence, plain_formula) for part in paragraphs for sentence in sentences(part)]
 
 
 def _parts(text: str) -> list[str]:
@@ -250,7 +243,8 @@ def _time(seconds: float) -> str:
     return f"{hours:02}:{minutes:02}:{left // 1000:02},{left % 1000:03}"
 
 
-def _plain_formula(latex: str) -> str:
+def plain_formula(latex: str) -> str:
+    """Return a formula as nearly as letters say it."""
     plain_latex = latex
     while plain_latex != (plain_latex := _FRACTION.sub(r"\1/\2", plain_latex)):
         pass

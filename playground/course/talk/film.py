@@ -29,8 +29,8 @@ from playground.course.talk.beats import (
     texts_of_beat,
     with_texts,
 )
-from playground.course.talk.slide import Gauge, Sizes, board_of, gauges_of, strip_of
-from playground.course.talk.stage import Row
+from playground.course.talk.presenter import Row
+from playground.course.talk.slide import Sizes, board_of, gauges_of, strip_of
 from playground.engine.engine import Engine
 from playground.files import write_file
 from playground.publish.video import QUALITY, Video, check_video
@@ -147,7 +147,7 @@ def _sweep(engine: Engine, block: Slider, count: int, sizes: Sizes, strip: Image
         if last is None or (number % each == 0 and number // each < len(values)):
             scene = with_value(block.scenes[0], block.parameter, values[at])
             row = _row(scene, block, values[at])
-            gauges = gauges_of([Gauge(1, row.title, row.text, row.share, chosen=True)], sizes)
+            gauges = gauges_of([row], 0, sizes)
             last = _whole(_drawn(engine, scene, sizes), gauges, strip, sizes, margin=True)
         yield last
 
@@ -231,4 +231,4 @@ def _numbers(engine: Engine, film: PresentedFilm) -> dict[str, Number]:
 
 
 def _with_numbers(beat: Beat, lesson: Lesson, numbers: Mapping[str, Number]) -> Beat:
-    return with_texts(beat, lambda text: filled(text, numbers, comma=lesson.language == "fr"))
+    return with_texts(beat, lambda text: filled(text, numbers, lesson.language))

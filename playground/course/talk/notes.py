@@ -31,7 +31,7 @@ _LABELS = ("notes", "following", "over", "pause", "go_on", "reset", "back", "nex
 
 def notes_message(presenter: Presenter, beat: Beat, following: Beat | None, language: str) -> dict[str, Any]:
     """Return what is on, with the beat's and the next one's texts; numbers are in them already."""
-    from playground.course.typeset import plain
+    from playground.course.typeset import label_text
 
     clock, say = presenter.clock, labels("talk", language)
     return {
@@ -41,7 +41,7 @@ def notes_message(presenter: Presenter, beat: Beat, following: Beat | None, lang
         "lesson": presenter.lesson.title if presenter.lesson else "",
         "at": presenter.at + 1,
         "count": len(presenter.beats),
-        "heading": plain(beat.heading),
+        "heading": label_text(beat.heading),
         "label": beat.label,
         "notes": html_of(beat),
         "aside": _html(beat.aside),

@@ -14,12 +14,45 @@ from typing import Any
 from playground.course.model import Lesson
 from playground.course.talk.beats import Beat, beats_of, first_of_page
 from playground.errors import ParameterError
+from playground.shader.parameter import write
+from playground.sketch.model import Parameter, Value
+from playground.studio.panel.number_format import unit_of
+from playground.studio.remote.shares import share_of
 
 TYPED = 3.0
 """[s] after its last digit that a typed number is forgotten."""
 
 Point = tuple[float, float]
 """A place on the picture: shares of its width and its height, from the upper left corner."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A slider of the picture that is shown."""
+
+    path: str
+    title: str
+    parameter: Parameter
+    value: Value
+
+    @property
+    def share(self) -> float:
+        """Where in its range its value is, 0 to 1."""
+        try:
+            return share_of(self.parameter, self.value)
+        except (TypeError, ZeroDivisionError):
+            return 0.0
+
+    @property
+    def text(self) -> str:
+        """Its value, short, with its unit."""
+        unit = unit_of(self.parameter)
+        if isinstance(self.value, tuple):  # a direction's two angles have their units
+            between = f"{unit}, " if unit == "°" else ", "
+            return between.join(f"{part:.3g}" for part in self.value) + unit
+        if isinstance(self.value, float):
+            return f"{self.value:.4g}{unit}"
+        return write(self.parameter, self.value).strip('"') + unit
 
 
 @dataclass

@@ -18,6 +18,7 @@ from pygments.token import Comment, Keyword, Name, Number, Operator
 
 from playground.course.model import Markdown
 from playground.course.talk.beats import Beat, Listing
+from playground.course.talk.presenter import Row
 from playground.course.typeset import (
     FORMULA_SIZE,
     Extent,
@@ -25,8 +26,8 @@ from playground.course.typeset import (
     Placed,
     Run,
     Spacing,
+    label_text,
     laid_out,
-    plain,
     set_formula,
     written,
 )
@@ -298,17 +299,6 @@ class Sizes:
         return self.width, max(self.height - self.strip, 1)
 
 
-@dataclass(frozen=True)
-class Gauge:
-    """A slider as it is shown: its number key, its name, its value and where in its range that is."""
-
-    number: int
-    name: str
-    value: str
-    share: float
-    chosen: bool = False
-
-
 def strip_of(beat: Beat, position: tuple[int, int], sizes: Sizes) -> Image.Image:
     """Return the strip of a beat, (width, strip) pixels, opaque; ``position``: which of how many, from 1."""
     image = Image.new("RGBA", (sizes.width, sizes.strip), (*_GROUND, 255))
@@ -397,26 +387,26 @@ def code_size(code: Listing, sizes: Sizes) -> float:
     return letter / per_pixel
 
 
-def gauges_of(gauges: Sequence[Gauge], sizes: Sizes) -> Image.Image | None:
-    """Return the sliders of a picture as plates one below the other; None where there are none."""
-    if not gauges:
+def gauges_of(rows: Sequence[Row], chosen: int, sizes: Sizes) -> Image.Image | None:
+    """Return sliders as plates one below the other, one of them chosen; None where there are none."""
+    if not rows:
         return None
     scale = sizes.scale
     face, bold = Face("text", MIN_LETTER_HEIGHT * scale), Face("bold", MIN_LETTER_HEIGHT * scale)
     line, pad, bar = 50 * scale, 16 * scale, 220 * scale
-    texts = [f"{gauge.name}  {gauge.value}" for gauge in gauges]
+    texts = [f"{row.title}  {row.text}" for row in rows]
     wide = max(map(face.width, texts)) + bar + 4 * pad + bold.width("0")
-    image = Image.new("RGBA", (round(wide), round(line * len(gauges))), (*_GROUND, 216))
+    image = Image.new("RGBA", (round(wide), round(line * len(rows))), (*_GROUND, 216))
     draw = ImageDraw.Draw(image)
-    for row, (gauge, text) in enumerate(zip(gauges, texts, strict=True)):
-        middle = (row + 0.5) * line
-        ink = WARM if gauge.chosen else INK
+    for number, (row, text) in enumerate(zip(rows, texts, strict=True)):
+        middle = (number + 0.5) * line
+        ink = WARM if number == chosen else INK
         baseline = middle + face.size * 0.34
-        paint_text(draw, str(gauge.number), (pad, baseline), bold, WARM if gauge.chosen else ACCENT)
+        paint_text(draw, str(number + 1), (pad, baseline), bold, WARM if number == chosen else ACCENT)
         left = 2 * pad + bold.width("0")
         rail = (left, middle - 3 * scale, left + bar, middle + 3 * scale)
         draw.rounded_rectangle(rail, 3 * scale, _RAIL)
-        end = left + bar * min(max(gauge.share, 0.0), 1.0)
+        end = left + bar * min(max(row.share, 0.0), 1.0)
         draw.rounded_rectangle((left, middle - 3 * scale, end, middle + 3 * scale), 3 * scale, ink)
         draw.ellipse((end - 9 * scale, middle - 9 * scale, end + 9 * scale, middle + 9 * scale), ink)
         paint_text(draw, text, (left + bar + pad, baseline), face, ink)
@@ -503,7 +493,7 @@ def _centred(laid: Laid, sizes: Sizes) -> tuple[float, float]:
 
 def _shortened(text: str, face: Face, room: float) -> str:
     """Return a text in a room [pixels], its end left out where it is too long."""
-    text = plain(text)
+    text = label_text(text)
     if face.width(text) <= room:
         return text
     while text and face.width(text + "…") > room:

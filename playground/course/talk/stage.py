@@ -18,21 +18,20 @@ from playground.course.model import Break, Compare, Exercise, Slider, Steps
 from playground.course.scenes import with_bug
 from playground.course.talk.beats import Beat, Still, texts_of_beat, with_texts
 from playground.course.talk.notes import Notes, notes_message
-from playground.course.talk.presenter import Point, Presenter
+from playground.course.talk.presenter import Point, Presenter, Row
 from playground.course.tasks import path_of, starter_text
 from playground.course.window.bugs import file_of
 from playground.course.window.reader import Reader
 from playground.course.window.tasks import BEGUN
 from playground.errors import DataError, ParameterError, PlaygroundError
-from playground.shader.parameter import is_whole, write
+from playground.shader.parameter import is_whole
 from playground.sketch.assign import range_of, resolve
 from playground.sketch.model import Parameter, Value
 from playground.studio.bench import Workbench
 from playground.studio.draw import Area
 from playground.studio.input.text_field import letters
-from playground.studio.panel.number_format import unit_of
 from playground.studio.panel.parameter_list import Listing
-from playground.studio.remote.shares import share_of, with_share
+from playground.studio.remote.shares import with_share
 
 if TYPE_CHECKING:
     import moderngl
@@ -43,35 +42,6 @@ if TYPE_CHECKING:
 
 _PARTS = 40
 """Presses of an arrow from one end of a slider to the other."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """A slider of the picture that is shown."""
-
-    path: str
-    title: str
-    parameter: Parameter
-    value: Value
-
-    @property
-    def share(self) -> float:
-        """Where in its range its value is, 0 to 1."""
-        try:
-            return share_of(self.parameter, self.value)
-        except (TypeError, ZeroDivisionError):
-            return 0.0
-
-    @property
-    def text(self) -> str:
-        """Its value, short, with its unit."""
-        unit = unit_of(self.parameter)
-        if isinstance(self.value, tuple):  # a direction's two angles have their units
-            between = f"{unit}, " if unit == "°" else ", "
-            return between.join(f"{part:.3g}" for part in self.value) + unit
-        if isinstance(self.value, float):
-            return f"{self.value:.4g}{unit}"
-        return write(self.parameter, self.value).strip('"') + unit
 
 
 @dataclass
@@ -418,7 +388,7 @@ class Stage:
 
     def _images(self, sizes: Sizes, rows: list[Row]) -> dict[str, moderngl.Texture | None]:
         """Return the images of what is written, by name; made where another is due."""
-        from playground.course.talk.slide import Gauge, board_of, gauges_of, help_of, plate_of, strip_of
+        from playground.course.talk.slide import board_of, gauges_of, help_of, plate_of, strip_of
         from playground.course.window.page import Textures
 
         presenter, ctx = self.presenter, self.bench.session.engine.ctx
@@ -426,16 +396,13 @@ class Stage:
             self._textures = Textures(ctx)
         beat = self._filled(presenter.beat)
         position = presenter.at + 1, len(presenter.beats)
-        gauges = tuple(
-            Gauge(n + 1, row.title, row.text, row.share, n == presenter.slider) for n, row in enumerate(rows)
-        )
         keys = help_rows(self.reader.language)
         prepares = self._say("prepares") if presenter.at == 0 and self.reader.numbers.pending else ""
         says = f"→ {presenter.typed}" if presenter.typed else presenter.notice or prepares
         images: dict[str, tuple[object, Callable[[], Image | None]]] = {
             "strip": ((beat, position), lambda: strip_of(beat, position, sizes)),
             "board": (beat, lambda: board_of(beat, sizes)),
-            "gauges": (gauges, lambda: gauges_of(gauges, sizes)),
+            "gauges": ((rows, presenter.slider), lambda: gauges_of(rows, presenter.slider, sizes)),
             "help": (presenter.helps, lambda: help_of(keys, sizes) if presenter.helps else None),
             "typed": (says, lambda: plate_of(says, sizes)),
         }

@@ -42,7 +42,7 @@ from playground.course.tasks import (
     points_of,
     sentence_of,
 )
-from playground.course.typeset import plain, written
+from playground.course.typeset import label_text, written
 from playground.course.window.bugs import BROKEN, FIXED, SHOWN
 from playground.course.window.figure_view import sketch_path
 from playground.course.window.page import Page, Textures, draw_picture
@@ -502,7 +502,7 @@ def _choice(block: Question, index: int, choice: str, chosen: int, page: Page) -
         if marked or imgui.is_item_clicked(0):
             page.reader.chosen[block.name] = index
     if imgui.is_item_hovered():
-        imgui.set_tooltip(plain(choice))
+        imgui.set_tooltip(label_text(choice))
 
 
 def follow(reader: Reader, address: str) -> None:
@@ -647,7 +647,7 @@ def _head(page: Page) -> None:
                 if imgui.selectable(label, summary.name == lesson.name)[0]:
                     reader.open(summary.name)
             minutes = page.say("minutes", summary.minutes, summary.exercise_minutes)
-            imgui.set_item_tooltip(f"{plain(summary.goal)}\n{minutes}")
+            imgui.set_item_tooltip(f"{label_text(summary.goal)}\n{minutes}")
         imgui.end_combo()
     for code in LANGUAGES:
         imgui.same_line(0, 4 * look.scale)
@@ -684,7 +684,7 @@ def _pages(page: Page) -> None:
         alpha = 1.0 if index == at or over else 0.5
         draw.add_rect_filled(low, high_corner, theme.packed(rgb, alpha), high / 2)
         if over:
-            imgui.set_tooltip(plain(section.title or page.lesson.title))
+            imgui.set_tooltip(label_text(section.title or page.lesson.title))
             if imgui.is_mouse_clicked(0):
                 page.reader.go(index)
     imgui.dummy(ImVec2(1, high + 2 * scale))

@@ -133,7 +133,7 @@ class Numbers:
 
     def fill(self, text: Markdown, lesson: Lesson) -> Markdown:
         """Return a text with today's numbers; "…" for one that is not computed yet."""
-        return filled(text, self.results.get(lesson.name, {}), comma=lesson.language == "fr")
+        return filled(text, self.results.get(lesson.name, {}), lesson.language)
 
 
 _STEP, _VALUE = 0.8, 0.5
