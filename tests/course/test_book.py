@@ -372,25 +372,11 @@ def test_plain_words():
     assert plain("a line\nand another\n\nand more") == "a line and another and more"
 
 
-def test_both_languages_have_the_same_words():
-    english, french = labels("book", "en"), labels("book", "fr")
-    assert english.keys() == french.keys()
-    for key, text in english.items():
-        places = [part.split("}")[0] for part in text.split("{")[1:]]
-        assert sorted(places) == sorted(part.split("}")[0] for part in french[key].split("{")[1:]), key
-
-
 def test_every_word_is_used():
     """A word by a name that is made up would be missed: there are none."""
     package = Path(build.__file__).resolve().parent.parent
     code = "".join(path.read_text(encoding="utf-8") for path in package.rglob("*.py"))
     assert [key for key in labels("book", "en") if f'"{key}"' not in code and f"'{key}'" not in code] == []
-
-
-def test_french_is_set_as_french_is():
-    """No ordinary space before ; : ? ! and within quotation marks."""
-    for key, text in labels("book", "fr").items():
-        assert not re.search(r" [;:?!»]|« ", text), key
 
 
 # ── the thesis's figures ─────────────────────────────────────────────────────

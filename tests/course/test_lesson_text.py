@@ -15,7 +15,6 @@ import moderngl
 import numpy as np
 import pytest
 
-from playground.course.library import labels
 from playground.course.typeset import Extent, Run, broken, can_set, label_text, parts_of, set_formula
 from playground.course.window.page import Textures
 from playground.course.window.progress import (
@@ -143,26 +142,6 @@ def test_a_formula_is_set_as_one():
     assert (fraction.pixels[alpha == 255][:, :3] == 0xEE).all()
 
 
-@pytest.mark.parametrize(
-    "latex",
-    [
-        r"h = \frac{a+b+c+d}{4} + \sigma\, s\, \xi",
-        r"\sum_{k=0}^{n-1} \frac{1}{2^{kH}} \min(a_k, b_k)",
-        r"\left(\frac{x}{y}\right) \cdot \sqrt{x^2 + y^2} \le 1",
-        r"\text{élévation} \approx 45^\circ",
-    ],
-)
-def test_what_lessons_write_can_be_set(latex):
-    typeset_formula = set_formula(latex, 20, INK, display=False)
-    assert typeset_formula is not None and typeset_formula.pixels[..., 3].max() == 255
-    red = (
-        (typeset_formula.pixels[..., 0] > 200)
-        & (typeset_formula.pixels[..., 1] < 50)
-        & (typeset_formula.pixels[..., 3] > 0)
-    )
-    assert not red.any(), "MicroTeX writes what it does not know in red"
-
-
 def test_textures_are_made_once_and_given_back(ctx: moderngl.Context):
     textures, pixels = Textures(ctx, most=2), np.arange(24, dtype=np.uint8).reshape(2, 3, 4)
     first = textures.get("a", lambda: pixels)
@@ -251,19 +230,3 @@ def test_what_cannot_be_written_is_reported_in_a_sentence(tmp_path):
     (tmp_path / "file").write_text("", encoding="utf-8")
     complaint = write_progress(Progress(), tmp_path / "file" / "lessons.json")
     assert complaint.startswith("where you are in the lessons cannot be remembered")
-
-
-def test_both_languages_have_the_same_words_with_the_same_places():
-    english, french = labels("window", "en"), labels("window", "fr")
-    assert english.keys() == french.keys() and labels("window", "xx") == english
-    for key, words in english.items():
-        places = [
-            [p[1] for p in string.Formatter().parse(w) if p[1] is not None] for w in (words, french[key])
-        ]
-        assert places[0] == places[1], key
-
-
-def test_french_has_no_breaking_blank_before_its_double_marks():
-    for key, words in labels("window", "fr").items():
-        assert not any(f" {mark}" in words for mark in ":;?!»") and "« " not in words, key
-        assert "'" not in words, f"{key}: the apostrophe is ’"

@@ -1,4 +1,4 @@
-"""What lessons measure, against values that are known beforehand."""
+"""What lessons measure, against values known beforehand, a flood in a queue, and laws made on purpose."""
 
 from __future__ import annotations
 
@@ -17,9 +17,12 @@ from playground.course.measures import (
     measured,
     named_in,
     numbers_of,
+    peaks_on_lattice,
     spelled,
 )
 from playground.errors import SketchError
+
+from ..truth.drainage import drained_areas, exponent_of
 
 GRID = Grid((10.0, 10.0), 100.0)
 RAMP = np.tile(np.linspace(0.0, 1.0, 65), (65, 1))  # rises eastwards
@@ -197,3 +200,72 @@ def test_the_mean_below_a_mesh_counts_edges_by_half():
     """That of the bilinear surface, by its value in the middle of each cell."""
     cells = (NOISE[1:, 1:] + NOISE[1:, :-1] + NOISE[:-1, 1:] + NOISE[:-1, :-1]) / 4
     assert measures.mean_below_mesh(NOISE, GRID) == pytest.approx(cells.mean())
+
+
+# ── water ─────────────────────────────────────────────────────────────────────
+
+
+STEEP = Grid((20.0, 30.0), 500.0)
+
+
+def valley(ny, nx):
+    """Return heights that all drain to one row, and along it westwards."""
+    y, x = np.mgrid[:ny, :nx]
+    return 0.1 * abs(y - ny // 2) + 0.001 * x
+
+
+def test_areas_are_those_of_a_flood():
+    """On a terrain whose every texel has a way down, so that a flood fills nothing."""
+    heights = valley(41, 57) + 1e-5 * np.random.default_rng(2).random((41, 57))
+    assert measures.pits(heights, STEEP) == 0.0
+    square = Grid((10.0, 10.0), 500.0)
+    slopes, receivers = measures._ways(heights, square)
+    np.testing.assert_array_equal(measures._areas(heights, receivers), drained_areas(heights))
+    assert slopes[20, 30] == pytest.approx(0.001 * 500 / 10, rel=0.05)
+
+
+def test_pits_are_counted():
+    heights = valley(41, 57)
+    heights[10, 10] = heights[30, 40] = -1.0
+    assert measures.pits(heights, STEEP) == pytest.approx(2 / (39 * 55))
+
+
+def test_the_tail_of_areas():
+    areas = drained_areas(np.random.default_rng(5).random((150, 150)).cumsum(0).cumsum(1)) * 1e4
+    low, high = 20 * 0.01, areas.size / 50 * 0.01
+    assert measures.tail_power(areas, STEEP, low, high) == pytest.approx(exponent_of(areas / 1e4), rel=1e-9)
+    with pytest.raises(ValueError, match="some texels exceed"):
+        measures.tail_power(areas, STEEP, 1e6, 2e6)
+
+
+@pytest.mark.parametrize("power", [-0.5, -0.3])
+def test_a_law_of_slopes_is_found_again(power):
+    """A river in the middle row, of S = 2 A^p where A is what lies east of it, edges aside."""
+    ny, nx = 21, 80
+    area = np.arange(nx, 0, -1) * (ny - 2) * 600.0  # [m²]
+    rise = 2.0 * area**power * 20.0 / 500.0
+    river = np.cumsum(rise) - rise[0]
+    heights = river + 10.0 * abs(np.arange(ny) - ny // 2)[:, None]
+    heights[:, -1] += 1.0  # the eastern edge is an outlet: nothing may leave by it
+    slope_area_power = measures.slope_area_power(heights, STEEP, 0.05, 2.0)
+    assert slope_area_power == pytest.approx(power, abs=0.03)
+    middle = measures.slope_where_drained(heights, STEEP, 0.3, 0.34)
+    assert middle == pytest.approx(2.0 * 0.32e6**power, rel=0.1)
+    with pytest.raises(ValueError, match="no texel drains"):
+        measures.slope_where_drained(heights, STEEP, 1e3, 2e3)
+
+
+def test_peak_counts_if_row_and_column_are_on_lattice():
+    values = np.zeros((17, 17))
+    for row, column in ((4, 8), (6, 2), (9, 4), (4, 11), (13, 13)):
+        values[row, column] = 1.0
+    assert peaks_on_lattice(values, Grid(), 2) == 2 / 5
+    assert peaks_on_lattice(values, Grid(), 4) == 1 / 5
+    assert peaks_on_lattice(values, Grid(), 1) == 1.0
+
+
+def test_what_is_no_peak_does_not_count():
+    values = np.zeros((9, 9))
+    values[4, 4:6] = 1.0  # two texels alike
+    values[0, 2] = 2.0  # at the border
+    assert peaks_on_lattice(values, Grid(), 2) == 0.0

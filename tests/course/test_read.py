@@ -1,12 +1,18 @@
-"""A lesson's file becomes blocks; each mistake in it is one message with its line."""
+"""A lesson's file becomes blocks; each mistake and each broken rule is one message with its line."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from playground.course import rules
 from playground.course.library import lesson_names
 from playground.course.model import Break, Code, Compare, Exercise, Figure, Measure, Question, Slider, Steps
+from playground.course.rules import broken_rules, wrong_pictures
+from playground.course.scenes import anchors, bug_region, excerpt, with_bug
 from playground.errors import SketchError
+from playground.paths import GLSL
 
 
 def test_what_it_says_of_itself(lesson):
@@ -150,3 +156,176 @@ def test_a_formula_with_a_label_is_a_formula(make_lesson):
     lesson = make_lesson(("A picture first.", "$$\nx = 1\n$$ (one)\n\nA picture first."))
     assert "x = 1" in lesson.blocks[0].markdown and "(one)" in lesson.blocks[0].markdown
     assert lesson.blocks[1].markdown == "A picture first."
+
+
+# ── excerpts ──────────────────────────────────────────────────────────────────
+
+
+TEXT = """float a;
+    // anchor: outer
+    float b = 1.0;
+
+    // anchor: inner
+        float c = 2.0;
+    // end: inner
+    // end: outer
+float d;
+"""
+
+
+def test_anchor_excerpt_is_dedented_without_markers():
+    excerpts = anchors("x.glsl", TEXT)
+    assert excerpts["outer"].text == "float b = 1.0;\n\n    float c = 2.0;"
+    assert excerpts["outer"].line == 3
+    assert excerpts["inner"].text == "float c = 2.0;"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("// anchor: a\nx\n", "anchor 'a' has no end"),
+        ("// end: a\n", "anchor 'a' ends before it begins"),
+        ("// anchor: a\n// end: a\n// anchor: a\n// end: a\n", "a second anchor 'a'"),
+    ],
+)
+def test_marks_that_do_not_fit(text, words):
+    with pytest.raises(SketchError, match=words):
+        anchors("x.glsl", text)
+
+
+def test_an_anchor_there_is_not():
+    with pytest.raises(SketchError, match="no anchor 'iner'; did you mean 'inner'"):
+        excerpt("x.glsl", "iner", TEXT)
+
+
+def test_every_anchor_of_the_library_can_be_read():
+    texts = {
+        path: path.read_text(encoding="utf-8")
+        for path in GLSL.rglob("*")
+        if path.suffix in (".glsl", ".comp")
+    }
+    marked = {path: anchors(path.name, text) for path, text in texts.items() if "// anchor:" in text}
+    assert marked
+    for path, result in marked.items():
+        for name, item in result.items():
+            assert 1 <= len(item.text.split("\n")) <= 40, (path, name)
+
+
+def test_the_lines_around_a_bug(lesson):
+    block = lesson.named["fault"]
+    result = bug_region(block)
+    correct, broken = result.correct, result.broken
+    assert "total / count" in correct and "total / 8.0" in broken
+    differing = [
+        pair for pair in zip(correct.split("\n"), broken.split("\n"), strict=True) if pair[0] != pair[1]
+    ]
+    assert len(differing) == 1
+
+
+def test_lines_put_back_make_the_file_again(lesson):
+    block = lesson.named["fault"]
+    result = bug_region(block)
+    text = (GLSL / block.file).read_text(encoding="utf-8")
+    same = [
+        line.strip()
+        for line in text.split("\n")
+        if line.strip() and "// anchor" not in line and "// end:" not in line
+    ]
+    back = [
+        line.strip()
+        for line in result.with_lines(result.correct).split("\n")
+        if line.strip() and "// anchor" not in line and "// end:" not in line
+    ]
+    assert back == same
+    assert "8.0" in result.with_lines(result.broken)
+
+
+@pytest.mark.parametrize(
+    ("find", "words"),
+    [
+        ("no such text", "found 0 times"),
+        ("float", "expected once in generation/diamond_square/raw.glsl, found"),
+    ],
+)
+def test_a_bug_that_does_not_fit(make_lesson, find, words):
+    block = make_lesson(('find   = "total / count"', f'find = "{find}"')).named["fault"]
+    with pytest.raises(SketchError, match=words):
+        with_bug(block)
+
+
+# ── rules ─────────────────────────────────────────────────────────────────────
+
+
+def rule_sentences(lesson):
+    return [sentence for _, sentence in broken_rules(lesson)]
+
+
+@pytest.fixture(autouse=True)
+def _one_lesson(monkeypatch):
+    monkeypatch.setattr(rules, "lesson_files", lambda: ["small"])
+
+
+def test_the_small_lesson_keeps_to_all(lesson):
+    assert rule_sentences(lesson) == []
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        ("A picture first.", "word " * 61, "61 words before the first figure"),
+        (
+            "A picture first.",
+            "```question early\nask = 'a'\nanswer = 'b'\n```",
+            "the first block of a lesson is a figure",
+        ),
+        ('anchor  = "kernel"', 'anchor = "nowhere"', "no anchor 'nowhere'"),
+        ("## One thing", "## Bare\n\nOnly words.\n\n## One thing", "section 'Bare' shows nothing"),
+        ('```exercise third\nask      = "Change."\nsolution = "So."\n```', "", "2 exercises; a lesson has 3"),
+        ("spread is {{spread}}", "spread is {{spraed}}", "{{spraed}}: there is no measure"),
+        ("lesson:small", "lesson:smaller", "a link to lesson 'smaller'"),
+        ("lesson:small", "http://example.org", "a link to 'http://example.org'"),
+        ("lesson:small", "sketch:nothing", "a link to sketch 'nothing'"),
+        ("term:texel", "term:texl", "a link to term 'texl', which does not exist; did you mean 'texel'?"),
+        ("Turn by turn.", "[Texels](term:texel).", "a second link to term 'texel'"),
+        ("lesson:small", "thesis:one", "a link to section 'one'"),
+        (
+            'alt     = "A lattice of discs."',
+            'alt = "Five by five, with *all* of it known."',
+            "alt repeats the caption",
+        ),
+        ('thesis  = ["1.3.2"]', "thesis = []", "names sections of the thesis"),
+        ('goal    = "Know $r^2$."', r"""goal = 'Know $\foo{r}$.' """, "formula"),
+        ('goal    = "Know $r^2$."', "goal = 'Know $r^2^3$.'", "formula $r^2^3$"),
+        ('goal    = "Know $r^2$."', r"""goal = 'Know $\left( r$.' """, r"formula $\left( r$"),
+        (
+            "A picture first.",
+            "![A picture](https://example.org/x.png) first.",
+            "an image of 'https://example.org/x.png'",
+        ),
+        ('find   = "total / count"', 'find = "nothing of it"', "found 0 times"),
+        (
+            'file   = "generation/diamond_square/raw.glsl"',
+            'file = "generation/white_noise.glsl"',
+            "does not use",
+        ),
+    ],
+)
+def test_each_rule(make_lesson, before, after, words):
+    assert any(words in sentence for sentence in rule_sentences(make_lesson((before, after))))
+
+
+def test_a_wrong_link_is_named_by_its_line(make_lesson):
+    wrong = make_lesson(("term:texel", "term:tile"))
+    (result,) = [(line, sentence) for line, sentence in broken_rules(wrong) if "term 'tile'" in sentence]
+    assert Path(wrong.file).read_text(encoding="utf-8").split("\n")[result[0] - 1].startswith("The spread is")
+
+
+def test_a_bug_must_be_visible_and_a_claim_must_hold(make_lesson, engine):
+    assert list(wrong_pictures(engine, make_lesson())) == []
+    hidden = make_lesson(('put    = "total / 8.0"', 'put = "total / (1.0001 * count)"'))
+    assert [s for _, s in wrong_pictures(engine, hidden)] == [
+        "break 'fault': the bug hardly changes the picture"
+    ]
+    false = make_lesson(("between = [0.1, 2.0]", "between = [3.0, 4.0]"))
+    (sentence,) = [s for _, s in wrong_pictures(engine, false)]
+    assert sentence.startswith("measure 'spread': 0.") and sentence.endswith("is not between 3 and 4")
