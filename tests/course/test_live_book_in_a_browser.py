@@ -6,8 +6,10 @@ import base64
 import io
 import re
 from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 from threading import Thread
 from typing import ClassVar
 
@@ -150,20 +152,25 @@ class Recorder(SimpleHTTPRequestHandler):
         pass
 
 
-def test_book_runs_nothing_until_asked_and_loads_its_own_files(book, tmp_path):
-    """From a server that notes every request: a disk keeps no list."""
+@contextmanager
+def served(folder: Path, page: str, profile: Path, flags: tuple[str, ...] = LLVMPIPE) -> Iterator[Browser]:
+    """Open a page of a folder from a server that notes every request: a disk keeps no list."""
     Recorder.asked.clear()
-    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Recorder, directory=str(book)))
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Recorder, directory=str(folder)))
     Thread(target=server.serve_forever, daemon=True).start()
-    with server, Browser(tmp_path / "profile", flags=LLVMPIPE) as browser:
-        browser.open(f"http://127.0.0.1:{server.server_address[1]}/{PAGE}")
+    with server, Browser(profile, flags=flags) as browser:
+        browser.open(f"http://127.0.0.1:{server.server_address[1]}/{page}")
+        yield browser
+        server.shutdown()
+
+
+def test_book_runs_nothing_until_asked_and_loads_its_own_files(book, tmp_path):
+    with served(book, PAGE, tmp_path / "profile") as browser:
         browser.wait("document.querySelectorAll('.start').length === 9")
         scripts = [path for path in Recorder.asked if path.endswith(".js")]
         assert scripts == ["/book.js"]
-        assert browser.run("return [typeof playground, document.querySelectorAll('canvas').length]") == [
-            "undefined",
-            0,
-        ]
+        running = browser.run("return [typeof playground, document.querySelectorAll('canvas').length]")
+        assert running == ["undefined", 0]
         for name in ("land", "two", "fault"):
             start(browser, name)
         scripts = sorted(path for path in Recorder.asked if path.endswith(".js"))
@@ -171,7 +178,6 @@ def test_book_runs_nothing_until_asked_and_loads_its_own_files(book, tmp_path):
         assert [line for line in browser.log() if "favicon.ico" not in line] == []
         for path in Recorder.asked:
             assert (book / path.lstrip("/")).is_file() or path == "/favicon.ico", path
-        server.shutdown()
 
 
 def test_a_live_picture_is_the_engine_s_and_follows_its_slider(page, lesson, engine):
@@ -238,10 +244,11 @@ def test_variants_are_swiped_and_share_a_camera(page, lesson, engine):
     assert page.run("return document.querySelectorAll('#two .side-label')[1].textContent") == "uneven"
 
 
-def typed(page, text):
+def typed(page, text, name="fault"):
     page.run(
-        "const area = document.querySelector('#fault textarea'); area.value = arguments[0];"
+        "const area = document.querySelector(arguments[0]); area.value = arguments[1];"
         "area.dispatchEvent(new Event('input'))",
+        f"#{name} textarea",
         text,
     )
 
@@ -273,17 +280,23 @@ def test_exercise_reports_when_picture_matches_solution(page, lesson, engine):
     shown = picture(page, "second")
     plain = drawn(engine, lesson.named["smooth"].scenes[1], shown)  # 0.5 is the sketch's own
     np.testing.assert_array_equal(shown, plain)
-    set_to = (
-        "const field = document.querySelector('#second [data-path=\"height.smoothing\"] .number');"
-        "field.value = arguments[0]; field.dispatchEvent(new Event('change'))"
-    )
     verdict = "document.querySelector('#second .verdict').className"
-    page.run(set_to, "0.6")
+    set_number(page, "second", "0.6")
     page.wait(f"{verdict} === 'verdict wrong'")
-    page.run(set_to, "0.7")
+    set_number(page, "second", "0.7")
     page.wait(f"{verdict} === 'verdict right'")
     shown = picture(page, "second")
     np.testing.assert_array_equal(shown, drawn(engine, lesson.named["second"].scene, shown))
+
+
+def set_number(page, name, value):
+    """Set the exercise's parameter in its field."""
+    page.run(
+        "const field = document.querySelector(arguments[0]);"
+        "field.value = arguments[1]; field.dispatchEvent(new Event('change'))",
+        f'#{name} [data-path="height.smoothing"] .number',
+        value,
+    )
 
 
 def results(page, name):
@@ -299,10 +312,7 @@ def test_value_exercise_is_checked_at_hidden_values(page):
     assert (seen, hidden) == ("wrong", "wrong")
     assert "of the picture differs" in said and other.startswith("At other values") and "seed" not in other
     assert page.run("return document.querySelectorAll('#first .pictures canvas').length") == 3
-    page.run(
-        "const field = document.querySelector('#first [data-path=\"height.smoothing\"] .number');"
-        "field.value = '0.7'; field.dispatchEvent(new Event('change'))"
-    )
+    set_number(page, "first", "0.7")
     page.wait("!document.querySelector('#first .outcome .verdict')")  # what was said is of another work
     page.click("#first .check")
     assert [kind for kind, _ in results(page, "first")] == ["right", "right"]
@@ -323,12 +333,13 @@ def test_a_kernel_that_a_reader_writes_is_checked_by_its_texture(page):
         said,
     )
     answer = (EXERCISES / "diamond_square/dimension.answer.glsl").read_text(encoding="utf-8")
-    put = f"{area}.value = arguments[0]; {area}.dispatchEvent(new Event('input'))"
-    page.run(put, answer.replace("pow(share, 0.8)", "powr(share, 0.8)"))
+    typed(page, answer.replace("pow(share, 0.8)", "powr(share, 0.8)"), "third")
     page.click("#third .check")
     page.wait("document.querySelector('#third .editor-status.wrong')")
     page.wait("document.querySelector('#third .outcome .verdict.wrong')")
-    page.run(put, answer.replace("pow(share, 0.8)", "exp(0.8 * log(share))"))  # not the words of the answer
+    typed(
+        page, answer.replace("pow(share, 0.8)", "exp(0.8 * log(share))"), "third"
+    )  # not the words of the answer
     page.wait("document.querySelector('#third .editor-status').textContent === ''")
     page.click("#third .check")
     page.wait("document.querySelector('#third .outcome .verdict.right')")
@@ -345,14 +356,13 @@ def test_a_uniform_that_a_reader_writes_has_a_slider(page):
     start(page, "third")
     row = "document.querySelector('#third [data-path$=\".lift\"]')"
     area = "document.querySelector('#third textarea')"
-    put = f"{area}.value = arguments[0]; {area}.dispatchEvent(new Event('input'))"
     plain = picture(page, "third")
     starter = page.run(f"return {area}.value")
     own = starter.replace("\nfloat kernel", f"\n{OWN}\nfloat kernel").replace(
         "return corner(texel);", "return corner(texel) + lift;"
     )
     assert own.count("lift") == 2
-    page.run(put, own)
+    typed(page, own, "third")
     page.wait(row)
     assert (picture(page, "third") != plain).any()
     ends = page.run(
@@ -363,14 +373,14 @@ def test_a_uniform_that_a_reader_writes_has_a_slider(page):
     page.run(f"{row}.querySelector('.number').dispatchEvent(new Event('change'))")
     np.testing.assert_array_equal(picture(page, "third"), plain)
     # What is typed further on leaves what was set; what cannot be read is said at its line.
-    page.run(put, own.replace("Of all heights", "Of every height"))
+    typed(page, own.replace("Of all heights", "Of every height"), "third")
     page.wait(f"{row}.textContent.includes('Of every height')")
     assert page.run(f"return {row}.querySelector('.number').value") in ("0", "0.00")
-    page.run(put, own.replace("slider(0, 0.5)", "slidr(0, 0.5)"))
+    typed(page, own.replace("slider(0, 0.5)", "slidr(0, 0.5)"), "third")
     problems = "document.querySelector('#third .editor-problems').textContent"
     page.wait(f"{problems}.includes(\"did you mean 'slider'\")")
     assert f"Line {1 + own[: own.index('lift = 0.25')].count(chr(10))}:" in page.run(f"return {problems}")
-    page.run(put, starter)
+    typed(page, starter, "third")
     page.wait(f"!{row}")
     np.testing.assert_array_equal(picture(page, "third"), plain)
 
@@ -379,15 +389,11 @@ def test_a_challenge_keeps_its_best_score(page, book):
     start(page, "match")
     said = "document.querySelector('#match .score').textContent"
     page.wait(f"{said}.startsWith('Score 0 of 100')")
-    set_to = (
-        "const field = document.querySelector('#match [data-path=\"height.smoothing\"] .number');"
-        "field.value = arguments[0]; field.dispatchEvent(new Event('change'))"
-    )
-    page.run(set_to, "0.6")
+    set_number(page, "match", "0.6")
     page.wait(f"/Score [1-8][0-9] /.test({said})")
-    page.run(set_to, "0.9")
+    set_number(page, "match", "0.9")
     page.wait(f"{said}.startsWith('Solved, with a score of 100.')")
-    page.run(set_to, "0.1")
+    set_number(page, "match", "0.1")
     page.wait(f"/Score 0 .*Best so far: 100/.test({said})")
     page.open((book / PAGE).as_uri())
     start(page, "match")

@@ -1,22 +1,27 @@
-"""A notebook's widget in a real browser, with a model that has its saved state and no kernel."""
+"""A notebook's widgets in a real browser, saved and without a kernel, and a notebook exported as HTML."""
 
 from __future__ import annotations
 
 import base64
+import copy
 import json
-from functools import partial
-from http.server import ThreadingHTTPServer
-from threading import Thread
+from contextlib import ExitStack
 
+import nbformat
 import numpy as np
 import pytest
+from nbclient import NotebookClient
+from nbconvert.exporters import HTMLExporter
 
 from playground.course.notebook import lesson as notebook_lesson
 from playground.course.notebook.lesson import NotebookLesson
+from playground.course.read import read_lesson
 from playground.course.scenes import draw, with_value
+from playground.publish.notebook.export import TerrainHTMLExporter
 
-from ..verify.report.browser import MISSING, Browser
-from .test_live_book_in_a_browser import LLVMPIPE, RIGHT, Recorder, drawn, picture
+from ..verify.report.browser import MISSING
+from .test_live_book_in_a_browser import LLVMPIPE, RIGHT, Recorder, drawn, picture, served
+from .test_notebook import STATES
 
 pytestmark = [
     pytest.mark.slow,
@@ -48,7 +53,7 @@ globalThis.rendered = true;
 def shown(lesson, engine, monkeypatch, tmp_path):
     """Return a function that shows a block's widget, as it was saved, in a browser."""
     monkeypatch.setattr(notebook_lesson, "on_engine", lambda work: work(engine))
-    opened, running = NotebookLesson(lesson), []
+    opened = NotebookLesson(lesson)
 
     def show(name, flags=LLVMPIPE):
         widget = opened.show(name)
@@ -65,19 +70,12 @@ def shown(lesson, engine, monkeypatch, tmp_path):
         (folder / "widget.css").write_text(widget._css, encoding="utf-8")
         saved = {"state": {**keep, "name": name}, "bytes": base64.b64encode(widget.picture).decode()}
         (folder / "state.json").write_text(json.dumps(saved), encoding="utf-8")
-        server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Recorder, directory=str(folder)))
-        Thread(target=server.serve_forever, daemon=True).start()
-        browser = Browser(tmp_path / f"profile-{name}", flags=flags).__enter__()
-        running.append((server, browser))
-        browser.open(f"http://127.0.0.1:{server.server_address[1]}/index.html")
+        browser = running.enter_context(served(folder, "index.html", tmp_path / f"profile-{name}", flags))
         browser.wait("globalThis.rendered")
         return browser
 
-    yield show
-    for server, browser in running:
-        browser.__exit__(None, None, None)
-        server.shutdown()
-        server.server_close()
+    with ExitStack() as running:
+        yield show
 
 
 def test_a_saved_figure_is_live_without_a_kernel(shown, lesson, engine):
@@ -114,3 +112,110 @@ def test_without_webgl_the_saved_picture_is_shown(shown, lesson, engine):
     assert size == [draw(engine, lesson.named["land"].scene).array.shape[1]]
     assert browser.run("return model.get('drawn_by')") == "kernel"
     assert browser.run("return document.querySelectorAll('canvas').length") == 0
+
+
+# ── exported ──────────────────────────────────────────────────────────────────
+
+
+OFFLINE = (*LLVMPIPE, "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1")
+CELLS = (
+    'from playground.course.notebook import open_lesson\nlesson = open_lesson("diamond_square")',
+    'lesson.show("land")',
+    'lesson.show("smoothing")',
+)
+DRAGGED = 0.3
+
+
+@pytest.fixture(scope="module")
+def run():
+    """Give a notebook as it is saved when its cells have run and a slider was dragged."""
+    nb = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in CELLS])
+    NotebookClient(nb, timeout=600, kernel_name="python3").execute()
+    states = [model["state"] for model in nb.metadata["widgets"][STATES]["state"].values()]
+    (land,) = [state for state in states if "height.smoothing" in state.get("values", {})]
+    land["values"] = {**land["values"], "height.smoothing": DRAGGED}
+    return nb
+
+
+@pytest.fixture
+def shown_html(tmp_path):
+    """Return a function that opens HTML from a server, in a browser that has no network."""
+    with ExitStack() as running:
+
+        def show(html, flags=OFFLINE):
+            (tmp_path / "index.html").write_text(html, encoding="utf-8")
+            browser = running.enter_context(served(tmp_path, "index.html", tmp_path / "profile", flags))
+            # Each by a name, as the pictures of a book have one.
+            browser.run(
+                "document.querySelectorAll('[data-terrain-saved]')"
+                ".forEach((root, at) => { root.id = `f${at}`; })"
+            )
+            return browser
+
+        yield show
+
+
+def live(browser, name):
+    browser.run(f"document.getElementById('{name}').scrollIntoView({{ block: 'center' }})")
+    browser.wait(f"document.querySelector('#{name} .live canvas:not([hidden])')")
+
+
+def asked_for(browser):
+    """Return all addresses that a page asked for, but for the icon that any page of a server has."""
+    result = browser.run("return performance.getEntriesByType('resource').map((entry) => entry.name)")
+    return [url for url in result if not url.endswith("/favicon.ico")]
+
+
+def test_an_exported_notebook_is_live_and_asks_for_nothing(run, shown_html, engine):
+    scene = read_lesson("diamond_square").named["land"].scene
+    html, _ = TerrainHTMLExporter().from_notebook_node(run)
+    browser = shown_html(html)
+    live(browser, "f0")
+    first = picture(browser, "f0")
+    expected = drawn(engine, with_value(scene, "height.smoothing", DRAGGED), first)
+    np.testing.assert_array_equal(first, expected)
+    browser.run("document.querySelector('#f0 .live input[type=range]').focus()")
+    browser.press(*[RIGHT] * 5)
+    assert (picture(browser, "f0") != first).any()
+    live(browser, "f1")
+    assert picture(browser, "f1").std() > 2.0
+    assert browser.run("return Object.keys(terrainRuntimes).length") == 1
+    assert asked_for(browser) == []
+    assert [path for path in Recorder.asked if path != "/favicon.ico"] == ["/index.html"]
+    assert [line for line in browser.log() if "favicon" not in line] == []
+
+
+def test_any_exporter_html_is_live_without_saved_widget_state(run, shown_html, engine):
+    """As JupyterLab saves notebooks: a figure has the values of its cell."""
+    scene = read_lesson("diamond_square").named["land"].scene
+    nb = copy.deepcopy(run)
+    del nb.metadata["widgets"]
+    html, _ = HTMLExporter().from_notebook_node(nb)
+    browser = shown_html(html)
+    live(browser, "f0")
+    first = picture(browser, "f0")
+    np.testing.assert_array_equal(first, drawn(engine, scene, first))
+    assert all("cdnjs.cloudflare.com" in url for url in asked_for(browser))  # nbconvert's own
+
+
+def test_exported_figure_without_webgl_shows_picture_and_reason(run, shown_html):
+    html, _ = TerrainHTMLExporter().from_notebook_node(run)
+    browser = shown_html(html, ("--disable-gpu", "--disable-3d-apis"))
+    text = browser.wait("document.querySelector('#f0 .mistake')?.textContent")
+    assert text.startswith("This browser offers no WebGL2, so the picture stands still.")
+    width = "document.querySelector('#f0 img').naturalWidth"
+    assert browser.run(f"return [{width}, document.querySelectorAll('#f0 canvas, #f0 input').length]") == [
+        read_lesson("diamond_square").named["land"].scene.pixels[0],
+        0,
+    ]
+
+
+def test_a_damaged_figure_in_a_page_says_so_in_a_sentence(run, shown_html):
+    html, _ = TerrainHTMLExporter().from_notebook_node(run)
+    at = html.index("data-terrain-state")
+    start = html.index(">", at) + 1
+    browser = shown_html(f"{html[:start]}!!!!{html[start + 4 :]}")
+    live(browser, "f1")
+    text = browser.wait("document.querySelector('#f0 p')?.textContent")
+    assert text.startswith("This figure stands still, because it cannot be started here: ")
+    assert browser.run("return document.querySelector('#f0 img').naturalWidth") > 0
