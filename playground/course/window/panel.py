@@ -284,7 +284,7 @@ def draw_work(block: Exercise, page: Page) -> None:
 def draw_challenge(block: Challenge, page: Page) -> None:
     """Draw a picture to match, and how near the picture in view is."""
     tasks = page.reader.tasks
-    match, best = tasks.scoring.matches.get(block.name), tasks.attempt(block).score
+    match, best = tasks.judging.matches.get(block.name), tasks.attempt(block).score
     solved = best >= block.goal
     with page.frame(block.name, theme.ACCENT if solved else theme.WARM):
         page.label(page.say("challenge"), theme.ACCENT if solved else theme.WARM)

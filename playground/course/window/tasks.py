@@ -22,7 +22,6 @@ from playground.course.tasks import (
     Picture,
     Verdict,
     Work,
-    match,
     path_of,
     scene_of,
     starter,
@@ -36,66 +35,9 @@ from playground.errors import PlaygroundError
 from playground.sketch.assign import value_of, values_of
 from playground.sketch.model import Sketch, Value, kernels_of
 from playground.studio.code.open_files import typed_in
-from playground.studio.compare.compare import as_before
 from playground.studio.notices import Notices
 from playground.studio.reload.stages import ReloadStage
 from playground.studio.session import Session
-
-_PAUSE = 0.3  # [s] between two scores at least
-_SHARE = 10.0  # times what a score takes that it waits for the next
-
-
-@dataclass(kw_only=True)
-class Scoring:
-    """The scores of one reader; ``matches`` has the last one of each challenge."""
-
-    session: Session
-    notices: Notices
-    scored: Callable[[Challenge, Match], None]  # called with each score
-    matches: dict[str, Match] = field(default_factory=dict)  # by block
-
-    def __post_init__(self) -> None:
-        self._of: tuple[str, Work] | None = None  # what was scored last
-        self._stale = False  # the picture in view is another than that
-        self._due = 0.0  # when the next score may be computed
-
-    def update(self, block: Challenge, drawn: Work, ends: Ends, now: float) -> bool:
-        """Score the picture in view where it rests and is another than before; return whether that was done.
-
-        ``drawn`` is what the picture is made of: what the sandbox has tried.
-        """
-        session = self.session
-        coming = session.drafts.stage is not ReloadStage.NONE or session.error is not None
-        self._stale = not coming and (block.name, drawn) != self._of
-        if not self._stale or now < self._due or session.plan is None:
-            return False
-        self._of, started = (block.name, drawn), self.notices.now()
-        try:
-            with as_before(session.engine, session.plan):
-                result = match(session.engine, block, drawn, ends, SIDE)
-        except PlaygroundError as error:
-            self.notices.say(str(error))
-            return True
-        took = self.notices.now() - started
-        self._due = started + took + max(_PAUSE, _SHARE * took)
-        self.matches[block.name] = result
-        self.scored(block, result)
-        return True
-
-    def rest(self) -> None:
-        """Wait for nothing: no challenge is in view that can be scored."""
-        self._stale = False
-
-    def patience(self, now: float) -> float:
-        """Return how long nothing needs to be scored [s]."""
-        return max(self._due - now, 0.0) if self._stale else math.inf
-
-    def forget(self, name: str = "") -> None:
-        """Forget the score of a block, or of all: it was of a work that is no more."""
-        self._of = None
-        for block_name in [name] if name else list(self.matches):
-            self.matches.pop(block_name, None)
-
 
 SIDE = 160
 """Pixels, the longer way, of the pictures that a score compares while one plays."""
@@ -107,24 +49,31 @@ class Judging:
 
     notices: Notices
     is_idle: Callable[[], bool]  # whether the picture in view rests
-    received: Callable[[str, Verdict], None]  # called with a block's name and its verdict
+    received: Callable[[str, Verdict | Match], None]  # called with a block's name and what came of its work
     process: JudgeProcess = field(default_factory=JudgeProcess)
     verdicts: dict[str, Verdict] = field(default_factory=dict)  # by block
     ends: dict[str, Ends] = field(default_factory=dict)  # by challenge: what its score lies between
     judged: dict[str, Work] = field(default_factory=dict)  # by block: what its verdict is on
+    matches: dict[str, Match] = field(default_factory=dict)  # by challenge: its last score
     at: str = ""  # the exercise whose work is judged, or is to be
     _work: Request | None = None  # that is still to be sent
     _wanted: list[Challenge] = field(default_factory=list)
     _sent: Future | None = None  # of what the process is at
+    _scored: tuple[str, Work] | None = None  # the challenge's work that was sent last
 
     @property
     def busy(self) -> bool:
         """Whether an answer is to come."""
-        return bool(self._sent or self.at)
+        return self._sent is not None or self._work is not None
 
     def check(self, block: Exercise, work: Work) -> None:
         """Have a work judged; ``update`` receives the verdict."""
         self.at, self._work = block.name, Request(block, work)
+
+    def score(self, block: Challenge, drawn: Work) -> None:
+        """Have the picture in view scored, unless it is the one before; ``drawn`` is what it is made of."""
+        if (block.name, drawn) != self._scored and self._sent is None and self._work is None:
+            self._scored, self._work = (block.name, drawn), Request(block, drawn, SIDE)
 
     def want(self, blocks: tuple[Block, ...]) -> None:
         """Have the pictures to match of a page drawn, while the picture in view rests."""
@@ -149,8 +98,15 @@ class Judging:
     def forget(self) -> None:
         """Forget all, and expect nothing more of the process."""
         self._withdraw()
-        for table in (self.verdicts, self.judged, self.ends, self._wanted):
+        self._scored = None
+        for table in (self.verdicts, self.judged, self.matches, self.ends, self._wanted):
             table.clear()
+
+    def forget_work(self, name: str) -> None:
+        """Forget what came of a work that is no more."""
+        self.verdicts.pop(name, None)
+        self.matches.pop(name, None)
+        self._scored = None
 
     def close(self) -> None:
         """End the process; it starts again where it is needed."""
@@ -174,9 +130,12 @@ class Judging:
             return
         if isinstance(answer, Ends):
             self.ends[name] = answer
-        elif isinstance(answer, Verdict) and request.work is not None:
+            return
+        if isinstance(answer, Match):
+            self.matches[name] = answer
+        elif request.work is not None:
             self.verdicts[name], self.judged[name] = answer, request.work
-            self.received(name, answer)
+        self.received(name, answer)
 
 
 Task = Exercise | Challenge
@@ -206,7 +165,6 @@ class Tasks:
         self.judging = Judging(
             notices=self.notices, is_idle=lambda: self.session.is_idle, received=self._received
         )
-        self.scoring = Scoring(session=self.session, notices=self.notices, scored=self._scored)
         self._on: Task | None = None  # the task that was begun
         self._copy: Copy | None = None  # what replaces its file
         self._given: dict[str, list[str]] = {}  # parameters that a starter has
@@ -304,19 +262,15 @@ class Tasks:
             self.store()
         elif self._on is not None and self._store_at == math.inf:
             self._store_at = now + _STORE
-        ends = self.judging.ends.get(block.name) if block is not None else None
-        if isinstance(block, Challenge) and self.is_begun(block) and ends is not None:
-            drawn = Work(self._drawn_text(block), self.work(block).values)
-            self._news |= self.scoring.update(block, drawn, ends, now)
-        else:
-            self.scoring.rest()
+        coming = self.session.drafts.stage is not ReloadStage.NONE or self.session.error is not None
+        if isinstance(block, Challenge) and self.is_begun(block) and not coming:
+            self.judging.score(block, Work(self._drawn_text(block), self.work(block).values))
 
     def patience(self, now: float) -> float:
         """Return how long nothing needs to be done here [s]."""
         if self._news or self.judging.busy:
             return 0.0 if self._news else _POLL
-        typed = max(self._store_at - now, 0.0) if self._on is not None else math.inf
-        return min(typed, self.scoring.patience(now))
+        return max(self._store_at - now, 0.0) if self._on is not None else math.inf
 
     def store(self) -> None:
         """Remember what is typed and set of the task that was begun."""
@@ -345,21 +299,17 @@ class Tasks:
         """Forget verdicts: another lesson is opened."""
         self.leave()
         self.judging.forget()
-        self.scoring.forget()
         self._given.clear()
 
     # ── parts of it ──────────────────────────────────────────────────────────
 
-    def _received(self, name: str, verdict: Verdict) -> None:
+    def _received(self, name: str, result: Verdict | Match) -> None:
         attempt = self.progress.attempts.setdefault(f"{self.lesson()}/{name}", Attempt())
-        attempt.points, attempt.of = max(attempt.points, verdict.points), verdict.of
+        if isinstance(result, Match):
+            attempt.score = max(attempt.score, result.score)
+        else:
+            attempt.points, attempt.of = max(attempt.points, result.points), result.of
         self.remember()
-
-    def _scored(self, block: Challenge, match: Match) -> None:
-        attempt = self.attempt(block)
-        if match.score > attempt.score:
-            attempt.score = match.score
-            self._keep(block, self.work(block))
 
     def _text_of(self, block: Task) -> str | None:
         """Return the text of a task's copy with what is typed; None where it is not open."""
@@ -398,8 +348,7 @@ class Tasks:
 
     def _forget(self, block: Task) -> None:
         """Forget what was said of a work that is no more."""
-        self.judging.verdicts.pop(block.name, None)
-        self.scoring.forget(block.name)
+        self.judging.forget_work(block.name)
         self.remember()
 
     def _open(self, block: Task, path: Path, text: str, line: int) -> None:
