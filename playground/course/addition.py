@@ -17,7 +17,7 @@ from playground.course.window.reader import Reader
 from playground.studio.addition import Addition, Layer
 from playground.studio.bench import Workbench
 from playground.studio.host import Host
-from playground.studio.input.key import Key
+from playground.studio.keys import Key
 
 if TYPE_CHECKING:
     from playground.course.window.panel import LessonPanel

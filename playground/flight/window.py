@@ -30,9 +30,9 @@ from playground.flight.instruments import Instruments
 from playground.flight.record import Header, Moment, Record, Recorder
 from playground.flight.reload import SaveFollower
 from playground.sketch.model import Sketch
-from playground.studio.input.keys import pressed_sign
-from playground.studio.input.text_field import ctrl_held, letters
+from playground.studio.draw import ctrl_held, letters
 from playground.studio.interface import remembered_size
+from playground.studio.keys import pressed_sign
 from playground.studio.picture.full_screen import Painter
 from playground.studio.status import add_line, status_file
 from playground.studio.window import Window, wake

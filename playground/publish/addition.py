@@ -12,7 +12,7 @@ from playground.publish.window.panel import draw_capture
 from playground.studio.addition import Addition, Layer
 from playground.studio.bench import Workbench
 from playground.studio.host import Host
-from playground.studio.input.key import Key
+from playground.studio.keys import Key
 
 _POLL_INTERVAL = 0.1  # [s] between looks at a job
 

@@ -36,18 +36,16 @@ from playground.studio.code.open_files import unsaved
 from playground.studio.code.panel import draw_code
 from playground.studio.compare.panel import below_bar, drag_line, paint_both
 from playground.studio.draw import Area, tooltip_waits
+from playground.studio.drops import Drops, opened_from
 from playground.studio.edits.autosave import QUIET, Autosave, memory_of
 from playground.studio.edits.memory import Remembered
 from playground.studio.guard import Guard
 from playground.studio.host import Host
-from playground.studio.input.drops import Drops, opened_from
-from playground.studio.input.keymap import draw_keymap
-from playground.studio.input.keys import act_on_keys
-from playground.studio.input.mouse import PictureMouse
-from playground.studio.input.picture_keys import PictureKeys
 from playground.studio.inspect.overlays import draw_inspection
 from playground.studio.interface import WindowControls, remembered_size
 from playground.studio.keyframes.panel import height_of_timeline
+from playground.studio.keys import PictureKeys, act_on_keys, draw_keymap
+from playground.studio.mouse import PictureMouse
 from playground.studio.overlay import checking_text, draw_behind, draw_checking, draw_notices, draw_waiting
 from playground.studio.panel.panel import Panel
 from playground.studio.picture.disk_caching import SessionCaching

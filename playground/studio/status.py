@@ -19,7 +19,7 @@ from playground.engine.non_finite import NotFinite
 from playground.studio.bench import Workbench
 from playground.studio.code.open_files import unsaved
 from playground.studio.code.panel import typing
-from playground.studio.input.escape_layers import open_layers
+from playground.studio.keys import open_layers
 from playground.studio.overlay import PATIENCE
 from playground.studio.session import Session
 

@@ -17,7 +17,6 @@ from playground.sketch.model import kernels_of
 from playground.sketch.replace_technique import with_texts
 from playground.sketch.traits import traits_of
 from playground.verify.check import check_file
-from playground.verify.reduce.case import inline_sketch
 
 from ..foreign_cases import CASES, photo
 from .drawing import SIZE, colours, drawn, first_texel, kernels, notes, shader_of

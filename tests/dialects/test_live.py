@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from playground.studio.input.drops import _is_sketch
 
 from playground.engine.engine import Engine
-from playground.studio.input.drops import _is_sketch
 from playground.studio.problems.problems import Problems
 from playground.studio.session import Session
 

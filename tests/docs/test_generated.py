@@ -17,7 +17,7 @@ import playground
 from playground.cli import command_line
 from playground.commands.entries import techniques as listed
 from playground.paths import GLSL
-from playground.studio.input.keys import KEYS
+from playground.studio.keys import KEYS
 
 from .pages import ROOT
 

@@ -11,11 +11,10 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.engine.engine import Engine
 from playground.studio.bench import Workbench
-from playground.studio.input.drops import Drops
-from playground.studio.input.keymap import draw_keymap
-from playground.studio.input.keys import act_on_keys
+from playground.studio.drops import Drops
 from playground.studio.inspect.overlays import draw_inspection
 from playground.studio.interface import WindowControls
+from playground.studio.keys import act_on_keys, draw_keymap
 from playground.studio.panel.panel import Panel
 from playground.studio.problems.panel import ErrorsList
 from playground.studio.session import Session

@@ -13,8 +13,8 @@ from playground.engine.sandbox import SandboxReport
 from playground.errors import SandboxCrash
 from playground.sketch.assign import values_of
 from playground.studio.bench import Workbench
+from playground.studio.drops import Drops
 from playground.studio.edits.autosave import Autosave, memory_of
-from playground.studio.input.drops import Drops
 from playground.studio.interface import WindowControls
 from playground.studio.session import Session
 

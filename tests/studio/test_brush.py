@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from imgui_bundle import imgui
 
-from playground.studio.input.mouse import PictureMouse
+from playground.studio.mouse import PictureMouse
 from playground.studio.paint.layer import NUMBERS
 
 from ..sketch_texts import passes

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from playground.studio.remote.controllers import share_of, with_share
 from playground.studio.remote.controls import Controls
-from playground.studio.remote.shares import share_of, with_share
 
 from .panel_desk import Bare
 

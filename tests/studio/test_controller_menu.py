@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from playground.studio.remote.controller_file import Source, file_of, read_bindings
-from playground.studio.remote.controllers import SETTLES
+from playground.studio.remote.controllers import SETTLES, Source, file_of, read_bindings
 
 from ..sketch_texts import map_of, passes
 from .panel_desk import Bare

@@ -11,8 +11,8 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
-from playground.studio.remote.addresses import Addresses
 from playground.studio.remote.controls import Behind, Controls
+from playground.studio.remote.osc import Addresses
 
 from .remote_desk import Harness, write_sketch
 

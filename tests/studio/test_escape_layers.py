@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 from playground.engine.engine import Engine
 from playground.studio.addition import Addition, Layer
 from playground.studio.code.panel import draw_code
-from playground.studio.input.escape_layers import open_layers
+from playground.studio.keys import open_layers
 
 from ..sketch_texts import map_of_height
 from .panel_desk import Bare

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from playground.engine.engine import Engine
-from playground.studio.remote.controller_file import read_bindings
+from playground.studio.remote.controllers import read_bindings
 
 from ..docs.pages import DOCS, Block, blocks_of
 from .remote_desk import Harness

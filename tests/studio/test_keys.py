@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from playground.studio.input.keys import KEYS
+from playground.studio.keys import KEYS
 
 
 def test_no_two_meanings_share_a_key() -> None:

@@ -12,14 +12,14 @@ import pytest
 
 from playground.errors import SketchError
 from playground.extras import install_command
-from playground.studio.remote.controller_file import (
+from playground.studio.remote.controllers import (
+    SETTLES,
     Binding,
     Source,
     file_of,
     read_bindings,
     write_bindings,
 )
-from playground.studio.remote.controllers import SETTLES
 from playground.studio.remote.remotes import Remotes
 from tests.studio import fake_midi
 

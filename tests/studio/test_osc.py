@@ -188,8 +188,8 @@ def test_what_does_not_fit_is_said_once_with_the_nearest_address(remote: Harness
 
 
 def test_an_address_that_fits_several_names_them(remote: Harness):
-    from playground.studio.remote.addresses import Addresses
     from playground.studio.remote.controls import Controls
+    from playground.studio.remote.osc import Addresses
 
     folder = remote.session.path.parent
     text = (folder / "sketch.toml").read_text("utf-8")

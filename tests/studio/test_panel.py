@@ -13,9 +13,8 @@ from playground.data.image_files import write_png
 from playground.engine.engine import Engine
 from playground.paths import SKETCHES
 from playground.sketch.assign import values_of
-from playground.studio.draw import tooltip_waits
-from playground.studio.panel import rows as panel_rows
-from playground.studio.panel.rows import fitting_path
+from playground.studio import draw as panel_rows
+from playground.studio.draw import fitting_path, tooltip_waits
 from playground.studio.theme import PANEL_WIDTH
 
 from ..sketch_texts import map_of, passes

@@ -11,11 +11,10 @@ from playground.engine.camera import look
 from playground.shader.parameter import Widget
 from playground.shader.widgets import WIDGETS
 from playground.sketch.model import Camera, Parameter
-from playground.studio.panel.dome import direction_at, dot_of
-from playground.studio.panel.number_format import decimals, format_of, snapped
-from playground.studio.panel.widgets import CONTROLS
+from playground.studio.panel.values import decimals, format_of, snapped
 from playground.studio.picture.gestures import Gesture, steered
 from playground.studio.problems.panel import numbered, short_place
+from playground.studio.widgets import CONTROLS, direction_at, dot_of
 
 
 def test_every_widget_of_an_annotation_has_a_control():

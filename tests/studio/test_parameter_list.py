@@ -13,9 +13,9 @@ from playground.shader.parameter import Widget, coerce, tidied
 from playground.sketch.model import Camera, Parameter
 from playground.studio.edits.edits import Draft, Edits
 from playground.studio.edits.history import History, State, applied, edits_of, in_words, state_of
-from playground.studio.panel.parameter_list import Filter, Listing, set_words
+from playground.studio.panel.parameter_list import Filter, filtered, sections_of, set_words, shown_values
 from playground.studio.panel.randomise import at_random, mutated
-from playground.studio.panel.typed_values import read_typed
+from playground.studio.panel.values import read_typed
 
 from ..loading import load
 from ..sketch_texts import map_of_height
@@ -42,7 +42,7 @@ def draft(tmp_path: Path) -> Draft:
 
 
 def test_a_pass_lists_what_it_exports_and_what_is_inside(draft: Draft) -> None:
-    height, view = Listing().sections(draft)
+    height, view = sections_of(draft.base)
     assert (height.name, view.name) == ("height", "view")
     assert [(g.name, [i.path for i in g.items]) for g in height.groups] == [("", ["height.high"])]
     ((heading, (group,)),) = height.inner
@@ -61,24 +61,23 @@ def test_a_pass_lists_what_it_exports_and_what_is_inside(draft: Draft) -> None:
     ],
 )
 def test_a_search_finds_every_word_somewhere(draft: Draft, search: str, names: set[str]) -> None:
-    left = Listing().filtered(draft, Filter(search))
+    left = filtered(draft, Filter(search))
     assert {i.path for section in left.values() for i in section.items if section.name == "height"} == names
 
 
 def test_what_is_changed_by_any_name_is_marked_and_found(draft: Draft) -> None:
-    listing = Listing()
     by_leaf = draft.with_edits(Edits((("height.inner.level", 0.75),)))
-    assert listing.values(by_leaf).changed == {"height.high"}
-    assert listing.values(by_leaf).of["height.high"] == 0.75
-    assert set(listing.filtered(by_leaf, Filter(changed=True))) == {"height"}
+    assert shown_values(by_leaf).changed == {"height.high"}
+    assert shown_values(by_leaf).of["height.high"] == 0.75
+    assert set(filtered(by_leaf, Filter(changed=True))) == {"height"}
     same = draft.with_edits(Edits((("height.high", 0.5),)))
-    assert listing.values(same).changed == frozenset(), "set, but to what the file says"
-    assert listing.filtered(same, Filter(changed=True)) == {}
+    assert shown_values(same).changed == frozenset(), "set, but to what the file says"
+    assert filtered(same, Filter(changed=True)) == {}
 
 
 def test_what_is_set_can_be_set_again_on_the_command_line(draft: Draft) -> None:
     edited = draft.with_edits(Edits((("height.high", 0.75), ("height.inner.other", 0.1), ("size", (17, 17)))))
-    words = set_words(edited, Listing().values(edited)).split()
+    words = set_words(edited).split()
     assert words[::2] == ["--set"] * 3
     pairs = dict(word.split("=") for word in words[1::2])
     assert draft.file.with_values(pairs) == edited.sketch

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 from imgui_bundle import imgui
 
-from playground.studio.input.keys import act_on_keys
-from playground.studio.input.picture_keys import CODES, PictureKeys
+from playground.studio.keys import CODES, PictureKeys, act_on_keys
 from tests.studio import panel_desk as desk
 
 from .panel_desk import Bare

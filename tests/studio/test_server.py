@@ -21,7 +21,7 @@ from playground import cli
 from playground.errors import ContextError, DataError, ParameterError
 from playground.extras import install_command
 from playground.local_server import MAX_UNAUTHENTICATED
-from playground.studio.remote.calls import MAX_WAITING, Busy, Calls
+from playground.studio.remote.controls import MAX_WAITING, Busy, Calls
 from playground.studio.remote.remotes import RemoteOptions, Remotes
 
 from ..crowds import crowd, wait_until_open

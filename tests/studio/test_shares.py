@@ -11,7 +11,7 @@ from playground.shader.parameter import coerce, part_names
 from playground.shader.widgets import Widget
 from playground.sketch.assign import range_of
 from playground.sketch.model import Parameter, Value
-from playground.studio.remote.shares import check_shares, share_of, with_share
+from playground.studio.remote.controllers import check_shares, share_of, with_share
 
 SLIDER = Widget("slider", -2.0, 6.0)
 ALL: list[tuple[Parameter, Value]] = [

@@ -13,8 +13,8 @@ from imgui_bundle import ImVec2, imgui
 from playground.engine.engine import Engine
 from playground.sketch.assign import values_of
 from playground.sketch.model import Parameter
-from playground.studio.panel.sliders import knob_of, part_names, place_of_number, slide, slide_whole
 from playground.studio.theme import Theme
+from playground.studio.widgets import knob_of, part_names, place_of_number, slide, slide_whole
 
 from ..sketch_texts import map_of_height
 from .panel_desk import Bare

@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.studio.clock import Clock, marks_of, span_of, stepped, toggle_loop
-from playground.studio.input.mouse import PictureMouse
+from playground.studio.mouse import PictureMouse
 
 from ..loading import load
 from ..sketch_texts import passes

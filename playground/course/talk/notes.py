@@ -24,7 +24,7 @@ from playground.course.talk.presenter import Presenter
 from playground.errors import DataError
 from playground.json_text import read_json
 from playground.local_server import CSS, HTML, JSON, SCRIPT, Answer, LocalServer, Request, as_json, refused
-from playground.studio.remote.calls import Busy, Calls
+from playground.studio.remote.controls import Busy, Calls
 
 _LABELS = ("notes", "following", "over", "pause", "go_on", "reset", "back", "next", "black", "lost")
 

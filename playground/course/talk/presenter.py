@@ -16,8 +16,8 @@ from playground.course.talk.beats import Beat, beats_of, first_of_page
 from playground.errors import ParameterError
 from playground.shader.parameter import write
 from playground.sketch.model import Parameter, Value
-from playground.studio.panel.number_format import unit_of
-from playground.studio.remote.shares import share_of
+from playground.studio.panel.values import unit_of
+from playground.studio.remote.controllers import share_of
 
 TYPED = 3.0
 """[s] after its last digit that a typed number is forgotten."""

@@ -28,10 +28,9 @@ from playground.shader.parameter import is_whole
 from playground.sketch.assign import range_of, resolve
 from playground.sketch.model import Parameter, Value
 from playground.studio.bench import Workbench
-from playground.studio.draw import Area
-from playground.studio.input.text_field import letters
-from playground.studio.panel.parameter_list import Listing
-from playground.studio.remote.shares import with_share
+from playground.studio.draw import Area, letters
+from playground.studio.panel.parameter_list import items_of, shown_values
+from playground.studio.remote.controllers import with_share
 
 if TYPE_CHECKING:
     import moderngl
@@ -50,9 +49,6 @@ class PresentedPictures:
 
     reader: Reader
     shown: Still | None = None
-
-    def __post_init__(self) -> None:
-        self._listing = Listing()
 
     def show(self, beat: Beat) -> None:
         """Show a beat's picture, unless it is shown and unchanged; a sweep plays from its beginning."""
@@ -85,8 +81,8 @@ class PresentedPictures:
         draft = self.reader.bench.session.shown
         if draft is None or self.reader.figure.busy or not beat.sliders:
             return []
-        values = self._listing.values(draft)
-        items = {item.leaf: item for section in self._listing.sections(draft) for item in section.items}
+        values = shown_values(draft)
+        items = {item.leaf: item for item in items_of(draft).values()}
         rows = []
         for path in beat.sliders:
             try:

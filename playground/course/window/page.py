@@ -26,9 +26,8 @@ from playground.course.typeset import (
 )
 from playground.course.window.reader import Reader
 from playground.studio import theme
-from playground.studio.draw import button, inked, pushed_id, styled
-from playground.studio.panel.memory import Memory
-from playground.studio.panel.rows import explain
+from playground.studio.draw import button, explain, inked, pushed_id, styled
+from playground.studio.panel.parameter_list import PanelState
 from playground.studio.theme import Theme
 
 if TYPE_CHECKING:
@@ -239,7 +238,7 @@ class Page:
     lesson: Lesson
     look: Theme
     prose: Prose
-    memory: Memory  # of the parameters' rows
+    memory: PanelState  # of the parameters' rows
     textures: Textures
     present: Callable[[], None]  # begins a presentation of the lesson
 

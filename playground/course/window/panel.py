@@ -57,13 +57,12 @@ from playground.sketch.assign import resolve
 from playground.sketch.find import find
 from playground.studio import theme
 from playground.studio.code.panel import save
-from playground.studio.draw import SIDE_PANEL, button, inked, pushed_id, styled, window
+from playground.studio.draw import SIDE_PANEL, button, fitting, inked, pushed_id, styled, window
 from playground.studio.edits.history import History
-from playground.studio.panel.memory import Memory
-from playground.studio.panel.parameter_row import Rows
-from playground.studio.panel.rows import fitting
-from playground.studio.panel.sliders import slide_whole
+from playground.studio.panel.parameter_list import PanelState, items_of, shown_values
+from playground.studio.panel.passes_panel import Rows
 from playground.studio.theme import Theme
+from playground.studio.widgets import slide_whole
 
 _ON, _OFF = theme.ACCENT, theme.LINE
 
@@ -185,8 +184,8 @@ def draw_parameters(scene: Scene, paths: tuple[str, ...], page: Page) -> None:
         return
     if session.path != sketch_path(scene) or page.reader.figure.busy:
         return
-    items = {item.leaf: item for section in memory.listing.sections(draft) for item in section.items}
-    values = memory.listing.values(draft)
+    items = {item.leaf: item for item in items_of(draft).values()}
+    values = shown_values(draft)
     rows = Rows(session, bench.notices, memory, bench.interface.ahead, values, page.look)
     for path in paths:
         with suppress(ParameterError):
@@ -574,7 +573,7 @@ _MIN_PICTURE_WIDTH = 200.0
 class LessonPanel:
     """The panel's own memory."""
 
-    memory: Memory = field(default_factory=Memory)
+    memory: PanelState = field(default_factory=PanelState)
     _texts: Texts | None = None
     _textures: Textures | None = None
 

@@ -11,10 +11,9 @@ from playground.publish.sweep import parts_of, sweep_text
 from playground.publish.video import QUALITIES
 from playground.publish.window.captures import MULTIPLES, Captures, CaptureSettings, open_folder
 from playground.studio import theme
-from playground.studio.draw import POPUP_COLOUR, QUIET, button, choose, disabled, styled, wrapped
+from playground.studio.draw import POPUP_COLOUR, QUIET, button, choose, disabled, row, styled, wrapped
 from playground.studio.edits.edits import Draft
-from playground.studio.panel.parameter_list import Listing
-from playground.studio.panel.rows import row
+from playground.studio.panel.parameter_list import items_of
 from playground.studio.theme import Theme
 
 _NAMES = {PICTURE: "Picture", PICTURES: "Numbered pictures", FILM: "Film", SHEET: "Sheet of a sweep"}
@@ -112,8 +111,7 @@ def _sweep(capture_settings: CaptureSettings, number: int, draft: Draft | None) 
         )
         imgui.same_line(0, 0)
         if imgui.begin_combo(f"##swept{number}", "", imgui.ComboFlags_.no_preview):
-            sections = Listing().sections(draft) if draft is not None else ()
-            for item in (item for section in sections for item in section.items):
+            for item in items_of(draft).values():
                 for part in parts_of(item.parameter):
                     name = f"{item.path}.{part}" if part else item.path
                     if imgui.selectable(name, False)[0]:

@@ -11,20 +11,18 @@ from imgui_bundle import imgui
 from playground.sketch.model import PassSpec, Sketch
 from playground.studio.channels.channel_list import endings_of, file_of, in_words, note_of
 from playground.studio.channels.channels import Channel, channels, source_of, sources
-from playground.studio.draw import choose
+from playground.studio.draw import choose, cross, fitting_choice, row, slot
 from playground.studio.edits.edits import Draft
-from playground.studio.panel.parameter_list import Listing
-from playground.studio.panel.rows import cross, fitting_choice, row, slot
-from playground.studio.panel.widgets import WidgetSlot, draw_value, explanation
+from playground.studio.panel.parameter_list import shown_values
 from playground.studio.session import Session
 from playground.studio.theme import Theme
+from playground.studio.widgets import WidgetSlot, draw_value, explanation
 
 
 @dataclass
 class ChannelRows:
     """The rows of one panel; what may feed a channel is computed once."""
 
-    listing: Listing
     _sources: dict[str, list[str]] = field(default_factory=dict)
     _sources_of: Sketch | None = None
 
@@ -64,7 +62,7 @@ class ChannelRows:
         if file is None:
             return
         path, parameter = file
-        values = self.listing.values(draft)
+        values = shown_values(draft)
         with row("  file", lambda: explanation(parameter, path), edited=path in values.changed):
             endings = endings_of(draft.base, channel.source)
             position = WidgetSlot(f"##of {channel.path}", look.scale, Path(draft.file.folder), endings)

@@ -19,8 +19,7 @@ from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import without_part
 from playground.studio import theme
 from playground.studio.code.open_files import Editing, OpenFiles, OpenText, unsaved
-from playground.studio.draw import QUIET, Area, button, buttons, styled
-from playground.studio.input.text_field import ctrl_held
+from playground.studio.draw import QUIET, Area, button, buttons, ctrl_held, styled
 from playground.studio.notices import Notices
 from playground.studio.problems.problems import Problems
 from playground.studio.reload.dependencies import path_named

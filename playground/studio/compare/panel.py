@@ -10,10 +10,10 @@ from playground.studio import theme
 from playground.studio.compare.compare import PERIOD, Compare, Mode
 from playground.studio.draw import OVERLAY, Area, button, choose, window
 from playground.studio.edits.undo import Undo
-from playground.studio.panel.sliders import slide
 from playground.studio.picture.full_screen import Blend
 from playground.studio.picture.gestures import GRAB_DISTANCE, divider_position
 from playground.studio.theme import Theme
+from playground.studio.widgets import slide
 
 if TYPE_CHECKING:
     import moderngl

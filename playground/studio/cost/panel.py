@@ -16,12 +16,11 @@ from playground.sketch.model import Sketch
 from playground.sketch.variants import any_variants
 from playground.studio import theme
 from playground.studio.cost.costs import Record
-from playground.studio.draw import header, table
-from playground.studio.inspect import plots
+from playground.studio.draw import fitting, header, table
 from playground.studio.inspect.inspection import Inspection
-from playground.studio.panel.rows import fitting
 from playground.studio.session import Session
 from playground.studio.theme import Theme
+from playground.studio.widgets import PLOT_COLOURS, plot, plot_line
 
 _MAX_ROWS = 6  # passes with a line of their own
 _HIGH = 110.0  # of a plot
@@ -83,18 +82,18 @@ def _plots(record: Record, look: Theme) -> None:
     held = len(record.whole)
     across: np.ndarray = np.arange(record.pictures - held, record.pictures, dtype=np.float64)
     expensive = record.most_expensive(_MAX_ROWS)
-    with plots.plot("##ms", size, implot.Flags_.no_legend.value) as drawn:
+    with plot("##ms", size, implot.Flags_.no_legend.value) as drawn:
         if drawn:
             implot.setup_axes("", "", axes[0] | implot.AxisFlags_.auto_fit, axes[1])
             implot.setup_axis_format(implot.ImAxis_.y1, "%g ms")
             for number, path in enumerate(expensive):
-                implot.plot_line(path, across, np.array(record.passes[path]), plots.line(number))
+                implot.plot_line(path, across, np.array(record.passes[path]), plot_line(number))
     draw, side = imgui.get_window_draw_list(), imgui.get_font_size() * 0.6
     for number, path in enumerate(expensive):
         spent = record.passes[path]
         corner = imgui.get_cursor_screen_pos()
         top = corner.y + (imgui.get_font_size() - side) / 2
-        colour = theme.packed(plots.COLOURS[number % len(plots.COLOURS)])
+        colour = theme.packed(PLOT_COLOURS[number % len(PLOT_COLOURS)])
         draw.add_rect_filled(ImVec2(corner.x, top), ImVec2(corner.x + side, top + side), colour, 2)
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 2 * side)
         text = f"{path}  {sum(spent) / len(spent):.2f} ms, most {max(spent):.2f}"

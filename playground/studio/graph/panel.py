@@ -8,10 +8,9 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.studio import theme
 from playground.studio.cost.costs import RunReasons
-from playground.studio.draw import QUIET, Area, styled
+from playground.studio.draw import QUIET, Area, fitting, styled
 from playground.studio.graph.graph import Thumbnails, Wiring, cost_of
 from playground.studio.inspect.inspection import Inspection
-from playground.studio.panel.rows import fitting
 from playground.studio.session import Session
 from playground.studio.theme import Theme
 

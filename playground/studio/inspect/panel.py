@@ -10,16 +10,15 @@ from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from playground.sketch.map_sketch import Map
 from playground.studio import theme
-from playground.studio.draw import OVERLAY, Area, button, table, window
-from playground.studio.inspect import plots
+from playground.studio.draw import OVERLAY, Area, button, fitting, table, window
 from playground.studio.inspect.histogram import BINS, STEPS, Histogram, ends_of, ticks
 from playground.studio.inspect.inspection import Inspection
 from playground.studio.inspect.inspector import GroundPoint, PixelReport, Sample
-from playground.studio.panel.head import ref_name
-from playground.studio.panel.rows import fitting
+from playground.studio.panel.panel import ref_name
 from playground.studio.picture.view import View
 from playground.studio.session import Session
 from playground.studio.theme import Theme
+from playground.studio.widgets import plot, plot_line
 
 _HIGH = 120.0
 _CHANNELS = ("red", "green", "blue", "alpha")
@@ -99,7 +98,7 @@ def _plot(histogram: Histogram, shown: Map, inspection: Inspection, look: Theme)
     flags = implot.Flags_.no_legend.value | implot.Flags_.no_inputs.value
     floor = 0.5 if logarithmic else 0.0
     top = 1.3 * tallest if logarithmic else 1.05 * tallest
-    with plots.plot("##spread", ImVec2(-1, _HIGH * look.scale), flags) as drawn:
+    with plot("##spread", ImVec2(-1, _HIGH * look.scale), flags) as drawn:
         if not drawn:
             return
         locked = implot.AxisFlags_.lock.value
@@ -118,7 +117,7 @@ def _plot(histogram: Histogram, shown: Map, inspection: Inspection, look: Theme)
             heights = np.maximum(channel.bins.astype(np.float64), floor)
             implot.plot_stairs(_CHANNELS[number], edges, heights, spec)
             implot.plot_shaded(_CHANNELS[number], edges, heights, floor, spec)
-        implot.plot_inf_lines("range", np.array(ends_of(shown), np.float64), plots.line(0, 1.0))
+        implot.plot_inf_lines("range", np.array(ends_of(shown), np.float64), plot_line(0, 1.0))
 
 
 def _table(document: Histogram) -> None:

@@ -10,12 +10,11 @@ from playground.sketch.keyframes import EASES
 from playground.sketch.model import Sketch
 from playground.studio import theme
 from playground.studio.clock import SPEEDS, marks_of, span_of
-from playground.studio.draw import QUIET, Area, button, choose, header, pushed_id, styled, window
+from playground.studio.draw import QUIET, Area, button, choose, cross, header, pushed_id, slot, styled, window
 from playground.studio.edits.undo import Undo
 from playground.studio.interface import Interface
 from playground.studio.keyframes.keyframe_edits import STEP, KeyframeEdits, summary
-from playground.studio.panel.parameter_list import Listing
-from playground.studio.panel.rows import cross, slot
+from playground.studio.panel.parameter_list import items_of
 from playground.studio.session import Session
 from playground.studio.theme import Theme
 
@@ -56,11 +55,10 @@ class KeyframeList:
         imgui.set_next_item_width(-1)
         also = ", ".join(self.paths)
         if imgui.begin_combo("##also", f"and {also}" if also else "and further parameters"):
-            for section in Listing().sections(draft) if draft is not None else ():
-                for item in section.items:
-                    picked = item.path in self.paths
-                    if imgui.selectable(item.path, picked, imgui.SelectableFlags_.no_auto_close_popups)[0]:
-                        (self.paths.remove if picked else self.paths.append)(item.path)
+            for path in items_of(draft):
+                picked = path in self.paths
+                if imgui.selectable(path, picked, imgui.SelectableFlags_.no_auto_close_popups)[0]:
+                    (self.paths.remove if picked else self.paths.append)(path)
             imgui.end_combo()
         imgui.set_next_item_width(96 * look.scale)
         changed, time = imgui.drag_float("##now", clock.time, 0.05, 0.0, 1e6, "%.2f s")

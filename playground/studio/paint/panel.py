@@ -7,11 +7,10 @@ from typing import Any
 
 from imgui_bundle import imgui
 
-from playground.studio.draw import buttons, choose
+from playground.studio.draw import buttons, choose, row
 from playground.studio.paint.brush import ERASER, TOOLS, Brush
 from playground.studio.paint.painting import MAX_RADIUS, MIN_RADIUS, Painting
-from playground.studio.panel.rows import row
-from playground.studio.panel.sliders import slide
+from playground.studio.widgets import slide
 
 _CHANNELS = {0: "the first", 1: "the second", 2: "the third", 3: "the fourth", ERASER: "none: erase"}
 

@@ -12,23 +12,47 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
 
+from playground.errors import counted
+from playground.paths import shown
+from playground.shader.parameter import spell, write
+from playground.sketch.model import Preset, Sketch
 from playground.studio import theme
+from playground.studio.actions import Commands
 from playground.studio.bench import Workbench
 from playground.studio.cost.panel import draw_costs
-from playground.studio.draw import SIDE_PANEL, wrapped
-from playground.studio.input.keys import KEYS
-from playground.studio.input.text_field import await_field
+from playground.studio.draw import (
+    SIDE_PANEL,
+    await_field,
+    button,
+    buttons,
+    choose,
+    disabled,
+    fitting,
+    fitting_choice,
+    fitting_path,
+    inked,
+    letters,
+    menu,
+    row,
+    styled,
+    with_typed_ahead,
+    wrapped,
+)
+from playground.studio.edits.edits import Edits
+from playground.studio.edits.history import in_words
+from playground.studio.edits.undo import Undo
 from playground.studio.inspect.inspection import Inspection
 from playground.studio.inspect.panel import draw_spread
+from playground.studio.interface import TypedAhead
 from playground.studio.keyframes.panel import KeyframeList
+from playground.studio.keys import all_keys
 from playground.studio.paint.panel import draw_paintbox
-from playground.studio.panel.head import draw_head, draw_search
-from playground.studio.panel.memory import Memory
-from playground.studio.panel.pass_sections import Sections
-from playground.studio.panel.rows import row
-from playground.studio.panel.widgets import WidgetSlot, draw_value, explanation
+from playground.studio.panel.parameter_list import Filter, PanelState, items_of, set_words, shown_values
+from playground.studio.panel.passes_panel import Sections
+from playground.studio.panel.randomise import at_random, mutated, targets
 from playground.studio.session import Session
 from playground.studio.theme import Theme
+from playground.studio.widgets import WidgetSlot, draw_value, explanation, slide
 
 
 @dataclass
@@ -36,7 +60,7 @@ class Panel:
     """The panel's own memory: its width, what is searched for and typed in it."""
 
     width: float = theme.PANEL_WIDTH  # in units of scale 1
-    memory: Memory = field(default_factory=Memory)
+    memory: PanelState = field(default_factory=PanelState)
 
     def __post_init__(self) -> None:
         self._sections = Sections(self.memory)
@@ -102,7 +126,7 @@ def _map(session: Session, inspection: Inspection, look: Theme) -> None:
 def _footer_lines(orbits: bool) -> tuple[str, str]:
     """Return the lines at the bottom: what the mouse does, and the keys used most."""
     mouse = "Drag to orbit, Shift to pan, Ctrl for the sun, wheel to zoom" if orbits else ""
-    return mouse, "   ".join(f"{key.name} {key.brief}" for key in KEYS if key.brief)
+    return mouse, "   ".join(f"{key.name} {key.brief}" for key in all_keys() if key.brief)
 
 
 def _footer_height(lines: tuple[str, str], look: Theme) -> float:
@@ -118,3 +142,283 @@ def _footer(lines: tuple[str, str], look: Theme) -> None:
         with wrapped():
             for line in lines:
                 imgui.text_disabled(line)
+
+
+# ── the head ───────────────────────────────────────────────────────────────────
+
+
+_OWN_VIEW = "its own view"
+_CLOSER = 2.5  # [units of scale 1]
+_LISTED = 14  # steps of the history that show without scrolling
+
+
+def draw_head(memory: PanelState, bench: Workbench, look: Theme) -> None:
+    """Draw what is above the passes."""
+    session, sketch = bench.session, bench.session.sketch
+    path = session.drafts.shown_path
+    with look.font(look.bold, theme.TEXT_SIZE + 2):
+        imgui.text_wrapped((sketch.title.strip() if sketch else "") or path.stem)
+    with look.font(look.text, theme.SMALL):
+        style = imgui.get_style()
+        room = imgui.get_content_region_avail().x
+        buttons = [addition for addition in bench.additions if addition.button]
+        widths = [imgui.calc_text_size(addition.button).x + 2 * style.frame_padding.x for addition in buttons]
+        wide = sum(widths) + style.item_spacing.x * max(len(buttons) - 1, 0)
+        start = imgui.get_cursor_pos_x()
+        imgui.text_disabled(fitting_path(shown(path), room - wide - style.item_spacing.x))
+        imgui.set_item_tooltip(str(path))
+        for at, addition in enumerate(buttons):
+            imgui.same_line(*() if at else (start + room - wide,))
+            if button(addition.button, addition.button_note, small=True):
+                addition.toggle()
+    if sketch is None:
+        return
+    _buttons(memory, bench, look)
+    if sketch.presets:
+        _presets(sketch, memory, bench.commands)
+    _shown_texture(session)
+
+
+def _buttons(memory: PanelState, bench: Workbench, look: Theme) -> None:
+    """Draw two lines of buttons, closer than elsewhere: so both fit."""
+    style, closer = imgui.get_style(), _CLOSER * look.scale
+    padding, spacing = style.frame_padding, style.item_spacing
+    sizes: dict[imgui.StyleVar_, float | ImVec2] = {
+        imgui.StyleVar_.frame_padding: ImVec2(padding.x - closer, padding.y),
+        imgui.StyleVar_.item_spacing: ImVec2(spacing.x - closer, spacing.y),
+    }
+    with styled(sizes=sizes):
+        _undo(memory, bench.undo, look)
+        imgui.same_line()
+        _randomise(memory, bench.commands)
+        imgui.same_line()
+        if button("A/B", "Keep this as A, go on with B, and compare the two; or no longer (A)"):
+            bench.inspection.compare.toggle()
+        _resets(bench.commands)
+        imgui.same_line()
+        _copies(memory, bench.commands)
+        imgui.same_line()
+        _saves(memory, bench.commands)
+        imgui.same_line()
+        if button("PNG", f"Save the picture as a new file in {bench.commands.folder} (S)"):
+            bench.commands.save_picture()
+        imgui.same_line()
+        if button("Graph", "The passes as a graph, or no longer (G)"):
+            bench.inspection.graph.toggle()
+
+
+def draw_search(memory: PanelState, ahead: TypedAhead) -> None:
+    """Draw the search, and the switch that leaves only what is changed."""
+    style = imgui.get_style()
+    only = "Changed"
+    wide = imgui.calc_text_size(only).x + imgui.get_frame_height() + style.item_inner_spacing.x
+    if memory.focus_search:
+        imgui.set_keyboard_focus_here()
+        memory.focus_search = False
+    imgui.set_next_item_width(-wide - style.item_spacing.x)
+    flags = imgui.InputTextFlags_.escape_clears_all
+    typed = letters()
+    _, text = imgui.input_text_with_hint("##search", "Search  /", memory.filter.search, flags)
+    text = with_typed_ahead(ahead, text, memory.filter.search, typed)
+    imgui.set_item_tooltip("By label, name, pass, group or description; Esc ends it")
+    imgui.same_line()
+    _, changed = imgui.checkbox(f"{only}##only", memory.filter.changed)
+    imgui.set_item_tooltip("Only what differs from the file")
+    if (text, changed) != (memory.filter.search, memory.filter.changed):
+        memory.filter = Filter(text, changed)
+
+
+# ── undo ─────────────────────────────────────────────────────────────────────
+
+
+def _undo(memory: PanelState, undo: Undo, look: Theme) -> None:
+    history, paints = undo.history, undo.painting.on
+    buttons(
+        ("Undo", "Ctrl+Z", undo.undo, history.can_undo or paints),
+        ("Redo", "Ctrl+Shift+Z, Ctrl+Y", undo.redo, history.can_redo or paints),
+    )
+    imgui.same_line()
+    with menu("History", "history", "Every step; click on one to go there") as opened:
+        if opened:
+            draw_history(memory, undo, look)
+
+
+def draw_history(memory: PanelState, undo: Undo, look: Theme) -> None:
+    """Draw the list of steps, oldest first; what is undone is dimmed."""
+    history, items = undo.history, items_of(undo.session.shown)
+    room = imgui.get_main_viewport().size
+    lines = min(len(history.steps) + 1, _LISTED)
+    wide, high = min(300 * look.scale, room.x - 60), lines * imgui.get_frame_height() + 10
+    imgui.begin_child("steps", ImVec2(wide, min(high, room.y - 120)))
+    if imgui.selectable("As it was opened" if len(history.steps) < 200 else "Before", history.done == 0)[0]:
+        undo.go_to(0)
+
+    def name_of(path: str) -> str:
+        item = items.get(path)
+        return item.parameter.title if item else path
+
+    def written(path: str, value: object) -> str:
+        if value is None:
+            return "the file's"
+        item = items.get(path)
+        return write(item.parameter, value) if item else spell(value)  # type: ignore[arg-type]
+
+    for number, step in enumerate(history.steps, 1):
+        text = fitting(in_words(step, name_of, written), wide - 20 * look.scale)
+        done, latest = number <= history.done, number == history.done
+        with inked(theme.INK if done else theme.DIM):
+            if imgui.selectable(f"{text}##{number}", latest)[0]:
+                undo.go_to(number)
+        if latest and imgui.is_window_appearing():
+            imgui.set_scroll_here_y()
+    imgui.end_child()
+
+
+# ── random values ────────────────────────────────────────────────────────────
+
+
+def _randomise(memory: PanelState, commands: Commands) -> None:
+    with menu("Random", "random", "Random values, from a seed") as opened:
+        if opened:
+            _random_values(memory, commands)
+
+
+def _random_values(memory: PanelState, commands: Commands) -> None:
+    draft = commands.session.shown
+    _, memory.seed = imgui.input_int("Seed", memory.seed)
+    strength = slide("##strength", memory.strength, (0.01, 0.5), "%.2f")
+    memory.strength = memory.strength if strength is None else strength
+    imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
+    imgui.text_unformatted("Strength")
+    imgui.set_item_tooltip("Of a mutation: how far a value goes, in shares of its range")
+    with disabled(bool(memory.filter)):
+        _, memory.everything = imgui.checkbox("Everything", memory.everything)
+    imgui.set_item_tooltip("Also colours, light, the view and what reads files; else the shape alone")
+    chosen, what = targets(draft, memory.filter, everything=memory.everything)
+    if draft is not None:
+        values = shown_values(draft)
+        if button("Random values"):
+            commands.set_all(f"Random, seed {memory.seed}", at_random(chosen, memory.seed))
+            memory.seed += 1
+        imgui.same_line()
+        if button("Mutate"):
+            near = mutated(chosen, values.of, memory.seed, memory.strength)
+            commands.set_all(f"Mutation, seed {memory.seed}", near)
+            memory.seed += 1
+    imgui.text_disabled(f"{counted(len(chosen), 'parameter')}: {what}")
+
+
+# ── resets, copies, saves ────────────────────────────────────────────────────
+
+
+def _resets(commands: Commands) -> None:
+    session = commands.session
+    with menu("Reset", "resets", "Back to what the file says") as opened:
+        if not opened:
+            return
+        edits = session.shown.edits if session.shown else Edits()
+        touched = bool(edits.values or edits.techniques or edits.channels or session.view.steps)
+        if imgui.menu_item_simple("View", "R", False, edits.camera is not None):
+            session.drafts.set_camera(None)
+        if imgui.menu_item_simple("All values and techniques", "", False, touched):
+            commands.reset_values()
+        if imgui.menu_item_simple("Locks", "", False, bool(edits.locked)):
+            for path in edits.locked:
+                session.drafts.lock(path, False)
+
+
+def _copies(memory: PanelState, commands: Commands) -> None:
+    with menu("Copy", "copies", "What differs from the file, to the clipboard") as opened:
+        if not opened:
+            return
+        draft = commands.session.shown
+        if draft is not None and imgui.menu_item_simple("As --set words", "", False, bool(draft.applied)):
+            text = set_words(draft)
+            imgui.set_clipboard_text(text)
+            commands.notices.say(f"copied {fitting(text, 320.0)}")
+        if imgui.menu_item_simple("As TOML"):
+            commands.copy_toml(imgui.set_clipboard_text)
+
+
+def _saves(memory: PanelState, commands: Commands) -> None:
+    with menu("Save", "saves", "What differs from the file, into the file") as opened:
+        if opened:
+            if imgui.menu_item_simple("Into the sketch", "Ctrl+S"):
+                commands.save_values()
+            is_copy = commands.copy_is[0] == "Save a copy"
+            if imgui.menu_item_simple("As a copy in the current folder" if is_copy else "As a new sketch"):
+                commands.save_a_copy()
+            imgui.separator()
+            _preset_to_save(memory, commands)
+    if commands.file.asks:
+        commands.file.asks = False
+        imgui.open_popup("offer")
+    if imgui.begin_popup("offer"):
+        imgui.text_unformatted(commands.file.offer)
+        done = button(*commands.copy_is)
+        if done:
+            commands.save_a_copy()
+        imgui.same_line()
+        if button("Cancel") or done:
+            commands.file.offer = ""
+            imgui.close_current_popup()
+        imgui.end_popup()
+
+
+def _preset_to_save(memory: PanelState, commands: Commands) -> None:
+    imgui.set_next_item_width(imgui.get_font_size() * 9)
+    enter = imgui.InputTextFlags_.enter_returns_true
+    hint = "name of a preset"
+    entered, memory.preset_name = imgui.input_text_with_hint("##name", hint, memory.preset_name, enter)
+    imgui.same_line()
+    name = memory.preset_name.strip()
+    if button("Save preset", enabled=bool(name)) or (entered and name):
+        commands.save_as_preset(name)
+        memory.preset = name
+        imgui.close_current_popup()
+
+
+# ── rows ─────────────────────────────────────────────────────────────────────
+
+
+def _presets(sketch: Sketch, memory: PanelState, commands: Commands) -> None:
+    active = next((p for p in sketch.presets if _differing(sketch, p) == []), None)
+    if active is not None:
+        memory.preset = active.name
+    last = next((p for p in sketch.presets if p.name == memory.preset), None)
+    off = _differing(sketch, last) if last is not None and active is None else []
+    note = "Values that go together"
+    if off and last is not None:
+        note += f"\nChanged since {last.name}: {', '.join(off)}"
+    with row("Preset", note, edited=bool(off), fixed=True):
+        text = active.name if active else f"{last.name}, changed" if last else "choose"
+        preset = choose("##preset", fitting_choice(text), sketch.presets, active, name=lambda p: p.name)
+    if preset is not None:
+        memory.preset = preset.name
+        commands.apply_preset(preset.name)
+
+
+def _differing(sketch: Sketch, preset: Preset) -> list[str]:
+    """Return the paths of a preset that are set otherwise."""
+    overrides = dict(sketch.overrides)
+    if not preset.values:
+        return [preset.name]
+    return [path for path, value in preset.values if overrides.get(path) != value]
+
+
+def _shown_texture(session: Session) -> None:
+    current = session.view.map.ref if session.view.map else ""
+
+    def name(ref: str) -> str:
+        return ref_name(ref) if ref else _OWN_VIEW
+
+    with row("Show", "The sketch's own view, or any texture seen from above (M)", fixed=True):
+        ref = choose("##shown", fitting_choice(name(current)), ["", *session.refs], current, name=name)
+    if ref is not None:
+        session.show(ref or None)
+
+
+def ref_name(ref: str) -> str:
+    """Return a texture's name without its repetition: "height:height" is "height"."""
+    path, _, output = ref.partition(":")
+    return path if path.rpartition(".")[2] == output else ref

@@ -2,11 +2,13 @@
 
 What a sketch's techniques say is read once for each sketch, the values once for each
 draft: a panel is drawn many times a second.
+Also what the panel remembers between two frames.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import groupby
 
@@ -79,31 +81,26 @@ class Values:
     locked: frozenset[str]
 
 
-class Listing:
-    """The sections of a draft's sketch, and its values; each computed once."""
+def filtered(draft: Draft, filter_: Filter) -> dict[str, Section]:
+    """Return the passes with what a filter lets through, by name; none that keeps nothing."""
+    return _filtered(draft.base, filter_, shown_values(draft).changed)
 
-    def sections(self, draft: Draft) -> tuple[Section, ...]:
-        """Return the passes of a draft, in their order."""
-        return _sections(draft.base)
 
-    def main(self, draft: Draft) -> tuple[Item, ...]:
-        """Return the parameters that a draft's sketch is about, in its order: see ``Sketch.main``."""
-        return _main(draft.base)
-
-    def values(self, draft: Draft) -> Values:
-        """Return what its parameters are set to."""
-        return _values(draft)
-
-    def filtered(self, draft: Draft, filter_: Filter) -> dict[str, Section]:
-        """Return the passes with what a filter lets through, by name; none that keeps nothing."""
-        return _filtered(draft.base, filter_, self.values(draft).changed)
+def items_of(draft: Draft | None) -> Mapping[str, Item]:
+    """Return every parameter of a draft by its path, in the panel's order; none of no draft."""
+    return _items(draft.base) if draft is not None else {}
 
 
 @INTERFACE.cached(identities=1, weight=128)
-def _values(draft: Draft) -> Values:
-    items = [item for section in _sections(draft.base) for item in section.items]
+def _items(sketch: Sketch) -> dict[str, Item]:
+    return {item.path: item for section in sections_of(sketch) for item in section.items}
+
+
+@INTERFACE.cached(identities=1, weight=128)
+def shown_values(draft: Draft) -> Values:
+    """Return what the parameters of a draft are set to."""
     now, in_file = values_of(draft.sketch), _values_in_file(draft.base)
-    of = {item.path: now[item.leaf] for item in items}
+    of = {path: now[item.leaf] for path, item in _items(draft.base).items()}
     changed = frozenset(path for path, value in of.items() if value != in_file[path])
     return Values(of, in_file, changed, frozenset(draft.edits.locked))
 
@@ -111,28 +108,23 @@ def _values(draft: Draft) -> Values:
 @INTERFACE.cached(identities=1, weight=128)
 def _values_in_file(sketch: Sketch) -> dict[str, Value]:
     file = values_of(sketch)
-    return {item.path: file[item.leaf] for section in _sections(sketch) for item in section.items}
+    return {path: file[item.leaf] for path, item in _items(sketch).items()}
 
 
 @INTERFACE.cached(identities=1, weight=128)
 def _filtered(sketch: Sketch, filter_: Filter, changed: frozenset[str]) -> dict[str, Section]:
-    left = {section.name: _thinned(section, filter_, changed) for section in _sections(sketch)}
+    left = {section.name: _thinned(section, filter_, changed) for section in sections_of(sketch)}
     return {name: section for name, section in left.items() if section.items}
 
 
-def set_words(draft: Draft, values: Values) -> str:
+def set_words(draft: Draft) -> str:
     """Return what differs from the file as words of the command line: ``--set height.seed=3 --set …``."""
     words = []
     for path, value in draft.applied.items():
-        targets = resolve(draft.base.graph, path) if path not in values.of and "." in path else ()
-        parameter = targets[0].parameter if targets else _parameter(draft.base, path)
+        parameter = resolve(draft.base.graph, path)[0].parameter if "." in path else None
         text = write(parameter, value) if parameter is not None else _terrain_text(value)
         words.append(f"--set {_quoted(f'{path}={text}')}")
     return " ".join(words)
-
-
-def _parameter(sketch: Sketch, path: str) -> Parameter | None:
-    return resolve(sketch.graph, path)[0].parameter if "." in path else None
 
 
 def _terrain_text(value: Value) -> str:
@@ -146,7 +138,8 @@ def _quoted(word: str) -> str:
 
 
 @INTERFACE.cached(identities=1, weight=128)
-def _sections(sketch: Sketch) -> tuple[Section, ...]:
+def sections_of(sketch: Sketch) -> tuple[Section, ...]:
+    """Return the passes of a sketch, in their order."""
     sections = []
     by_pass = {
         name: list(mine)
@@ -169,12 +162,14 @@ def _item(sketch: Sketch, shown: Shown) -> Item:
 
 
 @INTERFACE.cached(identities=1, weight=128)
-def _main(sketch: Sketch) -> tuple[Item, ...]:
-    """Return the main parameters, group or pass named where a title alone would not say what is meant."""
+def main_items(sketch: Sketch) -> tuple[Item, ...]:
+    """Return the parameters that a sketch is about, in its order: see ``Sketch.main``.
+
+    Group or pass are named where a title alone would not say what is meant.
+    """
     made = []
-    items = [item for section in _sections(sketch) for item in section.items]
-    named = {item.path: item for item in items}
-    by_leaf = {item.leaf: item for item in items}  # an inner path may be in the list of an outer one
+    named = _items(sketch)
+    by_leaf = {item.leaf: item for item in named.values()}  # an inner path may be in the list of an outer one
     result = [named.get(path) or by_leaf[resolve(sketch.graph, path)[0].path] for path in sketch.main]
     titles = [_with_group(item.parameter) for item in result]
     for item, title in zip(result, titles, strict=True):
@@ -213,3 +208,23 @@ def _thinned(section: Section, filter_: Filter, changed: frozenset[str]) -> Sect
 
     inner = tuple((name, groups_left) for name, groups in section.inner if (groups_left := thinned(groups)))
     return Section(section.name, thinned(section.groups), inner)
+
+
+@dataclass
+class PanelState:
+    """The state of one panel between frames."""
+
+    filter: Filter = field(default_factory=Filter)
+    focus_search: bool = False  # the search gets the keys in the next frame
+    entry: str = ""  # the label of the parameter whose value is typed
+    entry_text: str = ""
+    entry_opens: bool = False  # its field is to get the keys
+    clicked: tuple[str, bool, Value] = ("", False, 0)  # last clicked on: path, edited, value before
+    menu: str = ""  # the label of the parameter whose menu is open
+    menu_opens: bool = False
+    heights: dict[tuple[str, float], float] = field(default_factory=dict)  # of each row, by path and scale
+    seed: int = 1  # of the next random values
+    strength: float = 0.1  # of a mutation
+    everything: bool = False  # random values are for every parameter, not the shape's alone
+    preset: str = ""  # the one last chosen
+    preset_name: str = ""  # of one to be saved

@@ -3,19 +3,70 @@
 Each parameter draws from a sequence of its own, by its path, so that one more parameter in
 a sketch moves no other. What has no range, a file or a plain number, has nothing to be drawn
 from: it stays, and is only moved a little, in proportion to itself.
+
+They are for the parameters of the terrain's shape, unless more is wanted: sun, camera and exposure at random
+give pictures in which nothing can be compared, and the sizes of a raw file at random give no terrain at all.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from random import Random
 
 from playground.shader.colours import linear_to_srgb, srgb_to_linear
 from playground.shader.parameter import is_whole, tidied
 from playground.shader.widgets import at_fraction, fraction_of
-from playground.sketch.model import Parameter, Value
-from playground.studio.panel.number_format import snapped
+from playground.sketch.model import Parameter, PassSpec, Sketch, Value, kernels_of
+from playground.sketch.wiring import output_names
+from playground.studio.edits.edits import Draft
+from playground.studio.panel.parameter_list import Filter, Item, filtered, main_items
+from playground.studio.panel.values import snapped
+
+Targets = list[tuple[str, Parameter]]
+
+
+def targets(draft: Draft | None, filter_: Filter, *, everything: bool = False) -> tuple[Targets, str]:
+    """Return the parameters that random values are for, by path, and a few words for them.
+
+    What a search has found; else, with ``everything``, all that the passes show; else the main
+    parameters of the passes that make the shape, or all that those show. In a sketch without
+    such passes: its main parameters, or all that its passes show but the view's.
+    """
+    if draft is None:
+        return [], ""
+    sections = filtered(draft, filter_).values()
+    items, words = [item for section in sections for item in section.items], "those found by the search"
+    if not filter_:
+        items, words = [item for item in items if item.exported], "all that the passes show"
+        if not everything:
+            items, words = _of_the_shape(draft.base, items, main_items(draft.base))
+    return [(item.path, item.parameter) for item in items if item.path not in draft.edits.locked], words
+
+
+def _of_the_shape(sketch: Sketch, items: list[Item], main: tuple[Item, ...]) -> tuple[list[Item], str]:
+    others = [spec for spec in sketch.graph.passes if spec.name != "view"]
+    shape = [spec for spec in others if "height" in output_names(spec.technique) and not _reads_file(spec)]
+    for places_found, words in (
+        (_within(main, shape), "the main ones of the shape"),
+        (_within(items, shape), "those of the shape"),
+        (_within(main, others), "the main ones"),
+        (_within(items, others), "every pass but the view"),
+    ):
+        if places_found:
+            return places_found, words
+    return [], "there are none"
+
+
+def _within(items: Iterable[Item], passes: Collection[PassSpec]) -> list[Item]:
+    names = {spec.name for spec in passes}
+    return [item for item in items if item.path.partition(".")[0] in names]
+
+
+def _reads_file(spec: PassSpec) -> bool:
+    """Say whether a pass reads a file: its terrain is not made, and its parameters say how it is stored."""
+    return any(p.widget.kind == "file" for _, kernel in kernels_of(spec.technique) for p in kernel.parameters)
+
 
 HEIGHTS = (5.0, 85.0)
 """[degrees] above the horizon that a direction at random lies: at the ends there is little to see."""

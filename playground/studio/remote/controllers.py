@@ -1,39 +1,228 @@
 """MIDI controllers that set parameters: learned by moving them, remembered next to the sketch.
 
-A control goes over the range of its parameter's widget (see ``shares``). It takes over softly: a value
+A control goes over the range of its parameter's widget. It takes over softly: a value
 does not jump to where the knob happens to be, but follows once the knob has passed it. A menu or a
 checkbox has no such place between, and follows at once; a button is pressed where the control comes
 to 64. A note switches a checkbox, presses a button, goes to a menu's next choice, and sets a number
 by how hard it is struck.
+
+The bindings are in a file next to the sketch, readable TOML: ``hills/sketch.toml`` has
+``hills/sketch.controllers``, ``shader.frag`` has ``shader.controllers``. A sketch is shared without it,
+unless its owner adds it.
+
+A fraction of a range is linear, logarithmic where its scale is, in equal stretches for a menu, from the
+half on for a checkbox. A colour's channels are display-encoded, as the panel shows them. A vector has one
+share for each part.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
-from playground.errors import ParameterError, PlaygroundError, nearest
+from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
+from playground.files import write_file
 from playground.paths import GLSL, shown
-from playground.shader.parameter import part_names
+from playground.shader.colours import linear_to_srgb, srgb_to_linear
+from playground.shader.parameter import is_whole, part_names
+from playground.shader.widgets import at_fraction, fraction_of
+from playground.sketch.assign import range_of
 from playground.sketch.model import Parameter, Value
+from playground.sketch.toml_table import FORMAT, TomlFile
 from playground.studio.notices import Notices
-from playground.studio.remote.controller_file import (
-    Binding,
-    Source,
-    file_of,
-    read_bindings,
-    write_bindings,
-)
-from playground.studio.remote.items import items_of, values_of
-from playground.studio.remote.shares import (
-    HALF,
-    check_shares,
-    is_switch,
-    share_of,
-    with_share,
-)
+from playground.studio.panel.parameter_list import items_of, shown_values
+from playground.studio.panel.values import decimals
 from playground.studio.session import Session
+
+# ── fractions of a range ───────────────────────────────────────────────────────
+
+
+HALF = 64 / 127
+"""From which share on a checkbox is on, and a button pressed: 64 of MIDI's 127."""
+
+
+def check_shares(parameter: Parameter, path: str) -> None:
+    """Raise ``ParameterError`` for a parameter that has no range to share out."""
+    kind = parameter.widget.kind
+    if kind == "file":
+        raise ParameterError(f"{path} names a file, so no knob can set it")
+    if kind != "colour" and not is_switch(parameter) and range_of(parameter) is None:
+        raise ParameterError(f"{path} has no range: no knob can set it without a slider(low, high)")
+
+
+def is_switch(parameter: Parameter) -> bool:
+    """Say whether a parameter has a few choices rather than a range: a knob takes it over at once."""
+    return parameter.widget.facts.is_switch
+
+
+def share_of(parameter: Parameter, value: Value, part: int = 0) -> float:
+    """Return which fraction of its range a value, or a part of it, is at: 0 to 1."""
+    widget = parameter.widget
+    if parameter.type == "bool":
+        return 1.0 if value else 0.0
+    number = _numbers(value)[part]
+    if widget.kind == "menu":
+        return (number + 0.5) / max(len(widget.choices), 1)
+    if _is_encoded(parameter, part):
+        number = float(linear_to_srgb([min(max(number, 0.0), 1.0)])[0])
+    low, high = _ends(parameter, part)
+    if widget.kind == "direction" and part == 0:
+        number = number if number == high else number % 360.0
+    return min(max(fraction_of(number, low, high, log=widget.facts.is_log), 0.0), 1.0)
+
+
+def with_share(parameter: Parameter, value: Value, share: float, part: int = 0) -> Value:
+    """Return a value with one part, or all of a scalar, at a fraction of its range: 0 to 1."""
+    widget, share = parameter.widget, min(max(share, 0.0), 1.0)
+    if parameter.type == "bool":
+        return share >= HALF
+    if widget.kind == "menu":
+        return min(int(share * len(widget.choices)), len(widget.choices) - 1)
+    low, high = _ends(parameter, part)
+    number = at_fraction(share, low, high, log=widget.facts.is_log)
+    if _is_encoded(parameter, part):
+        number = float(srgb_to_linear([number])[0])
+    else:
+        number = _stepped(parameter, number, low, high)
+    numbers = list(_numbers(value))
+    numbers[part] = number
+    if is_whole(parameter.type):
+        whole = tuple(round(n) for n in numbers)
+        return whole if isinstance(value, tuple) else whole[0]
+    return tuple(numbers) if isinstance(value, tuple) else numbers[0]
+
+
+def _stepped(parameter: Parameter, number: float, low: float, high: float) -> float:
+    if is_whole(parameter.type):
+        number = round(number)
+    if parameter.step:
+        number = low + round((number - low) / parameter.step) * parameter.step
+    if parameter.widget.facts.is_log:
+        number = float(f"{number:.5g}")
+    elif not is_whole(parameter.type):
+        number = round(number, decimals(parameter) + 2)  # finer than 14 bits are, and short in a file
+    return min(max(number, low), high)
+
+
+def _ends(parameter: Parameter, part: int) -> tuple[float, float]:
+    return range_of(parameter, part) or (0.0, 1.0)
+
+
+def _is_encoded(parameter: Parameter, part: int) -> bool:
+    """Say whether a number is the light of a channel, which the panel shows display-encoded."""
+    return parameter.widget.kind == "colour" and part < 3 and not parameter.widget.raw
+
+
+def _numbers(value: Value) -> tuple[float, ...]:
+    if isinstance(value, tuple):
+        return tuple(float(n) for n in value)
+    return (float(value),)
+
+
+# ── the file ───────────────────────────────────────────────────────────────────
+
+
+ENDING = ".controllers"
+KINDS = ("control", "note")
+_MAX_BYTES = 2**16  # [bytes]
+_KEYS = ("parameter", "part", "channel", *KINDS, "fine")
+
+
+@dataclass(frozen=True, order=True)
+class Source:
+    """A knob, fader, key or button of a MIDI device; which device is not looked at."""
+
+    channel: int  # 1 to 16
+    kind: str  # one of KINDS
+    number: int  # 0 to 127
+
+    def __str__(self) -> str:
+        return f"{self.kind} {self.number} of channel {self.channel}"
+
+
+@dataclass(frozen=True)
+class Binding:
+    """A parameter, or one part of a vector, that a controller sets."""
+
+    path: str
+    part: str  # "": all of it
+    source: Source
+    fine: bool = False  # 14 bits: the control 32 higher has the lower seven
+
+    @property
+    def target(self) -> str:
+        """What it sets, in a word."""
+        return f"{self.path}, {self.part}" if self.part else self.path
+
+
+def file_of(sketch: Path) -> Path:
+    """Return the file for a sketch's."""
+    return sketch.with_suffix(ENDING)
+
+
+def read_bindings(path: Path) -> tuple[Binding, ...]:
+    """Return what a file says, nothing where there is none; raise ``SketchError`` with the line."""
+    try:
+        if not path.is_file():
+            return ()
+        size = path.stat().st_size
+    except OSError as error:
+        raise SketchError(f"cannot be read: {error.strerror or error}", file=path) from None
+    if size > _MAX_BYTES:
+        raise SketchError(f"larger than {_MAX_BYTES // 1024} KiB: no list of controllers is", file=path)
+    file = TomlFile(path, path.parent)
+    file.only(file.table, ("format", "controller"))
+    file.version(required=False)
+    return tuple(_binding(file, table, at) for at, table in enumerate(file.tables("controller")))
+
+
+def write_bindings(path: Path, bindings: Iterable[Binding]) -> None:
+    """Write a file, whole or not at all; remove it where there is nothing to say. Raise ``DataError``."""
+    parts = [_text(binding) for binding in bindings]
+    if not parts:
+        path.unlink(missing_ok=True)
+        return
+    head = "# MIDI controllers of the sketch next to this file; playground live writes it.\n"
+    write_file(path, head + f"format = {FORMAT}\n" + "".join(parts))
+
+
+def _text(binding: Binding) -> str:
+    lines = [f"parameter = {json.dumps(binding.path)}"]
+    lines += [f"part = {json.dumps(binding.part)}"] if binding.part else []
+    lines += [f"channel = {binding.source.channel}", f"{binding.source.kind} = {binding.source.number}"]
+    lines += ["fine = true"] if binding.fine else []
+    return "\n[[controller]]\n" + "\n".join(lines) + "\n"
+
+
+def _binding(file: TomlFile, table: dict[str, Any], at: int) -> Binding:
+    key_path = "controller", at
+    file.only(table, _KEYS, *key_path)
+    path = file.take(table, "parameter", str, "", *key_path)
+    if not path:
+        raise file.error('a controller has a parameter, as parameter = "light.sun"', *key_path)
+    kinds = [kind for kind in KINDS if kind in table]
+    if len(kinds) != 1:
+        raise file.error("a controller has a control or a note, as control = 21", *key_path)
+    number = _within(file, table, kinds[0], 0, 127, at)
+    fine = file.take(table, "fine", bool, False, *key_path)
+    if fine and not (kinds[0] == "control" and number < 32):
+        raise file.error("fine = true: only the controls 0 to 31 have 14 bits", *key_path, "fine")
+    source = Source(_within(file, table, "channel", 1, 16, at), kinds[0], number)
+    return Binding(path, file.take(table, "part", str, "", *key_path), source, fine)
+
+
+def _within(file: TomlFile, table: dict[str, Any], key: str, low: int, high: int, at: int) -> int:
+    number: int = file.take(table, key, int, low if key == "channel" else None, "controller", at)
+    if not low <= number <= high:
+        raise file.error(f"{key} = {number}: expected {low} to {high}", "controller", at, key)
+    return number
+
+
+# ── controllers ────────────────────────────────────────────────────────────────
+
 
 SETTLES = 0.25
 """[s] after the first message of a knob that is learned: until then it shows whether it sends 14 bits."""
@@ -105,7 +294,7 @@ class Controllers:
     def learn(self, path: str, part: str = "") -> None:
         """Bind a parameter, or a part of a vector, to the controller that is moved next."""
         _ = self.bindings
-        item = items_of(self._session).get(path)
+        item = items_of(self._session.shown).get(path)
         if item is None:
             return
         try:
@@ -237,9 +426,10 @@ class Controllers:
 
     def _value(self, binding: Binding) -> tuple[Parameter, Value, int] | None:
         """Return a binding's parameter, its value, and which part; None, and a notice, where it is gone."""
-        items, values = items_of(self._session), values_of(self._session)
+        draft = self._session.shown
+        items = items_of(draft)
         item = items.get(binding.path)
-        if item is None or values is None:
+        if item is None or draft is None:
             near = nearest(binding.path, items)
             self._say_once(binding.path, f"MIDI: {binding.source} sets no parameter '{binding.path}'{near}")
             return None
@@ -249,7 +439,7 @@ class Controllers:
             self._say_once(binding.target, f"MIDI: {binding.path} has no part '{binding.part}'{near}")
             return None
         part = names.index(binding.part) if names else 0
-        return item.parameter, values.of[binding.path], part
+        return item.parameter, shown_values(draft).of[binding.path], part
 
     def _share(self, binding: Binding) -> float | None:
         """Return the share that a controller is at; None before it has moved."""

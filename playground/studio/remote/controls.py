@@ -4,22 +4,245 @@ Values are checked as ``--set`` checks them, with the same sentences. What is se
 last of each parameter, and done at once by ``flush``: a stream of values costs a frame no more
 than one of each. The window's history takes it in as it takes in what the panel sets, so each
 change can be undone.
+
+Requests of other threads are handed to the thread that draws, and done between two frames. What a session
+shows, its parameters, its state and what has changed since the last look, is described as plain data for
+JSON.
 """
 
 from __future__ import annotations
 
+import threading
+import time
+from collections import deque
 from collections.abc import Callable, Mapping
+from concurrent.futures import Future
 from pathlib import Path, PureWindowsPath
 from typing import Any
 
 from playground.engine.frame import Frame
 from playground.errors import ContextError, ParameterError, PlaygroundError, SketchError, nearest
-from playground.shader.parameter import spell
-from playground.sketch.assign import check_value, find_targets, value_of, values_of
-from playground.sketch.model import Sketch, Value
+from playground.shader.parameter import expected, shortest, spell, write
+from playground.sketch.assign import (
+    Shown,
+    check_value,
+    described,
+    find_targets,
+    range_of,
+    value_of,
+    values_of,
+)
+from playground.sketch.model import Parameter, Sketch, Value
 from playground.studio.bench import Workbench
 from playground.studio.edits.edits import Draft, leaves
-from playground.studio.remote.described import parameters_of, state_of
+from playground.studio.panel.parameter_list import Item, Values, items_of, shown_values
+from playground.studio.problems.problems import Problems
+from playground.studio.session import Session
+
+# ── calls of other threads ─────────────────────────────────────────────────────
+
+
+MAX_WAITING = 1024
+"""Requests that may wait."""
+BUDGET = 0.008
+"""[s] that a frame spends on requests; one that takes longer is done alone."""
+
+
+class Busy(PlaygroundError):
+    """More is asked than the window can do."""
+
+
+class Calls:
+    """A queue of functions that the drawing thread runs; ``wake`` ends its sleep."""
+
+    def __init__(self, wake: Callable[[], None] = lambda: None) -> None:
+        self.wake = wake
+        self._lock = threading.Lock()
+        self._waiting: deque[tuple[Callable[[], Any], Future[Any]]] = deque()
+        self._closed = False
+
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    def ask(self, function: Callable[[], Any]) -> Future[Any]:
+        """Have a function run between two frames; return its answer to come. For any thread.
+
+        Raises ``Busy`` where too many wait, or the window is closed.
+        """
+        future: Future[Any] = Future()
+        with self._lock:
+            if self._closed:
+                raise Busy("the window is closed")
+            if len(self._waiting) >= MAX_WAITING:
+                raise Busy(f"more than {MAX_WAITING} requests wait for the window")
+            first = not self._waiting
+            self._waiting.append((function, future))
+        if first:
+            self.wake()
+        return future
+
+    def run(self, budget: float = BUDGET) -> bool:
+        """Run what waits, for about ``budget`` [s]; return whether anything ran. For the drawing thread."""
+        end, count = time.perf_counter() + budget, 0
+        while self._waiting and (not count or time.perf_counter() < end):
+            count += 1
+            with self._lock:
+                function, future = self._waiting.popleft()
+            if not future.set_running_or_notify_cancel():
+                continue
+            try:
+                future.set_result(function())
+            except BaseException as error:
+                future.set_exception(error)
+                if not isinstance(error, Exception):
+                    raise
+        return bool(count)
+
+    def close(self) -> None:
+        """Take no more requests, and refuse those that wait."""
+        with self._lock:
+            self._closed = True
+            waiting, self._waiting = self._waiting, deque()
+        for _, future in waiting:
+            if future.set_running_or_notify_cancel():
+                future.set_exception(Busy("the window is closed"))
+
+
+# ── descriptions ───────────────────────────────────────────────────────────────
+
+
+def parameters_of(session: Session) -> list[dict[str, Any]]:
+    """Return every parameter with its value, range, unit and group, in the panel's order."""
+    draft = session.shown
+    values = shown_values(draft) if draft is not None else None
+    return [_described(item, values) for item in items_of(draft).values()] if values is not None else []
+
+
+def plain(parameter: Parameter, value: Value) -> Any:
+    """Return a value for JSON: a menu's choice by its name, a colour as ``#rrggbb`` where that is exact."""
+    if parameter.widget.kind in ("menu", "colour"):
+        text = write(parameter, value)
+        if parameter.widget.kind == "menu" or text.startswith("#"):
+            return text
+    shortest_value = shortest(value)
+    return list(shortest_value) if isinstance(shortest_value, tuple) else shortest_value
+
+
+def state_of(bench: Workbench) -> dict[str, Any]:
+    """Return what is shown, its time, its presets and what is wrong with it."""
+    session, clock = bench.session, bench.session.clock
+    sketch = session.sketch
+    return {
+        "sketch": session.drafts.shown_path.name,
+        "title": sketch.title if sketch is not None else "",
+        "time": clock.time,
+        "playing": clock.playing,
+        "speed": clock.speed,
+        "moves": session.animated,
+        "presets": [preset.name for preset in sketch.presets] if sketch is not None else [],
+        "can_undo": bench.undo.history.can_undo,
+        "can_redo": bench.undo.history.can_redo,
+        "errors": errors_of(bench.problems),
+    }
+
+
+def errors_of(problems: Problems) -> list[dict[str, Any]]:
+    """Return what is wrong with the files just now, each with its place."""
+    return [
+        {"file": d.file, "line": d.line, "column": d.column, "message": d.message} for d in problems.errors
+    ]
+
+
+def _described(item: Item, values: Values) -> dict[str, Any]:
+    parameter = item.parameter
+    value, ends = values.of[item.path], range_of(parameter)
+    return described(Shown(item.path, parameter, item.exported)) | {
+        "label": item.title,
+        "value": plain(parameter, value),
+        "text": write(parameter, value),
+        "default": plain(parameter, parameter.default),
+        "file": plain(parameter, values.in_file[item.path]),
+        "low": ends[0] if ends else None,
+        "high": ends[1] if ends else None,
+        "takes": expected(parameter),
+        "changed": item.path in values.changed,
+        "locked": item.path in values.locked,
+        "raw": parameter.widget.raw,
+    }
+
+
+# ── changes ────────────────────────────────────────────────────────────────────
+
+
+_JUMP = 0.5  # [s] that time may differ from what its speed makes of it before that is news
+
+
+class Changes:
+    """Looks at a session after each frame; the first look finds nothing new."""
+
+    def __init__(self, bench: Workbench) -> None:
+        self._bench = bench
+        self.values: dict[str, Value] = {}  # as they were at the last look, by path
+        self.changed: dict[str, Value] = {}  # those that were otherwise at the look before
+        self._base: object = None
+        self._of: object = None
+        self._clock: tuple[bool, float] | None = None
+        self._time = 0.0
+        self._at = 0.0
+        self._reload: object = None
+        self._errors: object = None
+        self.started = False  # whether there was a look before the last
+        self._looked = False
+
+    def look(self) -> list[dict[str, Any]]:
+        """Return what is new, as events for JSON; ``changed`` has the new values."""
+        events = [*self._sketch_or_values(), *self._time_events(), *self._saves()]
+        self.started, self._looked = self._looked, True
+        return events if self.started else []
+
+    def _sketch_or_values(self) -> list[dict[str, Any]]:
+        session = self._bench.session
+        draft, self.changed = session.shown, {}
+        if draft is None or draft is self._of:
+            return []
+        self._of = draft
+        values = shown_values(draft)
+        is_new, self._base = draft.base is not self._base, draft.base
+        before, self.values = self.values, dict(values.of)
+        self.changed = {path: value for path, value in self.values.items() if before.get(path) != value}
+        events: list[dict[str, Any]] = []
+        if is_new:
+            events.append({"event": "sketch", "sketch": session.drafts.shown_path.name})
+        if self.changed:
+            items = items_of(draft)
+            made = {path: plain(items[path].parameter, value) for path, value in self.changed.items()}
+            events.append({"event": "values", "values": made})
+        return events
+
+    def _time_events(self) -> list[dict[str, Any]]:
+        clock, now = self._bench.session.clock, self._bench.notices.now()
+        expected = self._time + ((now - self._at) * clock.speed if clock.playing else 0.0)
+        state = clock.playing, clock.speed
+        jumped = clock.loop is None and self._bench.session.animated and abs(clock.time - expected) > _JUMP
+        changed = state != self._clock or jumped or (not clock.playing and clock.time != self._time)
+        self._clock, self._time, self._at = state, clock.time, now
+        if not changed:
+            return []
+        return [{"event": "time", "time": clock.time, "playing": clock.playing, "speed": clock.speed}]
+
+    def _saves(self) -> list[dict[str, Any]]:
+        latest, errors = self._bench.session.last_reload, self._bench.problems.errors
+        events: list[dict[str, Any]] = []
+        if latest is not self._reload and latest is not None:
+            events.append({"event": "reloaded", "milliseconds": round(latest.seconds * 1e3, 1)})
+        if errors != self._errors:
+            events.append({"event": "errors", "errors": errors_of(self._bench.problems)})
+        self._reload, self._errors = latest, errors
+        return events
+
+
+# ── controls ───────────────────────────────────────────────────────────────────
+
 
 MAX_REMOTE_SIDE = 4096
 """Pixels that a side of a picture for a remote may have."""

@@ -18,8 +18,7 @@ import mido
 
 from playground.errors import ContextError
 from playground.extras import needs
-from playground.studio.remote.controller_file import Source
-from playground.studio.remote.controllers import Move
+from playground.studio.remote.controllers import Move, Source
 
 MAX_WAITING = 1024
 """Notes that may wait for the window."""

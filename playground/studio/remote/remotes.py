@@ -11,10 +11,8 @@ from playground.errors import ContextError, PlaygroundError
 from playground.extras import needs
 from playground.local_server import check_token, new_token
 from playground.studio.bench import Workbench
-from playground.studio.remote.addresses import Addresses
-from playground.studio.remote.calls import Calls
-from playground.studio.remote.changes import Changes
-from playground.studio.remote.controls import Controls
+from playground.studio.remote.controls import Calls, Changes, Controls
+from playground.studio.remote.osc import Addresses
 
 if TYPE_CHECKING:
     from playground.studio.remote.midi import Midi

@@ -35,8 +35,7 @@ from playground.engine.frame import Frame
 from playground.errors import DataError, ParameterError, PlaygroundError
 from playground.json_text import read_json
 from playground.local_server import BACKLOG, HEADERS, MAX_SILENCE, Guard, Unauthenticated
-from playground.studio.remote.calls import Busy, Calls
-from playground.studio.remote.controls import MAX_REMOTE_SIDE, Behind, Controls
+from playground.studio.remote.controls import MAX_REMOTE_SIDE, Behind, Busy, Calls, Controls
 
 MAX_REQUEST_BYTES = 2**16
 """[bytes] of a request's body, or of one message."""

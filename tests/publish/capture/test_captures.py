@@ -27,7 +27,7 @@ from playground.sketch.assign import resolve
 from playground.studio.edits.autosave import Autosave, memory_of
 from playground.studio.edits.memory import Remembered
 from playground.studio.host import Host
-from playground.studio.input.escape_layers import open_layers
+from playground.studio.keys import open_layers
 from playground.studio.notices import Notices
 from playground.studio.session import Session
 

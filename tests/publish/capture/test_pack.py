@@ -21,7 +21,7 @@ from playground.sketch.files import contents
 from playground.sketch.find import unpacked, unpacked_beside
 from playground.sketch.model import VARIANTS
 from playground.sketch.variants import NAME, active_variant, unverified
-from playground.studio.input.drops import Drops, opened_from
+from playground.studio.drops import Drops, opened_from
 from playground.verify.check import find_files
 
 from ...loading import load

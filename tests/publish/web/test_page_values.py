@@ -17,11 +17,10 @@ from playground.shader.parameter import coerce, is_whole, length_of, tidied
 from playground.sketch.assign import check_value, resolve, shown_parameters, values_of
 from playground.sketch.find import shipped_sketches
 from playground.sketch.model import Camera, Parameter, Sketch, Value
+from playground.studio import widgets as dome
 from playground.studio.clock import stepped
-from playground.studio.edits.edits import Draft
-from playground.studio.panel import dome
-from playground.studio.panel.number_format import decimals, format_of, snapped, unit_of
-from playground.studio.panel.parameter_list import Listing
+from playground.studio.panel.parameter_list import main_items
+from playground.studio.panel.values import decimals, format_of, snapped, unit_of
 from playground.studio.picture.gestures import Gesture, steered, turned_sun
 from playground.studio.picture.view import field_for
 
@@ -294,7 +293,7 @@ def test_main_parameters_have_the_windows_labels(node: Node):
     for sketch in sketches():
         if not sketch.main:
             continue
-        expected = {item.path: item.title for item in Listing().main(Draft(sketch, sketch))}
+        expected = {item.path: item.title for item in main_items(sketch)}
         rows = shown_data(sketch, values_of(sketch), lambda path, targets: "")
         assert node.run(script, rows) == [list(item) for item in expected.items()], sketch.name
         seen += len(expected)

@@ -18,9 +18,9 @@ from playground.sketch.find import find, is_pack, unpacked_beside
 from playground.sketch.model import Parameter, Sketch, Value
 from playground.studio.actions import Commands
 from playground.studio.channels.channel_list import MEDIA, Taker, in_words, takers
-from playground.studio.panel.parameter_list import Item, Listing
-from playground.studio.panel.widgets import IMAGES
+from playground.studio.panel.parameter_list import Item, items_of, shown_values
 from playground.studio.theme import Theme
+from playground.studio.widgets import IMAGES
 
 _TITLE = "dropped"
 _OWN = "Into a sketch of its own"
@@ -92,9 +92,7 @@ class Drops:
         draft = self.commands.session.shown
         if draft is None:
             return []
-        listing = Listing()
-        items = [item for section in listing.sections(draft) for item in section.items]
-        values = listing.values(draft).of
+        items, values = items_of(draft).values(), shown_values(draft).of
         kernels = dict(draft.base.graph.kernels)
 
         def takes(item: Item) -> bool:

@@ -1,0 +1,377 @@
+"""What each key does: one table, which the key map shows as well.
+
+Esc closes what lies over the picture, one layer at a time, and never quits. Where its sketch reads the
+keyboard, a picture gets the keys that are no shortcut of the window always; all of them after a click on the
+picture, until Esc or a click on a panel. What is pressed together with Ctrl or Alt is the window's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache, partial
+from itertools import chain
+
+from imgui_bundle import ImVec2, imgui
+
+from playground import rooms
+from playground.sketch.traits import traits_of
+from playground.studio import theme
+from playground.studio.addition import Layer
+from playground.studio.bench import Workbench
+from playground.studio.code.panel import ask_to_close, stay
+from playground.studio.draw import (
+    POPUP_COLOUR,
+    QUIET,
+    ctrl_held,
+    keeps_keys,
+    left_a_field,
+    letters,
+    table,
+    window,
+)
+from playground.studio.interface import Interface, resize
+from playground.studio.paint.brush import TOOLS, Tool
+from playground.studio.theme import Theme
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key and its meaning."""
+
+    key: imgui.Key
+    name: str
+    meaning: str
+    act: Callable[[Workbench], None]
+    ctrl: bool = False
+    shift: bool = False
+    sign: str = ""  # "+" or "-", with Ctrl: on the keypad, and wherever else the keyboard has it
+    brief: str = ""  # in the panel's last line; empty: not there
+    letter: str = ""  # what it types, for one that is elsewhere on every keyboard
+    brush: bool = False  # only while the brush is taken
+
+
+# ── layers that Esc closes ─────────────────────────────────────────────────────
+
+
+def close_one(bench: Workbench) -> None:
+    """Close what is topmost; where nothing is open, say how to quit."""
+    for _, close in _open(bench):
+        close()
+        return
+    bench.notices.say("nothing is open that Esc could close; Ctrl+Q quits")
+
+
+def open_layers(bench: Workbench) -> list[str]:
+    """Return the names of what is open, topmost first."""
+    return [name for name, _ in _open(bench)]
+
+
+def _open(bench: Workbench) -> Iterator[Layer]:
+    inspection = bench.inspection
+    if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
+        yield "popup", lambda: _close_popup(bench)
+    if bench.interface.keymap_shown:
+        yield "keys", bench.interface.toggle_keymap
+    for addition in bench.additions:
+        yield from addition.popups()
+    for editing in reversed(bench.files.editing):
+        yield f"editor {editing.text.path.name}", partial(ask_to_close, editing, bench.files)
+    if inspection.graph.on:
+        yield "graph", inspection.graph.toggle
+    if inspection.inspector.on:
+        yield "inspector", inspection.inspector.toggle
+    if bench.painting.on:
+        yield "brush", bench.painting.toggle
+    if inspection.compare.on:
+        yield "A/B", inspection.compare.toggle
+    if bench.window.is_full():
+        yield "full screen", bench.window.toggle_full
+    for addition in bench.additions:
+        yield from addition.layers()
+
+
+def _close_popup(bench: Workbench) -> None:
+    """Close the innermost popup; a question in it is dismissed."""
+    stay(bench.files)
+    depth = len(imgui.get_current_context().open_popup_stack)
+    imgui.internal.close_popup_to_level(max(depth - 1, 0), True)
+
+
+# ── the table ──────────────────────────────────────────────────────────────────
+
+
+_K = imgui.Key
+_INSPECT = "every pass's number at a pixel; Shift: of those inside, too"
+_TOOLS = f"the brush's tool: {', '.join(TOOLS)}"
+_HELP = "show or hide these keys"
+_VISITS = "the sketch that was open before, and forward again"
+_BRUSH = "the brush: narrower, wider, weaker, stronger, harder, softer"
+_SIZE_KEYS = "text and panels larger, smaller, at their first size"
+
+
+def _take(bench: Workbench, tool: Tool) -> None:
+    bench.painting.take_tool(tool)
+
+
+@cache
+def all_keys() -> tuple[Key, ...]:
+    """Return the keys of the window and those that rooms add, in the order of the key map."""
+    added = tuple(key for module in rooms.modules("addition") for key in module.KEYS)
+    return tuple(chain.from_iterable(added if key is None else (key,) for key in _KEYS))
+
+
+_KEYS: tuple[Key | None, ...] = (
+    Key(_K.space, "Space", "play or pause", lambda b: b.session.clock.toggle()),
+    Key(_K.none, ",", "a frame of time back", lambda b: b.undo.step_time(-1), letter=","),
+    Key(_K.none, ".", "a frame of time on", lambda b: b.undo.step_time(1), letter="."),
+    Key(_K.l, "L", "loop time, or no longer", lambda b: b.undo.toggle_loop()),
+    Key(_K._0, "0", "time to 0", lambda b: b.undo.seek(0.0)),
+    Key(_K.r, "R", "reset the view", lambda b: b.session.drafts.set_camera(None), brief="view"),
+    Key(_K.m, "M", "map from above", lambda b: b.session.toggle_map(), brief="map"),
+    Key(_K.i, "I", _INSPECT, lambda b: b.inspection.inspector.toggle()),
+    Key(_K.a, "A", "keep this as A and compare; or no longer", lambda b: b.inspection.compare.toggle()),
+    Key(_K.g, "G", "the passes as a graph, or no longer", lambda b: b.inspection.graph.toggle()),
+    Key(_K.b, "B", "take the brush, or put it down", lambda b: b.painting.toggle()),
+    Key(_K.none, "[", _BRUSH, lambda b: b.painting.resize(-1), letter="[", brush=True),
+    Key(_K.none, "]", _BRUSH, lambda b: b.painting.resize(1), letter="]", brush=True),
+    Key(_K.none, "{", _BRUSH, lambda b: b.painting.strengthen(-1), letter="{", brush=True),
+    Key(_K.none, "}", _BRUSH, lambda b: b.painting.strengthen(1), letter="}", brush=True),
+    Key(_K.none, "<", _BRUSH, lambda b: b.painting.soften(-1), letter="<", brush=True),
+    Key(_K.none, ">", _BRUSH, lambda b: b.painting.soften(1), letter=">", brush=True),
+    *(
+        Key(_K.none, str(n), _TOOLS, partial(_take, tool=tool), letter=str(n), brush=True)
+        for n, tool in enumerate(TOOLS, 1)
+    ),
+    Key(_K.s, "S", "save a PNG", lambda b: b.commands.save_picture(), brief="save"),
+    Key(_K.tab, "Tab", "hide the panel", lambda b: b.interface.toggle_panel(), brief="hide"),
+    None,  # the place of those of rooms
+    Key(_K.none, "/", "search the parameters", lambda b: b.interface.search(), letter="/"),
+    Key(_K.f11, "F11", "fill the screen, or no longer", lambda b: b.window.toggle_full()),
+    Key(_K.none, "?", _HELP, lambda b: b.interface.toggle_keymap(), letter="?", brief="keys"),
+    Key(_K.f1, "F1", _HELP, lambda b: b.interface.toggle_keymap()),
+    Key(_K.f8, "F8, Shift+F8", "next error, previous error", lambda b: _step(b)),
+    Key(_K.e, "E", "edit the file of the current error", lambda b: b.files.open_current(b.problems)),
+    Key(_K.z, "Ctrl+Z", "undo", lambda b: b.undo.undo(), ctrl=True),
+    Key(_K.z, "Ctrl+Shift+Z", "redo", lambda b: b.undo.redo(), ctrl=True, shift=True),
+    Key(_K.y, "Ctrl+Y", "redo", lambda b: b.undo.redo(), ctrl=True),
+    Key(_K.s, "Ctrl+S", "save values into the sketch", lambda b: b.commands.save_values(), ctrl=True),
+    Key(_K.v, "Ctrl+V", "open the shader's text on the clipboard", lambda b: _paste(b), ctrl=True),
+    Key(_K.backspace, "Backspace, Shift+Backspace", _VISITS, lambda b: _visit(b)),
+    Key(_K.none, "Ctrl++", _SIZE_KEYS, lambda b: _resize(b, 1), ctrl=True, sign="+"),
+    Key(_K.none, "Ctrl+-", _SIZE_KEYS, lambda b: _resize(b, -1), ctrl=True, sign="-"),
+    Key(_K._0, "Ctrl+0", _SIZE_KEYS, lambda b: _resize(b, 0), ctrl=True),
+    Key(_K.escape, "Esc", "close open panels, one at a time", close_one),
+    Key(_K.q, "Ctrl+Q", "quit", lambda b: b.window.quit(), ctrl=True, brief="quit"),
+)
+
+
+_ONCE = (_K.s, _K.v)
+"""With Ctrl, keys that do not repeat while they are held."""
+
+
+def pressed_sign(sign_held: Callable[[], str]) -> str:
+    """Return "+" or "-" where a key for it was pressed since the last frame; else nothing.
+
+    ``sign_held`` says which of the two a key that is down types on this keyboard.
+    """
+    for key, sign in _SIGN_KEYS.items():
+        if imgui.is_key_pressed(key, repeat=True):
+            # In a slow frame it may be up again: then it is taken for what it is on an English keyboard.
+            return sign_held() or sign
+    return ""
+
+
+_SIGN_KEYS: dict[imgui.Key, str] = {
+    imgui.Key.keypad_add: "+",
+    imgui.Key.keypad_subtract: "-",
+    imgui.Key.equal: "+",
+    imgui.Key.minus: "-",
+    imgui.Key.right_bracket: "",
+    imgui.Key.slash: "",
+    imgui.Key.backslash: "",
+}
+
+
+def _resize(bench: Workbench, by: int) -> None:
+    resize(bench.interface.size, by, bench.notices)
+
+
+def _step(bench: Workbench) -> None:
+    bench.problems.step(-1 if _shift_held() else 1)
+
+
+def _paste(bench: Workbench) -> None:
+    bench.commands.paste(imgui.get_clipboard_text() or "")
+
+
+def _visit(bench: Workbench) -> None:
+    bench.commands.visit(1 if _shift_held() else -1)
+
+
+def _shift_held() -> bool:
+    return imgui.get_io().key_shift or imgui.is_key_released(imgui.Key.mod_shift)
+
+
+def act_on_keys(bench: Workbench) -> None:
+    """Act on the keys pressed since the last frame, unless they belong to a text field or a menu.
+
+    Two belong to neither: Esc, unless it leaves the field itself, and what quits.
+    """
+    io = imgui.get_io()
+    ctrl, shift = ctrl_held(), _shift_held()
+    if ctrl and imgui.is_key_pressed(imgui.Key.q, repeat=False):
+        bench.window.quit()
+        return
+    if imgui.is_key_pressed(imgui.Key.escape, repeat=False):
+        if not left_a_field():
+            close_one(bench)
+        return
+    if keeps_keys(bench.interface.ahead) or io.want_text_input or io.key_alt:
+        return
+    if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
+        return
+    typed = letters()
+    sign = pressed_sign(bench.window.sign_held) if ctrl else ""
+    for key in all_keys():
+        if key.sign:
+            pressed = key.sign == sign
+        elif key.letter:
+            pressed = key.letter in typed and not ctrl
+        else:
+            fits = key.ctrl == ctrl and (key.shift == shift or not ctrl)
+            pressed = fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key not in _ONCE)
+        if pressed and (bench.painting.on or not key.brush):
+            key.act(bench)
+
+
+# ── the key map ────────────────────────────────────────────────────────────────
+
+
+GESTURES = (
+    ("drag", "orbit the terrain"),
+    ("Shift+drag, right drag", "move along the ground"),
+    ("Ctrl+drag", "move the sun"),
+    ("wheel", "nearer, farther"),
+    ("Ctrl, Shift, Ctrl+Shift+wheel", "the brush: wider, stronger, softer"),
+    ("double click, Ctrl+click", "type a value; pi/4 will do"),
+    ("right click", "a parameter's menu"),
+    ("drop a file", "open a sketch, or choose what reads an image, a video or a sound"),
+)
+"""What a mouse does."""
+
+
+_AROUND = 4
+"""Lines that the heading and the margins take; where all do not fit, the text is small."""
+
+
+def draw_keymap(interface: Interface, look: Theme) -> None:
+    """Draw the key map in the middle of the window, while it is open."""
+    if not interface.keymap_shown:
+        return
+    room = imgui.get_main_viewport().size
+    imgui.set_next_window_pos(ImVec2(room.x / 2, room.y / 2), imgui.Cond_.always, ImVec2(0.5, 0.5))
+    imgui.set_next_window_size_constraints(ImVec2(0, 0), ImVec2(room.x - 16, room.y - 16))
+    flags = QUIET | imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move
+    flags |= imgui.WindowFlags_.no_resize | imgui.WindowFlags_.always_auto_resize
+    cell = {imgui.StyleVar_.cell_padding: ImVec2(4 * look.scale, 0)}  # a small window has room for all
+    with window("keys", flags, ground=POPUP_COLOUR, rounding=8 * look.scale, sizes=cell):
+        with look.font(look.bold, theme.TEXT_SIZE + 2):
+            imgui.text_unformatted("Keys")
+        rows = *_joined(), *GESTURES
+        fits = (len(rows) + _AROUND) * imgui.get_text_line_height() <= room.y
+        with look.font(look.text, theme.TEXT_SIZE if fits else theme.SMALL):
+            warm = theme.colour(theme.WARM)
+            cells = [
+                (partial(imgui.text_colored, warm, keys), partial(imgui.text_unformatted, meaning))
+                for keys, meaning in rows
+            ]
+            table("keys", 2, cells, imgui.TableFlags_.sizing_fixed_fit)
+        inside = imgui.is_window_hovered(imgui.HoveredFlags_.child_windows)
+        if imgui.is_mouse_clicked(0) and not inside and not imgui.is_window_appearing():
+            interface.keymap_shown = False
+
+
+def _joined() -> list[tuple[str, str]]:
+    """Return the keys and their meanings, keys that mean the same on one line."""
+    keys_by_action: dict[str, list[str]] = {}
+    for key in all_keys():
+        keys_by_action.setdefault(key.meaning, []).append(key.name)
+    return [(", ".join(names), meaning) for meaning, names in keys_by_action.items()]
+
+
+# ── keys of a picture ──────────────────────────────────────────────────────────
+
+
+def _codes() -> Iterator[tuple[imgui.Key, int]]:
+    """Yield each key with its code in JavaScript (``KeyboardEvent.keyCode``)."""
+    yield from ((getattr(_K, chr(letter).lower()), letter) for letter in range(ord("A"), ord("Z") + 1))
+    yield from ((getattr(_K, f"_{digit}"), 48 + digit) for digit in range(10))
+    yield from ((getattr(_K, f"keypad{digit}"), 96 + digit) for digit in range(10))
+    yield from ((getattr(_K, f"f{number}"), 111 + number) for number in range(1, 13))
+    yield from (
+        (_K.backspace, 8), (_K.tab, 9), (_K.enter, 13), (_K.keypad_enter, 13), (_K.left_shift, 16),
+        (_K.right_shift, 16), (_K.left_ctrl, 17), (_K.right_ctrl, 17), (_K.left_alt, 18), (_K.right_alt, 18),
+        (_K.pause, 19), (_K.caps_lock, 20), (_K.space, 32), (_K.page_up, 33), (_K.page_down, 34),
+        (_K.end, 35), (_K.home, 36), (_K.left_arrow, 37), (_K.up_arrow, 38), (_K.right_arrow, 39),
+        (_K.down_arrow, 40), (_K.insert, 45), (_K.delete, 46), (_K.left_super, 91), (_K.right_super, 92),
+        (_K.menu, 93), (_K.keypad_multiply, 106), (_K.keypad_add, 107), (_K.keypad_subtract, 109),
+        (_K.keypad_decimal, 110), (_K.keypad_divide, 111), (_K.num_lock, 144), (_K.scroll_lock, 145),
+        (_K.semicolon, 186), (_K.equal, 187), (_K.comma, 188), (_K.minus, 189), (_K.period, 190),
+        (_K.slash, 191), (_K.grave_accent, 192), (_K.left_bracket, 219), (_K.backslash, 220),
+        (_K.right_bracket, 221), (_K.apostrophe, 222),
+    )  # fmt: skip
+
+
+CODES: dict[imgui.Key, int] = dict(_codes())
+"""Key → its code in JavaScript, which is its column in the keyboard's texture."""
+
+_MODIFIERS = (16, 17, 18, 91, 92)
+_TYPED = {",": _K.comma, ".": _K.period, "/": _K.slash, "?": _K.slash, "<": _K.comma, ">": _K.period}
+_TYPED |= {"[": _K.left_bracket, "{": _K.left_bracket, "]": _K.right_bracket, "}": _K.right_bracket}
+_TYPED |= {str(digit): getattr(_K, f"_{digit}") for digit in range(10)}
+
+
+def _keys_of(*, brush: bool) -> set[imgui.Key]:
+    """Return the keys of the shortcuts without Ctrl, of the brush or of all else."""
+    keys = [key for key in all_keys() if not key.ctrl and key.brush == brush]
+    return {_TYPED[key.letter] if key.letter else key.key for key in keys}
+
+
+class PictureKeys:
+    """What the picture of one bench's session gets of the keyboard."""
+
+    def __init__(self, bench: Workbench) -> None:
+        self.bench = bench
+        self.has_keyboard = False  # all keys are its own
+        self._shortcuts, self._of_brush = _keys_of(brush=False), _keys_of(brush=True)
+
+    def act(self) -> bool:
+        """Give the picture its keys of this frame; return whether none of them is for the window."""
+        session, io = self.bench.session, imgui.get_io()
+        if session.sketch is None or not traits_of(session.sketch).keys:
+            self.has_keyboard = False
+            session.hold_keys(())
+            return False
+        if imgui.is_mouse_clicked(0):
+            self._take(not io.want_capture_mouse)
+        if keeps_keys(self.bench.interface.ahead) or io.want_text_input:
+            session.hold_keys(())
+            return False
+        if self.has_keyboard and imgui.is_key_pressed(_K.escape, repeat=False):
+            self._take(False)
+            session.hold_keys(())
+            return True
+        held = {CODES[key] for key in CODES if imgui.is_key_down(key) and self._is_own(key)}
+        is_window_s = ctrl_held() or io.key_alt
+        session.hold_keys(held.intersection(_MODIFIERS) if is_window_s else held)
+        return self.has_keyboard and not is_window_s
+
+    def _take(self, takes: bool) -> None:
+        if takes and not self.has_keyboard:
+            self.bench.notices.say("the picture has the keyboard; Esc gives it back")
+        self.has_keyboard = takes
+
+    def _is_own(self, key: imgui.Key) -> bool:
+        taken = key in self._shortcuts or (self.bench.painting.on and key in self._of_brush)
+        return self.has_keyboard or not taken
