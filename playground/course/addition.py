@@ -15,8 +15,7 @@ from playground.course.talk.stage import Presenting, Stage
 from playground.course.window.progress import open_progress, progress_file
 from playground.course.window.reader import Reader
 from playground.studio.addition import Addition, Layer
-from playground.studio.bench import Workbench
-from playground.studio.host import Host
+from playground.studio.bench import Host, Workbench
 from playground.studio.keys import Key
 
 if TYPE_CHECKING:

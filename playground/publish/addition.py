@@ -10,8 +10,7 @@ from imgui_bundle import imgui
 from playground.publish.window.captures import Captures
 from playground.publish.window.panel import draw_capture
 from playground.studio.addition import Addition, Layer
-from playground.studio.bench import Workbench
-from playground.studio.host import Host
+from playground.studio.bench import Host, Workbench
 from playground.studio.keys import Key
 
 _POLL_INTERVAL = 0.1  # [s] between looks at a job

@@ -30,7 +30,7 @@ from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, ComputeVariant, CpuSource, Kernel, PlainCompute, Value
 from playground.studio.addition import Addition, FullScreen
-from playground.studio.bench import Workbench
+from playground.studio.bench import Host, Workbench
 from playground.studio.code.editors import Opener
 from playground.studio.code.open_files import unsaved
 from playground.studio.code.panel import draw_code
@@ -40,13 +40,19 @@ from playground.studio.drops import Drops, opened_from
 from playground.studio.edits.autosave import QUIET, Autosave, memory_of
 from playground.studio.edits.memory import Remembered
 from playground.studio.guard import Guard
-from playground.studio.host import Host
-from playground.studio.inspect.overlays import draw_inspection
 from playground.studio.interface import WindowControls, remembered_size
 from playground.studio.keyframes.panel import height_of_timeline
 from playground.studio.keys import PictureKeys, act_on_keys, draw_keymap
 from playground.studio.mouse import PictureMouse
-from playground.studio.overlay import checking_text, draw_behind, draw_checking, draw_notices, draw_waiting
+from playground.studio.overlay import (
+    checking_text,
+    draw_behind,
+    draw_checking,
+    draw_drops,
+    draw_inspection,
+    draw_notices,
+    draw_waiting,
+)
 from playground.studio.panel.panel import Panel
 from playground.studio.picture.disk_caching import SessionCaching
 from playground.studio.picture.full_screen import Painter
@@ -58,8 +64,7 @@ from playground.studio.reload.watcher import Follower, Watcher
 from playground.studio.remote.remotes import Remotes
 from playground.studio.session import Session
 from playground.studio.status import Status
-from playground.studio.window import Window, wake
-from playground.studio.window_place import WindowPlacement
+from playground.studio.window import Window, WindowPlacement, wake
 
 if TYPE_CHECKING:
     import moderngl
@@ -431,7 +436,7 @@ class Live:
         view = bench, picture, look, area, self.window.density
         draw("what is shown over the picture", lambda: draw_inspection(*view), None)
         draw("the notices", lambda: draw_notices(bench.notices, look, area), None)
-        draw("what was dropped", lambda: self.drops.draw(look), None)
+        draw("what was dropped", lambda: draw_drops(self.drops, look), None)
         draw("the key map", lambda: draw_keymap(bench.interface, look), None)
         for addition in self.additions:
             draw(addition.name, addition.draw_over, None)

@@ -1,15 +1,18 @@
-"""The parts of a live session, put together: each takes the parts that it uses."""
+"""The parts of a live session, put together: each takes those that it uses; what a room may use."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from playground.studio.actions import Commands
 from playground.studio.addition import Addition
 from playground.studio.code.editors import Opener
 from playground.studio.code.open_files import OpenFiles
+from playground.studio.edits.autosave import Autosave
 from playground.studio.edits.undo import Undo
 from playground.studio.inspect.inspection import Inspection
 from playground.studio.interface import Interface, InterfaceSize, WindowControls
@@ -20,6 +23,9 @@ from playground.studio.problems.problems import Problems
 from playground.studio.remote.controllers import Controllers
 from playground.studio.save.sketch_file import SketchFile
 from playground.studio.session import Session
+
+if TYPE_CHECKING:
+    from playground.studio.theme import Theme
 
 
 class Workbench:
@@ -56,3 +62,14 @@ class Workbench:
         """Show what the session and the editors report, and remove notices that are over."""
         self.painting.follow()
         self.notices.take(self.session.notes, self.files.opener.notes)
+
+
+@dataclass(frozen=True)
+class Host:
+    """What an addition may use of its window."""
+
+    bench: Workbench
+    autosave: Autosave
+    remember: Callable[[], None]  # stores what is shown, for the next start
+    wake: Callable[[], None]  # ends the window's sleep, from any thread
+    theme: Callable[[], Theme]

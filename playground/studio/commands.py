@@ -145,7 +145,7 @@ def command() -> Callable[..., None]:
 
 
 def _clipboard() -> str:
-    from playground.studio.clipboard import clipboard_text
+    from playground.studio.window import clipboard_text
 
     return clipboard_text()
 

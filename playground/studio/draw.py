@@ -210,7 +210,7 @@ def plate(
     return corner
 
 
-# ── lines of the panel ─────────────────────────────────────────────────────────
+# ── lines of the panel ────────────────────────────────────────────────────────
 
 
 _LABELS = 0.41  # share of the width that labels take
@@ -329,7 +329,7 @@ def _fit(text: str, width: float, cut: Callable[[int], str]) -> str:
     return _fitted[key]
 
 
-# ── text fields ────────────────────────────────────────────────────────────────
+# ── text fields ───────────────────────────────────────────────────────────────
 
 
 _FRAMES = 6

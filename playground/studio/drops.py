@@ -9,21 +9,15 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from imgui_bundle import ImVec2, imgui
-
 from playground.allowed_files import SHADERS, VECTORS, is_elevation
 from playground.errors import PlaygroundError
 from playground.shader.dialect import dialects
 from playground.sketch.find import find, is_pack, unpacked_beside
 from playground.sketch.model import Parameter, Sketch, Value
 from playground.studio.actions import Commands
-from playground.studio.channels.channel_list import MEDIA, Taker, in_words, takers
+from playground.studio.channels.channels import IMAGES, MEDIA, Taker, takers
 from playground.studio.panel.parameter_list import Item, items_of, shown_values
-from playground.studio.theme import Theme
-from playground.studio.widgets import IMAGES
 
-_TITLE = "dropped"
-_OWN = "Into a sketch of its own"
 _FILES = (*IMAGES, *VECTORS, *(ending for endings in MEDIA.values() for ending in endings))
 _VECTORS = "vectors"  # what a source of vector data calls its file
 
@@ -46,7 +40,7 @@ def _is_sketch(path: Path) -> bool:
     return False
 
 
-def _is_terrain(path: Path) -> bool:
+def is_terrain(path: Path) -> bool:
     """Return whether a file holds elevations, as a PNG seldom does."""
     return is_elevation(path) and path.suffix.lower() != ".png"
 
@@ -57,7 +51,7 @@ class Drops:
 
     commands: Commands
     waiting: list[Path] = field(default_factory=list)  # files that the user is to choose a place for
-    _asks: bool = False  # the choice is still to be shown
+    asks: bool = False  # the choice is still to be shown
     _takers: dict[str, tuple[Taker, ...]] = field(default_factory=dict)  # by the ending of what waits
     _takers_of: Sketch | None = None
 
@@ -76,13 +70,13 @@ class Drops:
             if path not in files:
                 say(f"{path.name} is neither a sketch, a shader nor an image, a video or a sound")
         parameter_files = [path for path in files if self.parameters(path) or self.channels(path)]
-        if files and not parameter_files and _is_terrain(files[0]):
+        if files and not parameter_files and is_terrain(files[0]):
             self.commands.open(files[0])
             return
         if files and not parameter_files:
             say(f"no parameter of this sketch takes a file like {files[0].name}, so it has no place in it")
         elif parameter_files:
-            self.waiting, self._asks = parameter_files, True
+            self.waiting, self.asks = parameter_files, True
 
     def parameters(self, file: Path) -> list[tuple[str, Parameter, Value]]:
         """Return the parameters that take a file, those a technique exports first; those of channels not.
@@ -124,7 +118,7 @@ class Drops:
 
     def _next(self) -> Path:
         file, *self.waiting = self.waiting
-        self._asks = bool(self.waiting)
+        self.asks = bool(self.waiting)
         return file
 
     def open(self) -> None:
@@ -135,38 +129,6 @@ class Drops:
         """Put the file that waits into a parameter."""
         file = self._next()
         self.commands.set_all(f"{file.name} into {path}", {path: str(file.resolve())})
-
-    def draw(self, look: Theme) -> None:
-        """Draw the choice of what the file that waits is for."""
-        if self._asks:
-            self._asks = False
-            imgui.open_popup(_TITLE)
-        if not self.waiting:
-            return
-        room = imgui.get_main_viewport().size
-        imgui.set_next_window_pos(ImVec2(room.x / 2, room.y / 2), imgui.Cond_.always, ImVec2(0.5, 0.5))
-        if not imgui.begin_popup(_TITLE):
-            self.waiting = []  # a click outside closed it
-            return
-        with look.font(look.bold):
-            imgui.text_unformatted(f"Put {self.waiting[0].name} where?")
-        draft = self.commands.session.shown
-        if _is_terrain(self.waiting[0]) and imgui.selectable(_OWN, False)[0]:
-            self.open()
-        for taker in self.channels(self.waiting[0]) if self.waiting else ():
-            if imgui.selectable(f"{taker.channel.path}##channel {taker.channel.path}", False)[0]:
-                self.feed(taker)
-                break
-            if draft is not None:
-                imgui.same_line(0, 2 * imgui.get_style().item_spacing.x)
-                imgui.text_disabled(f"now {in_words(draft.base, taker.channel.source)}")
-        for path, parameter, now in self.parameters(self.waiting[0]) if self.waiting else ():
-            if imgui.selectable(f"{parameter.title}   {path}##{path}", False)[0]:
-                self.put(path)
-                break
-            if now:
-                imgui.set_item_tooltip(f"now {now}")
-        imgui.end_popup()
 
     def _open_pack(self, path: Path) -> None:
         try:

@@ -51,7 +51,7 @@ class Key:
     brush: bool = False  # only while the brush is taken
 
 
-# ── layers that Esc closes ─────────────────────────────────────────────────────
+# ── layers that Esc closes ────────────────────────────────────────────────────
 
 
 def close_one(bench: Workbench) -> None:
@@ -98,7 +98,7 @@ def _close_popup(bench: Workbench) -> None:
     imgui.internal.close_popup_to_level(max(depth - 1, 0), True)
 
 
-# ── the table ──────────────────────────────────────────────────────────────────
+# ── the table ─────────────────────────────────────────────────────────────────
 
 
 _K = imgui.Key
@@ -245,7 +245,7 @@ def act_on_keys(bench: Workbench) -> None:
             key.act(bench)
 
 
-# ── the key map ────────────────────────────────────────────────────────────────
+# ── the key map ───────────────────────────────────────────────────────────────
 
 
 GESTURES = (
@@ -300,7 +300,7 @@ def _joined() -> list[tuple[str, str]]:
     return [(", ".join(names), meaning) for meaning, names in keys_by_action.items()]
 
 
-# ── keys of a picture ──────────────────────────────────────────────────────────
+# ── keys of a picture ─────────────────────────────────────────────────────────
 
 
 def _codes() -> Iterator[tuple[imgui.Key, int]]:

@@ -1,16 +1,28 @@
-"""What lies over the picture: a message while there is none, and notices that fade."""
+"""What lies over the picture: the tools that are on, a message while there is none, notices that fade."""
 
 from __future__ import annotations
 
 from operator import itemgetter
+from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 
 from playground.studio import theme
+from playground.studio.bench import Workbench
+from playground.studio.channels.channels import source_label
+from playground.studio.compare.panel import draw_ab
 from playground.studio.draw import Area, plate, plate_size
+from playground.studio.drops import Drops, is_terrain
+from playground.studio.graph.panel import draw_graph
+from playground.studio.inspect.inspector import Inspector
+from playground.studio.inspect.panel import draw_values
+from playground.studio.keyframes.panel import draw_timeline
 from playground.studio.notices import Notices
 from playground.studio.session import Session
 from playground.studio.theme import Theme
+
+if TYPE_CHECKING:
+    import moderngl
 
 _FADE = 1.0  # [s]
 _PADDING = 9  # [units of scale 1] around a notice's text
@@ -108,3 +120,70 @@ def _plate(
         wrap=wrap,
         align=align,
     )
+
+
+def draw_inspection(
+    bench: Workbench, picture: moderngl.Texture | None, look: Theme, area: Area, density: float
+) -> None:
+    """Draw all of it that is on; ``picture`` is what the session's last ``frame`` returned."""
+    session, inspection = bench.session, bench.inspection
+    if picture is not None:
+        inspection.compare.follow(picture)
+    inspection.graph.update(bench.notices.now())  # before it is drawn: what is released is not shown
+    draw_graph(session, inspection, look, area)
+    draw_ab(inspection.compare, bench.undo, look, area)
+    draw_timeline(bench.undo, bench.interface, look, area)
+    if picture is not None:
+        _inspect(inspection.inspector, picture, look, area, density)
+    inspection.update()
+
+
+def _inspect(
+    inspector: Inspector, picture: moderngl.Texture, look: Theme, area: Area, density: float
+) -> None:
+    if not inspector.on or imgui.get_io().want_capture_mouse:
+        return
+    inspector.inner = imgui.get_io().key_shift
+    mouse = imgui.get_mouse_pos()
+    across = int((mouse.x - area[0]) * density // 1)
+    down = int((mouse.y - area[1]) * density // 1)
+    report = inspector.at((across, picture.size[1] - 1 - down), picture)
+    if report is not None:
+        draw_values(report, look, area)
+
+
+_DROPPED = "dropped"
+_OWN_SKETCH = "Into a sketch of its own"
+
+
+def draw_drops(drops: Drops, look: Theme) -> None:
+    """Draw the choice of what the dropped file that waits is for."""
+    if drops.asks:
+        drops.asks = False
+        imgui.open_popup(_DROPPED)
+    if not drops.waiting:
+        return
+    room = imgui.get_main_viewport().size
+    imgui.set_next_window_pos(ImVec2(room.x / 2, room.y / 2), imgui.Cond_.always, ImVec2(0.5, 0.5))
+    if not imgui.begin_popup(_DROPPED):
+        drops.waiting = []  # a click outside closed it
+        return
+    with look.font(look.bold):
+        imgui.text_unformatted(f"Put {drops.waiting[0].name} where?")
+    draft = drops.commands.session.shown
+    if is_terrain(drops.waiting[0]) and imgui.selectable(_OWN_SKETCH, False)[0]:
+        drops.open()
+    for taker in drops.channels(drops.waiting[0]) if drops.waiting else ():
+        if imgui.selectable(f"{taker.channel.path}##channel {taker.channel.path}", False)[0]:
+            drops.feed(taker)
+            break
+        if draft is not None:
+            imgui.same_line(0, 2 * imgui.get_style().item_spacing.x)
+            imgui.text_disabled(f"now {source_label(draft.base, taker.channel.source)}")
+    for path, parameter, now in drops.parameters(drops.waiting[0]) if drops.waiting else ():
+        if imgui.selectable(f"{parameter.title}   {path}##{path}", False)[0]:
+            drops.put(path)
+            break
+        if now:
+            imgui.set_item_tooltip(f"now {now}")
+    imgui.end_popup()

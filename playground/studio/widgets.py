@@ -19,7 +19,6 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
-from playground.allowed_files import ELEVATIONS
 from playground.errors import DataError
 from playground.paths import shown
 from playground.shader.colours import linear_to_srgb, srgb_to_linear
@@ -28,10 +27,11 @@ from playground.shader.widgets import fraction_of
 from playground.sketch.files import find_file
 from playground.sketch.model import Parameter, Value
 from playground.studio import theme
+from playground.studio.channels.channels import IMAGES
 from playground.studio.draw import choose, fitting_choice
 from playground.studio.panel.values import format_of, snapped, unit_of
 
-# ── directions ─────────────────────────────────────────────────────────────────
+# ── directions ────────────────────────────────────────────────────────────────
 
 
 def dot_of(azimuth: float, elevation: float) -> tuple[float, float]:
@@ -48,7 +48,7 @@ def direction_at(right: float, up: float) -> tuple[float, float]:
     return azimuth, 90.0 * (1.0 - radius)
 
 
-# ── numbers ────────────────────────────────────────────────────────────────────
+# ── numbers ───────────────────────────────────────────────────────────────────
 
 
 _CLAMP = imgui.SliderFlags_.always_clamp.value
@@ -212,12 +212,11 @@ def _unit_format(parameter: Parameter) -> str:
     return unit_of(parameter).replace("%", "%%")
 
 
-# ── controls ───────────────────────────────────────────────────────────────────
+# ── controls ──────────────────────────────────────────────────────────────────
 
 
 _PAD = 84.0
 _PATH = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.elide_left  # its end is the name
-IMAGES = (".jpg", ".jpeg", ".webp", *ELEVATIONS)
 
 
 @dataclass(frozen=True)
@@ -472,7 +471,7 @@ CONTROLS: dict[str, Draw] = {
 """How each control is drawn."""
 
 
-# ── plots ──────────────────────────────────────────────────────────────────────
+# ── plots ─────────────────────────────────────────────────────────────────────
 
 
 # Okabe and Ito 2008, "Color Universal Design", without black.

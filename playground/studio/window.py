@@ -6,10 +6,13 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import os
 import sys
 import time
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, cast
@@ -23,12 +26,83 @@ import glfw
 from playground.engine.context import abandon, adopt_context
 from playground.engine.driver_advice import advice
 from playground.errors import ContextError
-from playground.studio.input import releases
-from playground.studio.input.double_click import Clicks
 from playground.studio.theme import Theme
 
 if TYPE_CHECKING:
     import moderngl
+
+# ── clicks and releases ───────────────────────────────────────────────────────
+
+
+APART = 0.3
+"""[s] that the clicks of a double click are apart at most."""
+_AT_ONCE = 0.004  # [s] from the beginning of a wait: what came before it is reported by then
+_NEVER, _ALWAYS = 0.0, 1e3  # [s] what imgui is to take for the longest time between the two
+
+
+class Clicks:
+    """Judges double clicks by when the left button went down, not by the frames in which they are drawn.
+
+    imgui spreads the presses and releases of one moment over several frames and compares the times of the
+    frames: where a picture takes 0.4 s, no two clicks are ever a double one. GLFW reports that a button
+    went down only when it is polled, after the frame before has ended. So an event came after the last
+    poll; one that comes while the window sleeps is reported at once. Two clicks are a double click if
+    they can have been one. ``before_poll`` and ``after_poll`` surround each wait.
+    """
+
+    def __init__(self, now: Callable[[], float] = time.perf_counter) -> None:
+        self._now = now
+        self._poll_end = self._poll_start = now()
+        self._pressed: float | None = None  # the latest that the last press can have been
+        self._doubles: deque[bool] = deque()  # presses that imgui has not come to, oldest first
+
+    def before_poll(self) -> None:
+        """Record when GLFW is about to be polled for events."""
+        self._poll_start = self._now()
+
+    def after_poll(self) -> None:
+        """Record when it has reported all events."""
+        self._poll_end = self._now()
+
+    def press(self) -> None:
+        """Record a press of the button."""
+        now = self._now()
+        waited_for = now - self._poll_start > _AT_ONCE
+        earliest = now if waited_for else self._poll_end
+        self._doubles.append(self._pressed is not None and earliest - self._pressed < APART)
+        self._pressed = now
+
+    def double_click_time(self) -> float:
+        """Return the longest time between two clicks [s] that imgui uses in its next frame."""
+        if not self._doubles:
+            return APART
+        return _ALWAYS if self._doubles[0] else _NEVER
+
+    def handled(self) -> None:
+        """Forget the oldest press, which imgui has handled."""
+        if self._doubles:
+            self._doubles.popleft()
+
+
+def before_release(position: tuple[float, float]) -> None:
+    """Prepare imgui for a release at a place of the window, whose event follows.
+
+    Where a picture is slow, the last movement of a drag and the release come in one frame. imgui then ends
+    the drag without having looked at that movement, so a slider would stay behind the mouse. Of a touch
+    screen it handles the release one frame later; so such a release is said to come from one.
+    """
+    io = imgui.get_io()
+    moved = (io.mouse_pos.x, io.mouse_pos.y) != tuple(map(math.floor, position))  # imgui has whole pixels
+    io.add_mouse_source_event(imgui.MouseSource.touch_screen if moved else imgui.MouseSource.mouse)
+
+
+def after_events() -> None:
+    """Have what comes next be the mouse's own."""
+    imgui.get_io().add_mouse_source_event(imgui.MouseSource.mouse)
+
+
+# ── the window ────────────────────────────────────────────────────────────────
+
 
 _VERSIONS = ((4, 3), (4, 1), (3, 3))
 _HINTS = {
@@ -145,7 +219,7 @@ class Window:
         else:
             glfw.wait_events_timeout(seconds)
         self._clicks.after_poll()
-        releases.after_events()
+        after_events()
 
     def begin(self) -> None:
         """Begin a frame of the interface."""
@@ -215,7 +289,7 @@ class Window:
 
     def _press(self, handle: Any, button: int, action: int, _: int) -> None:
         if action == glfw.RELEASE:
-            releases.before_release(glfw.get_cursor_pos(handle))
+            before_release(glfw.get_cursor_pos(handle))
         elif button == glfw.MOUSE_BUTTON_LEFT:
             self._clicks.press()
 
@@ -281,3 +355,136 @@ def _complaint() -> str:
     code, text = glfw.get_error()
     message = text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text or "")
     return f"{message} (GLFW error {code:#x})" if code else ""
+
+
+# ── its place on the screen ───────────────────────────────────────────────────
+
+
+Rectangle = tuple[int, int, int, int]
+"""x, y, width, height, in the screen's units."""
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """A window's place on the screen, in the screen's units."""
+
+    x: int
+    y: int
+    width: int
+    height: int
+    maximised: bool = False
+
+
+class WindowPlacement:
+    """The place of one window; ``handle`` gives its current GLFW window."""
+
+    def __init__(self, handle: Callable[[], Any]) -> None:
+        self._handle = handle
+        self._before: Geometry | None = None  # while it fills the screen: its place
+        self._dropped: list[Path] = []
+        self._listening: Any = None
+
+    @property
+    def full(self) -> bool:
+        """Whether it fills a screen."""
+        return self._before is not None
+
+    def geometry(self) -> Geometry:
+        """Return its place, or that before it filled the screen."""
+        if self._before is not None:
+            return self._before
+        handle = self._handle()
+        (x, y), (width, height) = glfw.get_window_pos(handle), glfw.get_window_size(handle)
+        return Geometry(x, y, width, height, bool(glfw.get_window_attrib(handle, glfw.MAXIMIZED)))
+
+    def move_to(self, at: tuple[int, int]) -> None:
+        """Move its upper left corner, at most as far as all of it stays on a screen."""
+        handle = self._handle()
+        width, height = glfw.get_window_size(handle)
+        left, top, right, bottom = glfw.get_window_frame_size(handle)
+        frame = at[0] - left, at[1] - top, width + left + right, height + top + bottom
+        x, y = on_screen(frame, screens())
+        glfw.set_window_pos(handle, x + left, y + top)
+
+    def toggle_full(self) -> None:
+        """Fill the screen that most of it is on, or restore its place."""
+        handle = self._handle()
+        if self._before is not None:
+            back, self._before = self._before, None
+            no_monitor: Any = None
+            glfw.set_window_monitor(
+                handle, no_monitor, back.x, back.y, back.width, back.height, glfw.DONT_CARE
+            )
+            if back.maximised:
+                glfw.maximize_window(handle)
+            return
+        geometry = self.geometry()
+        monitors = glfw.get_monitors()
+        if not monitors:
+            return
+        shares = [_shared(geometry, area) for area in screens()]
+        monitor = monitors[shares.index(max(shares))]
+        mode = glfw.get_video_mode(monitor)
+        self._before = geometry
+        glfw.set_window_monitor(handle, monitor, 0, 0, mode.size.width, mode.size.height, mode.refresh_rate)
+
+    def dropped(self) -> list[Path]:
+        """Return the files dropped on it since the last call."""
+        handle = self._handle()
+        if self._listening is not handle:
+            took: Any = self.drop
+            glfw.set_drop_callback(handle, took)
+            self._listening = handle
+        paths, self._dropped = self._dropped, []
+        return paths
+
+    def drop(self, _: object, names: Iterable[str]) -> None:
+        """Store the names of dropped files; GLFW's callback."""
+        self._dropped += [Path(name) for name in names]
+
+
+def screens() -> list[Rectangle]:
+    """Return the screens that there are."""
+    rectangles = []
+    for monitor in glfw.get_monitors():
+        (x, y), mode = glfw.get_monitor_pos(monitor), glfw.get_video_mode(monitor)
+        rectangles.append((x, y, mode.size.width, mode.size.height))
+    return rectangles
+
+
+def on_screen(window: Rectangle, areas: list[Rectangle]) -> tuple[int, int]:
+    """Return where a window's upper left corner goes, so that screens show all of it, or all that fits.
+
+    It stays where they do, also across several; else it goes into the one that shows most of it.
+    """
+    x, y, width, height = window
+    geometry = Geometry(x, y, width, height)
+    shares = [_shared(geometry, area) for area in areas]
+    if not areas or sum(shares) >= width * height:
+        return x, y
+    left, top, wide, high = areas[shares.index(max(shares))]
+    return max(min(x, left + wide - width), left), max(min(y, top + high - height), top)
+
+
+def _shared(geometry: Geometry, area: Rectangle) -> int:
+    """Return how much of a window is on a screen."""
+    x, y, width, height = area
+    across = min(geometry.x + geometry.width, x + width) - max(geometry.x, x)
+    down = min(geometry.y + geometry.height, y + height) - max(geometry.y, y)
+    return max(across, 0) * max(down, 0)
+
+
+# ── the clipboard ─────────────────────────────────────────────────────────────
+
+
+def clipboard_text() -> str:
+    """Return the text on the clipboard, "" where there is none; raise ``ContextError`` without a display."""
+    glfw.ERROR_REPORTING = "ignore"  # an empty clipboard is an error for GLFW
+    if not glfw.init():
+        raise ContextError(advice("glfw.init failed", sys.platform, os.environ))
+    try:
+        no_window: Any = None
+        data: Any = glfw.get_clipboard_string(no_window)  # bytes, or None
+        return data.decode("utf-8", "replace") if data else ""
+    finally:
+        glfw.terminate()

@@ -15,9 +15,9 @@ from playground.course.scenes import Sketches
 from playground.course.window.reader import Reader
 from playground.engine.engine import Engine
 from playground.paths import GLSL
+from playground.studio.bench import Host
 from playground.studio.code.panel import draw_code
 from playground.studio.edits.autosave import Autosave, memory_of
-from playground.studio.host import Host
 from playground.studio.keyframes.panel import height_of_timeline
 
 from ..sketch_texts import map_of_height

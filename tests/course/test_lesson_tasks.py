@@ -19,7 +19,7 @@ from playground.course.window.progress import (
 )
 from playground.paths import GLSL
 from playground.shader.source import read_text
-from playground.studio.host import Host
+from playground.studio.bench import Host
 
 FILE = "generation/diamond_square/raw.glsl"
 RAW = read_text(GLSL / FILE)

@@ -12,9 +12,9 @@ from imgui_bundle import ImVec2, imgui
 from playground.engine.engine import Engine
 from playground.studio.bench import Workbench
 from playground.studio.drops import Drops
-from playground.studio.inspect.overlays import draw_inspection
 from playground.studio.interface import WindowControls
 from playground.studio.keys import act_on_keys, draw_keymap
+from playground.studio.overlay import draw_drops, draw_inspection
 from playground.studio.panel.panel import Panel
 from playground.studio.problems.panel import ErrorsList
 from playground.studio.session import Session
@@ -167,7 +167,7 @@ class Bare:
         room = imgui.get_io().display_size
         area = left, 0.0, max(room.x - left, 1.0), room.y
         draw_inspection(self.bench, self.picture, self.theme, area, 48 / area[2])
-        self.drops.draw(self.theme)
+        draw_drops(self.drops, self.theme)
         draw_keymap(self.bench.interface, self.theme)
 
     def close(self) -> None:

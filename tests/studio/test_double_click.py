@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from playground.studio.input.double_click import APART, Clicks
+from playground.studio.window import APART, Clicks
 
 SLOW = 0.4
 """[s] that a frame takes where a picture is drawn slowly."""

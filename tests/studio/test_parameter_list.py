@@ -12,7 +12,7 @@ from playground.errors import ParameterError
 from playground.shader.parameter import Widget, coerce, tidied
 from playground.sketch.model import Camera, Parameter
 from playground.studio.edits.edits import Draft, Edits
-from playground.studio.edits.history import History, State, applied, edits_of, in_words, state_of
+from playground.studio.edits.history import History, State, applied, edits_of, state_of, step_label
 from playground.studio.panel.parameter_list import Filter, filtered, sections_of, set_words, shown_values
 from playground.studio.panel.randomise import at_random, mutated
 from playground.studio.panel.values import read_typed
@@ -328,7 +328,7 @@ def test_steps_have_names() -> None:
     def written(path: str, value: object) -> str:
         return "the file's" if value is None else f"{value:g}"
 
-    assert [in_words(s, str.upper, written) for s in harness.history.steps] == [
+    assert [step_label(s, str.upper, written) for s in harness.history.steps] == [
         "P.A: the file's to 0.5",
         "Preset dusk",
         "p: x",

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 from imgui_bundle import ImVec2, imgui
 
-from playground.studio.input.releases import after_events, before_release
+from playground.studio.window import after_events, before_release
 
 WIDE, PAD = 400.0, 10.0
 

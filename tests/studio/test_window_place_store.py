@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.studio.window_place import WindowPlacement, on_screen
+from playground.studio.window import WindowPlacement, on_screen
 
 
 def test_what_is_dropped_is_taken_once(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,8 +9,16 @@ from pathlib import Path
 from imgui_bundle import imgui
 
 from playground.sketch.model import PassSpec, Sketch
-from playground.studio.channels.channel_list import endings_of, file_of, in_words, note_of
-from playground.studio.channels.channels import Channel, channels, source_of, sources
+from playground.studio.channels.channels import (
+    Channel,
+    channels,
+    endings_of,
+    file_of,
+    note_of,
+    source_label,
+    source_of,
+    sources,
+)
 from playground.studio.draw import choose, cross, fitting_choice, row, slot
 from playground.studio.edits.edits import Draft
 from playground.studio.panel.parameter_list import shown_values
@@ -38,14 +46,14 @@ class ChannelRows:
         base, end = draft.base, imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
         with row(channel.name, lambda: note_of(base, channel), edited=edited):
             # The options are computed in an open list only: that tries each of them.
-            shown = fitting_choice(in_words(base, channel.source))
+            shown = fitting_choice(source_label(base, channel.source))
             options = (source for source in self._sources_for(channel.path, base))
             source = choose(
                 f"##feeds {channel.path}",
                 shown,
                 options,
                 channel.source,
-                name=lambda s: in_words(base, s),
+                name=lambda s: source_label(base, s),
                 flags=imgui.ComboFlags_.height_large.value,
             )
         in_file = source_of(draft.file, channel.path)

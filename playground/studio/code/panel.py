@@ -25,7 +25,7 @@ from playground.studio.problems.problems import Problems
 from playground.studio.reload.dependencies import path_named
 from playground.studio.theme import Theme
 
-# ── indentation ────────────────────────────────────────────────────────────────
+# ── indentation ───────────────────────────────────────────────────────────────
 
 
 DEFAULT_STEP = " " * 4
@@ -86,7 +86,7 @@ def _indent_of(line: str) -> str:
     return match[0] if match else ""
 
 
-# ── the editor ─────────────────────────────────────────────────────────────────
+# ── the editor ────────────────────────────────────────────────────────────────
 
 
 _MAX_HEIGHT = 0.46  # share of the picture's height, so that the list below stays visible

@@ -42,7 +42,7 @@ from playground.sketch.model import Camera, Parameter, Sketch, Value
 from playground.sketch.replace_technique import with_technique
 from playground.studio.channels.channels import channels, find_channel, in_order, with_source
 
-# ── values in files ────────────────────────────────────────────────────────────
+# ── values in files ───────────────────────────────────────────────────────────
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +117,7 @@ def _set_by(sketch: Sketch) -> set[str]:
     }
 
 
-# ── edits and drafts ───────────────────────────────────────────────────────────
+# ── edits and drafts ──────────────────────────────────────────────────────────
 
 
 @dataclass(frozen=True, slots=True)
@@ -412,7 +412,7 @@ def _shape(value: Value) -> object:
     return tuple(map(type, value)) if isinstance(value, tuple) else type(value)
 
 
-# ── edits of an earlier session ────────────────────────────────────────────────
+# ── edits of an earlier session ───────────────────────────────────────────────
 
 
 @dataclass(frozen=True)

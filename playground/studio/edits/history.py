@@ -223,7 +223,7 @@ def applied(state: State, changes: State) -> dict[Key, object]:
     return {key: value for key, value in state_now.items() if value is not None}
 
 
-def in_words(step: Step, name_of: Callable[[str], str], write: Callable[[str, object], str]) -> str:
+def step_label(step: Step, name_of: Callable[[str], str], write: Callable[[str, object], str]) -> str:
     """Return a step's name.
 
     ``name_of`` gives a parameter's label from its path, ``write`` its value as text.

@@ -106,7 +106,7 @@ def _main(flat: Flat, node: str) -> str:
     return f"{node}:{name if name in outputs else next(iter(outputs))}"
 
 
-# ── thumbnails ─────────────────────────────────────────────────────────────────
+# ── thumbnails ────────────────────────────────────────────────────────────────
 
 
 SIDE = 64
@@ -207,7 +207,7 @@ def picture_of(values: NDArray[np.float32], components: int, *, encoded: bool) -
     return np.rint(np.clip(whole, 0, 1) * 255).astype(np.uint8)
 
 
-# ── the window ─────────────────────────────────────────────────────────────────
+# ── the window ────────────────────────────────────────────────────────────────
 
 
 @dataclass

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from playground.sketch.map_sketch import Map
 
-# ── the histogram ──────────────────────────────────────────────────────────────
+# ── the histogram ─────────────────────────────────────────────────────────────
 
 
 BINS = 128
@@ -216,7 +216,7 @@ class Counter:
         return (result[0], (shown.ref, *result[1])) if shown is not None and result is not None else None
 
 
-# ── the ramp ───────────────────────────────────────────────────────────────────
+# ── the ramp ──────────────────────────────────────────────────────────────────
 
 
 STEPS = 64

@@ -14,8 +14,7 @@ from playground.studio.draw import OVERLAY, Area, button, fitting, table, window
 from playground.studio.inspect.histogram import BINS, STEPS, Histogram, ends_of, ticks
 from playground.studio.inspect.inspection import Inspection
 from playground.studio.inspect.inspector import GroundPoint, PixelReport, Sample
-from playground.studio.panel.panel import ref_name
-from playground.studio.picture.view import View
+from playground.studio.picture.view import View, ref_name
 from playground.studio.session import Session
 from playground.studio.theme import Theme
 from playground.studio.widgets import plot, plot_line

@@ -39,7 +39,7 @@ from playground.studio.draw import (
     wrapped,
 )
 from playground.studio.edits.edits import Edits
-from playground.studio.edits.history import in_words
+from playground.studio.edits.history import step_label
 from playground.studio.edits.undo import Undo
 from playground.studio.inspect.inspection import Inspection
 from playground.studio.inspect.panel import draw_spread
@@ -50,6 +50,7 @@ from playground.studio.paint.panel import draw_paintbox
 from playground.studio.panel.parameter_list import Filter, PanelState, items_of, set_words, shown_values
 from playground.studio.panel.passes_panel import Sections
 from playground.studio.panel.randomise import at_random, mutated, targets
+from playground.studio.picture.view import ref_name
 from playground.studio.session import Session
 from playground.studio.theme import Theme
 from playground.studio.widgets import WidgetSlot, draw_value, explanation, slide
@@ -144,7 +145,7 @@ def _footer(lines: tuple[str, str], look: Theme) -> None:
                 imgui.text_disabled(line)
 
 
-# ── the head ───────────────────────────────────────────────────────────────────
+# ── the head ──────────────────────────────────────────────────────────────────
 
 
 _OWN_VIEW = "its own view"
@@ -264,7 +265,7 @@ def draw_history(memory: PanelState, undo: Undo, look: Theme) -> None:
         return write(item.parameter, value) if item else spell(value)  # type: ignore[arg-type]
 
     for number, step in enumerate(history.steps, 1):
-        text = fitting(in_words(step, name_of, written), wide - 20 * look.scale)
+        text = fitting(step_label(step, name_of, written), wide - 20 * look.scale)
         done, latest = number <= history.done, number == history.done
         with inked(theme.INK if done else theme.DIM):
             if imgui.selectable(f"{text}##{number}", latest)[0]:
@@ -416,9 +417,3 @@ def _shown_texture(session: Session) -> None:
         ref = choose("##shown", fitting_choice(name(current)), ["", *session.refs], current, name=name)
     if ref is not None:
         session.show(ref or None)
-
-
-def ref_name(ref: str) -> str:
-    """Return a texture's name without its repetition: "height:height" is "height"."""
-    path, _, output = ref.partition(":")
-    return path if path.rpartition(".")[2] == output else ref

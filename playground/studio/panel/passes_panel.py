@@ -57,7 +57,7 @@ from playground.studio.session import Session
 from playground.studio.theme import Theme
 from playground.studio.widgets import WidgetSlot, draw_value, explanation, slide_whole
 
-# ── a parameter ────────────────────────────────────────────────────────────────
+# ── a parameter ───────────────────────────────────────────────────────────────
 
 
 _TYPED = "numbers"  # the control that becomes a field at a double click, or a click with Ctrl
@@ -202,7 +202,7 @@ def _lock(path: str, locked: bool, look: Theme) -> bool:
     return clicked
 
 
-# ── a pass ─────────────────────────────────────────────────────────────────────
+# ── a pass ────────────────────────────────────────────────────────────────────
 
 
 _TALL = imgui.ComboFlags_.height_large.value

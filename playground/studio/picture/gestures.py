@@ -8,7 +8,7 @@ from playground.engine.camera import Eye, orbit, pan, zoom
 from playground.sketch.assign import shown_parameters, value_of, values_of
 from playground.sketch.model import Camera, Sketch
 
-# ── the camera ─────────────────────────────────────────────────────────────────
+# ── the camera ────────────────────────────────────────────────────────────────
 
 
 HALF_TURN = 180.0
@@ -58,7 +58,7 @@ def steered_through(camera: Camera, eye: Eye, gesture: Gesture, seen_through: Ca
     return replace(steered(wide, eye, gesture), field_of_view=camera.field_of_view)
 
 
-# ── the sun ────────────────────────────────────────────────────────────────────
+# ── the sun ───────────────────────────────────────────────────────────────────
 
 
 MIN_ELEVATION = -10.0
@@ -87,7 +87,7 @@ def turned_sun(sun: tuple[float, float], across: float, up: float) -> tuple[floa
     return round(azimuth % 360.0, 2), round(min(max(elevation, MIN_ELEVATION), 90.0), 2)
 
 
-# ── dividers ───────────────────────────────────────────────────────────────────
+# ── dividers ──────────────────────────────────────────────────────────────────
 
 
 GRAB_DISTANCE = 6.0

@@ -86,7 +86,7 @@ def _is_unset(path: str, parameter: Parameter, kernel: Kernel, values: Mapping[s
     return all(values[f"{path}.{p.name}"] == p.default for p in group)
 
 
-# ── the size ───────────────────────────────────────────────────────────────────
+# ── the size ──────────────────────────────────────────────────────────────────
 
 
 BUDGETS = {1: 0.04, 2: 0.1, 3: 0.15, 4: 0.2}

@@ -101,7 +101,13 @@ def steps_of_repeats(sketch: Sketch, time: float) -> dict[str, int]:
         return {}
 
 
-# ── maps ───────────────────────────────────────────────────────────────────────
+# ── maps ──────────────────────────────────────────────────────────────────────
+
+
+def ref_name(ref: str) -> str:
+    """Return a texture's name without its repetition: "height:height" is "height"."""
+    path, _, output = ref.partition(":")
+    return path if path.rpartition(".")[2] == output else ref
 
 
 def in_view(sketch: Sketch, ref: str) -> bool:
@@ -137,7 +143,7 @@ def fitted(shown: Map, values: NDArray[np.float32]) -> Map:
     return shown
 
 
-# ── the frame ──────────────────────────────────────────────────────────────────
+# ── the frame ─────────────────────────────────────────────────────────────────
 
 
 MAX_FIELD_OF_VIEW = 100.0

@@ -37,7 +37,7 @@ from playground.studio.panel.parameter_list import items_of, shown_values
 from playground.studio.panel.values import decimals
 from playground.studio.session import Session
 
-# ── fractions of a range ───────────────────────────────────────────────────────
+# ── fractions of a range ──────────────────────────────────────────────────────
 
 
 HALF = 64 / 127
@@ -122,7 +122,7 @@ def _numbers(value: Value) -> tuple[float, ...]:
     return (float(value),)
 
 
-# ── the file ───────────────────────────────────────────────────────────────────
+# ── the file ──────────────────────────────────────────────────────────────────
 
 
 ENDING = ".controllers"
@@ -221,7 +221,7 @@ def _within(file: TomlFile, table: dict[str, Any], key: str, low: int, high: int
     return number
 
 
-# ── controllers ────────────────────────────────────────────────────────────────
+# ── controllers ───────────────────────────────────────────────────────────────
 
 
 SETTLES = 0.25

@@ -39,7 +39,7 @@ from playground.studio.panel.parameter_list import Item, Values, items_of, shown
 from playground.studio.problems.problems import Problems
 from playground.studio.session import Session
 
-# ── calls of other threads ─────────────────────────────────────────────────────
+# ── calls of other threads ────────────────────────────────────────────────────
 
 
 MAX_WAITING = 1024
@@ -108,7 +108,7 @@ class Calls:
                 future.set_exception(Busy("the window is closed"))
 
 
-# ── descriptions ───────────────────────────────────────────────────────────────
+# ── descriptions ──────────────────────────────────────────────────────────────
 
 
 def parameters_of(session: Session) -> list[dict[str, Any]]:
@@ -171,7 +171,7 @@ def _described(item: Item, values: Values) -> dict[str, Any]:
     }
 
 
-# ── changes ────────────────────────────────────────────────────────────────────
+# ── changes ───────────────────────────────────────────────────────────────────
 
 
 _JUMP = 0.5  # [s] that time may differ from what its speed makes of it before that is news
@@ -241,7 +241,7 @@ class Changes:
         return events
 
 
-# ── controls ───────────────────────────────────────────────────────────────────
+# ── controls ──────────────────────────────────────────────────────────────────
 
 
 MAX_REMOTE_SIDE = 4096

@@ -25,7 +25,7 @@ from playground.sketch.model import Graph, Parameter, Value
 from playground.studio.panel.parameter_list import items_of, shown_values
 from playground.studio.remote.controls import Controls
 
-# ── addresses ──────────────────────────────────────────────────────────────────
+# ── addresses ─────────────────────────────────────────────────────────────────
 
 
 OWN = "/playground/"
@@ -191,7 +191,7 @@ def _message(path: str, parameter: Parameter, value: Value) -> Message:
     return address_of(path), numbers
 
 
-# ── sockets ────────────────────────────────────────────────────────────────────
+# ── sockets ───────────────────────────────────────────────────────────────────
 
 
 MAX_WAITING = 1024

@@ -24,9 +24,9 @@ from playground.publish.sweep import parts_of, sweep_text
 from playground.publish.window import captures as capturing
 from playground.publish.window.captures import Captures, CaptureSettings
 from playground.sketch.assign import resolve
+from playground.studio.bench import Host
 from playground.studio.edits.autosave import Autosave, memory_of
 from playground.studio.edits.memory import Remembered
-from playground.studio.host import Host
 from playground.studio.keys import open_layers
 from playground.studio.notices import Notices
 from playground.studio.session import Session
