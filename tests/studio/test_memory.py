@@ -192,7 +192,8 @@ def test_it_is_written_as_one_goes_once_it_rests(place: Place) -> None:
     place.now += QUIET
     autosave.look((900, 600))
     assert len(place.files()) == 1 and not autosave.waits
-    assert json.loads((place.state / place.files()[0]).read_text())["values"]["height.level"]["value"] == 0.7
+    table = json.loads((place.state / place.files()[0]).read_text())
+    assert dict(table["edits"]["values"])["height.level"] == 0.7
 
 
 def test_time_that_runs_is_written_now_and_then(place: Place) -> None:
@@ -342,7 +343,9 @@ def test_a_broken_file_is_set_aside_and_that_is_reported(place: Place, name: str
     assert complaint == "" and dict(result.edits.values) == {"height.level": 0.5}
 
 
-@each("key", ["values", "camera", "steps", "window", "techniques", "map_values", "time"])
+@each(
+    "key", ["edits", "in_file", "camera_in_file", "compared", "steps", "window", "at", "map_values", "time"]
+)
 @each("wrong", [7, "x", [1], {"a": 1}, [[]], float("inf")])
 def test_no_value_of_another_kind_is_taken_or_raises(tmp_path: Path, key: str, wrong: object) -> None:
     memory = Memory(tmp_path / "sketch.toml", tmp_path)

@@ -14,9 +14,11 @@ import hashlib
 import json
 import math
 import sys
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field, is_dataclass, replace
+from itertools import repeat
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, cast, get_args, get_origin, get_type_hints
 
 from playground.errors import DataError, PlaygroundError
 from playground.files import new_name, read_regular, write_file
@@ -40,6 +42,7 @@ def set_aside(path: Path, what: str, error: Exception) -> str:
 
 
 FORMAT = 1
+_MAX_SIDE = 16384  # of a window, in the screen's units
 _MAX_BYTES = 4 * 2**20  # [bytes] no session sets so much by the user
 
 
@@ -110,7 +113,8 @@ class Memory:
             with contextlib.suppress(OSError):
                 self.path.unlink(missing_ok=True)
             return
-        text = json.dumps(_written(remembered, self.sketch), indent=1, ensure_ascii=False)
+        table = {"format": FORMAT, "sketch": self.sketch, **asdict(remembered)}
+        text = json.dumps(table, indent=1, ensure_ascii=False)
         write_file(self.path, text.encode("utf-8", "surrogatepass"))
 
     def claim(self) -> bool:
@@ -152,101 +156,45 @@ def _locked(file: IO[bytes]) -> bool:
     return True
 
 
-def _written(remembered: Remembered, sketch: str) -> dict[str, Any]:
-    table = asdict(remembered) | _written_edits(remembered.edits)
-    for path, in_file in remembered.in_file:
-        if path in table["values"]:
-            table["values"][path] |= {"file": in_file.value, "own": in_file.own}
-    del table["edits"], table["in_file"]
-    table |= {"map_values": dict(remembered.map_values), "steps": dict(remembered.steps)}
-    compared = remembered.compared
-    if compared is not None:
-        table["compared"] |= _written_edits(compared.edits) | {"steps": dict(compared.steps)}
-        del table["compared"]["edits"]
-    return {"format": FORMAT, "sketch": sketch, **table}
-
-
-def _written_edits(edits: Edits) -> dict[str, Any]:
-    values = {path: {"value": value} for path, value in edits.values}
-    return asdict(edits) | {
-        "values": values,
-        "techniques": dict(edits.techniques),
-        "channels": dict(edits.channels),
-    }
-
-
 def _read(table: Any) -> Remembered:
     """Return what a file says; raise ``ValueError``, ``TypeError`` or ``KeyError`` for another's."""
     if table["format"] != FORMAT:
         raise ValueError(f"it has format {table['format']}, and this version knows {FORMAT}")
-    in_file = tuple(
-        (str(path), _file_value(entry)) for path, entry in table["values"].items() if "file" in entry
-    )
-    width, height = (int(side) for side in table["window"])
-    at, loop = table.get("at"), table.get("loop")
-    return Remembered(
-        edits=_edits(table),
-        in_file=in_file,
-        time=max(_number(table["time"]), 0.0),
-        playing=bool(table["playing"]),
-        speed=_number(table["speed"]),
-        map=str(table["map"]),
-        map_values=tuple((str(name), _value(value)) for name, value in table["map_values"].items()),
-        steps=_steps(table),
-        window=(width, height) if 0 < min(width, height) and max(width, height) <= 16384 else (0, 0),
-        at=(int(at[0]), int(at[1])) if at is not None else None,
-        camera_in_file=_camera(table.get("camera_in_file")),
-        loop=(_number(loop[0]), _number(loop[1])) if loop is not None else None,
-        compared=_compared(table.get("compared")),
-    )
+    remembered: Remembered = _typed(Remembered, table)
+    if not (0 < min(remembered.window) and max(remembered.window) <= _MAX_SIDE):
+        remembered = replace(remembered, window=(0, 0))
+    return replace(remembered, time=max(remembered.time, 0.0))
 
 
-def _file_value(entry: Any) -> FileValue:
-    return FileValue(None if entry["file"] is None else _value(entry["file"]), bool(entry.get("own")))
+def _typed(kind: Any, value: Any) -> Any:
+    """Return plain data of JSON as a type: a record's fields by name, tuples as lists, finite numbers.
 
-
-def _edits(table: Any) -> Edits:
-    return Edits(
-        tuple((str(path), _value(entry["value"])) for path, entry in table["values"].items()),
-        tuple((str(name), str(use)) for name, use in table["techniques"].items()),
-        _camera(table["camera"]),
-        tuple(str(path) for path in table.get("locked", ())),
-        tuple((str(path), str(source)) for path, source in table.get("channels", {}).items()),
-    )
-
-
-def _steps(table: Any) -> tuple[tuple[str, int], ...]:
-    return tuple((str(path), int(step)) for path, step in table["steps"].items())
-
-
-def _compared(table: Any) -> Compared | None:
-    if table is None:
-        return None
-    split = min(max(_number(table["split"]), 0.0), 1.0)
-    return Compared(_edits(table), _steps(table), str(table["mode"]), split, _number(table["gain"]))
-
-
-def _camera(table: Any) -> Camera | None:
-    if table is None:
-        return None
-    target_point = None
-    if table["target"] is not None:
-        east, north, up = (_number(number) for number in table["target"])
-        target_point = east, north, up
-    numbers = {name: _number(table[name]) for name in ("azimuth", "elevation", "distance", "field_of_view")}
-    return Camera(**numbers, target=target_point)
-
-
-def _value(number: Any) -> Value:
-    if isinstance(number, list):
-        return tuple(number) if all(isinstance(n, int) for n in number) else tuple(_number(n) for n in number)
-    if isinstance(number, str | bool | int):
-        return number
-    return _number(number)
-
-
-def _number(value: Any) -> float:
-    number = float(value)
-    if not math.isfinite(number):
-        raise ValueError(f"{value} is no number to set")
-    return number
+    Fields that are missing have their defaults. Raises ``TypeError`` or ``ValueError`` for what is another.
+    """
+    kinds = get_args(kind)
+    if is_dataclass(kind):
+        record, types = cast(Callable[..., Any], kind), get_type_hints(kind)
+        return record(**{name: _typed(types[name], value[name]) for name in types if name in value})
+    if get_origin(kind) is tuple:
+        if not isinstance(value, list):
+            raise TypeError(f"{value!r} is no list")
+        repeated = kinds[-1] is ...
+        return tuple(
+            _typed(kinds[0] if repeated else part, each)
+            for part, each in zip(repeat(None) if repeated else kinds, value, strict=not repeated)
+        )
+    if kinds:  # of several types; a list is of whole numbers where all of them are
+        if value is None and type(None) in kinds:
+            return None
+        if isinstance(value, list):
+            wholes = all(type(number) is int for number in value)
+            return _typed(tuple[int, ...] if wholes else tuple[float, ...], value)
+        records = [part for part in kinds if is_dataclass(part)]
+        return _typed(records[0] if records else type(value), value)
+    if kind is float and type(value) in (int, float):
+        if not math.isfinite(value):
+            raise ValueError(f"{value} is no number to set")
+        return float(value)
+    if type(value) is not kind or kind not in (bool, int, str):
+        raise TypeError(f"{value!r} is no {kind}")
+    return value
