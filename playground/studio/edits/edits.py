@@ -280,15 +280,18 @@ def with_camera_of(edits: Edits, was: Camera, now: Camera) -> tuple[Edits, str]:
 
 
 def _with_techniques(
-    before: Sketch, loaded: Sketch, chosen: tuple[tuple[str, str], ...], notes: list[str]
+    before: Sketch | None, loaded: Sketch, chosen: tuple[tuple[str, str], ...], notes: list[str]
 ) -> tuple[Sketch, tuple[tuple[str, str], ...]]:
-    """Return the sketch with the techniques that still can be chosen, and which they are."""
+    """Return the sketch with the techniques that still can be chosen, and which they are.
+
+    ``before``: what the files said when they were chosen, where that is known.
+    """
     base, stay = loaded, []
     for name, use in chosen:
-        was, now = before.graph.find(name), loaded.graph.find(name)
+        was, now = before.graph.find(name) if before else None, loaded.graph.find(name)
         if now is not None and now.use == use:
             continue  # it has become the file's own
-        if now is None or (was is not None and was.use != now.use):
+        if before and (now is None or (was is not None and was.use != now.use)):
             notes.append(f"{name}: the technique chosen here gave way to the file's")
             continue
         try:
@@ -300,15 +303,15 @@ def _with_techniques(
 
 
 def _with_sources(
-    before: Sketch, base: Sketch, loaded: Sketch, chosen: tuple[tuple[str, str], ...], notes: list[str]
+    before: Sketch | None, base: Sketch, loaded: Sketch, chosen: tuple[tuple[str, str], ...], notes: list[str]
 ) -> tuple[Sketch, tuple[tuple[str, str], ...]]:
     """Return the sketch with the sources that still can feed their channels, and which they are."""
     stay = []
     for channel, source in in_order(chosen):
-        was, now = find_channel(before, channel), find_channel(loaded, channel)
+        was, now = find_channel(before, channel) if before else None, find_channel(loaded, channel)
         if now is not None and now.is_fed_by(source):
             continue  # it has become the file's own
-        if now is None or (was is not None and was.source != now.source):
+        if before and (now is None or (was is not None and was.source != now.source)):
             notes.append(f"{channel}: what was chosen to feed it here gave way to the file's")
             continue
         try:
@@ -440,19 +443,11 @@ def stored(draft: Draft) -> StoredEdits:
 def first_draft(loaded: Sketch, start: StoredEdits) -> tuple[Draft, list[str]]:
     """Return the draft to begin with, and a message for each edit that gave way to the files."""
     edits, note = with_camera_of(start.edits, start.camera_in_file or loaded.camera, loaded.camera)
-    draft = Draft(loaded, loaded, replace(edits, techniques=(), channels=()))
     notes = [note] if note else []
-    for name, use in edits.techniques:
-        try:
-            draft = draft.choose(name, use)
-        except PlaygroundError as error:
-            notes.append(f"{name}: {use} can no longer be used ({error.diagnostics[0].message})")
-    for channel, source in in_order(edits.channels):
-        try:
-            draft = draft.feed(channel, source)
-        except PlaygroundError as error:
-            notes.append(f"{channel}: {source} can no longer feed it ({error.diagnostics[0].message})")
-    now = file_values(draft.base, [path for path, _ in edits.values])
+    base, techniques = _with_techniques(None, loaded, edits.techniques, notes)
+    base, sources = _with_sources(None, base, loaded, edits.channels, notes)
+    draft = Draft(loaded, base, replace(edits, techniques=techniques, channels=sources))
+    now = file_values(base, [path for path, _ in edits.values])
     values = []
     for path, value in edits.values:
         newer = newer_value(path, start.in_file, now, edits.locked)
