@@ -41,7 +41,16 @@ def test_all_else_is_imported_without_them() -> None:
     states = [path for path in sorted(STUDIO.rglob("*.py")) if not draws(path)]
     names = [".".join(path.relative_to(ROOT.parent).with_suffix("").parts) for path in states]
     assert {"playground.studio.session", "playground.studio.bench"} < set(names)
-    barred = f"import sys\nsys.modules.update(dict.fromkeys({sorted(SCREEN)!r}))\n"
-    code = f"{barred}import importlib\nfor name in sys.argv[1:]: importlib.import_module(name)\n"
+    import_without(SCREEN, names)
+
+
+def test_no_other_room_is_needed() -> None:
+    names = [".".join(path.relative_to(ROOT.parent).with_suffix("").parts) for path in STUDIO.rglob("*.py")]
+    import_without({f"playground.{room}" for room in ("publish", "verify", "course")}, names)
+
+
+def import_without(barred: set[str], names: list[str]) -> None:
+    code = f"import importlib, sys\nsys.modules.update(dict.fromkeys({sorted(barred)!r}))\n"
+    code += "for name in sys.argv[1:]: importlib.import_module(name)\n"
     done = subprocess.run([sys.executable, "-c", code, *names], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

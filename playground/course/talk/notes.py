@@ -6,7 +6,7 @@
                           {"cover": "black"}; {"clock": "pause"} or "reset"
 
 Python's own server does: one reader asks now and then. Nothing here touches the session: what is asked is
-done between two frames (see ``calls``), and what the page receives was made by the window.
+done between two frames (see ``Calls``), and what the page receives was made by the window.
 """
 
 from __future__ import annotations

@@ -71,7 +71,7 @@ class Compare:
         self._painter: Painter | None = None
         self._picture: Picture | None = None
         self._drawn: object = None  # what A's picture shows
-        self._is_preview = False  # as of ``workbench.preview``
+        self._is_preview = False  # as of ``as_preview``
         self._reported = False  # that A cannot be drawn
         self._recalled: tuple[Compared, Draft] | None = None  # A of an earlier session, while it is tried
 

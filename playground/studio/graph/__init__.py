@@ -1,1 +1,1 @@
-"""The passes as a graph."""
+"""The passes as a graph, with thumbnails."""

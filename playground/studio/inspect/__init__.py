@@ -1,1 +1,1 @@
-"""Values under the mouse, histograms, legends, thumbnails."""
+"""Values under the mouse, histograms, legends."""

@@ -1,1 +1,1 @@
-"""The picture: previews, maps, the last good frame, camera and sun under the mouse."""
+"""The picture: previews, maps, the last good frame; camera, sun and dividers under the mouse."""

@@ -1,7 +1,7 @@
 """Draw the picture that a session shows: a preview while something changes, and in full when it rests.
 
 On a software renderer what changes is drawn with one sample a pixel and a coarser mesh (see
-``preview``), and with as few pixels as it takes to follow the hand (see ``preview_size``), enlarged to
+``preview``), and with as few pixels as it takes to follow the hand (see ``PreviewSize``), enlarged to
 the size of the picture. What is read from it, saved or compared at rest is drawn in full. At rest that goes
 on in pieces, so that the window answers meanwhile; until the last pass has run the preview stays.
 

@@ -9,7 +9,7 @@
     GET  /TOKEN/events       a WebSocket: events as JSON; takes what /do takes;
                               with an "id", each is answered
 
-Nothing here draws or touches the session: each request becomes a call (see ``calls``) and is
+Nothing here draws or touches the session: each request becomes a call (see ``Calls``) and is
 answered when the window has done it. What a client sends is bounded in size and in how much of it
 may wait, so that a stream of values slows its sender and not the window; what a slow reader has
 not received yet is bounded as well: of each value only the last.

@@ -1,1 +1,1 @@
-"""Write a sketch, a shader's sketch or a picture beside what is open."""
+"""Write a sketch, a shader's sketch or a pasted text beside what is open."""
