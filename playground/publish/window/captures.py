@@ -50,7 +50,7 @@ class Captures:
     notices: Notices
     folder: Path  # where pictures go
     settle: Callable[[], bool]  # has what is painted written, which the other process reads; whether it is
-    capture_settings: CaptureSettings = field(default_factory=CaptureSettings)
+    settings: CaptureSettings = field(default_factory=CaptureSettings)
     shown: bool = False  # the capture's window is open
     working: JobProcess | None = None
     made: Path | None = None  # the file or folder that was captured last
@@ -107,56 +107,52 @@ class Captures:
 
     def size(self) -> tuple[int, int]:
         """Return the size in pixels that is wished for; raise ``ParameterError``."""
-        capture_settings, picture = self.capture_settings, self.session.picture.texture
+        settings, picture = self.settings, self.session.picture.texture
         width, height = picture.size if picture is not None else (0, 0)
-        if capture_settings.kind == SHEET and capture_settings.multiple:
-            scale = SWEEP_SIZE[0] * capture_settings.multiple / max(width, 1)
+        if settings.kind == SHEET and settings.multiple:
+            scale = SWEEP_SIZE[0] * settings.multiple / max(width, 1)
             return max(round(width * scale), 1), max(round(height * scale), 1)
-        size = (
-            (width * capture_settings.multiple, height * capture_settings.multiple)
-            if capture_settings.multiple
-            else capture_settings.size
-        )
-        if capture_settings.kind == FILM and capture_settings.ending != ".gif":
+        size = (width * settings.multiple, height * settings.multiple) if settings.multiple else settings.size
+        if settings.kind == FILM and settings.ending != ".gif":
             size = size[0] + size[0] % 2, size[1] + size[1] % 2
-        most = MAX_PICTURE_SIDE if capture_settings.kind in (PICTURE, PICTURES) else MAX_SIDE
+        most = MAX_PICTURE_SIDE if settings.kind in (PICTURE, PICTURES) else MAX_SIDE
         if not all(1 <= side <= most for side in size):
             raise ParameterError(f"{size[0]} x {size[1]} pixels: expected 1 to {most} a side")
         return size
 
     def job(self) -> CaptureJob:
         """Return what is wished for as a job; raise ``PlaygroundError`` for what cannot be."""
-        capture_settings, session = self.capture_settings, self.session
+        settings, session = self.settings, self.session
         if session.sketch is None:
             raise DataError("there is no picture to save yet")
         shown_map = session.view.map
         sketch = shown_map.of(session.sketch) if shown_map is not None else session.sketch
         steps, size = session.view.stops(session.sketch, session.clock.time), self.size()
-        moves = capture_settings.kind in (FILM, PICTURES)
-        start = capture_settings.start if moves else session.clock.time
+        moves = settings.kind in (FILM, PICTURES)
+        start = settings.start if moves else session.clock.time
         fps, sweeps = (
-            Fraction(max(capture_settings.fps, 1)),
-            tuple(filter(None, (s.strip() for s in capture_settings.sweeps))),
+            Fraction(max(settings.fps, 1)),
+            tuple(filter(None, (s.strip() for s in settings.sweeps))),
         )
-        if capture_settings.kind == FILM:
-            check_video(self.folder / f"film{capture_settings.ending}", size, fps, capture_settings.quality)
-        if capture_settings.kind == SHEET:
+        if settings.kind == FILM:
+            check_video(self.folder / f"film{settings.ending}", size, fps, settings.quality)
+        if settings.kind == SHEET:
             if not sweeps:
                 raise ParameterError("choose a parameter to sweep, or write one, as light.gain=0.5..3")
             Series.of_values(sketch, sweeps, time=start)
             if steps:
                 raise ParameterError("a sheet runs every repeat to its end; set the steps back to all")
         return CaptureJob(
-            kind=capture_settings.kind,
+            kind=settings.kind,
             sketch=sketch,
             folder=self.folder,
             size=size,
             time=start,
             steps=steps,
-            seconds=seconds_of(capture_settings, sketch) if moves else None,
+            seconds=seconds_of(settings, sketch) if moves else None,
             fps=fps,
-            ending=capture_settings.ending,
-            quality=capture_settings.quality,
+            ending=settings.ending,
+            quality=settings.quality,
             sweeps=sweeps,
         )
 
@@ -166,16 +162,16 @@ class Captures:
             width, height = self.size()
         except ParameterError as error:
             return str(error)
-        if self.capture_settings.kind in (FILM, PICTURES) and self.session.sketch is not None:
-            count = round(seconds_of(self.capture_settings, self.session.sketch) * self.capture_settings.fps)
+        if self.settings.kind in (FILM, PICTURES) and self.session.sketch is not None:
+            count = round(seconds_of(self.settings, self.session.sketch) * self.settings.fps)
             return f"{counted(count, 'picture')} of {width} x {height} pixels"
-        return f"{width} x {height} pixels" + (" each" if self.capture_settings.kind == SHEET else "")
+        return f"{width} x {height} pixels" + (" each" if self.settings.kind == SHEET else "")
 
 
-def seconds_of(capture_settings: CaptureSettings, sketch: Sketch) -> float:
+def seconds_of(settings: CaptureSettings, sketch: Sketch) -> float:
     """Return how long a film is [s]: as long as is wished, else to its last keyframe, else ten."""
-    left = sketch.duration - capture_settings.start
-    return capture_settings.seconds if capture_settings.seconds > 0.0 else left if left > 0.0 else 10.0
+    left = sketch.duration - settings.start
+    return settings.seconds if settings.seconds > 0.0 else left if left > 0.0 else 10.0
 
 
 def open_folder(path: Path) -> str:

@@ -32,7 +32,7 @@ def draw_capture(captures: Captures, look: Theme) -> None:
         captures.shown = bool(stays)
         if visible:
             with disabled(captures.working is not None):
-                _wish(captures.capture_settings, captures.session.shown)
+                _wish(captures.settings, captures.session.shown)
             imgui.separator()
             if captures.working is not None:
                 _progress(captures.working, look)
@@ -41,13 +41,11 @@ def draw_capture(captures: Captures, look: Theme) -> None:
         imgui.end()
 
 
-def _wish(capture_settings: CaptureSettings, draft: Draft | None) -> None:
+def _wish(settings: CaptureSettings, draft: Draft | None) -> None:
     with row("What", "From the sketch as it is now, with all edits"):
-        kind = choose(
-            "##kind", _NAMES[capture_settings.kind], KINDS, capture_settings.kind, name=_NAMES.__getitem__
-        )
-        capture_settings.kind = kind or capture_settings.kind
-    of = "320 pixels wide" if capture_settings.kind == SHEET else "the window's"
+        kind = choose("##kind", _NAMES[settings.kind], KINDS, settings.kind, name=_NAMES.__getitem__)
+        settings.kind = kind or settings.kind
+    of = "320 pixels wide" if settings.kind == SHEET else "the window's"
 
     def named(multiple: int) -> str:
         return f"{multiple} × {of}" if multiple else "typed"
@@ -55,59 +53,58 @@ def _wish(capture_settings: CaptureSettings, draft: Draft | None) -> None:
     with row("Size", "A picture larger than a texture is drawn in parts"):
         multiple = choose(
             "##multiple",
-            named(capture_settings.multiple),
+            named(settings.multiple),
             (*MULTIPLES, 0),
-            capture_settings.multiple,
+            settings.multiple,
             name=named,
         )
-        capture_settings.multiple = capture_settings.multiple if multiple is None else multiple
-    if not capture_settings.multiple:
+        settings.multiple = settings.multiple if multiple is None else multiple
+    if not settings.multiple:
         with row("Pixels", "Width and height"):
-            changed, size = imgui.input_int2("##pixels", list(capture_settings.size))
+            changed, size = imgui.input_int2("##pixels", list(settings.size))
             if changed:
-                capture_settings.size = max(size[0], 1), max(size[1], 1)
-    if capture_settings.kind in (FILM, PICTURES):
-        _film(capture_settings)
-    if capture_settings.kind == SHEET:
+                settings.size = max(size[0], 1), max(size[1], 1)
+    if settings.kind in (FILM, PICTURES):
+        _film(settings)
+    if settings.kind == SHEET:
         for number in range(2):
-            _sweep(capture_settings, number, draft)
+            _sweep(settings, number, draft)
 
 
-def _film(capture_settings: CaptureSettings) -> None:
+def _film(settings: CaptureSettings) -> None:
     with row("From", "The time of the first picture"):
-        _, start = imgui.input_float("##start", capture_settings.start, 0.0, 0.0, "%.2f s")
-        capture_settings.start = max(start, 0.0)
+        _, start = imgui.input_float("##start", settings.start, 0.0, 0.0, "%.2f s")
+        settings.start = max(start, 0.0)
     with row("Seconds", "How long; 0: to the last keyframe, or ten where there is none"):
-        _, seconds = imgui.input_float("##seconds", capture_settings.seconds, 0.0, 0.0, "%.2f s")
-        capture_settings.seconds = max(seconds, 0.0)
+        _, seconds = imgui.input_float("##seconds", settings.seconds, 0.0, 0.0, "%.2f s")
+        settings.seconds = max(seconds, 0.0)
     with row("Pictures a second", "Picture n is that of the time n / rate, however long drawing takes"):
-        _, fps = imgui.input_int("##fps", capture_settings.fps, 0)
-        capture_settings.fps = min(max(fps, 1), 1000)
-    if capture_settings.kind == FILM:
+        _, fps = imgui.input_int("##fps", settings.fps, 0)
+        settings.fps = min(max(fps, 1), 1000)
+    if settings.kind == FILM:
         with row("Format", "By FFmpeg"):
-            shown_ending, endings = VIDEO_ENDINGS[capture_settings.ending], list(VIDEO_ENDINGS)
+            shown_ending, endings = VIDEO_ENDINGS[settings.ending], list(VIDEO_ENDINGS)
             ending = choose(
                 "##ending",
                 shown_ending,
                 endings,
-                capture_settings.ending,
+                settings.ending,
                 name=lambda e: f"{e}  {VIDEO_ENDINGS[e]}",
             )
-            capture_settings.ending = ending or capture_settings.ending
+            settings.ending = ending or settings.ending
         with row("Quality", "The better, the larger"):
-            capture_settings.quality = (
-                choose("##quality", capture_settings.quality, QUALITIES, capture_settings.quality)
-                or capture_settings.quality
+            settings.quality = (
+                choose("##quality", settings.quality, QUALITIES, settings.quality) or settings.quality
             )
 
 
-def _sweep(capture_settings: CaptureSettings, number: int, draft: Draft | None) -> None:
+def _sweep(settings: CaptureSettings, number: int, draft: Draft | None) -> None:
     note = "A parameter and its values, as light.gain=0.5..3,9 or light.gain=1,2,4"
     with row("Sweep" if number == 0 else "And down", note):
         imgui.set_next_item_width(imgui.calc_item_width() - imgui.get_frame_height())
         hint = "a parameter" if number == 0 else "a second, for a grid"
-        _, capture_settings.sweeps[number] = imgui.input_text_with_hint(
-            f"##sweep{number}", hint, capture_settings.sweeps[number]
+        _, settings.sweeps[number] = imgui.input_text_with_hint(
+            f"##sweep{number}", hint, settings.sweeps[number]
         )
         imgui.same_line(0, 0)
         if imgui.begin_combo(f"##swept{number}", "", imgui.ComboFlags_.no_preview):
@@ -115,7 +112,7 @@ def _sweep(capture_settings: CaptureSettings, number: int, draft: Draft | None) 
                 for part in parts_of(item.parameter):
                     name = f"{item.path}.{part}" if part else item.path
                     if imgui.selectable(name, False)[0]:
-                        capture_settings.sweeps[number] = sweep_text(item.path, item.parameter, part)
+                        settings.sweeps[number] = sweep_text(item.path, item.parameter, part)
             imgui.end_combo()
 
 

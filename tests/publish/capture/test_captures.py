@@ -72,9 +72,9 @@ def captures(any_engine: Engine, tmp_path: Path) -> Iterator[Captures]:
     session.release()
 
 
-def wishing(captures: Captures, capture_settings: CaptureSettings) -> Captures:
+def wishing(captures: Captures, settings: CaptureSettings) -> Captures:
     """Return the captures with a wish."""
-    captures.capture_settings = capture_settings
+    captures.settings = settings
     return captures
 
 
@@ -110,14 +110,14 @@ def test_capture_matches_window_with_all_manual_settings(captures: Captures) -> 
     assert f"saved {made}, 40 x 30 pixels" in notices_of(captures)
     here = captures.session.engine.render(captures.job().sketch, size=SIZE, time=1.5)
     assert np.array_equal(pixels, here.array), "its process gives the bytes of this one"
-    captures.capture_settings.multiple = 4
+    captures.settings.multiple = 4
     larger = do(captures.job(), captures.session.engine, lambda *_: None, lambda _: None)
     assert larger != made and read_png(larger)[0].shape == (120, 160, 4)
 
 
 @pytest.mark.slow
 def test_stopped_capture_leaves_no_file_and_window_may_close(captures: Captures) -> None:
-    captures.capture_settings = CaptureSettings(PICTURE, multiple=0, size=(6000, 6000))
+    captures.settings = CaptureSettings(PICTURE, multiple=0, size=(6000, 6000))
     captures.start()
     assert captures.working is not None
     captures.working.stop()
@@ -129,7 +129,7 @@ def test_stopped_capture_leaves_no_file_and_window_may_close(captures: Captures)
 
 
 def test_a_process_that_dies_is_reported(captures: Captures) -> None:
-    captures.capture_settings = CaptureSettings(PICTURE, multiple=0, size=(6000, 6000))
+    captures.settings = CaptureSettings(PICTURE, multiple=0, size=(6000, 6000))
     captures.start()
     assert captures.working is not None
     task = captures.working._task
@@ -144,7 +144,7 @@ def test_a_process_that_dies_is_reported(captures: Captures) -> None:
 def test_numbered_pictures_a_film_and_a_sheet(captures: Captures) -> None:
     """In this process, by the job that the other one does."""
     progress: list[tuple[int, int]] = []
-    capture_settings = CaptureSettings(PICTURES, seconds=0.2, fps=10, start=1.0)
+    settings = CaptureSettings(PICTURES, seconds=0.2, fps=10, start=1.0)
     with headless() as engine:
 
         def made(wish: CaptureSettings) -> Path:
@@ -152,14 +152,14 @@ def test_numbered_pictures_a_film_and_a_sheet(captures: Captures) -> None:
             job = wishing(captures, wish).job()
             return do(job, engine, lambda done, of: progress.append((done, of)), lambda _: None)
 
-        folder = made(capture_settings)
+        folder = made(settings)
         assert [path.name for path in sorted(folder.iterdir())] == ["00000.png", "00001.png"]
         assert progress == [(0, 2), (1, 2), (2, 2)]
-        job = wishing(captures, capture_settings).job()
+        job = wishing(captures, settings).job()
         for number in range(2):
             expected = engine.render(job.sketch, size=SIZE, time=1.0 + number / 10).array
             assert np.array_equal(read_png(folder / f"{number:05d}.png")[0], expected)
-        assert made(capture_settings).name == f"{folder.name}-2"
+        assert made(settings).name == f"{folder.name}-2"
         sheet = made(CaptureSettings(SHEET, sweeps=["height.level=0..1,3", ""]))
         assert sheet.name.endswith("-sweep.png") and progress[-1] == (3, 3)
         pytest.importorskip("av")
@@ -171,15 +171,15 @@ def test_numbered_pictures_a_film_and_a_sheet(captures: Captures) -> None:
 def test_an_invalid_capture_is_reported_before_anything_begins(
     captures: Captures, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for capture_settings, sentence in (
+    for settings, sentence in (
         (CaptureSettings(SHEET), "choose a parameter to sweep"),
         (CaptureSettings(SHEET, sweeps=["height.levle=0..1", ""]), "level"),
         (CaptureSettings(PICTURE, multiple=0, size=(70000, 10)), "expected 1 to 65536"),
         (CaptureSettings(FILM, ending=".gif", fps=30), "A GIF cannot|a GIF cannot"),
     ):
         with pytest.raises(PlaygroundError, match=sentence):
-            wishing(captures, capture_settings).job()
-        captures.capture_settings = capture_settings
+            wishing(captures, settings).job()
+        captures.settings = settings
         captures.start()
         assert captures.working is None and captures.failed
         assert captures.failed in notices_of(captures)
@@ -255,7 +255,7 @@ def test_a_job_takes_a_new_name_every_time(captures: Captures) -> None:
 def test_capture_waits_for_painted_files_and_none_starts_without(captures: Captures, tmp_path: Path) -> None:
     settled = [True, False]
     waited = Captures(captures.session, Notices(), tmp_path / "none", settled.pop)
-    waited.capture_settings = CaptureSettings(SHEET)
+    waited.settings = CaptureSettings(SHEET)
     waited.start()
     assert waited.failed == "no capture was made, for what was painted last could not be written"
     waited.start()
@@ -286,14 +286,14 @@ def test_the_window_is_there_for_c_and_goes_with_esc(
         bare.key(imgui.Key.c)
         bare.run_frames(3)
         assert captures.shown and open_layers(bare.bench) == ["capture"]
-        capture_settings = captures.capture_settings
+        settings = captures.settings
         for name, kind in (("Film", FILM), ("Numbered pictures", PICTURES), ("Sheet of a sweep", SHEET)):
             bare.click("##kind")
             bare.click(name)
-            assert capture_settings.kind == kind
+            assert settings.kind == kind
         bare.click("##swept0", 0.99)
         bare.click("height.level")
-        assert capture_settings.sweeps[0] == "height.level=0..1,9"
+        assert settings.sweeps[0] == "height.level=0..1,9"
         bare.key(imgui.Key.escape)
         assert not captures.shown and not bare.quits
         bare.click("Capture")
