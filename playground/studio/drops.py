@@ -94,11 +94,11 @@ class Drops:
             usual = VECTORS if item.parameter.name == _VECTORS else IMAGES
             return file.suffix.lower() in MEDIA.get(registry, usual)
 
-        items_found = [item for item in items if item.parameter.widget.kind == "file" and takes(item)]
+        file_items = [item for item in items if item.parameter.widget.kind == "file" and takes(item)]
         feeders = {taker.channel.feeder for taker in self.channels(file) if taker.channel.alone}
-        items_found = [item for item in items_found if item.path.partition(".")[0] not in feeders]
-        items_found.sort(key=lambda item: not item.exported)
-        return [(item.path, item.parameter, values[item.path]) for item in items_found]
+        file_items = [item for item in file_items if item.path.partition(".")[0] not in feeders]
+        file_items.sort(key=lambda item: not item.exported)
+        return [(item.path, item.parameter, values[item.path]) for item in file_items]
 
     def channels(self, file: Path) -> tuple[Taker, ...]:
         """Return the channels of other tools' shaders that take a file."""

@@ -364,7 +364,7 @@ class Session:
         if drafts.stage is ReloadStage.DRAW:
             self._draw_coming(size)
         if drafts.shown is not None:
-            key = self._wanted(size)
+            key = self._picture_key(size)
             if key != self._drawn or self.catch_up.behind is not None:
                 self._draw_shown(drafts.shown.sketch, key, size)
             elif due:
@@ -376,7 +376,7 @@ class Session:
         texture = self.picture.texture
         unfinished = self.is_preview or self.catch_up.behind is not None
         if unfinished and texture is not None and self.sketch is not None:
-            self._draw_shown(self.sketch, self._wanted(texture.size), texture.size, in_full=True)
+            self._draw_shown(self.sketch, self._picture_key(texture.size), texture.size, in_full=True)
         return self.picture.frame(self.sketch.name if self.sketch else "", self.clock.time)
 
     def release(self) -> None:
@@ -398,7 +398,7 @@ class Session:
         self.picture = ShownPicture(engine.ctx, self._now)
         shown = self.shown, self.drafts.revision, self.view.revision
         if self._lost_over == shown and self._size is not None:
-            self._drawn = self._wanted(self._size)
+            self._drawn = self._picture_key(self._size)
             message = "this made the graphics driver reset itself twice; it waits until something is changed"
             self.drafts.report(ContextError(message))
         self._lost_over = shown
@@ -423,7 +423,7 @@ class Session:
         """Say whether a sketch reads data that was never drawn with."""
         return self.data.are_new(sketch)
 
-    def _wanted(self, size: tuple[int, int]) -> tuple[object, ...]:
+    def _picture_key(self, size: tuple[int, int]) -> tuple[object, ...]:
         sketch = self.drafts.sketch
         time = self.clock.time if sketch is not None and is_animated(sketch) else 0.0
         return self.drafts.revision, self.view.revision, size, self.view.framed_for, time
@@ -452,7 +452,7 @@ class Session:
         self.view.take_next()
         self.last_reload = Reload(self._now() - drafts.started, drafts.sandbox_seconds)
         drafts.drawn_well()
-        self._drawn = None if self.view.map is not None else self._wanted(size)
+        self._drawn = None if self.view.map is not None else self._picture_key(size)
 
     def _draw_shown(
         self, sketch: Sketch, key: tuple[object, ...], size: tuple[int, int], **how: bool

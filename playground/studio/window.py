@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 # ── clicks and releases ───────────────────────────────────────────────────────
 
 
-APART = 0.3
+DOUBLE_CLICK_TIME = 0.3
 """[s] that the clicks of a double click are apart at most."""
 _AT_ONCE = 0.004  # [s] from the beginning of a wait: what came before it is reported by then
 _NEVER, _ALWAYS = 0.0, 1e3  # [s] what imgui is to take for the longest time between the two
@@ -69,13 +69,13 @@ class Clicks:
         now = self._now()
         waited_for = now - self._poll_start > _AT_ONCE
         earliest = now if waited_for else self._poll_end
-        self._doubles.append(self._pressed is not None and earliest - self._pressed < APART)
+        self._doubles.append(self._pressed is not None and earliest - self._pressed < DOUBLE_CLICK_TIME)
         self._pressed = now
 
     def double_click_time(self) -> float:
         """Return the longest time between two clicks [s] that imgui uses in its next frame."""
         if not self._doubles:
-            return APART
+            return DOUBLE_CLICK_TIME
         return _ALWAYS if self._doubles[0] else _NEVER
 
     def handled(self) -> None:

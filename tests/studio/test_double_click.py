@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from playground.studio.window import APART, Clicks
+from playground.studio.window import DOUBLE_CLICK_TIME, Clicks
 
 SLOW = 0.4
 """[s] that a frame takes where a picture is drawn slowly."""
@@ -34,7 +34,7 @@ class PictureMouse:
     def draw(self) -> None:
         """Have imgui come to one press, if there is one: as it does, one a frame."""
         longest = self.clicks.double_click_time()
-        if longest != APART:
+        if longest != DOUBLE_CLICK_TIME:
             self.doubles.append(longest > 1.0)
             self.clicks.handled()
 
@@ -60,4 +60,4 @@ def test_while_the_window_sleeps_the_moment_is_known(apart: float, double: bool)
 
 
 def test_without_a_press_imgui_keeps_its_own_time() -> None:
-    assert Clicks().double_click_time() == APART
+    assert Clicks().double_click_time() == DOUBLE_CLICK_TIME

@@ -11,7 +11,14 @@ from imgui_bundle import imgui
 from playground.engine.engine import Engine
 from playground.engine.textures import read_raw
 from playground.paths import SKETCHES
-from playground.studio.graph.graph import APART, SIDE, Thumbnails, node_grid, picture_of, wiring_of
+from playground.studio.graph.graph import (
+    SIDE,
+    THUMBNAIL_INTERVAL,
+    Thumbnails,
+    node_grid,
+    picture_of,
+    wiring_of,
+)
 from playground.studio.session import Session
 
 from ..loading import load
@@ -120,8 +127,8 @@ def test_only_what_is_stale_is_drawn_and_one_at_a_time(folder: Path, any_engine:
     thumbnails, names = Thumbnails(session), ["height:height", "colour:colour"]
     session.frame((16, 16))
     assert thumbnails.refresh(names, 0.0) and thumbnails.made == 1
-    assert thumbnails.refresh(names, 0.5 * APART) and thumbnails.made == 1  # too soon
-    assert not thumbnails.refresh(names, APART) and thumbnails.made == 2
+    assert thumbnails.refresh(names, 0.5 * THUMBNAIL_INTERVAL) and thumbnails.made == 1  # too soon
+    assert not thumbnails.refresh(names, THUMBNAIL_INTERVAL) and thumbnails.made == 2
     assert not thumbnails.refresh(names, 9.0) and thumbnails.made == 2
     session.drafts.set("height.level", 0.5)
     session.frame((16, 16))

@@ -162,8 +162,8 @@ def sources(sketch: Sketch, path: str) -> list[str]:
         and not (spec.name in stand_ins and not _reads_file(spec))  # another channel's own
     ]
     feeds = [use for use in _feeds() if use == _ANY or (use in _CUBES) == (now.shape == "cube")]
-    sources_found = dict.fromkeys([*feeds, *passes, now.source])
-    return [source for source in sources_found if source == now.source or _may_feed(sketch, path, source)]
+    candidates = dict.fromkeys([*feeds, *passes, now.source])
+    return [source for source in candidates if source == now.source or _may_feed(sketch, path, source)]
 
 
 def _reads_file(spec: PassSpec) -> bool:

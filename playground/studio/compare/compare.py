@@ -206,7 +206,7 @@ class Compare:
         if self._picture is None:
             self._painter = Painter(session.engine.ctx)
             self._picture = Picture(self._painter)
-        key = self._wanted(stored, plan, picture.size)
+        key = self._picture_key(stored, plan, picture.size)
         if self._drawn is None and stored.draft is session.shown and stored.steps == session.view.steps:
             with session.engine.borrowed():
                 self._picture.copy(picture)
@@ -225,7 +225,7 @@ class Compare:
                 made.release()
         self._picture = self._painter = self.blend = self._drawn = None
 
-    def _wanted(self, stored: Stored, plan: Plan, size: tuple[int, int]) -> object:
+    def _picture_key(self, stored: Stored, plan: Plan, size: tuple[int, int]) -> object:
         shown = self.session.view.map
         time = plan.time if is_animated(stored.draft.sketch) else 0.0
         view_inputs = size, plan.sketch.camera, plan.interpolated

@@ -62,18 +62,18 @@ class PassCosts:
     """
 
     def __init__(self) -> None:
-        self._known: dict[str, dict[int, float]] = {}
+        self._costs: dict[str, dict[int, float]] = {}
         self._first: set[str] = set()  # paths that ran once so far
 
     def take(self, sizes: Mapping[str, int], times: Mapping[str, float]) -> None:
         """Take what passes took [ms] that ran with so many texels, both by path."""
         for path, spent in times.items():
             texels = sizes[path]
-            if path not in self._known:
-                self._known[path] = {texels: spent}
+            if path not in self._costs:
+                self._costs[path] = {texels: spent}
                 self._first.add(path)
                 continue
-            costs = self._known[path]
+            costs = self._costs[path]
             if path in self._first:
                 self._first.remove(path)
                 costs.clear()
@@ -88,7 +88,7 @@ class PassCosts:
         Between measured sizes, and beyond two of them, it is linear in texels; beyond one it is in
         proportion.
         """
-        costs = self._known.get(path)
+        costs = self._costs.get(path)
         if not costs:
             return None
         sizes = sorted(costs)
@@ -101,7 +101,7 @@ class PassCosts:
 
     def clear(self) -> None:
         """Forget all: another sketch is opened, whose passes may have the same paths."""
-        self._known.clear()
+        self._costs.clear()
         self._first.clear()
 
 

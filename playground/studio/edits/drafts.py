@@ -57,9 +57,8 @@ class Choice:
 
     change: Change
     keys: frozenset[Key]  # all that it sets
-    chosen: Mapping[
-        Key, object
-    ]  # techniques, sources, files, by what they are for; None: the file's own again
+    # Techniques, sources and files, by what they are for; None: the file's own again.
+    chosen: Mapping[Key, object]
 
     @property
     def use(self) -> str:
@@ -238,12 +237,12 @@ class Drafts:
         ``keep``: it is a copy of this one, and the user's edits go on. ``start``: the edits of the
         other; ``texts`` replace some of its files.
         """
-        path_found = find(path).absolute()
+        file = find(path).absolute()
         self._techniques.dialect = ""
         if not keep:
             self._leave_out("another sketch is opened", self._choices if self._is_checked else [])
             self._start, self._choices = start or StoredEdits(), []
-        self.path, self.texts, self.opening = path_found, texts or {}, not keep
+        self.path, self.texts, self.opening = file, texts or {}, not keep
         self.opened += 1
         self.reload()
 
@@ -430,12 +429,12 @@ class Drafts:
 
         def change(draft: Draft) -> Draft:
             """Make the changes between the two; on the edits that were known, exactly those wanted."""
-            edits_wanted = (
+            target = (
                 edits
                 if draft.edits == edits_before
                 else edits_of(applied(state_of(draft.edits, {}), changes))
             )
-            return draft.with_all(edits_wanted)
+            return draft.with_all(target)
 
         return self._change(change)
 

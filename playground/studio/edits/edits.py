@@ -55,21 +55,21 @@ class FileValue:
 
 def file_values(sketch: Sketch, paths: Iterable[str]) -> dict[str, FileValue]:
     """Return what the files say of each parameter, by its path; those that are gone are left out."""
-    paths_wanted = tuple(paths)
-    if not paths_wanted:
+    paths = tuple(paths)
+    if not paths:
         return {}
     values_in_file, own = values_of(sketch), _set_by(sketch)
-    values_found = {}
-    for path in paths_wanted:
+    by_path = {}
+    for path in paths:
         if path in TERRAIN_KEYS:
-            values_found[path] = FileValue(getattr(sketch.terrain, path), True)
+            by_path[path] = FileValue(getattr(sketch.terrain, path), True)
             continue
         try:
             leaf = resolve(sketch.graph, path)[0].path
         except ParameterError:
             continue
-        values_found[path] = FileValue(values_in_file[leaf], leaf in own)
-    return values_found
+        by_path[path] = FileValue(values_in_file[leaf], leaf in own)
+    return by_path
 
 
 def newer_value(
@@ -124,9 +124,8 @@ def _set_by(sketch: Sketch) -> set[str]:
 class Edits:
     """What the user has set."""
 
-    values: tuple[
-        tuple[str, Value], ...
-    ] = ()  # parameter path → value; some may not fit the sketch of the moment
+    # Parameter path → value; some may not fit the sketch of the moment.
+    values: tuple[tuple[str, Value], ...] = ()
     techniques: tuple[tuple[str, str], ...] = ()  # pass → use
     camera: Camera | None = None  # None: the file's
     locked: tuple[str, ...] = ()  # parameter paths that only their own row changes
@@ -215,9 +214,8 @@ class Draft:
         others = tuple(c for c in self.edits.channels if c[0] != channel)
         chosen = () if in_file is not None and in_file.is_fed_by(source) else ((channel, source),)
         made = self.with_choices(techniques, (*others, *chosen))
-        feeder = (
-            channel_found.feeder if (channel_found := find_channel(made.base, channel)) is not None else ""
-        )
+        fed = find_channel(made.base, channel)
+        feeder = fed.feeder if fed is not None else ""
         for name, value in values.items():
             made = made.with_value(f"{feeder}.{name}", value)
         return made

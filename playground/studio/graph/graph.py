@@ -111,7 +111,7 @@ def _main(flat: Flat, node: str) -> str:
 
 SIDE = 64
 """Texels of a thumbnail."""
-APART = 0.1
+THUMBNAIL_INTERVAL = 0.1
 """[s] from one that is drawn to the next."""
 _NO_NUMBER = (1.0, 0.0, 1.0)
 
@@ -124,7 +124,7 @@ class Thumbnails:
         self.made = 0  # how many were drawn so far
         self._cached: dict[str, tuple[object, moderngl.Texture]] = {}  # what each is of, and the thumbnail
         self._shrink: TexelShader | None = None
-        self._last = -APART
+        self._last = -THUMBNAIL_INTERVAL
 
     def get(self, name: str) -> moderngl.Texture | None:
         """Return the thumbnail of "pass:output" as it was drawn last, ``SIDE`` texels a side; rgba8."""
@@ -145,7 +145,7 @@ class Thumbnails:
         for name in [name for name in self._cached if name not in names_shown]:
             self._cached.pop(name)[1].release()
         stale = [n for n in names_shown if self._source(n) is not None and not self.is_current(n)]
-        if stale and now - self._last >= APART and not self.session.awaits_data:
+        if stale and now - self._last >= THUMBNAIL_INTERVAL and not self.session.awaits_data:
             self._last = now
             self._draw(stale.pop(0))
         return bool(stale)

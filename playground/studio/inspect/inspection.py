@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from playground.studio.compare.compare import PERIOD, Compare, Mode
 from playground.studio.cost.costs import Record, RunReasons
-from playground.studio.graph.graph import APART, Graph
+from playground.studio.graph.graph import THUMBNAIL_INTERVAL, Graph
 from playground.studio.inspect.histogram import Colour, Counter, colours_of
 from playground.studio.inspect.inspector import Inspector
 from playground.studio.session import Session
@@ -41,8 +41,8 @@ class Inspection:
         if self.spread_shown and self.counter.waits:
             return 0.0
         if self.compare.on and self.compare.mode is Mode.FLICKER:
-            return min(PERIOD - now % PERIOD, APART if self.graph.waits else math.inf)
-        return APART if self.graph.waits else math.inf
+            return min(PERIOD - now % PERIOD, THUMBNAIL_INTERVAL if self.graph.waits else math.inf)
+        return THUMBNAIL_INTERVAL if self.graph.waits else math.inf
 
     def begin(self) -> None:
         """Begin a frame: nothing is on the screen yet."""

@@ -112,7 +112,7 @@ class Inspector:
     reads: int = 0  # how often anything was read
     _ground: Ground | None = None
     _key: object = None
-    _found: PixelReport | None = field(default=None, repr=False)
+    _report: PixelReport | None = field(default=None, repr=False)
 
     def toggle(self) -> None:
         """Switch the inspector on or off."""
@@ -132,9 +132,9 @@ class Inspector:
         if key != self._key:
             self._key = key
             with self.session.engine.borrowed():
-                self._found = self._look(pixel, picture)
+                self._report = self._look(pixel, picture)
             self.reads += 1
-        return self._found
+        return self._report
 
     def release(self) -> None:
         """Release what was made in the engine's context."""

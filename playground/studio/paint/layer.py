@@ -161,7 +161,7 @@ class Layer:
         self.version = 0
         self.writing = LatestWrite()
         self._level: float | None = None  # what the stroke that goes on flattens to
-        self._given = -1  # the version that was given to be written last
+        self._queued_version = -1  # the version that was given to be written last
         self._written = ""  # a hash of the file, as it was written here
         self._changes: deque[tuple[int, Part]] = deque(maxlen=_REMEMBERED)  # each with its version
         self._tiles: dict[tuple[int, int], Patch] | None = None  # from before the stroke that goes on
@@ -251,7 +251,7 @@ class Layer:
     @property
     def saved(self) -> bool:
         """Whether the file holds what is painted, or is about to; not where writing it has failed."""
-        return self._given == self.version and (self.writing.pending or self.writing.error is None)
+        return self._queued_version == self.version and (self.writing.pending or self.writing.error is None)
 
     @property
     def can_undo(self) -> bool:
@@ -311,11 +311,11 @@ class Layer:
         self._tiles = None
         self._before, self._after = [], []
         self._change(whole)
-        self._given, self._written = self.version, hash_of(self.path)
+        self._queued_version, self._written = self.version, hash_of(self.path)
 
     def save(self) -> None:
         """Have the file written soon, as the image is now; ``writing`` has what goes wrong."""
-        pixels, self._given = self.pixels.copy(), self.version
+        pixels, self._queued_version = self.pixels.copy(), self.version
 
         def write() -> None:
             self.kind.write(self.path, pixels)

@@ -61,7 +61,7 @@ class Painting:
         self._now = now
         self._taken = False  # painting is on
         self._layers: dict[str, Layer] = {}  # by the parameter's path
-        self._found: tuple[Sketch | None, tuple[str, ...]] = (None, ())
+        self._targets: tuple[Sketch | None, tuple[str, ...]] = (None, ())
         self._chosen = ""
         self._heights: tuple[object, NDArray[np.float32] | None] = (None, None)  # and of which picture
         self._eroding: ErodeTool | None = None
@@ -81,9 +81,9 @@ class Painting:
     def targets(self) -> tuple[str, ...]:
         """The paths of the parameters that can be painted on, those first that a technique shows."""
         sketch = self.session.sketch
-        if self._found[0] is not sketch:
-            self._found = sketch, _painted(sketch)
-        return self._found[1]
+        if self._targets[0] is not sketch:
+            self._targets = sketch, _painted(sketch)
+        return self._targets[1]
 
     @property
     def target(self) -> str:
@@ -216,7 +216,7 @@ class Painting:
         if ground is None and self.sculpts and self._adds_metres:
             self._last = None  # a note says why it cannot be read
             return
-        layer = self._begun()
+        layer = self._start_layer()
         if layer is not None:
             self._hand_over(layer)
             if self.sculpts:
@@ -300,7 +300,7 @@ class Painting:
 
     def clear(self) -> None:
         """Take all paint away."""
-        self._edit(self._begun(), Layer.clear)
+        self._edit(self._start_layer(), Layer.clear)
 
     def _edit(self, layer: Layer | None, act: Callable[[Layer], None]) -> None:
         """End the stroke, change a mask and save it; what others have painted on it is read instead."""
@@ -366,7 +366,7 @@ class Painting:
             return None
         return plan.step(resolve(sketch.graph, path)[0].path.rpartition(".")[0])
 
-    def _begun(self) -> Layer | None:
+    def _start_layer(self) -> Layer | None:
         """Return the mask that is painted on, begun again where the sketch names another file."""
         if self.layer is not None:
             return self.layer

@@ -47,14 +47,14 @@ def targets(draft: Draft | None, filter_: Filter, *, everything: bool = False) -
 def _of_the_shape(sketch: Sketch, items: list[Item], main: tuple[Item, ...]) -> tuple[list[Item], str]:
     others = [spec for spec in sketch.graph.passes if spec.name != "view"]
     shape = [spec for spec in others if "height" in output_names(spec.technique) and not _reads_file(spec)]
-    for places_found, words in (
+    for chosen, words in (
         (_within(main, shape), "the main ones of the shape"),
         (_within(items, shape), "those of the shape"),
         (_within(main, others), "the main ones"),
         (_within(items, others), "every pass but the view"),
     ):
-        if places_found:
-            return places_found, words
+        if chosen:
+            return chosen, words
     return [], "there are none"
 
 

@@ -60,9 +60,9 @@ class Problems:
         """
         if error is not self._error:
             self._also = () if error is None else unreadable(sketch)
-        found_now = () if error is None else tuple(dict.fromkeys((*error.diagnostics, *self._also)))
-        errors = tuple(d for d in found_now if d.severity == "error")
-        mild = [*(d for d in found_now if d.severity != "error"), *warnings]
+        diagnostics = () if error is None else tuple(dict.fromkeys((*error.diagnostics, *self._also)))
+        errors = tuple(d for d in diagnostics if d.severity == "error")
+        mild = [*(d for d in diagnostics if d.severity != "error"), *warnings]
         keys = {(d.file, d.line, d.message) for d in errors}
         before = self.errors, self.warnings
         self.warnings = tuple(
@@ -159,7 +159,7 @@ class Warnings:
     def __init__(self, review: Callable[[Kernel], tuple[Diagnostic, ...]]) -> None:
         self._review = review  # compiles it for the driver's warnings
         self._of: Graph | None = None
-        self._found: dict[str, tuple[Diagnostic, ...]] = {}  # by the kernel's text
+        self._by_kernel: dict[str, tuple[Diagnostic, ...]] = {}  # by the kernel's text
         self._kernels: dict[str, Kernel] = {}
         self.waiting: list[str] = []  # not looked at yet
         self._plan: Plan | None = None
@@ -178,11 +178,13 @@ class Warnings:
             self._of = sketch.graph
             own = [k for _, k in kernels_of(sketch.graph) if not Path(k.path).is_relative_to(GLSL)]
             self._kernels = {f"{k.path}\n{k.source.code}": k for k in own}
-            self._found = {text: self._found[text] for text in self._kernels if text in self._found}
-            self.waiting = [text for text in self._kernels if text not in self._found]
+            self._by_kernel = {
+                text: self._by_kernel[text] for text in self._kernels if text in self._by_kernel
+            }
+            self.waiting = [text for text in self._kernels if text not in self._by_kernel]
         if self._plan is not plan:
             self._plan, self._of_sources = plan, source_warnings(plan, inputs) if plan is not None else ()
-        of_kernels = (d for text in self._kernels for d in self._found.get(text, ()))
+        of_kernels = (d for text in self._kernels for d in self._by_kernel.get(text, ()))
         return [*warnings_of_sketch(sketch), *of_kernels, *self._of_sources]
 
     def look(self) -> None:
@@ -192,7 +194,7 @@ class Warnings:
             own = warnings_of_kernel(self._kernels[text])
             places = {(d.file, d.line) for d in own}  # where a driver would say the same again
             more = [d for d in self._review(self._kernels[text]) if (d.file, d.line) not in places]
-            self._found[text] = (*own, *more)
+            self._by_kernel[text] = (*own, *more)
 
 
 def unreadable(sketch: Sketch | None) -> tuple[Diagnostic, ...]:

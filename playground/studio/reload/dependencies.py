@@ -97,7 +97,7 @@ class DataFiles:
     """The files that one session has drawn with."""
 
     def __init__(self) -> None:
-        self._known: dict[Path, str] = {}  # a hash of the contents
+        self._hashes: dict[Path, str] = {}  # a hash of the contents
         self._own: set[Path] = set()  # written by this process
 
     def trust(self, path: Path) -> None:
@@ -107,12 +107,12 @@ class DataFiles:
     def are_new(self, sketch: Sketch) -> bool:
         """Say whether a sketch reads data that was never drawn with; a newer date alone is no new data."""
         return any(
-            path not in self._own and self._known.get(path) != hash_of(path) for path in data_files(sketch)
+            path not in self._own and self._hashes.get(path) != hash_of(path) for path in data_files(sketch)
         )
 
     def take(self, sketch: Sketch) -> None:
         """Remember the data that a sketch was drawn with."""
-        self._known.update((path, hash_of(path)) for path in data_files(sketch))
+        self._hashes.update((path, hash_of(path)) for path in data_files(sketch))
 
 
 def hash_of(path: Path) -> str:

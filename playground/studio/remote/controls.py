@@ -246,9 +246,9 @@ class Changes:
 
 MAX_REMOTE_SIDE = 4096
 """Pixels that a side of a picture for a remote may have."""
-FASTEST = 100.0
+MAX_SPEED = 100.0
 """Seconds of the sketch in a second that a remote may ask for, forward or back."""
-_LATEST = 1e9  # [s] that time may be set to
+_MAX_TIME = 1e9  # [s] that time may be set to
 
 
 class Behind(SketchError):
@@ -354,7 +354,7 @@ class Controls:
 
     def seek(self, seconds: object) -> None:
         """Go to a moment [s], 0 or later."""
-        self.bench.undo.seek(number_of("time", seconds, 0.0, _LATEST))
+        self.bench.undo.seek(number_of("time", seconds, 0.0, _MAX_TIME))
 
     def play(self, playing: object) -> None:
         """Let time run, or pause it."""
@@ -364,7 +364,7 @@ class Controls:
 
     def speed(self, speed: object) -> None:
         """Set how many seconds of the sketch pass in a second."""
-        self.session.clock.speed = number_of("speed", speed, -FASTEST, FASTEST)
+        self.session.clock.speed = number_of("speed", speed, -MAX_SPEED, MAX_SPEED)
 
     # ── what there is ────────────────────────────────────────────────────────
 

@@ -148,20 +148,20 @@ class Addresses:
         parameter = find_targets(self._graph, path)[0].parameter
         if not arguments:
             return [_message(path, parameter, self.controls.value(path))]
-        numbers_given = _given(parameter, arguments)
+        new_value = _value_of(parameter, arguments)
         if part is not None:
             value = self.controls.value(path)
             numbers: list[Any] = list(value) if isinstance(value, tuple) else [value]
             if len(arguments) != 1:
                 raise ParameterError(f"expected one number, found {len(arguments)} arguments")
-            numbers[part] = numbers_given
-            numbers_given = numbers
-        self.controls.set({path: numbers_given})
+            numbers[part] = new_value
+            new_value = numbers
+        self.controls.set({path: new_value})
         self._received[path] = self.controls.value(path)
         return []
 
 
-def _given(parameter: Parameter, arguments: Sequence[Any]) -> Any:
+def _value_of(parameter: Parameter, arguments: Sequence[Any]) -> Any:
     """Return arguments as ``--set`` takes a value of a parameter."""
     if parameter.type == "bool" and len(arguments) == 1 and isinstance(arguments[0], int | float):
         return bool(arguments[0])

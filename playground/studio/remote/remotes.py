@@ -65,10 +65,10 @@ class Remotes:
     @property
     def sentences(self) -> list[str]:
         """Where it can be reached, for the terminal."""
-        sentences_found = [f"remote: {self.server.url}"] if self.server is not None else []
+        addresses = [f"remote: {self.server.url}"] if self.server is not None else []
         if self.osc is not None and self.osc.source is not None:
-            sentences_found.append("OSC: received at {}:{}".format(*self.osc.source))
-        return sentences_found
+            addresses.append("OSC: received at {}:{}".format(*self.osc.source))
+        return addresses
 
     @property
     def waits(self) -> bool:

@@ -100,7 +100,7 @@ def _placed(text: str, spans: list[tuple[int, int]], made: list[str], newline: s
 def _blocks(text: str) -> list[tuple[int, int]]:
     """Return where each keyframe's block begins and ends, without the empty lines after it."""
     headers = [(text.rfind("\n", 0, h.start) + 1, h) for h in TomlPlaces(text).headers]
-    blocks_found = []
+    spans = []
     for number, (start, header) in enumerate(headers):
         if not header.is_list or header.keys != ["keyframe"]:
             continue
@@ -108,8 +108,8 @@ def _blocks(text: str) -> list[tuple[int, int]]:
         end = next((_above(text, s) for s in following), len(text))
         last = start + len(text[start:end].rstrip())  # the end of the last line that is not empty
         line_end = text.find("\n", last, end)
-        blocks_found.append((_above(text, start), line_end + 1 if line_end >= 0 else end))
-    return blocks_found
+        spans.append((_above(text, start), line_end + 1 if line_end >= 0 else end))
+    return spans
 
 
 def _above(text: str, start: int) -> int:

@@ -55,8 +55,8 @@ def save_as_sketch(draft: Draft, folder: Path) -> Draft:
             message = "a sketch depends on the shader's text, not on --dialect, so the picture would differ"
             raise DataError(message, file=shader)
         again = _again(draft, loaded)
-        sketch_wanted = again.sketch if again.edits.camera else again.sketch.with_camera(draft.file.camera)
-        save(loaded, sketch_wanted)
+        edited = again.sketch if again.edits.camera else again.sketch.with_camera(draft.file.camera)
+        save(loaded, edited)
         saved = load(path)
     return Draft(saved, saved, Edits(locked=again.edits.locked))
 
