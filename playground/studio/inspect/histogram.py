@@ -8,7 +8,6 @@ count them into bins between the two.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -85,74 +84,50 @@ def count(
     """
     width, height = texture.size
     apart = max(-(-width * height // most), 1)  # rows from one that is read to the next
-    rows = max(piece // width, 1) if apart == 1 else 1
+    starts, rows = range(0, height, apart), max(piece // width, 1)
     blocks: list[NDArray[np.float32]] = []
-    sums = [_Sums() for _ in range(texture.components)]
-    done = 0
-    for row in range(0, height, rows if apart == 1 else apart):
-        block = read_texels(texture, (0, row), (width, min(rows, height - row)))
-        block = block.reshape(-1, texture.components)
-        blocks.append(block)
-        for channel, sum_ in enumerate(sums):
-            sum_.add(block[:, channel])
-        done += len(block)
-        if done + len(block) > piece:
-            done = 0
-            yield None
-    sums_counted = [sum_ for sum_ in sums if sum_.count]
-    low = min((sum_.lowest for sum_ in sums_counted), default=0.0)
-    high = max((sum_.highest for sum_ in sums_counted), default=0.0)
+    moments = []
+    for first in range(0, len(starts), rows):
+        if apart == 1:
+            block = read_texels(texture, (0, first), (width, min(rows, height - first)))
+        else:
+            block = np.stack([read_texels(texture, (0, row), (width, 1)) for row in starts[first:][:rows]])
+        blocks.append(block.reshape(-1, texture.components))
+        moments.append(_moments(blocks[-1]))
+        yield None
+    counts, nans, lows, highs, means, squares = np.stack(moments, axis=1)  # (block, channel) of each
+    low, high = (float(lows.min()), float(highs.max())) if counts.any() else (0.0, 0.0)
     bins = np.zeros((texture.components, BINS), np.int64)
-    done = 0
     for block in blocks:
         for channel in range(texture.components):
             bins[channel] += _binned(block[:, channel], low, high)
-        done += len(block)
-        if done + len(block) > piece:
-            done = 0
-            yield None
-    read = sum(len(block) for block in blocks)
-    channels = tuple(sum_.channel(row) for sum_, row in zip(sums, bins, strict=True))
-    yield Histogram((width, height), read, low, high, channels)
+        yield None
+    read, finite = sum(map(len, blocks)), counts.sum(axis=0)
+    mean = (counts * means).sum(axis=0) / np.maximum(finite, 1)
+    variance = (squares + counts * (means - mean) ** 2).sum(axis=0) / np.maximum(finite, 1)
+    numbers = np.stack([lows.min(axis=0), highs.max(axis=0), mean, np.sqrt(variance)])
+    numbers[:, finite == 0] = np.nan
+    strange = nans.sum(axis=0)
+    channels = []
+    for n, nan, column, mine in zip(finite, strange, numbers.T.tolist(), bins, strict=True):
+        least, greatest, centre, deviation = column
+        row = int(n), int(nan), int(read - n - nan), least, greatest, centre, deviation, mine
+        channels.append(ChannelHistogram(*row))
+    yield Histogram((width, height), read, low, high, tuple(channels))
 
 
-@dataclass
-class _Sums:
-    """Running statistics of a channel; means are combined as in Chan, Golub and LeVeque 1983."""
+def _moments(block: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Return (6, channels): the counts of finite numbers and of NaN, then moments of the finite ones.
 
-    count: int = 0
-    nans: int = 0
-    infinities: int = 0
-    lowest: float = math.inf
-    highest: float = -math.inf
-    mean: float = 0.0
-    squares: float = 0.0  # of what each differs from the mean
-
-    def add(self, numbers: NDArray[np.float32]) -> None:
-        nans = np.isnan(numbers)
-        finite = np.isfinite(numbers)
-        self.nans += int(nans.sum())
-        self.infinities += int(len(numbers) - finite.sum() - nans.sum())
-        values = numbers[finite].astype(np.float64)
-        if not len(values):
-            return
-        self.lowest = min(self.lowest, float(values.min()))
-        self.highest = max(self.highest, float(values.max()))
-        mean, count = float(values.mean()), len(values)
-        apart, total = mean - self.mean, self.count + count
-        self.squares += float(((values - mean) ** 2).sum()) + apart**2 * self.count * count / total
-        self.mean += apart * count / total
-        self.count = total
-
-    def channel(self, bins: NDArray[np.int64]) -> ChannelHistogram:
-        if not self.count:
-            return ChannelHistogram(
-                0, self.nans, self.infinities, math.nan, math.nan, math.nan, math.nan, bins
-            )
-        deviation = math.sqrt(self.squares / self.count)
-        return ChannelHistogram(
-            self.count, self.nans, self.infinities, self.lowest, self.highest, self.mean, deviation, bins
-        )
+    Those are the least, the greatest, the mean and the sum of squared differences from it; blocks are
+    combined as in Chan, Golub and LeVeque 1983.
+    """
+    finite = np.isfinite(block)
+    count, values = finite.sum(axis=0), np.where(finite, block, np.float32(0)).astype(np.float64)
+    mean = values.sum(axis=0) / np.maximum(count, 1)
+    squares = (np.where(finite, values - mean, 0.0) ** 2).sum(axis=0)
+    low, high = np.where(finite, values, np.inf).min(axis=0), np.where(finite, values, -np.inf).max(axis=0)
+    return np.stack([count, np.isnan(block).sum(axis=0), low, high, mean, squares])
 
 
 def _binned(numbers: NDArray[np.float32], low: float, high: float) -> NDArray[np.int64]:
