@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from playground.studio.remote.controllers import share_of, with_share
+from playground.studio.panel.values import value_fraction, with_fraction
 from playground.studio.remote.controls import Controls
 
 from .panel_desk import Bare
@@ -74,6 +74,6 @@ def test_a_knob_goes_over_each_range_of_a_point(bare: Bare) -> None:
     sketch = bare.session.sketch
     assert sketch is not None
     parameter = next(p for p in sketch.graph.passes[0].technique.parameters if p.name == "place")
-    assert with_share(parameter, (0.0, 3.0), 0.25, 0) == (-0.5, 3.0)  # type: ignore[arg-type]
-    assert with_share(parameter, (0.0, 3.0), 0.25, 1) == (0.0, 2.5)  # type: ignore[arg-type]
-    assert share_of(parameter, (0.0, 3.5), 1) == pytest.approx(0.75)  # type: ignore[arg-type]
+    assert with_fraction(parameter, (0.0, 3.0), 0.25, 0) == (-0.5, 3.0)  # type: ignore[arg-type]
+    assert with_fraction(parameter, (0.0, 3.0), 0.25, 1) == (0.0, 2.5)  # type: ignore[arg-type]
+    assert value_fraction(parameter, (0.0, 3.5), 1) == pytest.approx(0.75)  # type: ignore[arg-type]

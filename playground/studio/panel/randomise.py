@@ -14,14 +14,14 @@ import math
 from collections.abc import Collection, Iterable, Mapping
 from random import Random
 
-from playground.shader.colours import linear_to_srgb, srgb_to_linear
+from playground.shader.colours import srgb_to_linear
 from playground.shader.parameter import is_whole, tidied
-from playground.shader.widgets import at_fraction, fraction_of
+from playground.sketch.assign import range_of
 from playground.sketch.model import Parameter, PassSpec, Sketch, Value, kernels_of
 from playground.sketch.wiring import output_names
 from playground.studio.edits.edits import Draft
 from playground.studio.panel.parameter_list import Filter, Item, filtered, main_items
-from playground.studio.panel.values import snapped
+from playground.studio.panel.values import is_switch, snapped, value_fraction, with_fraction
 
 Targets = list[tuple[str, Parameter]]
 
@@ -98,24 +98,20 @@ def mutated(
 
 
 def _anywhere(parameter: Parameter, randoms: Random) -> Value | None:
-    kind, (low, high) = parameter.widget.kind, (parameter.widget.low, parameter.widget.high)
-    if kind == "menu":
-        return randoms.randrange(len(parameter.widget.choices))
-    if kind == "checkbox":
-        return randoms.random() < 0.5
-    if kind == "button":
-        return None
+    kind, value = parameter.widget.kind, parameter.default
     if kind == "direction":
         return round(randoms.uniform(0, 360), 1), round(randoms.uniform(*HEIGHTS), 1)
     if kind == "colour":
         return _colour(parameter, [randoms.random() for _ in range(3)])
-    if low is None or high is None:
+    if kind == "button" or not (is_switch(parameter) or range_of(parameter)):
         return None
-    return _number(parameter, [_value_at(parameter, randoms.random(), n) for n in range(_count(parameter))])
+    for part in range(len(value) if isinstance(value, tuple) else 1):
+        value = with_fraction(parameter, value, randoms.random(), part)
+    return value
 
 
 def _near(parameter: Parameter, value: Value, randoms: Random, strength: float) -> Value | None:
-    kind, (low, high) = parameter.widget.kind, (parameter.widget.low, parameter.widget.high)
+    kind = parameter.widget.kind
     if kind in ("menu", "checkbox"):
         return _anywhere(parameter, randoms) if randoms.random() < strength else value
     if isinstance(value, str) or kind == "button":
@@ -126,42 +122,18 @@ def _near(parameter: Parameter, value: Value, randoms: Random, strength: float) 
         elevation = numbers[1] + 90 * randoms.gauss(0, strength)
         return round(azimuth, 1), round(min(max(elevation, HEIGHTS[0]), HEIGHTS[1]), 1)
     if kind == "colour":
-        held = [min(max(n, 0.0), 1.0) for n in numbers[:3]]
-        seen = held if parameter.widget.raw else linear_to_srgb(held).tolist()
-        return _colour(parameter, [c + randoms.gauss(0, strength) for c in seen], numbers[3:])
-    if low is None or high is None:
-        return _number(parameter, [n * math.exp(randoms.gauss(0, strength)) for n in numbers])
-    shares = [_share(parameter, n, axis) + randoms.gauss(0, strength) for axis, n in enumerate(numbers)]
-    return _number(parameter, [_value_at(parameter, share, axis) for axis, share in enumerate(shares)])
-
-
-def _value_at(parameter: Parameter, share: float, axis: int) -> float:
-    """Return the number at a fraction of the slider's way; ``axis`` is its place in a vector."""
-    low, high = parameter.widget.ends(axis)
-    assert low is not None and high is not None
-    return at_fraction(min(max(share, 0.0), 1.0), low, high, log=parameter.widget.facts.is_log)
-
-
-def _share(parameter: Parameter, number: float, axis: int) -> float:
-    """Return the fraction of the slider's way at which a number lies; ``axis`` is its place in a vector."""
-    low, high = parameter.widget.ends(axis)
-    assert low is not None and high is not None
-    return fraction_of(number, low, high, log=parameter.widget.facts.is_log)
-
-
-def _count(parameter: Parameter) -> int:
-    return len(parameter.default) if isinstance(parameter.default, tuple) else 1
-
-
-def _number(parameter: Parameter, numbers: list[float]) -> Value:
-    held = [snapped(parameter, n) for n in numbers]
-    values: tuple[float, ...] | tuple[int, ...]
-    if is_whole(parameter.type):
-        lowest, highest = (0, 2**32 - 1) if parameter.type.startswith("u") else (-(2**31), 2**31 - 1)
-        values = tuple(min(max(round(n), lowest), highest) for n in held)
-    else:
-        values = tuple(tidied(n) for n in held)
-    return values if _count(parameter) > 1 else values[0]
+        seen = [value_fraction(parameter, value, part) + randoms.gauss(0, strength) for part in range(3)]
+        return _colour(parameter, seen, numbers[3:])
+    if range_of(parameter) is None:
+        scaled = [tidied(snapped(parameter, n * math.exp(randoms.gauss(0, strength)))) for n in numbers]
+        if is_whole(parameter.type):
+            low, high = (0, 2**32 - 1) if parameter.type.startswith("u") else (-(2**31), 2**31 - 1)
+            scaled = [min(max(round(n), low), high) for n in scaled]
+        return tuple(scaled) if isinstance(value, tuple) else scaled[0]
+    for part in range(len(numbers)):
+        fraction = value_fraction(parameter, value, part) + randoms.gauss(0, strength)
+        value = with_fraction(parameter, value, fraction, part)
+    return value
 
 
 def _colour(parameter: Parameter, seen: list[float], alpha: list[float] | None = None) -> Value:

@@ -9,10 +9,6 @@ by how hard it is struck.
 The bindings are in a file next to the sketch, readable TOML: ``hills/sketch.toml`` has
 ``hills/sketch.controllers``, ``shader.frag`` has ``shader.controllers``. A sketch is shared without it,
 unless its owner adds it.
-
-A fraction of a range is linear, logarithmic where its scale is, in equal stretches for a menu, from the
-half on for a checkbox. A colour's channels are display-encoded, as the panel shows them. A vector has one
-share for each part.
 """
 
 from __future__ import annotations
@@ -26,101 +22,13 @@ from typing import Any
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
 from playground.files import write_file
 from playground.paths import GLSL, shown
-from playground.shader.colours import linear_to_srgb, srgb_to_linear
-from playground.shader.parameter import is_whole, part_names
-from playground.shader.widgets import at_fraction, fraction_of
-from playground.sketch.assign import range_of
+from playground.shader.parameter import part_names
 from playground.sketch.model import Parameter, Value
 from playground.sketch.toml_table import FORMAT, TomlFile
 from playground.studio.notices import Notices
 from playground.studio.panel.parameter_list import items_of, shown_values
-from playground.studio.panel.values import decimals
+from playground.studio.panel.values import HALF, check_range, is_switch, value_fraction, with_fraction
 from playground.studio.session import Session
-
-# ── fractions of a range ──────────────────────────────────────────────────────
-
-
-HALF = 64 / 127
-"""From which share on a checkbox is on, and a button pressed: 64 of MIDI's 127."""
-
-
-def check_shares(parameter: Parameter, path: str) -> None:
-    """Raise ``ParameterError`` for a parameter that has no range to share out."""
-    kind = parameter.widget.kind
-    if kind == "file":
-        raise ParameterError(f"{path} names a file, so no knob can set it")
-    if kind != "colour" and not is_switch(parameter) and range_of(parameter) is None:
-        raise ParameterError(f"{path} has no range: no knob can set it without a slider(low, high)")
-
-
-def is_switch(parameter: Parameter) -> bool:
-    """Say whether a parameter has a few choices rather than a range: a knob takes it over at once."""
-    return parameter.widget.facts.is_switch
-
-
-def share_of(parameter: Parameter, value: Value, part: int = 0) -> float:
-    """Return which fraction of its range a value, or a part of it, is at: 0 to 1."""
-    widget = parameter.widget
-    if parameter.type == "bool":
-        return 1.0 if value else 0.0
-    number = _numbers(value)[part]
-    if widget.kind == "menu":
-        return (number + 0.5) / max(len(widget.choices), 1)
-    if _is_encoded(parameter, part):
-        number = float(linear_to_srgb([min(max(number, 0.0), 1.0)])[0])
-    low, high = _ends(parameter, part)
-    if widget.kind == "direction" and part == 0:
-        number = number if number == high else number % 360.0
-    return min(max(fraction_of(number, low, high, log=widget.facts.is_log), 0.0), 1.0)
-
-
-def with_share(parameter: Parameter, value: Value, share: float, part: int = 0) -> Value:
-    """Return a value with one part, or all of a scalar, at a fraction of its range: 0 to 1."""
-    widget, share = parameter.widget, min(max(share, 0.0), 1.0)
-    if parameter.type == "bool":
-        return share >= HALF
-    if widget.kind == "menu":
-        return min(int(share * len(widget.choices)), len(widget.choices) - 1)
-    low, high = _ends(parameter, part)
-    number = at_fraction(share, low, high, log=widget.facts.is_log)
-    if _is_encoded(parameter, part):
-        number = float(srgb_to_linear([number])[0])
-    else:
-        number = _stepped(parameter, number, low, high)
-    numbers = list(_numbers(value))
-    numbers[part] = number
-    if is_whole(parameter.type):
-        whole = tuple(round(n) for n in numbers)
-        return whole if isinstance(value, tuple) else whole[0]
-    return tuple(numbers) if isinstance(value, tuple) else numbers[0]
-
-
-def _stepped(parameter: Parameter, number: float, low: float, high: float) -> float:
-    if is_whole(parameter.type):
-        number = round(number)
-    if parameter.step:
-        number = low + round((number - low) / parameter.step) * parameter.step
-    if parameter.widget.facts.is_log:
-        number = float(f"{number:.5g}")
-    elif not is_whole(parameter.type):
-        number = round(number, decimals(parameter) + 2)  # finer than 14 bits are, and short in a file
-    return min(max(number, low), high)
-
-
-def _ends(parameter: Parameter, part: int) -> tuple[float, float]:
-    return range_of(parameter, part) or (0.0, 1.0)
-
-
-def _is_encoded(parameter: Parameter, part: int) -> bool:
-    """Say whether a number is the light of a channel, which the panel shows display-encoded."""
-    return parameter.widget.kind == "colour" and part < 3 and not parameter.widget.raw
-
-
-def _numbers(value: Value) -> tuple[float, ...]:
-    if isinstance(value, tuple):
-        return tuple(float(n) for n in value)
-    return (float(value),)
-
 
 # ── the file ──────────────────────────────────────────────────────────────────
 
@@ -298,7 +206,7 @@ class Controllers:
         if item is None:
             return
         try:
-            check_shares(item.parameter, path)
+            check_range(item.parameter, path)
         except ParameterError as error:
             self._notices.say(str(error))
             return
@@ -394,11 +302,11 @@ class Controllers:
             return
         has_it = knob.made is not None and knob.made == value
         if not has_it and not is_switch(parameter):
-            now = share_of(parameter, value, part)
+            now = value_fraction(parameter, value, part)
             near = abs(share - now) <= (1.0 / 16383 if binding.fine else 1.0 / 127)
             if not near and not (before is not None and (before - now) * (share - now) <= 0):
                 return
-        self._set(binding, with_share(parameter, value, share, part))
+        self._set(binding, with_fraction(parameter, value, share, part))
         if (after := self._value(binding)) is not None:
             knob.made = after[1]
 
@@ -412,7 +320,7 @@ class Controllers:
         elif parameter.widget.kind == "menu" and isinstance(value, int):
             self._set(binding, (value + 1) % len(parameter.widget.choices))
         else:
-            self._set(binding, with_share(parameter, value, strength / 127, part))
+            self._set(binding, with_fraction(parameter, value, strength / 127, part))
 
     def _set(self, binding: Binding, value: Value) -> None:
         draft = self._session.shown
