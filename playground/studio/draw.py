@@ -213,7 +213,7 @@ def plate(
 # ── lines of the panel ────────────────────────────────────────────────────────
 
 
-_LABELS = 0.41  # share of the width that labels take
+_LABELS = 0.41  # fraction of the width that labels take
 _TOOLTIP = 24.0  # width of a tooltip, in heights of its text
 _fitted: dict[tuple[str, str, float, float], str] = {}  # text, how it is cut, width, font's size → what fits
 

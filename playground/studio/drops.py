@@ -132,9 +132,9 @@ class Drops:
 
     def _open_pack(self, path: Path) -> None:
         try:
-            file, sentence = unpacked_beside(path)
+            file, message = unpacked_beside(path)
         except PlaygroundError as error:
             self.commands.notices.say(str(error))
             return
-        self.commands.notices.say(sentence)
+        self.commands.notices.say(message)
         self.commands.open(file)

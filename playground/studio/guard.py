@@ -49,11 +49,11 @@ class Guard:
 
     def _report(self, part: str, error: Exception) -> None:
         """Show a failure on the screen, and log it once, with its traceback."""
-        sentence = f"{part} failed and is left out, by a bug of the playground: {_brief(error)}"
-        self._say(sentence)
-        if sentence not in self._reported:
-            self._reported.add(sentence)
-            log.error(sentence, exc_info=error)
+        message = f"{part} failed and is left out, by a bug of the playground: {_brief(error)}"
+        self._say(message)
+        if message not in self._reported:
+            self._reported.add(message)
+            log.error(message, exc_info=error)
 
 
 @contextmanager

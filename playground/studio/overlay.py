@@ -57,10 +57,10 @@ def draw_behind(session: Session, look: Theme, area: Area) -> None:
             _bar(behind[0] / behind[1], low[0], corner, look)
 
 
-def _bar(share: float, left: float, corner: ImVec2, look: Theme) -> None:
+def _bar(fraction: float, left: float, corner: ImVec2, look: Theme) -> None:
     """Draw how much is done as a bar along the lower edge of a plate."""
     top, paint = corner.y - 3 * look.scale, imgui.get_foreground_draw_list()
-    end = ImVec2(left + (corner.x - left) * share, corner.y)
+    end = ImVec2(left + (corner.x - left) * fraction, corner.y)
     paint.add_rect_filled(ImVec2(left, top), end, theme.packed(theme.WARM))
 
 

@@ -499,8 +499,8 @@ class Session:
             self.clock.playing = False
             self._note_once("slow", "time is paused, so that the picture is drawn in full; Space plays it")
 
-    def _note_once(self, kind: str, sentence: str) -> None:
+    def _note_once(self, kind: str, message: str) -> None:
         """Add a note, unless one of its kind was given of this sketch."""
-        if sentence and kind not in self._reported:
+        if message and kind not in self._reported:
             self._reported.add(kind)
-            self.notes.append(sentence)
+            self.notes.append(message)

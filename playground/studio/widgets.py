@@ -153,11 +153,11 @@ def _hidden_number(typed: bool) -> Iterator[bool]:
         imgui.pop_style_color()
 
 
-def _write_number(text: str, share: float, values: int = 0) -> None:
+def _write_number(text: str, fraction: float, values: int = 0) -> None:
     """Write a number on the slider that was drawn last, clear of the knob; see ``knob_of``."""
     left, right = imgui.get_item_rect_min(), imgui.get_item_rect_max()
     size, style = imgui.calc_text_size(text), imgui.get_style()
-    knob = knob_of(share, right.x - left.x, style.grab_min_size, values)
+    knob = knob_of(fraction, right.x - left.x, style.grab_min_size, values)
     across = place_of_number(right.x - left.x, size.x, knob, style.item_inner_spacing.x / 2)
     position = ImVec2(round(left.x + across), round((left.y + right.y - size.y) / 2))
     draw = imgui.get_window_draw_list()
@@ -166,15 +166,15 @@ def _write_number(text: str, share: float, values: int = 0) -> None:
     draw.pop_clip_rect()
 
 
-def knob_of(share: float, wide: float, least: float, values: int = 0) -> tuple[float, float]:
+def knob_of(fraction: float, wide: float, least: float, values: int = 0) -> tuple[float, float]:
     """Return where imgui draws the knob of a slider ``wide`` across: its left and its right end.
 
-    ``share`` of its way is gone; the knob is ``least`` wide or, where it goes through so many whole
+    ``fraction`` of its way is gone; the knob is ``least`` wide or, where it goes through so many whole
     ``values``, as wide as one of them.
     """
     room = wide - 2 * _EDGE
     across = min(max(room / values if values else 0.0, least), room)
-    start = _EDGE + share * (room - across)
+    start = _EDGE + fraction * (room - across)
     return start, start + across
 
 
@@ -306,8 +306,8 @@ def _direction(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | 
     radius, draw = side / 2, imgui.get_window_draw_list()
     middle = ImVec2(origin.x + radius, origin.y + radius)
     draw.add_circle_filled(middle, radius - 1, theme.packed(theme.FIELD))
-    for share in (1.0, 2 / 3, 1 / 3):  # the horizon, 30 and 60 degrees
-        draw.add_circle(middle, (radius - 1) * share, theme.packed(theme.LINE), 0, slot.scale)
+    for fraction in (1.0, 2 / 3, 1 / 3):  # the horizon, 30 and 60 degrees
+        draw.add_circle(middle, (radius - 1) * fraction, theme.packed(theme.LINE), 0, slot.scale)
     north = imgui.calc_text_size("N")
     draw.add_text(ImVec2(middle.x - north.x / 2, origin.y + slot.scale), theme.packed(theme.DIM), "N")
     right, up = dot_of(azimuth, elevation)
@@ -358,8 +358,8 @@ def _point(parameter: Parameter, value: Value, slot: WidgetSlot) -> Value | None
     draw.add_circle_filled(dot, 5 * slot.scale, theme.packed(theme.WARM))
     result: Value | None = None
     if dragged is not None:
-        shares = (dragged[0], 1 - dragged[1])
-        point_picked = [low + (high - low) * part for (low, high), part in zip(axes, shares, strict=True)]
+        fractions = (dragged[0], 1 - dragged[1])
+        point_picked = [low + (high - low) * part for (low, high), part in zip(axes, fractions, strict=True)]
         result = (_rounded(point_picked[0], axes[0]), _rounded(point_picked[1], axes[1]))
     imgui.same_line()
     imgui.begin_group()
@@ -390,7 +390,7 @@ def _pad(slot: WidgetSlot) -> tuple[ImVec2, float, float, tuple[float, float] | 
     """Make a square to drag in.
 
     Return its upper left corner, its side, the width that is left for fields, and while it is dragged
-    the mouse's share of it, right and down.
+    the mouse's fraction of it, right and down.
     """
     origin, wide = imgui.get_cursor_screen_pos(), imgui.calc_item_width()
     side = min(_PAD * slot.scale, wide)

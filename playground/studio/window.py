@@ -422,8 +422,8 @@ class WindowPlacement:
         monitors = glfw.get_monitors()
         if not monitors:
             return
-        shares = [_shared(geometry, area) for area in screens()]
-        monitor = monitors[shares.index(max(shares))]
+        overlaps = [_overlap(geometry, area) for area in screens()]
+        monitor = monitors[overlaps.index(max(overlaps))]
         mode = glfw.get_video_mode(monitor)
         self._before = geometry
         glfw.set_window_monitor(handle, monitor, 0, 0, mode.size.width, mode.size.height, mode.refresh_rate)
@@ -459,14 +459,14 @@ def on_screen(window: Rectangle, areas: list[Rectangle]) -> tuple[int, int]:
     """
     x, y, width, height = window
     geometry = Geometry(x, y, width, height)
-    shares = [_shared(geometry, area) for area in areas]
-    if not areas or sum(shares) >= width * height:
+    overlaps = [_overlap(geometry, area) for area in areas]
+    if not areas or sum(overlaps) >= width * height:
         return x, y
-    left, top, wide, high = areas[shares.index(max(shares))]
+    left, top, wide, high = areas[overlaps.index(max(overlaps))]
     return max(min(x, left + wide - width), left), max(min(y, top + high - height), top)
 
 
-def _shared(geometry: Geometry, area: Rectangle) -> int:
+def _overlap(geometry: Geometry, area: Rectangle) -> int:
     """Return how much of a window is on a screen."""
     x, y, width, height = area
     across = min(geometry.x + geometry.width, x + width) - max(geometry.x, x)

@@ -109,7 +109,7 @@ def find_editor(
 ) -> tuple[Editor | None, str]:
     """Return (the editor to use, a message on a requested one that cannot be used).
 
-    None: the one in the window. The sentence is ``""`` where there is nothing to say.
+    None: the one in the window. The message is ``""`` where there is nothing to say.
     """
     environ = os.environ if environ is None else environ
     complaint = ""
@@ -199,7 +199,7 @@ class Opener:
     """Starts editors and waits for them in the background; what went wrong is in ``notes``."""
 
     def __init__(self, wake: Callable[[], None] = lambda: None) -> None:
-        self.notes: deque[str] = deque(maxlen=8)  # sentences; removed when they are shown
+        self.notes: deque[str] = deque(maxlen=8)  # messages; removed when they are shown
         self.threads: list[threading.Thread] = []
         self._wake = wake
 

@@ -89,7 +89,7 @@ def _indent_of(line: str) -> str:
 # ── the editor ────────────────────────────────────────────────────────────────
 
 
-_MAX_HEIGHT = 0.46  # share of the picture's height, so that the list below stays visible
+_MAX_HEIGHT = 0.46  # fraction of the picture's height, so that the list below stays visible
 _CLASH = "Saved by others meanwhile"
 _CLOSING = "Close without saving?"
 _LEAVING = "Quit without saving?"

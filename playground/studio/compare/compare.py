@@ -62,7 +62,7 @@ class Compare:
     def __init__(self, session: Session) -> None:
         self.session = session
         self.mode = Mode.DIVIDER
-        self.split = 0.5  # share of the picture's width where the two meet
+        self.split = 0.5  # fraction of the picture's width where the two meet
         self.gain = 8.0  # of the difference
         self.held = False  # the line between them is held
         self.draws = 0  # pictures of A that were drawn

@@ -194,7 +194,7 @@ class Autosave:
             **self._drawn_of(draft),
         )
 
-    def _report(self, sentence: str) -> None:
+    def _report(self, message: str) -> None:
         if not self._is_reported:
             self._is_reported = True
-            self.session.notes.append(sentence)
+            self.session.notes.append(message)

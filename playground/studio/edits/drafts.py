@@ -107,7 +107,7 @@ class Drafts:
         self.coming: Draft | None = None
         self.stage = ReloadStage.NONE
         self.revision = 0  # counts what may change the picture
-        self.notes: deque[str] = deque(maxlen=32)  # sentences for the user; removed when they are shown
+        self.notes: deque[str] = deque(maxlen=32)  # messages for the user; removed when they are shown
         self.read_at = 0.0  # [s since the epoch] when the files were last read
         self.places: dict[Path, Signature | None] = {}  # where files were looked for, and what was there
         self.texts: Mapping[str, str] = {}  # replace shaders' files, by absolute path

@@ -87,7 +87,7 @@ def newer_value(
 
 
 def notice(sketch: Sketch, path: str, value: Value, newer: FileValue) -> str:
-    """Return the sentence that reports an edit that gave way; "" where the files say that very value."""
+    """Return the message that reports an edit that gave way; "" where the files say that very value."""
     if newer.value == value or _same_file(sketch, value, newer.value):
         return ""
     if newer.value is None or path in TERRAIN_KEYS:

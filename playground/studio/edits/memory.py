@@ -30,7 +30,7 @@ from playground.studio.edits.edits import Edits, FileValue, StoredEdits
 def set_aside(path: Path, what: str, error: Exception) -> str:
     """Rename a file to ``NAME.unread.json``, numbered where that is taken; return a message that reports it.
 
-    ``what`` was remembered in it, as the sentence begins; ``error`` is why it cannot be read.
+    ``what`` was remembered in it, as the message begins; ``error`` is why it cannot be read.
     """
     why = f" ({error})" if str(error) else ""
     try:
@@ -53,7 +53,7 @@ class Compared:
     edits: Edits
     steps: tuple[tuple[str, int], ...] = ()
     mode: str = "divider"
-    split: float = 0.5  # share of the picture's width where the two meet
+    split: float = 0.5  # fraction of the picture's width where the two meet
     gain: float = 8.0  # of the difference
 
 

@@ -65,13 +65,13 @@ class Histogram:
         """Whether every texel was read."""
         return self.read == self.size[0] * self.size[1]
 
-    def between(self, channel: int, share: float) -> tuple[float, float]:
-        """Return numbers, to the width of a bin, below and above which ``share`` of a channel's lie."""
+    def between(self, channel: int, fraction: float) -> tuple[float, float]:
+        """Return numbers, to the width of a bin, below and above which ``fraction`` of a channel's lie."""
         bins = self.channels[channel].bins
         width = (self.high - self.low) / len(bins)
         total = np.cumsum(bins)
-        first = int(np.searchsorted(total, share * total[-1], "right"))
-        last = int(np.searchsorted(total, (1.0 - share) * total[-1], "left"))
+        first = int(np.searchsorted(total, fraction * total[-1], "right"))
+        last = int(np.searchsorted(total, (1.0 - fraction) * total[-1], "left"))
         return self.low + first * width, self.low + (last + 1) * width
 
 

@@ -157,8 +157,8 @@ class Inspector:
             return PixelReport(pixel, bytes_, None, ())
         if self._ground is None or self._ground.ctx is not session.engine.ctx:
             self._ground = Ground(session.engine.ctx)
-        share = (pixel[0] + 0.5) / picture.size[0], (pixel[1] + 0.5) / picture.size[1]
-        hit = self._ground.under(plan.eye, share, heights, extent, relief)
+        fraction = (pixel[0] + 0.5) / picture.size[0], (pixel[1] + 0.5) / picture.size[1]
+        hit = self._ground.under(plan.eye, fraction, heights, extent, relief)
         if hit is None:
             return PixelReport(pixel, bytes_, None, ())
         samples, missing = self._samples(plan, hit[:2])
@@ -173,16 +173,18 @@ class Inspector:
         texel = texel_of_map(pixel, size, shown.size) if shown is not None else None
         if shown is None or texel is None:
             return PixelReport(pixel, colour, None, ())
-        share = texel[0] / max(shown.size[0] - 1, 1), texel[1] / max(shown.size[1] - 1, 1)
+        fraction = texel[0] / max(shown.size[0] - 1, 1), texel[1] / max(shown.size[1] - 1, 1)
         heights = self._texture(view_height(plan))
         ground = None
         if heights is not None:
-            high = read_texels(heights, _node(share, heights.size), (1, 1))[0, 0, 0]
-            ground = ground_point_of(plan, heights, (*share, float(high)))
-        samples, missing = self._samples(plan, share)
+            high = read_texels(heights, _node(fraction, heights.size), (1, 1))[0, 0, 0]
+            ground = ground_point_of(plan, heights, (*fraction, float(high)))
+        samples, missing = self._samples(plan, fraction)
         return PixelReport(pixel, colour, ground, samples, self._sample(plan, ref, shown, texel), missing)
 
-    def _samples(self, plan: Plan, share: tuple[float, float]) -> tuple[tuple[Sample, ...], tuple[str, ...]]:
+    def _samples(
+        self, plan: Plan, fraction: tuple[float, float]
+    ) -> tuple[tuple[Sample, ...], tuple[str, ...]]:
         """Return every pass's number at the node of its own that is nearest to a place of the terrain."""
         samples, missing = [], []
         for name in names_of(plan, inner=self.inner):
@@ -190,7 +192,7 @@ class Inspector:
             if texture is None:
                 missing.append(name)
             else:
-                samples.append(self._sample(plan, name, texture, _node(share, texture.size)))
+                samples.append(self._sample(plan, name, texture, _node(fraction, texture.size)))
         return tuple(samples), tuple(missing)
 
     def _sample(self, plan: Plan, name: str, texture: moderngl.Texture, texel: tuple[int, int]) -> Sample:
@@ -228,7 +230,7 @@ def texel_of_map(pixel: Pixel, size: tuple[int, int], shown: tuple[int, int]) ->
 
 
 def ground_point_of(plan: Plan, heights: moderngl.Texture, hit: tuple[float, float, float]) -> GroundPoint:
-    """Return the terrain's place there; ``hit``: shares east and north, and the height between the texels.
+    """Return the terrain's place there; ``hit``: fractions east and north, and the height between the texels.
 
     The normal is by central differences of the nearest node's neighbours, one-sided on the edge.
     """
@@ -257,7 +259,7 @@ def ground_point_of(plan: Plan, heights: moderngl.Texture, hit: tuple[float, flo
     )
 
 
-def _node(share: tuple[float, float], size: tuple[int, int]) -> tuple[int, int]:
+def _node(fraction: tuple[float, float], size: tuple[int, int]) -> tuple[int, int]:
     """Return the node nearest to a place, in fractions of the terrain's sides."""
-    x, y = (min(max(round(s * (n - 1)), 0), n - 1) for s, n in zip(share, size, strict=True))
+    x, y = (min(max(round(s * (n - 1)), 0), n - 1) for s, n in zip(fraction, size, strict=True))
     return x, y

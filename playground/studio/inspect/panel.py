@@ -83,8 +83,8 @@ def _legend(shown: Map, session: Session, inspection: Inspection, look: Theme) -
         left = min(max(x - size / 2, corner.x), corner.x + wide - size)
         draw.add_text(ImVec2(left, corner.y + bar + 3 * look.scale), theme.packed(theme.DIM), text)
     if imgui.is_item_hovered():
-        share = (imgui.get_io().mouse_pos.x - corner.x) / wide
-        number = low + share * (high - low)
+        fraction = (imgui.get_io().mouse_pos.x - corner.x) / wide
+        number = low + fraction * (high - low)
         imgui.set_tooltip(f"{number:.6g}" + (f" = {number * factor:.2f} m" if metres is not None else ""))
 
 

@@ -11,7 +11,7 @@ falloff, 0..1; h the terrain, ground and change:
     sharpen        dh/dt = 1/s w (h - mean), the mean by Gauss over a quarter of the radius
     erase          dc/dt = -10/s w c, of the change c alone
 
-Flatten, sharpen and erase are integrated exactly over a stamp: their shares are 1 - exp(-rate dt).
+Flatten, sharpen and erase are integrated exactly over a stamp: their fractions are 1 - exp(-rate dt).
 Erode runs a technique instead: see ``erode_tool``.
 """
 
@@ -43,7 +43,7 @@ class Brush:
     channel: int = 3  # of a mask: 0 to 3, or ERASER
     radius: float = 60.0  # [m]
     strength: float = 0.6  # 0..1; on a mask what each step of a stroke covers, else a fraction of a rate
-    softness: float = 0.7  # share of the radius over which it fades, 0..1
+    softness: float = 0.7  # fraction of the radius over which it fades, 0..1
     tool: Tool = "raise"  # of what has one number a texel
     level: float | None = None  # that flatten goes to; None: where the stroke begins
 
@@ -87,8 +87,8 @@ class Dab:
         along = ((x - start[0]) * way[0] + (y - start[1]) * way[1]) / length if length > 0 else 0.0 * (x + y)
         along = np.clip(along, 0.0, 1.0)
         distance = np.hypot(x - start[0] - along * way[0], y - start[1] - along * way[1])
-        share = falloff(distance, self.brush.radius, self.brush.softness)
-        return (rows, columns), share.astype(np.float32)
+        fraction = falloff(distance, self.brush.radius, self.brush.softness)
+        return (rows, columns), fraction.astype(np.float32)
 
     def _ends(self) -> NDArray[np.float64]:
         return np.array([self.start, self.end], np.float64) * self.extent
@@ -100,9 +100,9 @@ def spacing_of(size: tuple[int, int], extent: tuple[float, float]) -> NDArray[np
 
 
 def falloff(away: NDArray[np.float64], radius: float, softness: float) -> NDArray[np.float64]:
-    """Return the share, 0..1, of a brush at distances [m] from its middle: a cubic over its softness."""
-    share = np.clip((radius - away) / max(radius * softness, 1e-6), 0.0, 1.0)
-    return np.asarray(share * share * (3 - 2 * share))
+    """Return the fraction, 0..1, of a brush at distances [m] from its middle: a cubic over its softness."""
+    fraction = np.clip((radius - away) / max(radius * softness, 1e-6), 0.0, 1.0)
+    return np.asarray(fraction * fraction * (3 - 2 * fraction))
 
 
 def cover(mask: NDArray[np.float32], dab: Dab) -> None:
@@ -110,9 +110,9 @@ def cover(mask: NDArray[np.float32], dab: Dab) -> None:
 
     The brush's channel takes what it covers from the others: sums stay at most 1 where they were.
     """
-    part, share = dab.covered((mask.shape[1], mask.shape[0]))
+    part, fraction = dab.covered((mask.shape[1], mask.shape[0]))
     weights, channel = mask[part], dab.brush.channel
-    amount = (share * np.float32(dab.brush.strength))[..., None]
+    amount = (fraction * np.float32(dab.brush.strength))[..., None]
     weights *= 1 - amount
     if channel != ERASER:
         weights[..., channel] += amount[..., 0]
@@ -151,9 +151,9 @@ def sculpt(
         x, y = start + (end - start) * (n + 0.5) / stamps
         position = float(x), float(y)
         stamp = Dab(position, position, dab.extent, dab.brush, dab.seconds / stamps)
-        part, share = stamp.covered(size)
-        if share.size:
-            weight = dab.brush.strength * share.astype(np.float64)
+        part, fraction = stamp.covered(size)
+        if fraction.size:
+            weight = dab.brush.strength * fraction.astype(np.float64)
             added = BRUSHES[dab.brush.tool](_Stamp(stamp, change, ground, part, weight, rate, level))
             change[part] += added.astype(np.float32)
 
@@ -182,7 +182,7 @@ class _Stamp:
         return heights if self.ground is None else heights + self.ground[part]
 
     def approached(self, rate: float) -> NDArray[np.float64]:
-        """Return minus the share that is left behind on the way to a goal, at a rate [1/s]."""
+        """Return minus the fraction that is left behind on the way to a goal, at a rate [1/s]."""
         return np.asarray(np.expm1(rate * self.weight * self.dab.seconds))
 
 

@@ -1,7 +1,7 @@
 """The tool "erode": a technique that runs on a window of the terrain, under the brush.
 
 Which technique is said where the file to paint on is declared, by ``erode("erosion/brush")``. It takes
-``height`` and may take ``brush``, the brush's share 0..1 of each texel. Outputs that are called as an
+``height`` and may take ``brush``, the brush's fraction 0..1 of each texel. Outputs that are called as an
 input is are given back at the next stamp, shifted with the window: so water goes on while the button is down.
 
 A stamp is always of the same seconds, and its window of the same size around the brush, on the terrain's
@@ -79,8 +79,8 @@ class ErodeTool:
         self._owed = max(owed + seconds - count * STAMP, 0.0)
         way = np.subtract(dab.end, dab.start)
         for n in range(count):
-            share = ((n + 1) * STAMP - owed) / max(seconds, 1e-9)
-            x, y = np.array(dab.start) + way * min(max(share, 0.0), 1.0)
+            fraction = ((n + 1) * STAMP - owed) / max(seconds, 1e-9)
+            x, y = np.array(dab.start) + way * min(max(fraction, 0.0), 1.0)
             position = float(x), float(y)
             yield Dab(position, position, dab.extent, dab.brush, STAMP)
 

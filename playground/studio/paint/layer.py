@@ -238,7 +238,8 @@ class Layer:
     def _height_at(self, position: tuple[float, float]) -> float:
         """Return the terrain's height at its texel nearest to a place."""
         x, y = (
-            round(min(max(share, 0.0), 1.0) * (n - 1)) for share, n in zip(position, self.size, strict=True)
+            round(min(max(fraction, 0.0), 1.0) * (n - 1))
+            for fraction, n in zip(position, self.size, strict=True)
         )
         return float(self.pixels[y, x]) + (0.0 if self.ground is None else float(self.ground[y, x]))
 

@@ -32,7 +32,7 @@ from playground.studio.paint.layer import MAX_TEXELS, NUMBERS, WEIGHTS, Layer, L
 from playground.studio.session import Session
 
 MIN_RADIUS, DEFAULT_RADIUS, MAX_RADIUS = 0.002, 0.025, 0.25
-"""A brush's radius, in shares of the terrain's longer side."""
+"""A brush's radius, in fractions of the terrain's longer side."""
 
 CLICK, MAX_DAB_SECONDS = 0.05, 0.25
 """[s] How long a stroke works on the place where it begins, and at most from one frame to the next."""
@@ -184,7 +184,7 @@ class Painting:
             self.session.notes.append(f"nothing to {tool} in {self.target}: choose another tool")
 
     def ground(self, position: tuple[float, float]) -> tuple[float, float] | None:
-        """Return where on the terrain a place of the picture lies, both in shares; None in the sky."""
+        """Return where on the terrain a place of the picture lies, both in fractions; None in the sky."""
         surface = self._surface()
         return ground_under(surface[0], position, *surface[1:]) if surface is not None else None
 
@@ -196,11 +196,11 @@ class Painting:
         eye, heights, extent, relief = surface
         angles = np.linspace(0, 2 * np.pi, corners, endpoint=False)
         around = np.stack([np.cos(angles), np.sin(angles)], axis=1) * self.brush.radius
-        shares = np.clip(np.array(middle) + around / extent, 0.0, 1.0)
-        return seen_from(eye, shares, heights, extent, relief)
+        fractions = np.clip(np.array(middle) + around / extent, 0.0, 1.0)
+        return seen_from(eye, fractions, heights, extent, relief)
 
     def press(self, position: tuple[float, float]) -> None:
-        """Begin a stroke at a place of the picture, in shares from its lower left."""
+        """Begin a stroke at a place of the picture, in fractions from its lower left."""
         if self.layer is not None and not self.layer.holds():
             # Another program has removed the file, or painted on it.
             self._saved(self.layer.take_in if self.layer.path.exists() else self.layer.save)

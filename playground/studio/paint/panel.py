@@ -36,7 +36,7 @@ def draw_paintbox(painting: Painting) -> None:
     for name, note, ends, form in (
         ("radius", "The brush's, on the ground", widths, "%.0f m"),
         ("strength", _strength(painting), (0.01, 1.0), "%.2f"),
-        ("softness", "The share of the radius over which the brush fades", (0.0, 1.0), "%.2f"),
+        ("softness", "The fraction of the radius over which the brush fades", (0.0, 1.0), "%.2f"),
     ):
         with row(name.capitalize(), note, fixed=True):
             value = slide(f"##{name}", getattr(brush, name), ends, form, logarithmic=name == "radius")

@@ -291,7 +291,7 @@ def _random_values(memory: PanelState, commands: Commands) -> None:
     memory.strength = memory.strength if strength is None else strength
     imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
     imgui.text_unformatted("Strength")
-    imgui.set_item_tooltip("Of a mutation: how far a value goes, in shares of its range")
+    imgui.set_item_tooltip("Of a mutation: how far a value goes, in fractions of its range")
     with disabled(bool(memory.filter)):
         _, memory.everything = imgui.checkbox("Everything", memory.everything)
     imgui.set_item_tooltip("Also colours, light, the view and what reads files; else the shape alone")

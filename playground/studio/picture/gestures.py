@@ -110,7 +110,7 @@ def divider_at(sketch: Sketch, across: float, width: float) -> str:
 
     "" where none is near enough.
     """
-    away = {path: abs(share * width - across) for path, share in dividers_of(sketch).items()}
+    away = {path: abs(fraction * width - across) for path, fraction in dividers_of(sketch).items()}
     nearest = min(away, key=away.__getitem__, default="")
     return nearest if nearest and away[nearest] <= GRAB_DISTANCE else ""
 

@@ -28,7 +28,7 @@ _MAX_WIDTH = 260.0
 class PictureRegion:
     """One picture between two lines, or the whole where they are blended."""
 
-    start: float  # share of the picture's width from its left
+    start: float  # fraction of the picture's width from its left
     end: float
     name: str
     method: str

@@ -23,7 +23,7 @@ from playground.studio.problems.problems import Problems, passes_of
 from playground.studio.session import Session
 from playground.studio.theme import Theme
 
-_BEFORE = 0.6  # share of the room that may lie before the column
+_BEFORE = 0.6  # fraction of the room that may lie before the column
 
 
 def numbered(lines: list[tuple[int, str]], wrong: int, column: int, room: int) -> tuple[list[str], int]:
@@ -70,7 +70,7 @@ def short_place(location: str, folder: str) -> str:
 
 MAX_ROWS = 60
 """Diagnostics drawn at most."""
-_MAX_HEIGHT = 0.5  # share of the picture that the list may cover
+_MAX_HEIGHT = 0.5  # fraction of the picture that the list may cover
 _GROUND = (0.17, 0.075, 0.075)  # under errors
 _MILD = (0.125, 0.118, 0.095)  # under warnings alone
 _FLAGS = QUIET | imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_resize
@@ -286,7 +286,7 @@ def place_in(first: NotFinite, area: Area) -> tuple[float, float]:
 
 
 def draw_not_finite(watch: FiniteWatch, session: Session, look: Theme, area: Area) -> None:
-    """Draw the sentence in the picture's upper left corner; a click goes to the texture and back."""
+    """Draw the message in the picture's upper left corner; a click goes to the texture and back."""
     if not watch.non_finite:
         return
     first, shown = watch.non_finite[0], session.view.map

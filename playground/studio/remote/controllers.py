@@ -145,7 +145,7 @@ Move = tuple[Source, int]
 class _Knob:
     """What is known of a controller of one binding."""
 
-    at: float | None = None  # the share that it was at last
+    at: float | None = None  # the fraction that it was at last
     made: Value | None = None  # the value that it set last; while that stands, the knob has it
 
 
@@ -244,7 +244,7 @@ class Controllers:
         also = [b.target for b in others if b.source == source]
         more = f"; it sets {' and '.join(also)} as well" if also else ""
         self._notices.say(f"MIDI: {source} sets {binding.target}{more}")
-        self._knobs[binding] = _Knob(self._share(binding))
+        self._knobs[binding] = _Knob(self._fraction(binding))
 
     def _keep(self, bindings: tuple[Binding, ...]) -> None:
         self._bindings = bindings
@@ -290,23 +290,23 @@ class Controllers:
     def _turn(self, binding: Binding) -> None:
         """Set a parameter as a knob says, once the knob has taken it over."""
         value_now = self._value(binding)
-        share = self._share(binding)
-        if value_now is None or share is None:
+        fraction = self._fraction(binding)
+        if value_now is None or fraction is None:
             return
         parameter, value, part = value_now
         knob = self._knobs.setdefault(binding, _Knob())
-        before, knob.at = knob.at, share
+        before, knob.at = knob.at, fraction
         if parameter.widget.kind == "button":
-            if share >= HALF and (before is None or before < HALF):
+            if fraction >= HALF and (before is None or before < HALF):
                 self._set(binding, True)
             return
         has_it = knob.made is not None and knob.made == value
         if not has_it and not is_switch(parameter):
             now = value_fraction(parameter, value, part)
-            near = abs(share - now) <= (1.0 / 16383 if binding.fine else 1.0 / 127)
-            if not near and not (before is not None and (before - now) * (share - now) <= 0):
+            near = abs(fraction - now) <= (1.0 / 16383 if binding.fine else 1.0 / 127)
+            if not near and not (before is not None and (before - now) * (fraction - now) <= 0):
                 return
-        self._set(binding, with_fraction(parameter, value, share, part))
+        self._set(binding, with_fraction(parameter, value, fraction, part))
         if (after := self._value(binding)) is not None:
             knob.made = after[1]
 
@@ -349,8 +349,8 @@ class Controllers:
         part = names.index(binding.part) if names else 0
         return item.parameter, shown_values(draft).of[binding.path], part
 
-    def _share(self, binding: Binding) -> float | None:
-        """Return the share that a controller is at; None before it has moved."""
+    def _fraction(self, binding: Binding) -> float | None:
+        """Return the fraction that a controller is at; None before it has moved."""
         source = binding.source
         position = self._positions.get(source)
         if position is None:
@@ -360,10 +360,10 @@ class Controllers:
         lower = self._positions.get(Source(source.channel, source.kind, source.number + _LSB), 0)
         return (position * 128 + lower) / 16383
 
-    def _say_once(self, kind: str, sentence: str) -> None:
+    def _say_once(self, kind: str, message: str) -> None:
         if kind not in self._said:
             self._said.add(kind)
-            self._notices.say(sentence)
+            self._notices.say(message)
 
 
 def _moves(binding: Binding, source: Source) -> bool:

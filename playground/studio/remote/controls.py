@@ -1,6 +1,6 @@
 """Do to a session what a remote asks: set values, time and presets, undo, take the picture.
 
-Values are checked as ``--set`` checks them, with the same sentences. What is set is collected, the
+Values are checked as ``--set`` checks them, with the same messages. What is set is collected, the
 last of each parameter, and done at once by ``flush``: a stream of values costs a frame no more
 than one of each. The window's history takes it in as it takes in what the panel sets, so each
 change can be undone.

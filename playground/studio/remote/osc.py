@@ -78,14 +78,14 @@ class Addresses:
         values = shown_values(draft).of if draft is not None else {}
         return [_message(path, item.parameter, values[path]) for path, item in items_of(draft).items()]
 
-    def report_once(self, kind: str, sentence: str) -> None:
+    def report_once(self, kind: str, message: str) -> None:
         """Show a notice, unless one of its kind was shown, or too many."""
         if kind in self._reported or len(self._reported) > _REPORTED:
             return
         if len(self._reported) == _REPORTED:
-            sentence = "OSC: further messages that fit nothing are ignored without a notice"
+            message = "OSC: further messages that fit nothing are ignored without a notice"
         self._reported.add(kind)
-        self.controls.bench.notices.say(sentence)
+        self.controls.bench.notices.say(message)
 
     def find(self, address: str) -> tuple[str, int | None]:
         """Return the path of a parameter by its address, and which part of it, None for all of it.

@@ -53,7 +53,7 @@ _PAUSE = 0.1  # [s] between two looks at a window that computes frames
 
 _BUNDLES = {"remote.js": "text/javascript", "remote.css": "text/css"}
 _WANTED = 'expected a JSON object, as {"playing": false}'
-_SILENT = logging.getLogger("playground.studio.remote")  # who asks gets the sentence; the terminal does not
+_SILENT = logging.getLogger("playground.studio.remote")  # who asks gets the message; the terminal does not
 _SILENT.setLevel(logging.CRITICAL + 1)
 _Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
@@ -376,8 +376,8 @@ def _json(value: object) -> web.Response:
     return web.json_response(value)
 
 
-def _error(status: int, sentence: str) -> web.Response:
-    return web.json_response({"error": sentence}, status=status)
+def _error(status: int, message: str) -> web.Response:
+    return web.json_response({"error": message}, status=status)
 
 
 def _sentence(error: BaseException) -> str:
