@@ -16,8 +16,7 @@ from playground.course.talk.beats import Beat, beats_of, first_of_page
 from playground.errors import ParameterError
 from playground.shader.parameter import write
 from playground.sketch.model import Parameter, Value
-from playground.studio.panel.values import unit_of
-from playground.studio.remote.controllers import share_of
+from playground.studio.panel.values import unit_of, value_fraction
 
 TYPED = 3.0
 """[s] after its last digit that a typed number is forgotten."""
@@ -39,7 +38,7 @@ class Row:
     def share(self) -> float:
         """Where in its range its value is, 0 to 1."""
         try:
-            return share_of(self.parameter, self.value)
+            return value_fraction(self.parameter, self.value)
         except (TypeError, ZeroDivisionError):
             return 0.0
 

@@ -30,7 +30,7 @@ from playground.sketch.model import Parameter, Value
 from playground.studio.bench import Workbench
 from playground.studio.draw import Area, letters
 from playground.studio.panel.parameter_list import items_of, shown_values
-from playground.studio.remote.controllers import with_share
+from playground.studio.panel.values import with_fraction
 
 if TYPE_CHECKING:
     import moderngl
@@ -102,7 +102,7 @@ class PresentedPictures:
         elif parameter.widget.kind == "menu" and isinstance(value, int):
             new = min(max(value + (1 if by > 0 else -1), 0), len(parameter.widget.choices) - 1)
         else:
-            new = with_share(parameter, value, row.share + by * _step(parameter))
+            new = with_fraction(parameter, value, row.share + by * _step(parameter))
         if new != value:
             self.reader.bench.session.drafts.set(row.path, new)
 
