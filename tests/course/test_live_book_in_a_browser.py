@@ -25,6 +25,7 @@ from playground.course.scenes import broken, bug_region, draw, with_value
 from playground.course.tasks import EXERCISES
 from playground.engine.engine import Engine
 
+from ..publish.web.pages import VIEW
 from ..verify.report.browser import MISSING, Browser
 from .conftest import BODY, FRENCH, FRONT, SKETCHES
 
@@ -244,13 +245,12 @@ def test_variants_are_swiped_and_share_a_camera(page, lesson, engine):
     assert page.run("return document.querySelectorAll('#two .side-label')[1].textContent") == "uneven"
 
 
+PUT = """const view = {}, to = view.state.doc.length;
+view.dispatch({{changes: {{from: 0, to, insert: arguments[0]}}}})"""
+
+
 def typed(page, text, name="fault"):
-    page.run(
-        "const area = document.querySelector(arguments[0]); area.value = arguments[1];"
-        "area.dispatchEvent(new Event('input'))",
-        f"#{name} textarea",
-        text,
-    )
+    page.run(PUT.format(VIEW.format(f"#{name}")), text)
 
 
 def test_a_broken_shader_is_repaired(page, lesson, engine):
@@ -261,7 +261,7 @@ def test_a_broken_shader_is_repaired(page, lesson, engine):
     page.wait("document.querySelector('#fault .editor-status').textContent === ''")
     shown = picture(page, "fault")
     np.testing.assert_array_equal(shown, drawn(engine, broken(block), shown))
-    assert page.run("return document.querySelector('#fault textarea').value") == region.broken
+    assert page.run(f"return {VIEW.format('#fault')}.state.doc.toString()") == region.broken
     typed(page, region.broken.replace("8.0", "7.0"))
     page.wait(f"{verdict} === arguments[0]", words["not_yet"])
     typed(page, region.broken.replace("total /", "totl /"))
@@ -321,9 +321,9 @@ def test_value_exercise_is_checked_at_hidden_values(page):
 
 def test_a_kernel_that_a_reader_writes_is_checked_by_its_texture(page):
     start(page, "third")
-    area = "document.querySelector('#third textarea')"
+    area = VIEW.format("#third")
     page.wait("document.querySelector('#third .editor-status').textContent === ''")
-    text = page.run(f"return {area}.value")
+    text = page.run(f"return {area}.state.doc.toString()")
     assert "share * smoothing" in text or "share" in text
     page.click("#third .check")
     ((kind, said),) = results(page, "third")
@@ -355,9 +355,9 @@ OWN = """uniform float lift = 0.25;  //! slider(0, 0.5) step(0.05) Of all height
 def test_a_uniform_that_a_reader_writes_has_a_slider(page):
     start(page, "third")
     row = "document.querySelector('#third [data-path$=\".lift\"]')"
-    area = "document.querySelector('#third textarea')"
+    area = VIEW.format("#third")
     plain = picture(page, "third")
-    starter = page.run(f"return {area}.value")
+    starter = page.run(f"return {area}.state.doc.toString()")
     own = starter.replace("\nfloat kernel", f"\n{OWN}\nfloat kernel").replace(
         "return corner(texel);", "return corner(texel) + lift;"
     )
@@ -517,7 +517,7 @@ def test_line_losing_context_is_reverted_and_hanging_not_redrawn(page, lesson):
     said = "document.querySelector('#fault .recovery')?.textContent"
     page.wait(f"{said}.includes('does not end')")
     np.testing.assert_array_equal(picture(page, "fault"), before)
-    area = "document.querySelector('#fault textarea').value"
+    area = f"{VIEW.format('#fault')}.state.doc.toString()"
     assert "7.0" in page.run(f"return {area}")
     # A page that is closed while lines are tried: they are offered when it is opened again.
     page.run(

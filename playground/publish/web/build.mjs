@@ -25,6 +25,11 @@ const ENTRIES = {
   "remote.js": "iife", "remote.css": "css",
 };
 
+/** The bundles that CodeMirror is in, whose licence goes with every copy. */
+const EDITED = new Set(["page.js", "book.js"]);
+const licence = () =>
+  `/* Contains CodeMirror.\n${readFileSync(join(HERE, "node_modules/@codemirror/state/LICENSE"), "utf8")}*/\n`;
+
 /** A hash of the runtime's files and of what bundles them: names and bytes, in the order of their names. */
 function hashOfSources() {
   const names = readdirSync(join(HERE, "runtime")).filter((name) => /\.(js|css)$/.test(name)).sort();
@@ -74,6 +79,7 @@ if (file && out) {
   for (const [name, kind] of Object.entries(ENTRIES)) {
     const text = await smallest(join(HERE, "runtime", name), kind);
     const folder = name.startsWith("remote.") ? remote : bundle;
-    writeFileSync(join(folder, name), `/* sources ${hashOfSources()} */\n${text}`);
+    const head = `/* sources ${hashOfSources()} */\n${EDITED.has(name) ? licence() : ""}`;
+    writeFileSync(join(folder, name), head + text);
   }
 }

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from playground.engine.meshes import mesh_parameters
 from playground.engine.textures import split_format
-from playground.publish.web.es_lacks import lacking
+from playground.paths import GLSL
+from playground.publish.web.common_glsl import in_common_glsl, lacking
 from playground.publish.web.formulas import accepted_runs, formula
 from playground.publish.web.stages import stage_data
 from playground.publish.web.texts import Texts
 from playground.shader.expressions import counts_frames, follows_time
 from playground.shader.kernel import options_of
 from playground.shader.parameter import Sampling
+from playground.shader.stage_recipe import Recipe, StagePart
 from playground.shader.wrap import FRAGMENT, previous_name, recipes_of
 from playground.sketch.model import (
     ComputeVariant,
@@ -24,6 +26,7 @@ from playground.sketch.model import (
     Kernel,
     Parameter,
     PlainCompute,
+    PlainFragment,
     PlainShader,
 )
 from playground.sketch.wiring import initial_names
@@ -52,10 +55,12 @@ class Kernels:
         return self._numbers[id(kernel)]
 
     def _written(self, kernel: Kernel) -> dict[str, Any]:
+        recipes = _recipes(kernel)
+        source = recipes["fragment"].source if recipes else kernel.source
         data: dict[str, Any] = {
             "name": name_of(kernel),
             "kind": kernel.kind,
-            "file": self.texts.add(kernel.source, self.folder, name_of(kernel)),
+            "file": self.texts.add(source, self.folder, name_of(kernel)),
             "title": kernel.title,
             "outputs": [{"name": output.name, "format": output.format} for output in kernel.outputs],
             "inputs": [
@@ -85,18 +90,55 @@ class Kernels:
             data["dialect"] = kernel.dialect if isinstance(kernel, ForeignShader) else ""
         if used := _used(kernel):
             data["used"] = used
-        if not isinstance(kernel, CpuSource):
-            data |= self._stages(kernel)
-        return data
-
-    def _stages(self, kernel: Kernel) -> dict[str, Any]:
-        _, recipes = recipes_of(kernel, FRAGMENT)
-        stages = {}
         for name, recipe in recipes.items():
             own = kernel.vertex_source if name == "vertex" and isinstance(kernel, ForeignShader) else None
-            file = self.texts.add(own, self.folder, f"{name_of(kernel)} vertex") if own else ""
-            stages[name] = stage_data(recipe, file)
-        return stages
+            label = f"{name_of(kernel)} vertex"
+            data[name] = stage_data(recipe, self.texts.add(recipe.source, self.folder, label) if own else "")
+        return data
+
+
+def _recipes(kernel: Kernel) -> dict[str, Recipe]:
+    """Return how a kernel's stages are made, of a text that GLSL ES 3.00 has as well.
+
+    Other tools' shaders are rewritten. Raises ``ShaderError`` at the first line of a kernel that would be.
+    """
+    if isinstance(kernel, CpuSource):
+        return {}
+    _, recipes = recipes_of(kernel, FRAGMENT)
+    if isinstance(kernel, PlainFragment):
+        return {name: _in_common_glsl(recipe) for name, recipe in recipes.items()}
+    if any(not Path(file).is_relative_to(GLSL) for file in kernel.source.files):
+        for recipe in recipes.values():
+            _check_common_glsl(recipe)
+    return recipes
+
+
+def _in_common_glsl(recipe: Recipe) -> Recipe:
+    """Return a recipe of the same stage, line for line, in the common subset of desktops and pages."""
+    text, first = recipe.make()
+    if (common := in_common_glsl(text)) == text:
+        return recipe
+    if not first:
+        return replace(recipe, text=common)
+    lines, before, count = common.split("\n"), text.split("\n"), len(recipe.source.lines)
+    begin, end = first - 1, first - 1 + count
+    own = zip(recipe.source.lines, before[begin:end], lines[begin:end], strict=True)
+    source = recipe.source.with_codes([line.code if was == now else now for line, was, now in own])
+    head = (StagePart("\n".join(lines[:begin])),) if begin else ()
+    return replace(recipe, source=source, before=head, after="\n".join(lines[end:]))
+
+
+def _check_common_glsl(recipe: Recipe) -> None:
+    """Raise ``ShaderError`` at the first line that only desktop GLSL has."""
+    text, first = recipe.make()
+    common = zip(text.split("\n"), in_common_glsl(text).split("\n"), strict=True)
+    for number, (was, now) in enumerate(common, 1):
+        index = number - first
+        if was != now and first and 0 <= index < len(recipe.source.lines):
+            line = recipe.source.lines[index]
+            if not Path(line.file).is_relative_to(GLSL):
+                message = f"web pages compile GLSL ES 3.00, which wants this written as `{now.strip()}`"
+                raise line.error(message)
 
 
 def sampling_data(sampling: Sampling) -> dict[str, Any]:

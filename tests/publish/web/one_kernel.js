@@ -8,7 +8,6 @@ export { EDITOR_WORDS } from "../../../playground/publish/web/runtime/editor_wor
 export { createEditor } from "../../../playground/publish/web/runtime/editor.js";
 export { createGuard, keyOf } from "../../../playground/publish/web/runtime/last_good.js";
 export { createRecovery } from "../../../playground/publish/web/runtime/recovery.js";
-export { zip } from "../../../playground/publish/web/runtime/zip.js";
 
 const HEAD = ["#version 300 es", "precision highp float; precision highp int; uniform float level;"];
 const TAIL = "out vec4 k_out; void main() { k_out = vec4(kernel(ivec2(gl_FragCoord.xy)), 0.25, 0.5, 1.0); }";

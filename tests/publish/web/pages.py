@@ -93,6 +93,10 @@ class PageError(Exception):
         self.add_note(str(values.get("stack")))
 
 
+VIEW = "document.querySelector('{} .cm-content').cmTile.view"
+"""CodeMirror's view in an element, by the element's selector."""
+
+
 def parts_of(packed: str) -> list[str]:
     """Return a page's style, its data as JSON and its script."""
     return gzip.decompress(base64.b64decode(packed)).decode().split("\0")

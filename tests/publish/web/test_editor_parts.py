@@ -1,4 +1,4 @@
-"""What the editor is made of, without a page: keys, notices, groups of files, what worked, how long."""
+"""What the editor is made of, without a page: notices, groups of files, what worked, how long."""
 
 from __future__ import annotations
 
@@ -7,53 +7,6 @@ from typing import Any
 import pytest
 
 from .node import Node
-
-CARET = "|"
-
-
-def press(node: Node, name: str, text: str, *more: str) -> str | None:
-    """Return a text after a key; carets are bars, two of them a selection."""
-    start = text.index(CARET)
-    end = text.rindex(CARET) - (text.count(CARET) == 2)
-    plain = text.replace(CARET, "")
-    change = node.call("typing.js", name, {"text": plain, "start": start, "end": end}, *more)
-    if change is None:
-        return None
-    done = plain[: change["from"]] + change["insert"] + plain[change["to"] :]
-    first, last = change["start"], change["end"]
-    marked = done[:last] + CARET + done[last:]
-    return marked if first == last else marked[:first] + CARET + marked[first:]
-
-
-@pytest.mark.parametrize(
-    ("name", "before", "after"),
-    [
-        ("indented", "a|b", "a   |b"),
-        ("indented", "    |", "        |"),
-        ("indented", "|a\nb|\nc", "    |a\n    b|\nc"),
-        ("indented", "|a\n\n|c", "    |a\n\n|c"),
-        ("outdented", "    a|\n", "a|\n"),
-        ("outdented", "|      a\n\tb|", "|  a\nb|"),
-        ("outdented", "a|", "a|"),
-        ("newLine", "    x;|", "    x;\n    |"),
-        ("newLine", "f() {|", "f() {\n    |"),
-        ("newLine", "  f() {|}", "  f() {\n      |\n  }"),
-        ("newLine", "f(); // {|", "f(); // {\n|"),
-        ("newLine", "|x", "\n|x"),
-        ("commented", "  a|;\nb", "  // a|;\nb"),
-        ("commented", "|a\n  b|", "// |a\n  // b|"),
-        ("commented", "|// a\n  // b|", "|a\n  b|"),
-    ],
-)
-def test_a_key_does_what_an_editor_does(node: Node, name: str, before: str, after: str):
-    assert press(node, name, before) == after
-
-
-def test_a_bracket_closes_at_the_depth_where_it_opens(node: Node):
-    assert press(node, "closing", "f() {\n  if (a) {\n        |", "}") == "f() {\n  if (a) {\n  }|"
-    assert press(node, "closing", "f() {\n    x;|", "}") is None
-    assert press(node, "closing", "    |", "}") is None
-
 
 HEADER = """#pragma kernel(output = "h:r32f", \\
                repeat = "4")

@@ -23,6 +23,7 @@ from playground.studio.picture.view import field_for
 
 from ...loading import load
 from ...verify.report.browser import MESA, Browser
+from .pages import VIEW
 
 pytestmark = pytest.mark.slow
 
@@ -180,8 +181,8 @@ def test_a_french_page_has_a_french_editor(browser: Browser, exported: Any):
     assert "Fichier" in shown and "Rétablir ce fichier" in shown and "Échap puis Tab" in shown
     assert "Comme dans l’esquisse" in shown
     browser.run(
-        "const area = document.querySelector('.code-text'); area.value += ' int a = ;';"
-        "area.dispatchEvent(new Event('input'))"
+        f"const view = {VIEW.format('.editor')};"
+        "view.dispatch({changes: {from: view.state.doc.length, insert: ' int a = ;'}})"
     )
     status = "document.querySelector('.editor-status').textContent"
     browser.wait(f"/^1 erreur|^. erreurs/.test({status})")

@@ -15,7 +15,6 @@ from playground.publish.web.page_data import page_data
 
 from ...foreign_cases import EVERY, Case
 from ...loading import load
-from ...sketch_texts import map_of_height
 from .pages import PageError, Pages
 
 SIZE = (96, 54)
@@ -135,26 +134,6 @@ def test_a_terrain_that_cannot_be_a_cube_is_one_sentence(pages: Pages, drawn: En
     why = "sides reads 8 x 32 texels; a cube map is six faces above each other, 1 : 6, as 8 x 48"
     with pytest.raises(PageError, match=why):
         pages.picture(sketch.name, terrain={**terrain, "size": [8, 32]})
-
-
-LOOSE = """#pragma kernel(output = "height:r32f")
-uniform float steep = 2;     //! slider(0, 4)
-uniform int many = 3;        //! slider(1, 9)
-const float half_of_it = 1 / 2.0;
-float bent(float x, float by) { return pow(x, 2) * by; }
-float kernel(ivec2 texel) {
-    vec2 place = texel / vec2(size);
-    float sum = 0;
-    for (int i = 0; i < many; i++) sum += bent(place.x, i) + max(place.y, 0) * 2;
-    return texel.x > 20 ? sum * steep / many : half_of_it;
-}
-"""
-
-
-def test_a_kernel_of_ones_own_may_be_as_loose_as_desktops_are(pages: Pages, drawn: Engine, tmp_path: Path):
-    (tmp_path / "terrain.glsl").write_text(LOOSE, "utf-8")
-    (tmp_path / "loose.toml").write_text(f"format = 1\nsize = 33\n{map_of_height()}", "utf-8")
-    agree(pages, drawn, load(tmp_path / "loose.toml"), 0.0)
 
 
 EYES = "#version 330\nuniform vec2 eye; out vec4 colour;\nvoid main() { colour = vec4(eye, 0.5, 1.0); }\n"

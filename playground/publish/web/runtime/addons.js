@@ -5,8 +5,6 @@
 
 /** @typedef {object} AddOns
  *  @property {typeof import("./edits.js")} [edits]          for texts that are edited in the page
- *  @property {(text: string) => string} [fromDesktop]       for texts that are not the library's: a stage's
- *                                                           text without what only desktop GLSL allows
  *  @property {typeof import("./plain.js") & typeof import("./usual.js")} [plain]   for other tools' shaders
  *  @property {typeof import("./keyframes.js")} [keyframes] */
 

@@ -38,7 +38,7 @@ export function createText({ host, sketches, engine, watched, words }, written) 
   watched.edit({ guard, reopen: (text) => field.replace(part(text)) });
   const editor = make("div", { className: "editor" });
   host.append(editor);
-  const field = createCodeField(editor, { label: written.label, hint: words.lineKeys, onInput: typed });
+  const field = createCodeField(editor, { hint: words.lineKeys, onInput: typed });
   const status = make("p", { className: "editor-status", role: "status" });
   const problems = make("ol", { className: "editor-problems" });
   editor.append(status, problems);

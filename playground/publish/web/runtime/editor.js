@@ -49,7 +49,7 @@ export function createEditor(host, player, options) {
     button(words.saveFile, saveFile, { className: "editor-save" }));
   const root = make("section", { className: "editor" }, bar);
   host.append(root);
-  const field = createCodeField(root, { label: "", hint: words.fieldKeys, onInput: typed });
+  const field = createCodeField(root, { hint: words.fieldKeys, onInput: typed });
   root.append(status, list, said, make("p", { className: "editor-keys" }, words.fieldKeys));
 
   const original = (/** @type {string} */ name) => player.shared.files[name] ?? "";
@@ -76,7 +76,6 @@ export function createEditor(host, player, options) {
     settle();
     file = name;
     select.value = name;
-    field.area.disabled = !name;
     field.open(textOf(name), fill(words.field, { name: name.replace(/^\.\//, "") }), original(name));
     tell();
   }

@@ -13,7 +13,7 @@ export const EDITOR_WORDS = {
     field: "Text of {name}",
     fieldKeys: "Tab inserts spaces; press Esc, then Tab, to leave the field. Ctrl+/ makes lines comments.",
     resetFile: "Reset this file",
-    copyFile: "Copy the text",
+    copyFile: "Copy",
     saveFile: "Download",
     fileCopied: "The text of {name} is copied",
     fileNotCopied: "This browser lets no page copy: select the text, and copy it by hand",
@@ -66,7 +66,7 @@ export const EDITOR_WORDS = {
     fieldKeys: "Tab insère des espaces ; Échap puis Tab quitte le champ. Ctrl+/ met des lignes en "
       + "commentaire.",
     resetFile: "Rétablir ce fichier",
-    copyFile: "Copier le texte",
+    copyFile: "Copier",
     saveFile: "Télécharger",
     fileCopied: "Le texte de {name} est copié",
     fileNotCopied: "Ce navigateur ne laisse aucune page copier : sélectionnez le texte, et copiez-le à la main",
@@ -106,5 +106,18 @@ export const EDITOR_WORDS = {
       + "sans fin. Le dernier texte qui marchait est repris.",
     tryAgain: "Ouvrir le texte à l’essai",
     forget: "L’oublier",
+  },
+};
+
+/** What CodeMirror says in its own way: its English, and what stands for that.
+ *  @type {import("./words.js").Table} */
+export const SEARCH_PHRASES = {
+  en: {},
+  fr: {
+    Find: "Chercher", Replace: "Remplacer par", next: "suivant", previous: "précédent", all: "tous",
+    "match case": "casse", regexp: "expression régulière", "by word": "mot entier", replace: "remplacer",
+    "replace all": "tout remplacer", close: "fermer", "current match": "occurrence", "on line": "à la ligne",
+    "replaced match on line $": "remplacé à la ligne $", "replaced $ matches": "$ occurrences remplacées",
+    "Go to line": "Aller à la ligne", go: "aller", Diagnostics: "Erreurs", "No diagnostics": "Aucune erreur",
   },
 };

@@ -1,6 +1,5 @@
 // kernel_texts.js -- what a kernel's text says: names it reads, what it is known by, the texts of its stages.
 
-import { needed } from "./addons.js";
 import { hash } from "./hash.js";
 import { usedBy } from "./staleness.js";
 import { flatten } from "./source.js";
@@ -16,7 +15,6 @@ import { filteredByHand } from "./linear_by_hand.js";
  *  @property {Kernel} kernel
  *  @property {import("./source.js").Flat} flat
  *  @property {import("./source.js").Flat} vertex   its author's own vertex shader's, else the same
- *  @property {boolean} desktop        whether it may say what only desktop GLSL allows: not the library's
  *  @property {string[]} given         names that the engine gives it
  *  @property {Set<string>} used       names in its text besides their declaration, or in its header
  *  @property {string} identity        the same for the same header and text
@@ -33,14 +31,11 @@ export const readKernel = (shared, kernel, texts) => {
     : flatten(shared, kernel.file, texts, { once: !!kernel.dialect });
   const once = { once: !!kernel.dialect }, own = kernel.vertex?.file;
   const vertex = own ? flatten(shared, own, texts, once) : flat;
-  const lines = own ? [...flat.lines, ...vertex.lines] : flat.lines;
-  const code = lines.map((line) => line.code).join("\n");
+  const code = (own ? [...flat.lines, ...vertex.lines] : flat.lines).map((line) => line.code).join("\n");
   const given = Object.keys(shared.given).filter((name) => flat.names.has(name));
   const declared = new Set(kernel.parameters.map(({ name }) => name));
   return {
     kernel, flat, vertex, given, programs: new Map(), hands: new Map(),
-    desktop: kernel.kind === "plain_fragment"
-      || lines.some(({ file }) => file.startsWith("./") || file in texts),
     used: usedBy(kernel, code, given),
     identity: hash(JSON.stringify([kernel, code])),
     own: declaredUniforms(flat.lines).filter(({ name, value }) => value !== null && !declared.has(name))
@@ -53,11 +48,10 @@ export const readKernel = (shared, kernel, texts) => {
  *  @param {Map<string, import("./linear_by_hand.js").Wrap>} byHand samplers that are filtered in the text
  *  @param {string} atEnd of the fragment shader's main function
  *  @returns {{texts: [string, string], first: [number, number]}} */
-export const stagesOf = ({ kernel, flat, vertex, desktop }, byHand, atEnd) => {
+export const stagesOf = ({ kernel, flat, vertex }, byHand, atEnd) => {
   const stages = [kernel.vertex, kernel.fragment].map((stage, i) => {
     const { text, first } = stageText(stage, i ? flat : vertex);
-    const written = desktop ? needed("fromDesktop")(text) : text;
-    const filtered = byHand.size ? filteredByHand(written, byHand) : { text: written, functions: "" };
+    const filtered = byHand.size ? filteredByHand(text, byHand) : { text, functions: "" };
     const found = i && atEnd ? filtered.text.replace(/\}\s*$/, `${atEnd} }\n`) : filtered.text;
     const how = { extensions: kernel.extensions, declarations: filtered.functions };
     return { text: toES(found, how), first };

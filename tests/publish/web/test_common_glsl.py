@@ -1,10 +1,19 @@
-"""What desktop GLSL allows and GLSL ES does not is written out, line for line."""
+"""What desktop GLSL allows and GLSL ES does not is written out at export, line for line, or refused."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
-from .node import Node
+from playground.errors import ShaderError
+from playground.publish.web.common_glsl import in_common_glsl, lacking
+from playground.publish.web.page_data import page_data
+from playground.shader.wrap import FRAGMENT, wrap
+
+from ...loading import load
+from ...sketch_texts import map_of_height
+from .texts import kernels
 
 CONVERSIONS = {
     "float a = 1;": "float a = 1.0;",
@@ -50,27 +59,23 @@ void main() {{
 """
 
 
-@pytest.mark.parametrize("name", ["constructor", "toString", "hasOwnProperty"])
-def test_call_named_like_object_prototype_member_is_unknown(node: Node, name: str):
-    macro = f"#define {name}2(a) {name}(a)\n"
-    text = f"{macro}void main() {{ int a = {name}(1) * 2; float b = 2 * 1.0; }}\n"
-    result = node.call("conversions.js", "withConversions", text)
-    assert result == text.replace("2 * 1.0", "2.0 * 1.0")
-
-
 @pytest.mark.parametrize("written", CONVERSIONS)
-def test_a_conversion_is_written_out(node: Node, written: str):
-    result = node.call("conversions.js", "withConversions", FUNCTION.format(written))
-    lines = result.split("\n")
-    assert lines[10].strip() == CONVERSIONS[written]
-    assert lines[6].strip() == "return 1.0;"
+def test_a_conversion_is_written_out(written: str):
     expected = FUNCTION.format(CONVERSIONS[written]).replace("return 1;", "return 1.0;")
-    assert result == expected, "all else stays"
+    assert in_common_glsl(FUNCTION.format(written)) == expected
 
 
-def test_what_is_not_understood_stays(node: Node):
-    text = "#define BODY(t) t twice(t a)\nBODY(float) { return a 2; }\nvoid main() {\n    float a = ) 1;\n}\n"
-    assert node.call("conversions.js", "withConversions", text) == text
+@pytest.mark.parametrize(
+    "text",
+    [
+        "#define BODY(t) t twice(t a)\nBODY(float) { return a 2; }\nvoid main() {\n    float a = ) 1;\n}\n",
+        "void main() { float a = " + 2000 * "(" + "1",
+        "",
+    ],
+    ids=["macros that take types", "endless", "nothing"],
+)
+def test_what_is_not_understood_stays(text: str):
+    assert in_common_glsl(text) == text
 
 
 FORMS = {
@@ -96,14 +101,66 @@ FORMS = {
 
 
 @pytest.mark.parametrize("written", FORMS)
-def test_a_form_of_desktops_has_another(node: Node, written: str):
-    result = node.call("desktop_glsl.js", "withoutDesktopForms", written)
+def test_a_form_of_desktops_has_another(written: str):
+    result = in_common_glsl(written)
     assert result.split() == FORMS[written].split()
     assert result.count("\n") == written.count("\n")
 
 
-def test_a_texture_of_one_dimension_is_a_row(node: Node):
+def test_a_texture_of_one_dimension_is_a_row():
     text = "uniform sampler1D tones;\nvec4 a = texture(tones, 0.5) + texelFetch(tones, 3, 0);\n"
-    result = node.call("desktop_glsl.js", "withoutDesktopForms", text)
+    result = in_common_glsl(text)
     assert "sampler1D" not in result and result.count("\n") == 2
     assert "k_line(tones, 0.5) + k_lineFetch(tones, 3, 0)" in result
+
+
+@pytest.mark.slow
+def test_the_library_is_in_the_common_subset():
+    for name, kernel in kernels().items():
+        for stage in wrap(kernel, FRAGMENT).stages.values():
+            assert in_common_glsl(stage.text) == stage.text, name
+
+
+LOOSE = """#pragma kernel(output = "height:r32f")
+uniform float steep = 2.0;  //! slider(0, 4)
+float kernel(ivec2 texel) {
+    return pow(steep, 2);
+}
+"""
+
+
+def test_a_kernel_that_only_desktops_compile_is_refused_at_its_line(tmp_path: Path):
+    (tmp_path / "terrain.glsl").write_text(LOOSE, "utf-8")
+    (tmp_path / "loose.toml").write_text(f"format = 1\nsize = 33\n{map_of_height()}", "utf-8")
+    with pytest.raises(ShaderError, match=r"terrain\.glsl:4.*written as `return pow\(steep, 2\.0\);`"):
+        page_data([load(tmp_path / "loose.toml")])
+    (tmp_path / "terrain.glsl").write_text(LOOSE.replace("2)", "2.0)"), "utf-8")
+    assert page_data([load(tmp_path / "loose.toml")])["sketches"]
+
+
+TOY = "void mainImage(out vec4 c, in vec2 p) {{ c = vec4({}); }}\n"
+
+
+@pytest.mark.parametrize(
+    ("code", "name"),
+    [
+        ("vec4 a = textureGather(s, p);", "textureGather()"),
+        ("int n = findMSB (5);", "findMSB()"),
+        ("double d = 1.0;", "double"),
+        ("uniform samplerCubeArray s;", "samplerCubeArray"),
+        ("float fma(float a, float b, float c) { return a; } float x = fma(1.0, 2.0, 3.0);", ""),
+        ("#define ldexp(a, b) (a)\nfloat x = ldexp(1.0, 2);", ""),
+        ("float bitCount = 1.0, doubled = 2.0;", ""),
+        ("vec4 a = texture(s, p) + texelFetch(s, ivec2(p), 0);", ""),
+    ],
+)
+def test_what_the_glsl_of_pages_lacks_is_found(code: str, name: str):
+    assert lacking(code) == name
+
+
+def test_a_shader_that_no_page_can_run_is_refused_with_the_name(tmp_path: Path):
+    (tmp_path / "toy.frag").write_text(TOY.format("textureGather(iChannel0, p).x"))
+    with pytest.raises(ShaderError, match=r"names textureGather\(\), which the GLSL of web pages has not"):
+        page_data([load(tmp_path / "toy.frag")])
+    (tmp_path / "fine.frag").write_text(TOY.format("texture(iChannel0, p).x"))
+    assert page_data([load(tmp_path / "fine.frag")])["sketches"]
